@@ -1,0 +1,1 @@
+//! Pliant's mesh.
