@@ -1,1 +1,39 @@
-//! Pliant's render.
+//! Drawing with wgpu: slices of numbers in, a texture or picked triangle numbers out.
+//!
+//! A [`Renderer`] owns the pipelines of one device. A [`Surface`] is a triangle mesh in GPU buffers, made from a
+//! [`SurfaceData`] of slices and updated in place while it moves. A [`Frame`] says what to draw and how it is seen;
+//! [`Renderer::draw`] draws it into a [`Target`], a texture of our own that a window shows as an image, and
+//! [`Renderer::draw_to_image`] draws the very same frame into bytes. [`Renderer::pick`] answers which triangles lie
+//! under a rectangle of pixels. [`Headless`] is a renderer that needs no window.
+//!
+//! "World" here is *relative to a centre that the caller subtracts in f64*: scans stand at geographic coordinates
+//! where f32 has no digits left. Depth is reversed: 1 at the near plane, 0 far away.
+//!
+//! Invariant: no mesh type, no solver, no egui, no camera, no files.
+
+mod error;
+mod frame;
+mod guard;
+mod headless;
+mod image;
+mod material;
+mod overlay;
+mod pick;
+mod renderer;
+mod surface;
+mod target;
+mod texture;
+mod view;
+
+pub use error::{NoGpu, RenderError};
+pub use frame::{Background, Frame, Shading, Style, Wireframe};
+pub use headless::{Headless, device_descriptor};
+pub use image::Image;
+pub use material::{AlphaMode, Material, MaterialGroup};
+pub use overlay::{Overlay, OverlayLine, OverlayTriangle};
+pub use pick::{IdTarget, PickRequest, Picked, PickedIds, PixelRect};
+pub use renderer::Renderer;
+pub use surface::{ColourSpace, Surface, SurfaceData};
+pub use target::{Samples, Target};
+pub use texture::{TextureData, Wrap};
+pub use view::View;

@@ -1,0 +1,65 @@
+//! A device without a window.
+
+use crate::guard::one_line;
+use crate::{NoGpu, Renderer};
+
+/// A renderer of its own, on the best device there is, a software one included.
+#[derive(Debug)]
+pub struct Headless {
+    /// The renderer; draw with [`Renderer::draw_to_image`].
+    pub renderer: Renderer,
+}
+
+impl Headless {
+    /// Opens a device of any backend (`WGPU_BACKEND` and `WGPU_ADAPTER_NAME` choose one).
+    ///
+    /// # Errors
+    /// [`NoGpu`], in one sentence, when there is none or it can't be used.
+    pub fn new() -> Result<Self, NoGpu> {
+        let instance =
+            wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let adapter = pollster::block_on(adapter(&instance)).ok_or(NoGpu::NoAdapter)?;
+        let name = adapter.get_info().name;
+        let (device, queue) = pollster::block_on(
+            adapter.request_device(&device_descriptor(&adapter)),
+        )
+        .map_err(|error| NoGpu::Refused {
+            name: name.clone(),
+            reason: one_line(&error.to_string()),
+        })?;
+        let renderer = Renderer::new(&device, &queue).map_err(|error| NoGpu::Unusable {
+            name,
+            reason: error.to_string(),
+        })?;
+        Ok(Self { renderer })
+    }
+}
+
+async fn adapter(instance: &wgpu::Instance) -> Option<wgpu::Adapter> {
+    if let Ok(adapter) = wgpu::util::initialize_adapter_from_env(instance, None).await {
+        return Some(adapter);
+    }
+    for force_fallback_adapter in [false, true] {
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            force_fallback_adapter,
+            ..Default::default()
+        };
+        if let Ok(adapter) = instance.request_adapter(&options).await {
+            return Some(adapter);
+        }
+    }
+    None
+}
+
+/// What to ask of an adapter so that everything here works: its own limits (the defaults cap buffers at 256 MiB),
+/// and those of its features that we can use. A window's device should be asked for with this, too.
+pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    let useful = wgpu::Features::PRIMITIVE_INDEX | wgpu::Features::TIMESTAMP_QUERY;
+    wgpu::DeviceDescriptor {
+        label: Some("pliant"),
+        required_features: adapter.features() & useful,
+        required_limits: adapter.limits(),
+        ..Default::default()
+    }
+}
