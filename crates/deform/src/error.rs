@@ -1,0 +1,126 @@
+//! What can go wrong, each in one sentence that names the culprit and the remedy.
+
+use pliant_mesh::Cancelled;
+
+/// A problem could not be bound.
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BindError {
+    /// Somebody raised the flag.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A table has another length than the surface.
+    #[error("{table} has {found} entries for {expected} surface vertices: give one for each")]
+    Length {
+        /// Which table.
+        table: &'static str,
+        /// Its length.
+        found: usize,
+        /// The surface's.
+        expected: usize,
+    },
+    /// A vertex belongs to a handle that does not exist.
+    #[error("surface vertex {vertex} belongs to handle {handle}, but there are {handle_count} handles: add the handle or free the vertex")]
+    UnknownHandle {
+        /// The vertex.
+        vertex: u32,
+        /// Its handle.
+        handle: u16,
+        /// How many there are.
+        handle_count: usize,
+    },
+    /// A handle without vertices.
+    #[error("handle {handle} holds no vertex: select at least one for it or remove it")]
+    EmptyHandle {
+        /// The handle.
+        handle: usize,
+    },
+    /// A stiffness that is no stiffness.
+    #[error("the stiffness {value} of surface vertex {vertex} is not a number above 0: paint it again")]
+    Stiffness {
+        /// The vertex.
+        vertex: u32,
+        /// What it has.
+        value: f64,
+    },
+    /// The ordering is another mesh's or power's.
+    #[error("the ordering is for {found} vertices and power {found_power}, not for {expected} and {expected_power}: make one from this surface")]
+    Ordering {
+        /// Its vertices.
+        found: usize,
+        /// Its power.
+        found_power: u32,
+        /// The surface's vertices.
+        expected: usize,
+        /// The method's power.
+        expected_power: u32,
+    },
+    /// A rest position that is not finite.
+    #[error("surface vertex {vertex} has no finite position: weld the surface again")]
+    Position {
+        /// The vertex.
+        vertex: u32,
+    },
+    /// The system is not positive definite, even with a little regularisation.
+    #[error(
+        "the thin plate of component {component} cannot be factored at surface vertex {vertex}: fix vertices around it or repair the triangles there"
+    )]
+    NotPositiveDefinite {
+        /// The component, as `cli.md` numbers them.
+        component: u32,
+        /// The vertex whose pivot failed.
+        vertex: u32,
+    },
+    /// The factor does not reproduce a constant.
+    #[error(
+        "the thin plate of component {component} is solved only to {error:.1e} near surface vertex {vertex}: fix vertices around it or repair the triangles there"
+    )]
+    Inaccurate {
+        /// The component, as `cli.md` numbers them.
+        component: u32,
+        /// Where the error is largest.
+        vertex: u32,
+        /// By how much a constant is missed.
+        error: f64,
+    },
+    /// The factor does not fit.
+    #[error("the factor of {free_count} free vertices does not fit into memory: make the region smaller")]
+    OutOfMemory {
+        /// How many vertices are solved for.
+        free_count: usize,
+    },
+}
+
+/// A step could not be done; the displacements are all zero then.
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// There is not one transform for each handle.
+    #[error("{found} transforms came for {expected} handles: give one for each")]
+    TargetCount {
+        /// How many came.
+        found: usize,
+        /// How many handles there are.
+        expected: usize,
+    },
+    /// A transform holds a NaN or an infinity.
+    #[error("the transform of handle {handle} is not finite: reset it")]
+    TargetNotFinite {
+        /// The handle.
+        handle: usize,
+    },
+    /// The output has another length than the surface.
+    #[error("room for {found} displacements was given for {expected} surface vertices: give one for each")]
+    OutputLength {
+        /// The output's length.
+        found: usize,
+        /// The surface's vertices.
+        expected: usize,
+    },
+    /// A displacement came out as no number.
+    #[error("the displacement of surface vertex {vertex} is not finite: move the handles less far")]
+    NotFinite {
+        /// The first such vertex.
+        vertex: u32,
+    },
+}

@@ -1,0 +1,60 @@
+//! The methods by name, and their options.
+
+/// How a surface follows its handles. Later methods join as variants.
+#[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
+pub enum Method {
+    /// The linear thin plate (Botsch & Kobbelt 2004).
+    Bilaplacian(Bilaplacian),
+}
+
+/// Options of the thin plate L M⁻¹ L d = 0. It has none yet.
+#[derive(Clone, PartialEq, Debug, Default)]
+#[non_exhaustive]
+pub struct Bilaplacian {}
+
+impl Method {
+    /// Every method's name, in the order in which they are shown.
+    pub const NAMES: &'static [&'static str] = &["bilaplacian"];
+
+    /// The method called `name`, with its defaults.
+    pub fn from_name(name: &str) -> Option<Self> {
+        match name {
+            "bilaplacian" => Some(Self::Bilaplacian(Bilaplacian::default())),
+            _ => None,
+        }
+    }
+
+    /// The name that [`Method::from_name`] takes.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Bilaplacian(_) => "bilaplacian",
+        }
+    }
+
+    /// The power of the Laplacian whose graph the method's system has: what [`crate::Ordering::of`] takes.
+    pub fn operator_power(&self) -> u32 {
+        match self {
+            Self::Bilaplacian(_) => 2,
+        }
+    }
+}
+
+impl Default for Method {
+    fn default() -> Self {
+        Self::Bilaplacian(Bilaplacian::default())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Method;
+
+    #[test]
+    fn every_name_names_its_method() {
+        for name in Method::NAMES {
+            assert_eq!(Method::from_name(name).map(|method| method.name()), Some(*name));
+        }
+        assert_eq!(Method::from_name("no such method"), None);
+    }
+}

@@ -1,0 +1,169 @@
+//! Who is solved for, who is prescribed, who follows: what the roles mean on this surface.
+//!
+//! Only vertices that a handle can reach are solved for. The system's graph is that of L², so influence travels two
+//! edges at a time, across constrained vertices too, and ends where a band of constrained vertices is two rings wide.
+//! Free vertices that it does not reach have the solution zero and stay out of the factor: binding costs what is
+//! deformed, not what is loaded.
+
+use pliant_mesh::SurfaceVertex;
+
+use crate::{BindError, Loose, Problem, Role};
+
+/// The vertices by what happens to them, all lists ascending.
+#[derive(Debug)]
+pub(crate) struct Partition {
+    /// Free vertices that some handle influences.
+    pub solved: Vec<u32>,
+    /// The vertices of each handle.
+    pub handles: Vec<Vec<u32>>,
+    /// Components that hold a handle, ascending.
+    pub driven: Vec<u32>,
+    /// Components that hold neither a handle nor a fixed vertex and are to follow, ascending.
+    pub following: Vec<u32>,
+    /// Of each component: whether it holds a fixed vertex.
+    pub held: Vec<bool>,
+    /// How many vertices have the role [`Role::Free`].
+    pub free_count: usize,
+    /// Sentences for a person about components.
+    pub warnings: Vec<String>,
+}
+
+impl Partition {
+    /// Checks the problem's tables and sorts its vertices.
+    pub fn of(problem: &Problem) -> Result<Self, BindError> {
+        check(problem)?;
+        let mut handles = vec![Vec::new(); problem.handle_count];
+        let component_count = problem.topology.components().len();
+        let mut held = vec![false; component_count];
+        let mut driven = vec![false; component_count];
+        let mut free_count = 0;
+        for (vertex, &role) in problem.roles.iter().enumerate() {
+            let component = problem.topology.component(SurfaceVertex(vertex as u32)) as usize;
+            match role {
+                Role::Fixed => held[component] = true,
+                Role::Free => free_count += 1,
+                Role::Handle(handle) => {
+                    handles[usize::from(handle)].push(vertex as u32);
+                    driven[component] = true;
+                }
+            }
+        }
+        if let Some(handle) = handles.iter().position(Vec::is_empty) {
+            return Err(BindError::EmptyHandle { handle });
+        }
+        let indices = |test: &dyn Fn(usize) -> bool| (0..component_count).filter(|&c| test(c)).map(|c| c as u32).collect::<Vec<_>>();
+        let loose = indices(&|c| !held[c] && !driven[c]);
+        let follows = problem.loose == Loose::Follow && !handles.is_empty();
+        let warnings = warnings(problem, &loose, &indices(&|c| driven[c] && !held[c]), follows);
+        Ok(Self {
+            solved: influenced(problem, &handles),
+            handles,
+            driven: indices(&|c| driven[c]),
+            following: if follows { loose } else { Vec::new() },
+            held,
+            free_count,
+            warnings,
+        })
+    }
+}
+
+fn check(problem: &Problem) -> Result<(), BindError> {
+    let expected = problem.surface.positions.len();
+    for (table, found) in [("the roles' table", problem.roles.len()), ("the stiffness table", problem.stiffness.len())] {
+        if found != expected {
+            return Err(BindError::Length { table, found, expected });
+        }
+    }
+    for (vertex, role) in problem.roles.iter().enumerate() {
+        if let Role::Handle(handle) = *role
+            && usize::from(handle) >= problem.handle_count
+        {
+            return Err(BindError::UnknownHandle { vertex: vertex as u32, handle, handle_count: problem.handle_count });
+        }
+    }
+    for (vertex, &value) in problem.stiffness.iter().enumerate() {
+        if !(value.is_finite() && value > 0.0) {
+            return Err(BindError::Stiffness { vertex: vertex as u32, value });
+        }
+    }
+    match problem.surface.positions.iter().position(|position| !position.is_finite()) {
+        Some(vertex) => Err(BindError::Position { vertex: vertex as u32 }),
+        None => Ok(()),
+    }
+}
+
+/// The free vertices that handles reach in the graph of L², ascending.
+///
+/// A middle vertex joins all its neighbours, itself included, so each needs to be opened once.
+fn influenced(problem: &Problem, handles: &[Vec<u32>]) -> Vec<u32> {
+    let topology = problem.topology;
+    let mut reached = vec![false; problem.roles.len()];
+    let mut opened = vec![false; problem.roles.len()];
+    let mut queue: Vec<u32> = handles.iter().flatten().copied().collect();
+    while let Some(vertex) = queue.pop() {
+        let vertex = SurfaceVertex(vertex);
+        for middle in std::iter::once(vertex).chain(topology.neighbours(vertex).iter().copied()) {
+            if std::mem::replace(&mut opened[middle.index()], true) {
+                continue;
+            }
+            for next in std::iter::once(middle).chain(topology.neighbours(middle).iter().copied()) {
+                if problem.roles[next.index()] == Role::Free && !std::mem::replace(&mut reached[next.index()], true) {
+                    queue.push(next.0);
+                }
+            }
+        }
+    }
+    (0..reached.len()).filter(|&vertex| reached[vertex]).map(|vertex| vertex as u32).collect()
+}
+
+/// How many components are named one by one before they are only counted.
+const NAMED: usize = 4;
+
+fn warnings(problem: &Problem, loose: &[u32], unheld: &[u32], follows: bool) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if problem.handle_count == 0 {
+        return sentences;
+    }
+    let size = |component: u32| problem.topology.components()[component as usize].vertex_count;
+    let fate = if follows { "the nearest deformed surface" } else { "nothing" };
+    let verb = |count: usize| match (follows, count) {
+        (true, 1) => "follows",
+        (true, _) => "follow",
+        (false, 1) => "stays and follows",
+        (false, _) => "stay and follow",
+    };
+    let sum = |components: &[u32]| components.iter().map(|&component| size(component)).sum::<usize>();
+    if loose.len() <= NAMED {
+        for &component in loose {
+            sentences.push(format!(
+                "component {component} ({} vertices) holds no handle and no fixed vertex: it {} {fate}",
+                size(component),
+                verb(1)
+            ));
+        }
+    } else {
+        sentences.push(format!(
+            "{} components ({} vertices, from component {} on) hold no handle and no fixed vertex: they {} {fate}",
+            loose.len(),
+            sum(loose),
+            loose[0],
+            verb(loose.len())
+        ));
+    }
+    if unheld.len() <= NAMED {
+        for &component in unheld {
+            sentences.push(format!(
+                "component {component} ({} vertices) holds a handle but no fixed vertex: nothing holds it back",
+                size(component)
+            ));
+        }
+    } else {
+        sentences.push(format!(
+            "{} components ({} vertices, from component {} on) hold a handle but no fixed vertex: nothing holds them back",
+            unheld.len(),
+            sum(unheld),
+            unheld[0]
+        ));
+    }
+    sentences
+}

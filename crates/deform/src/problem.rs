@@ -1,0 +1,65 @@
+//! What is to be solved: a surface, and what each of its vertices does.
+
+use pliant_mesh::{Cancel, Progress, Surface, Topology};
+
+use crate::{BindError, Bound, Method, Ordering};
+
+/// What a surface vertex does.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub enum Role {
+    /// Stays where it is.
+    Fixed,
+    /// Goes where the method puts it.
+    #[default]
+    Free,
+    /// Moves with the handle of this number.
+    Handle(u16),
+}
+
+/// What a connected component does that holds no handle and no fixed vertex.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub enum Loose {
+    /// It moves rigidly with the nearest part of the surface that is being deformed: eyes, buttons, straps.
+    #[default]
+    Follow,
+    /// It stays where it is.
+    Rest,
+}
+
+/// Everything that a deformation depends on but the handles' transforms.
+///
+/// All slices have one entry a surface vertex. Nothing is kept of them after [`Problem::bind`].
+#[derive(Clone, Copy, Debug)]
+pub struct Problem<'a> {
+    /// The rest shape, in world units.
+    pub surface: &'a Surface,
+    /// The adjacency of `surface`.
+    pub topology: &'a Topology,
+    /// What each surface vertex does.
+    pub roles: &'a [Role],
+    /// How many handles there are; [`Role::Handle`] numbers lie below it, and every number occurs.
+    pub handle_count: usize,
+    /// Painted stiffness of each surface vertex, above 0, 1 where nothing was painted. A face is as stiff as the mean
+    /// of its three vertices.
+    pub stiffness: &'a [f64],
+    /// What components do that nothing holds.
+    pub loose: Loose,
+    /// The method and its options.
+    pub method: &'a Method,
+    /// The caller's stamp, handed back by [`Bound::revision`].
+    pub revision: u64,
+}
+
+impl Problem<'_> {
+    /// Factors and solves whatever does not depend on the handles' transforms.
+    ///
+    /// `ordering` must come from the same topology with the power that [`Method::operator_power`] names. Uses rayon's
+    /// current pool; the result is the same bit for bit whatever its size.
+    ///
+    /// # Errors
+    /// [`BindError`] names what is wrong with the problem, or where the system could not be solved;
+    /// [`BindError::Cancelled`] soon after `cancel` is raised.
+    pub fn bind(&self, ordering: &Ordering, progress: &Progress, cancel: &Cancel) -> Result<Bound, BindError> {
+        Bound::bind(self, ordering, progress, cancel)
+    }
+}
