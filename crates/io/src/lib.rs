@@ -1,1 +1,31 @@
-//! Pliant's io.
+//! Files as bytes: glTF/GLB, OBJ, PLY, STL and OFF in and out, losslessly; image decoding.
+//!
+//! [`read`] gives the file as stored (a [`Scene`], nothing thrown away) and what it shows ([`pliant_mesh::Drawn`]).
+//! [`Scene::save`] gives bytes back in which only the moved vertices' numbers differ, or the same shape as another
+//! kind of file. Bytes come in and go out; neighbours (a `.gltf`'s buffers, an `.obj`'s materials) are asked for
+//! through a [`Resolver`], so nothing here knows a path.
+
+mod appearance;
+mod error;
+mod format;
+mod frames;
+mod gltf;
+mod image;
+mod moved;
+mod new_glb;
+mod new_mesh;
+mod obj;
+mod off;
+mod ply;
+mod polygon;
+mod save;
+mod scene;
+mod stl;
+mod text;
+
+pub use appearance::{AlphaMode, Appearance, Group, Image, Material, Wrap};
+pub use error::{ImageError, ReadError, SaveError, UnknownFormat};
+pub use format::Format;
+pub use image::{Rgba8, decode_image};
+pub use save::{OutputFile, Placement, Save, Saved};
+pub use scene::{Opened, Resolver, Scene, Summary, read};

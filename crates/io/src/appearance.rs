@@ -1,0 +1,101 @@
+//! How a scene looks: attributes of the drawn vertices, materials and images.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+/// What a renderer or another kind of file needs beside positions and triangles; made on request, never edited.
+///
+/// Each attribute is `None` when no drawn vertex has it, and else has one entry per drawn vertex.
+#[derive(Clone, Debug, Default)]
+pub struct Appearance {
+    /// World-space normals of the rest shape; zero where a vertex has none. f32: display and files only.
+    pub normals: Option<Vec<[f32; 3]>>,
+    /// Texture coordinates of the base colour image, v down (glTF's way), the material's transform applied.
+    pub uvs: Option<Vec<[f32; 2]>>,
+    /// Linear-light vertex colours, 0 to 255; white where a vertex has none.
+    pub colours: Option<Vec<[u8; 4]>>,
+    /// Runs of `Drawn::triangles` that share node and material, in order, covering all of them.
+    pub groups: Vec<Group>,
+    /// Materials; every group's index is in range.
+    pub materials: Vec<Material>,
+    /// Images; every material's index is in range.
+    pub images: Vec<Image>,
+}
+
+/// A run of triangles that share node and material.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Group {
+    /// Range of `Drawn::triangles`.
+    pub triangles: Range<u32>,
+    /// Index into [`Appearance::materials`].
+    pub material: usize,
+    /// The node's, object's or group's name; empty where the file gives none.
+    pub node_name: String,
+}
+
+/// The part of a material that is drawn.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Material {
+    /// The file's name for it; empty where it gives none.
+    pub name: String,
+    /// Linear-light base colour factor, 0 to 1.
+    pub base_colour: [f32; 4],
+    /// Index into [`Appearance::images`].
+    pub base_colour_image: Option<usize>,
+    /// 0 (dielectric) to 1 (metal).
+    pub metallic: f32,
+    /// 0 (mirror) to 1 (matt).
+    pub roughness: f32,
+    /// Whether back faces are drawn.
+    pub double_sided: bool,
+    /// What the base colour's alpha means.
+    pub alpha: AlphaMode,
+    /// How texture coordinates beyond 0 to 1 are taken along u and v.
+    pub wrap: [Wrap; 2],
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            base_colour: [1.0; 4],
+            base_colour_image: None,
+            metallic: 0.0,
+            roughness: 1.0,
+            double_sided: false,
+            alpha: AlphaMode::Opaque,
+            wrap: [Wrap::Repeat; 2],
+        }
+    }
+}
+
+/// What alpha means.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum AlphaMode {
+    /// Nothing: the surface is opaque.
+    Opaque,
+    /// Drawn where alpha is at least this cut-off.
+    Mask(f32),
+    /// Blended.
+    Blend,
+}
+
+/// How an image continues beyond its edges.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Wrap {
+    /// Its edge goes on.
+    ClampToEdge,
+    /// It is mirrored at each edge.
+    MirroredRepeat,
+    /// It repeats.
+    Repeat,
+}
+
+/// An image as stored.
+#[derive(Clone, Debug)]
+pub struct Image {
+    /// The file's name for it, or its neighbour's; empty where there is neither.
+    pub name: String,
+    /// PNG, JPEG or whatever else the file holds; empty where the neighbour is missing.
+    pub encoded: Arc<[u8]>,
+}

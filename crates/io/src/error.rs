@@ -1,0 +1,118 @@
+//! What can go wrong, each as one sentence that names the culprit and the remedy.
+
+use pliant_mesh::Cancelled;
+
+use crate::Format;
+
+/// A name whose extension tells no known kind of file.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+#[error("{name:?} has no extension of a known kind: name it .glb, .gltf, .obj, .ply, .stl or .off")]
+pub struct UnknownFormat {
+    /// The file's name.
+    pub name: String,
+}
+
+/// Why a file could not be read.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The bytes are not what the format asks for.
+    #[error("{name} is not a readable {format} file: {reason}")]
+    Malformed {
+        /// The file's name.
+        name: String,
+        /// What it was read as.
+        format: Format,
+        /// What is wrong and where (an accessor, a line), without a final stop.
+        reason: String,
+    },
+    /// The file is whole but uses something that is not read.
+    #[error("{name} uses {feature}, which is not read: {remedy}")]
+    Unsupported {
+        /// The file's name.
+        name: String,
+        /// What it uses.
+        feature: String,
+        /// What the person can do.
+        remedy: String,
+    },
+    /// A neighbour that holds geometry could not be read.
+    #[error("{name} names {uri}, which could not be read ({reason}): put it back beside the file")]
+    Neighbour {
+        /// The file's name.
+        name: String,
+        /// The neighbour as the file names it.
+        uri: String,
+        /// What the resolver said.
+        reason: String,
+    },
+    /// The file asks for more than its bytes can justify.
+    #[error(
+        "{name} asks for {what}, more than a file of its size can hold: it is damaged or not meant to be opened"
+    )]
+    TooLarge {
+        /// The file's name.
+        name: String,
+        /// What is too many.
+        what: String,
+    },
+    /// The caller cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Why a scene could not be saved; nothing was written.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+pub enum SaveError {
+    /// A new position is not finite, or too large for the file's numbers.
+    #[error(
+        "vertex {file_vertex} would be saved at a position that is not a finite number of the file's kind: undo the last edit"
+    )]
+    NotFinite {
+        /// The vertex in the file's numbering.
+        file_vertex: u32,
+    },
+    /// The positions don't belong to this scene.
+    #[error(
+        "{given} positions were given for the {wanted} drawn vertices of this scene: open the file again"
+    )]
+    OtherScene {
+        /// How many positions were given.
+        given: usize,
+        /// How many drawn vertices the scene has.
+        wanted: usize,
+    },
+    /// The target can't hold the change.
+    #[error("{what} can't be saved as {format}: {remedy}")]
+    CannotHold {
+        /// What can't be saved.
+        what: String,
+        /// The kind of OUT.
+        format: Format,
+        /// What the person can do.
+        remedy: String,
+    },
+    /// A neighbour would have to be written outside OUT's folder.
+    #[error(
+        "{uri} lies outside the file's own folder and is never written there: save as .glb, which holds everything"
+    )]
+    NeighbourOutside {
+        /// The neighbour as the file names it.
+        uri: String,
+    },
+    /// The output would be larger than its format allows.
+    #[error(
+        "the result is larger than the 4 GiB that {format} can hold: save as .gltf or as another kind"
+    )]
+    TooLarge {
+        /// The kind of OUT.
+        format: Format,
+    },
+}
+
+/// Why an image could not be decoded.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+#[error("the image could not be decoded ({reason}): convert it to PNG or JPEG")]
+pub struct ImageError {
+    /// What the decoder said.
+    pub reason: String,
+}

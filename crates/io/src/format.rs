@@ -1,0 +1,85 @@
+//! The kinds of file that are read and written.
+
+use std::fmt;
+
+use crate::UnknownFormat;
+
+/// A kind of file, told by the extension of its name.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Format {
+    /// Binary glTF 2.0, everything in one file.
+    Glb,
+    /// Textual glTF 2.0, buffers and images as neighbours or embedded.
+    Gltf,
+    /// Wavefront OBJ with its MTL neighbours.
+    Obj,
+    /// Stanford PLY, ascii or binary of either byte order.
+    Ply,
+    /// STL, ascii or binary.
+    Stl,
+    /// OFF with its COFF and NOFF variants.
+    Off,
+}
+
+impl Format {
+    /// Every kind, in the order in which they are listed for a person.
+    pub const ALL: [Self; 6] = [
+        Self::Glb,
+        Self::Gltf,
+        Self::Obj,
+        Self::Ply,
+        Self::Stl,
+        Self::Off,
+    ];
+
+    /// The kind that a file's name or path tells by its extension, whatever its case.
+    pub fn of_name(name: &str) -> Result<Self, UnknownFormat> {
+        let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+        let extension = file.rsplit_once('.').map_or("", |(_, extension)| extension);
+        Self::ALL
+            .into_iter()
+            .find(|format| format.extension().eq_ignore_ascii_case(extension))
+            .ok_or_else(|| UnknownFormat {
+                name: file.to_owned(),
+            })
+    }
+
+    /// The extension without its dot, in lower case.
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::Gltf => "gltf",
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+            Self::Stl => "stl",
+            Self::Off => "off",
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Glb => "GLB",
+            Self::Gltf => "glTF",
+            Self::Obj => "OBJ",
+            Self::Ply => "PLY",
+            Self::Stl => "STL",
+            Self::Off => "OFF",
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_extension_tells_the_kind_whatever_its_case() {
+        assert_eq!(Format::of_name("a/b.c/Scan.GLB"), Ok(Format::Glb));
+        assert_eq!(Format::of_name("scan.stl"), Ok(Format::Stl));
+        for name in ["scan", "glb", "a.glb/scan", "scan.glb.bak", ""] {
+            assert!(Format::of_name(name).is_err(), "{name}");
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Images in: PNG and JPEG to pixels.
+
+use std::io::Cursor;
+
+use ::image::{ImageReader, Limits};
+
+use crate::ImageError;
+
+/// An image as 8-bit pixels, sRGB as encoded, rows from the top.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Rgba8 {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// `width` × `height` times red, green, blue, alpha.
+    pub pixels: Vec<u8>,
+}
+
+/// The longest side that is decoded.
+const LONGEST_SIDE_PX: u32 = 16_384;
+
+/// Decodes a PNG or JPEG, told by its first bytes. Images beyond 16384 pixels a side are refused.
+pub fn decode_image(encoded: &[u8]) -> Result<Rgba8, ImageError> {
+    let failed = |error: &dyn std::fmt::Display| ImageError {
+        reason: error.to_string(),
+    };
+    let mut reader = ImageReader::new(Cursor::new(encoded))
+        .with_guessed_format()
+        .map_err(|error| failed(&error))?;
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(LONGEST_SIDE_PX);
+    limits.max_image_height = Some(LONGEST_SIDE_PX);
+    limits.max_alloc = Some(u64::from(LONGEST_SIDE_PX) * u64::from(LONGEST_SIDE_PX) * 8);
+    reader.limits(limits);
+    let image = reader
+        .decode()
+        .map_err(|error| failed(&error))?
+        .into_rgba8();
+    Ok(Rgba8 {
+        width: image.width(),
+        height: image.height(),
+        pixels: image.into_raw(),
+    })
+}
+
+/// The MIME type that an image's first bytes tell, for glTF; `None` for anything but PNG and JPEG.
+pub(crate) fn mime_type(encoded: &[u8]) -> Option<&'static str> {
+    if encoded.starts_with(b"\x89PNG\r\n\x1a\n") {
+        Some("image/png")
+    } else if encoded.starts_with(&[0xff, 0xd8, 0xff]) {
+        Some("image/jpeg")
+    } else {
+        None
+    }
+}

@@ -1,0 +1,40 @@
+//! Placeholder of the OFF room, replaced by its owner.
+
+use pliant_mesh::Drawn;
+
+use crate::moved::Moved;
+use crate::new_mesh::{NewMesh, Polygons};
+use crate::save::Saved;
+use crate::scene::{Source, Summary};
+use crate::{Appearance, Format, ReadError, SaveError};
+
+#[derive(Debug)]
+pub(crate) struct Stored {}
+
+pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
+    Err(source.malformed(Format::Off, "not read yet"))
+}
+
+pub(crate) fn write_new(_mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
+    Err(SaveError::TooLarge {
+        format: Format::Off,
+    })
+}
+
+impl Stored {
+    pub fn notes(&self) -> &[String] {
+        &[]
+    }
+    pub fn summary(&self) -> Summary {
+        Summary::default()
+    }
+    pub fn appearance(&self) -> Appearance {
+        Appearance::default()
+    }
+    pub fn polygons(&self) -> Option<Polygons> {
+        None
+    }
+    pub fn write(&self, _moved: &Moved<'_>) -> Result<Vec<u8>, SaveError> {
+        Ok(Vec::new())
+    }
+}

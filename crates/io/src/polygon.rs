@@ -1,0 +1,218 @@
+//! Polygons as triangles: how a face with more than three corners is drawn and bent. The file keeps the polygon.
+//!
+//! A quad is cut along the shorter of its diagonals that don't fold it over; a larger polygon is cut by ears in the
+//! plane of its Newell normal, which is right for every simple planar polygon, convex or not. Ears cost n², so
+//! polygons beyond [`MOST_EARS`] corners, and those whose corners aren't finite, become a fan.
+
+use glam::{DVec2, DVec3};
+
+/// The most corners that are cut by ears.
+const MOST_EARS: usize = 1024;
+
+/// Calls `emit` with the three corners (numbers within the polygon) of each triangle that `corners` is cut into:
+/// n − 2 of them, wound as the polygon is; none for fewer than three corners.
+///
+/// `position` gives the place of a corner, counted within the polygon.
+pub(crate) fn triangulate(
+    corner_count: usize,
+    position: impl Fn(usize) -> DVec3,
+    mut emit: impl FnMut([usize; 3]),
+) {
+    match corner_count {
+        0..=2 => {}
+        3 => emit([0, 1, 2]),
+        4 => {
+            let [a, b, c, d] = [position(0), position(1), position(2), position(3)];
+            let normal = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p);
+            let along_ac = normal(a, b, c).dot(normal(a, c, d));
+            let along_bd = normal(a, b, d).dot(normal(b, c, d));
+            let cut_bd = match (along_ac > 0.0, along_bd > 0.0) {
+                (true, true) => b.distance_squared(d) < a.distance_squared(c),
+                (ac, bd) => bd && !ac,
+            };
+            let triangles = if cut_bd {
+                [[0, 1, 3], [1, 2, 3]]
+            } else {
+                [[0, 1, 2], [0, 2, 3]]
+            };
+            triangles.into_iter().for_each(emit);
+        }
+        _ if corner_count <= MOST_EARS => {
+            let corners: Vec<DVec3> = (0..corner_count).map(position).collect();
+            cut_ears(&corners, &mut emit);
+        }
+        _ => fan(corner_count, &mut emit),
+    }
+}
+
+/// All triangles at corner 0.
+fn fan(corner_count: usize, emit: &mut impl FnMut([usize; 3])) {
+    for last in 2..corner_count {
+        emit([0, last - 1, last]);
+    }
+}
+
+/// Ears of the polygon projected along its Newell normal. Where no ear is left (a polygon that crosses itself) the
+/// corner that turns most is cut off, so that n − 2 triangles come out whatever the shape.
+fn cut_ears(corners: &[DVec3], emit: &mut impl FnMut([usize; 3])) {
+    let flat = match flatten(corners) {
+        Some(flat) => flat,
+        None => return fan(corners.len(), emit),
+    };
+    let mut ring: Vec<usize> = (0..corners.len()).collect();
+    let mut ears: Vec<bool> = (0..ring.len()).map(|k| is_ear(&flat, &ring, k)).collect();
+    while ring.len() > 3 {
+        // Among the ears the one with the shortest cut, which keeps slivers away in the convex polygons of scans.
+        let cut_length = |k: usize| {
+            let [a, _, c] = around(&ring, k);
+            flat[a].distance_squared(flat[c])
+        };
+        let ear = (0..ring.len())
+            .filter(|&k| ears[k])
+            .min_by(|&a, &b| cut_length(a).total_cmp(&cut_length(b)));
+        let turn_at = |k: usize| {
+            let [a, b, c] = around(&ring, k);
+            turn(flat[a], flat[b], flat[c])
+        };
+        let sharpest = || {
+            (0..ring.len())
+                .max_by(|&a, &b| turn_at(a).total_cmp(&turn_at(b)))
+                .unwrap_or(0)
+        };
+        let cut = ear.unwrap_or_else(sharpest);
+        emit(around(&ring, cut));
+        ring.remove(cut);
+        ears.remove(cut);
+        // Only the two neighbours of a cut corner have new triangles.
+        for neighbour in [(cut + ring.len() - 1) % ring.len(), cut % ring.len()] {
+            ears[neighbour] = is_ear(&flat, &ring, neighbour);
+        }
+    }
+    emit([ring[0], ring[1], ring[2]]);
+}
+
+/// The corner `k` of the ring between its neighbours.
+fn around(ring: &[usize], k: usize) -> [usize; 3] {
+    [
+        ring[(k + ring.len() - 1) % ring.len()],
+        ring[k],
+        ring[(k + 1) % ring.len()],
+    ]
+}
+
+/// Twice the signed area of a triangle, positive when it turns left.
+fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - a)
+}
+
+/// Whether corner `k` can be cut off: it turns left and no other corner lies in its triangle.
+fn is_ear(flat: &[DVec2], ring: &[usize], k: usize) -> bool {
+    let [a, b, c] = around(ring, k).map(|corner| flat[corner]);
+    let is_inside = |p: DVec2| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
+    let blocks = |p: DVec2| p != a && p != b && p != c && is_inside(p);
+    turn(a, b, c) > 0.0 && !ring.iter().any(|&corner| blocks(flat[corner]))
+}
+
+/// The corners in the plane of the polygon, counter-clockwise; `None` where it has no plane.
+fn flatten(corners: &[DVec3]) -> Option<Vec<DVec2>> {
+    let origin = corners[0];
+    let mut newell = DVec3::ZERO;
+    for (k, &corner) in corners.iter().enumerate() {
+        newell += (corner - origin).cross(corners[(k + 1) % corners.len()] - origin);
+    }
+    let normal = newell.try_normalize()?;
+    let (u, v) = normal.any_orthonormal_pair();
+    Some(
+        corners
+            .iter()
+            .map(|&corner| DVec2::new((corner - origin).dot(u), (corner - origin).dot(v)))
+            .collect(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cut(corners: &[DVec3]) -> Vec<[usize; 3]> {
+        let mut triangles = Vec::new();
+        triangulate(
+            corners.len(),
+            |k| corners[k],
+            |triangle| triangles.push(triangle),
+        );
+        triangles
+    }
+
+    fn area(corners: &[DVec3], [a, b, c]: [usize; 3]) -> f64 {
+        0.5 * (corners[b] - corners[a]).cross(corners[c] - corners[a]).z
+    }
+
+    #[test]
+    fn every_simple_polygon_is_covered_once_by_triangles_of_its_own_winding() {
+        let star: Vec<DVec3> = (0..14)
+            .map(|k| {
+                let angle = f64::from(k) / 14.0 * std::f64::consts::TAU;
+                let radius = if k % 2 == 0 { 3.0 } else { 1.0 };
+                DVec3::new(radius * angle.cos(), radius * angle.sin(), 5.0)
+            })
+            .collect();
+        let comb: Vec<DVec3> = [
+            [0., 0.],
+            [5., 0.],
+            [5., 3.],
+            [4., 3.],
+            [4., 1.],
+            [3., 1.],
+            [3., 3.],
+            [2., 3.],
+            [2., 1.],
+            [1., 1.],
+            [1., 3.],
+            [0., 3.],
+        ]
+        .map(|[x, y]: [f64; 2]| DVec3::new(x, y, 0.0))
+        .to_vec();
+        let dart: Vec<DVec3> = [[0., 0.], [4., 0.], [1., 1.], [0., 4.]]
+            .map(|[x, y]: [f64; 2]| DVec3::new(x, y, 0.0))
+            .to_vec();
+        for polygon in [star, comb, dart] {
+            for start in 0..polygon.len() {
+                let mut turned = polygon.clone();
+                turned.rotate_left(start);
+                let triangles = cut(&turned);
+                assert_eq!(triangles.len(), turned.len() - 2);
+                let whole: f64 = (0..turned.len())
+                    .map(|k| 0.5 * turned[k].cross(turned[(k + 1) % turned.len()]).z)
+                    .sum();
+                let sum: f64 = triangles
+                    .iter()
+                    .map(|&triangle| area(&turned, triangle))
+                    .sum();
+                assert!((sum - whole).abs() < 1e-9, "{sum} of {whole}");
+                assert!(
+                    triangles
+                        .iter()
+                        .all(|&triangle| area(&turned, triangle) >= 0.0)
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn shapes_without_a_plane_still_give_n_minus_2_triangles() {
+        let shapes = [
+            vec![DVec3::ZERO; 7],
+            vec![DVec3::NAN; 6],
+            vec![DVec3::NAN; 4],
+            (0..9).map(|k| DVec3::X * f64::from(k)).collect(),
+            (0..2000)
+                .map(|k| DVec3::new(f64::from(k).cos(), f64::from(k).sin(), 0.0))
+                .collect(),
+        ];
+        for shape in shapes {
+            assert_eq!(cut(&shape).len(), shape.len() - 2);
+        }
+        assert!(cut(&[DVec3::ZERO, DVec3::X]).is_empty());
+    }
+}

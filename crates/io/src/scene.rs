@@ -1,0 +1,221 @@
+//! A file as stored, whatever its kind, and the one place where kinds are told apart.
+//!
+//! Each kind is one module with the same face: `read(&Source) -> Result<(Stored, Drawn), ReadError>`;
+//! `Stored::{notes, summary, appearance, write}`, where `write(&Moved)` gives the file back with only the moved
+//! vertices' numbers changed (it is called only when something moved); and `write_new(&NewMesh)`, which makes a file
+//! of that kind from any other.
+
+use std::sync::Arc;
+
+use pliant_mesh::{Cancel, Drawn, Progress};
+use serde::Serialize;
+
+use crate::moved::Moved;
+use crate::new_mesh::{NewMesh, Polygons};
+use crate::save::{OutputFile, Save, Saved};
+use crate::{Appearance, Format, ReadError, SaveError, gltf, new_glb, obj, off, ply, stl};
+
+/// Gives the bytes of a file's neighbours.
+pub trait Resolver {
+    /// The bytes of the neighbour at `uri`, a percent-decoded path with `/` between folders, relative to the file's
+    /// own folder unless it is absolute. On failure: why, in words.
+    fn read(&self, uri: &str) -> Result<Vec<u8>, String>;
+}
+
+/// What [`read`] gives.
+#[derive(Debug)]
+pub struct Opened {
+    /// The file as stored.
+    pub scene: Scene,
+    /// What it shows.
+    pub drawn: Drawn,
+}
+
+/// What a file holds, counted.
+#[derive(Clone, PartialEq, Eq, Debug, Default, Serialize)]
+#[expect(missing_docs, reason = "each count is of what its name says")]
+pub struct Summary {
+    pub meshes: usize,
+    pub primitives: usize,
+    pub nodes: usize,
+    pub materials: usize,
+    pub images: usize,
+    pub skins: usize,
+    pub animations: usize,
+    pub morph_targets: usize,
+}
+
+/// A file as stored, nothing thrown away.
+#[derive(Debug)]
+pub struct Scene {
+    format: Format,
+    bytes: Arc<[u8]>,
+    stored: Stored,
+}
+
+#[derive(Debug)]
+enum Stored {
+    Gltf(gltf::Stored),
+    Obj(obj::Stored),
+    Ply(ply::Stored),
+    Stl(stl::Stored),
+    Off(off::Stored),
+}
+
+/// What a format's reader gets.
+pub(crate) struct Source<'a> {
+    /// The file. A reader may keep a clone and point into it.
+    pub bytes: &'a Arc<[u8]>,
+    /// The file's name, for messages.
+    pub name: &'a str,
+    /// Its neighbours.
+    pub resolver: &'a dyn Resolver,
+    pub progress: &'a Progress,
+    pub cancel: &'a Cancel,
+}
+
+impl Source<'_> {
+    /// A [`ReadError::Malformed`] of this file.
+    pub fn malformed(&self, format: Format, reason: impl Into<String>) -> ReadError {
+        ReadError::Malformed {
+            name: self.name.to_owned(),
+            format,
+            reason: reason.into(),
+        }
+    }
+}
+
+/// Reads a file of the given kind. `name` is used in messages only; `resolver` is asked for neighbours.
+pub fn read(
+    bytes: Vec<u8>,
+    format: Format,
+    name: &str,
+    resolver: &dyn Resolver,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<Opened, ReadError> {
+    cancel.check()?;
+    let bytes: Arc<[u8]> = bytes.into();
+    let source = Source {
+        bytes: &bytes,
+        name,
+        resolver,
+        progress,
+        cancel,
+    };
+    let (stored, drawn) = match format {
+        Format::Glb | Format::Gltf => {
+            let (stored, drawn) = gltf::read(&source, format)?;
+            (Stored::Gltf(stored), drawn)
+        }
+        Format::Obj => {
+            let (stored, drawn) = obj::read(&source)?;
+            (Stored::Obj(stored), drawn)
+        }
+        Format::Ply => {
+            let (stored, drawn) = ply::read(&source)?;
+            (Stored::Ply(stored), drawn)
+        }
+        Format::Stl => {
+            let (stored, drawn) = stl::read(&source)?;
+            (Stored::Stl(stored), drawn)
+        }
+        Format::Off => {
+            let (stored, drawn) = off::read(&source)?;
+            (Stored::Off(stored), drawn)
+        }
+    };
+    cancel.check()?;
+    progress.set(1.0);
+    Ok(Opened {
+        scene: Scene {
+            format,
+            bytes,
+            stored,
+        },
+        drawn,
+    })
+}
+
+impl Scene {
+    /// The kind that was read.
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
+    /// What a person should know about how the file was read (a node left out, an image missing), as sentences.
+    pub fn notes(&self) -> &[String] {
+        match &self.stored {
+            Stored::Gltf(stored) => stored.notes(),
+            Stored::Obj(stored) => stored.notes(),
+            Stored::Ply(stored) => stored.notes(),
+            Stored::Stl(stored) => stored.notes(),
+            Stored::Off(stored) => stored.notes(),
+        }
+    }
+
+    /// What the file holds, counted.
+    pub fn summary(&self) -> Summary {
+        match &self.stored {
+            Stored::Gltf(stored) => stored.summary(),
+            Stored::Obj(stored) => stored.summary(),
+            Stored::Ply(stored) => stored.summary(),
+            Stored::Stl(stored) => stored.summary(),
+            Stored::Off(stored) => stored.summary(),
+        }
+    }
+
+    /// How the scene looks at rest; decoded from the stored bytes at each call.
+    pub fn appearance(&self) -> Appearance {
+        match &self.stored {
+            Stored::Gltf(stored) => stored.appearance(),
+            Stored::Obj(stored) => stored.appearance(),
+            Stored::Ply(stored) => stored.appearance(),
+            Stored::Stl(stored) => stored.appearance(),
+            Stored::Off(stored) => stored.appearance(),
+        }
+    }
+
+    /// The file as `save` asks for it. Nothing moved and the same kind: the very bytes that were read.
+    pub fn save(&self, save: &Save<'_>) -> Result<Saved, SaveError> {
+        let moved = Moved::of(save.drawn, save.positions)?;
+        let own = |bytes| Saved {
+            files: vec![OutputFile {
+                name: save.name.to_owned(),
+                bytes,
+            }],
+            warnings: Vec::new(),
+        };
+        match (&self.stored, save.format) {
+            (Stored::Gltf(stored), Format::Glb | Format::Gltf) => stored.save(save, &moved),
+            (_, format) if format == self.format && moved.is_nothing() => {
+                Ok(own(self.bytes.to_vec()))
+            }
+            (Stored::Obj(stored), Format::Obj) => stored.write(&moved).map(own),
+            (Stored::Ply(stored), Format::Ply) => stored.write(&moved).map(own),
+            (Stored::Stl(stored), Format::Stl) => stored.write(&moved).map(own),
+            (Stored::Off(stored), Format::Off) => stored.write(&moved).map(own),
+            (_, format) => {
+                let mesh = NewMesh::of(&moved, self.appearance(), save.name, self.polygons());
+                match format {
+                    Format::Glb => new_glb::write_new(&mesh),
+                    Format::Gltf => new_glb::write_new_gltf(&mesh),
+                    Format::Obj => obj::write_new(&mesh),
+                    Format::Ply => ply::write_new(&mesh),
+                    Format::Stl => stl::write_new(&mesh),
+                    Format::Off => off::write_new(&mesh),
+                }
+            }
+        }
+    }
+
+    /// The file's own polygons over drawn vertices, where it has any that are not triangles.
+    fn polygons(&self) -> Option<Polygons> {
+        match &self.stored {
+            Stored::Gltf(_) | Stored::Stl(_) => None,
+            Stored::Obj(stored) => stored.polygons(),
+            Stored::Ply(stored) => stored.polygons(),
+            Stored::Off(stored) => stored.polygons(),
+        }
+    }
+}
