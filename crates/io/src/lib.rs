@@ -6,12 +6,14 @@
 //! through a [`Resolver`], so nothing here knows a path.
 
 mod appearance;
+mod colour;
 mod error;
 mod format;
 mod frames;
 mod gltf;
 mod image;
 mod moved;
+mod new_faces;
 mod new_glb;
 mod new_mesh;
 mod obj;

@@ -34,7 +34,7 @@ impl Stored {
     pub fn polygons(&self) -> Option<Polygons> {
         None
     }
-    pub fn write(&self, _moved: &Moved<'_>) -> Result<Vec<u8>, SaveError> {
-        Ok(Vec::new())
+    pub fn write(&self, _moved: &Moved<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
+        Ok((Vec::new(), Vec::new()))
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Each kind is one module with the same face: `read(&Source) -> Result<(Stored, Drawn), ReadError>`;
 //! `Stored::{notes, summary, appearance, write}`, where `write(&Moved)` gives the file back with only the moved
-//! vertices' numbers changed (it is called only when something moved); and `write_new(&NewMesh)`, which makes a file
+//! vertices' numbers changed, and warnings (it is called only when something moved); and `write_new(&NewMesh)`, which makes a file
 //! of that kind from any other.
 
 use std::sync::Arc;
@@ -179,17 +179,17 @@ impl Scene {
     /// The file as `save` asks for it. Nothing moved and the same kind: the very bytes that were read.
     pub fn save(&self, save: &Save<'_>) -> Result<Saved, SaveError> {
         let moved = Moved::of(save.drawn, save.positions)?;
-        let own = |bytes| Saved {
+        let own = |(bytes, warnings)| Saved {
             files: vec![OutputFile {
                 name: save.name.to_owned(),
                 bytes,
             }],
-            warnings: Vec::new(),
+            warnings,
         };
         match (&self.stored, save.format) {
             (Stored::Gltf(stored), Format::Glb | Format::Gltf) => stored.save(save, &moved),
             (_, format) if format == self.format && moved.is_nothing() => {
-                Ok(own(self.bytes.to_vec()))
+                Ok(own((self.bytes.to_vec(), Vec::new())))
             }
             (Stored::Obj(stored), Format::Obj) => stored.write(&moved).map(own),
             (Stored::Ply(stored), Format::Ply) => stored.write(&moved).map(own),

@@ -31,7 +31,7 @@ impl Stored {
     pub fn appearance(&self) -> Appearance {
         Appearance::default()
     }
-    pub fn write(&self, _moved: &Moved<'_>) -> Result<Vec<u8>, SaveError> {
-        Ok(Vec::new())
+    pub fn write(&self, _moved: &Moved<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
+        Ok((Vec::new(), Vec::new()))
     }
 }

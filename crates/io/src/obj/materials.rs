@@ -1,0 +1,210 @@
+//! The materials that an OBJ file's `mtllib` libraries give to its `usemtl` names, read by `tobj`.
+//!
+//! Nothing here can stop a file from being opened: what is missing or can't be read becomes a note and is drawn plain.
+
+use std::collections::HashMap;
+
+use crate::appearance::{AlphaMode, Image, Material, Wrap};
+use crate::colour::linear_of_srgb;
+use crate::scene::Source;
+use crate::text::excerpt;
+
+/// One material for each name, in order, and the images they use.
+#[derive(Debug, Default)]
+pub(super) struct Materials {
+    pub(super) materials: Vec<Material>,
+    pub(super) images: Vec<Image>,
+    pub(super) notes: Vec<String>,
+}
+
+/// Looks `names` up in the libraries (the rests of the `mtllib` lines; each may name several files).
+pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]) -> Materials {
+    let mut out = Materials::default();
+    let mut known: HashMap<String, (tobj::Material, String)> = HashMap::new();
+    let mut asked: Vec<&[u8]> = Vec::new();
+    for &library in libraries {
+        // The same library is often named before every object.
+        if asked.contains(&library) || asked.len() >= MOST_LIBRARIES {
+            continue;
+        }
+        asked.push(library);
+        match read_library(source, library) {
+            Ok(files) => {
+                for (folder, text) in files {
+                    for material in parse(&text) {
+                        known.entry(material.name.clone()).or_insert((material, folder.clone()));
+                    }
+                }
+            }
+            Err(reason) => out.notes.push(format!(
+                "The material library {} could not be read ({reason}), so its materials are drawn plain.",
+                excerpt(library)
+            )),
+        }
+    }
+    let mut image_of: HashMap<String, Option<usize>> = HashMap::new();
+    for name in names {
+        let mut material = plain(name);
+        if let Some((stored, folder)) = known.get(name) {
+            dress(&mut material, stored);
+            if let Some(texture) = &stored.diffuse_texture {
+                let (file, wrap) = texture_file(texture);
+                material.wrap = [wrap; 2];
+                let uri = join(folder, &file);
+                let image = *image_of.entry(uri.clone()).or_insert_with(|| read_image(source, &uri, &mut out));
+                material.base_colour_image = image;
+            }
+        }
+        out.materials.push(material);
+    }
+    out
+}
+
+/// The material of faces for which none is named. Scan formats know no culling, so both sides are drawn.
+pub(super) fn plain(name: &str) -> Material {
+    Material { name: name.to_owned(), double_sided: true, ..Material::default() }
+}
+
+/// More libraries than any file has; beyond this many names, the file only asks for work.
+const MOST_LIBRARIES: usize = 256;
+
+/// The bytes of a library, with its folder: the whole rest of the line as one name, or else each word as one.
+fn read_library(source: &Source<'_>, library: &[u8]) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let whole = as_uri(&String::from_utf8_lossy(library));
+    let read = |uri: &str| source.resolver.read(uri).map(|text| (folder_of(uri).to_owned(), text));
+    match read(&whole) {
+        Ok(file) => Ok(vec![file]),
+        Err(reason) => {
+            let words: Vec<&str> = whole.split_whitespace().take(MOST_LIBRARIES).collect();
+            if words.len() < 2 {
+                return Err(reason);
+            }
+            words.into_iter().map(read).collect()
+        }
+    }
+}
+
+/// The materials of a library.
+///
+/// `tobj` gives up (or panics, at a `Kd` with fewer than three numbers) on a line that it doesn't expect, so it gets
+/// only the lines that matter here and that it can read.
+fn parse(text: &[u8]) -> Vec<tobj::Material> {
+    let text = String::from_utf8_lossy(text);
+    let mut kept = String::new();
+    let mut is_named = false;
+    for line in text.split(['\n', '\r']) {
+        let line = line.trim();
+        let mut words = line.split_whitespace();
+        let is_wanted = match words.next() {
+            Some("newmtl") => {
+                is_named = words.next().is_some();
+                is_named
+            }
+            Some("Kd") => words.by_ref().take(3).filter(|word| word.parse::<f32>().is_ok()).count() == 3,
+            Some("d") => words.next().is_some_and(|word| word.parse::<f32>().is_ok()),
+            Some("Tr" | "map_Kd") => words.next().is_some(),
+            _ => false,
+        };
+        if is_wanted && is_named {
+            kept.push_str(line);
+            kept.push('\n');
+        }
+    }
+    tobj::load_mtl_buf(&mut kept.as_bytes()).map(|(materials, _)| materials).unwrap_or_default()
+}
+
+/// Takes over what is drawn of a stored material.
+fn dress(material: &mut Material, stored: &tobj::Material) {
+    if let Some(diffuse) = stored.diffuse.filter(|diffuse| diffuse.iter().all(|channel| channel.is_finite())) {
+        for (channel, value) in material.base_colour.iter_mut().zip(diffuse) {
+            *channel = linear_of_srgb(value);
+        }
+    }
+    let transparency = stored.unknown_param.get("Tr").and_then(|value| value.trim().parse::<f32>().ok());
+    let alpha = stored.dissolve.or(transparency.map(|value| 1.0 - value)).unwrap_or(1.0);
+    if (0.0..1.0).contains(&alpha) {
+        material.base_colour[3] = alpha;
+        material.alpha = AlphaMode::Blend;
+    }
+}
+
+/// The file name behind a `map_Kd`'s options, and how it continues beyond its edges.
+fn texture_file(texture: &str) -> (String, Wrap) {
+    let mut rest = texture.trim();
+    let mut wrap = Wrap::Repeat;
+    while let Some(option) = rest.split_whitespace().next().filter(|word| word.starts_with('-')) {
+        let behind = rest[option.len()..].trim_start();
+        let arguments = match option {
+            "-o" | "-s" | "-t" => behind.split_whitespace().take(3).take_while(|word| word.parse::<f32>().is_ok()).count(),
+            "-mm" => 2,
+            _ => 1,
+        };
+        if option == "-clamp" && behind.starts_with("on") {
+            wrap = Wrap::ClampToEdge;
+        }
+        rest = behind;
+        for _ in 0..arguments {
+            rest = rest.split_once(char::is_whitespace).map_or("", |(_, behind)| behind.trim_start());
+        }
+    }
+    (as_uri(rest), wrap)
+}
+
+/// A name as a path with `/`.
+fn as_uri(name: &str) -> String {
+    name.trim().trim_matches('"').replace('\\', "/")
+}
+
+/// Everything before a path's file name, with its `/`.
+fn folder_of(uri: &str) -> &str {
+    uri.rfind('/').map_or("", |end| &uri[..=end])
+}
+
+fn join(folder: &str, file: &str) -> String {
+    if file.starts_with('/') { file.to_owned() } else { format!("{folder}{file}") }
+}
+
+/// Reads an image where it is said to be, or by its bare name beside the file (paths of another computer).
+fn read_image(source: &Source<'_>, uri: &str, out: &mut Materials) -> Option<usize> {
+    let bare = uri.rsplit('/').next().unwrap_or(uri);
+    let read = source.resolver.read(uri);
+    let read = match read {
+        Err(reason) if bare != uri => source.resolver.read(bare).map_err(|_| reason),
+        read => read,
+    };
+    match read {
+        Ok(encoded) => {
+            out.images.push(Image { name: bare.to_owned(), encoded: encoded.into() });
+            Some(out.images.len() - 1)
+        }
+        Err(reason) => {
+            let uri = excerpt(uri.as_bytes());
+            out.notes.push(format!("The texture {uri} could not be read ({reason}), so its material is drawn plain."));
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_library_with_broken_lines_gives_what_it_can() {
+        let text = b"Kd 1 1 1\nnewmtl\nnewmtl a b\r\nKd 1\nKd 0.5 0.25 1\nd x\nmap_Kd\nillum q\nmap_Kd -s 1 1 1 -clamp on my tex.png\nnewmtl c\nTr 0.25\n\xff\xfe";
+        let materials = parse(text);
+        assert_eq!(materials.iter().map(|material| material.name.as_str()).collect::<Vec<_>>(), ["a b", "c"]);
+        assert_eq!(materials[0].diffuse, Some([0.5, 0.25, 1.0]));
+        let texture = materials[0].diffuse_texture.as_deref().unwrap_or_default();
+        assert_eq!(texture_file(texture), ("my tex.png".to_owned(), Wrap::ClampToEdge));
+        let mut material = plain("c");
+        dress(&mut material, &materials[1]);
+        assert_eq!(material.base_colour[3], 0.75);
+    }
+
+    #[test]
+    fn options_without_a_file_end() {
+        assert_eq!(texture_file("-o -s -mm 1").0, "");
+        assert_eq!(texture_file("a\\b\\c.png").0, "a/b/c.png");
+    }
+}

@@ -1,0 +1,177 @@
+//! A new OBJ file from any other kind, with a material library and its textures where the mesh has materials.
+
+use std::collections::HashSet;
+
+use super::materials;
+use crate::appearance::{AlphaMode, Material};
+use crate::colour::{srgb_bytes_of_linear, srgb_of_linear};
+use crate::new_faces::for_each_face;
+use crate::new_mesh::NewMesh;
+use crate::save::{OutputFile, Saved};
+use crate::text::{push_f32, push_f64};
+use crate::{Appearance, SaveError};
+
+/// Writes a mesh as OBJ: a `v` (with its colour), `vt` and `vn` line a drawn vertex, and its faces by object and
+/// material.
+pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
+    let look = &mesh.appearance;
+    let stem = mesh.name.rsplit_once('.').map_or(mesh.name, |(stem, _)| stem);
+    let has_materials = look.materials.iter().any(|material| !is_plain(material));
+    let names = material_names(look);
+    let mut out = Vec::new();
+    if has_materials {
+        push_line(&mut out, &["mtllib ", stem, ".mtl"]);
+    }
+    push_vertices(&mut out, mesh);
+    push_faces(&mut out, mesh, has_materials.then_some(names.as_slice()));
+    let mut files = vec![OutputFile { name: mesh.name.to_owned(), bytes: out }];
+    if has_materials {
+        let images = image_files(look, stem);
+        files.push(OutputFile { name: format!("{stem}.mtl"), bytes: library(look, &names, &images) });
+        for (image, name) in look.images.iter().zip(images) {
+            if let Some(name) = name {
+                files.push(OutputFile { name, bytes: image.encoded.to_vec() });
+            }
+        }
+    }
+    Ok(Saved { files, warnings: Vec::new() })
+}
+
+/// Whether a material says nothing that a reader wouldn't assume.
+fn is_plain(material: &Material) -> bool {
+    let plain = Material { double_sided: material.double_sided, ..materials::plain("") };
+    *material == plain
+}
+
+fn push_line(out: &mut Vec<u8>, parts: &[&str]) {
+    parts.iter().for_each(|part| out.extend_from_slice(part.as_bytes()));
+    out.push(b'\n');
+}
+
+fn push_numbers<T: Copy>(out: &mut Vec<u8>, keyword: &str, numbers: &[T], push: impl Fn(&mut Vec<u8>, T)) {
+    out.extend_from_slice(keyword.as_bytes());
+    for &number in numbers {
+        out.push(b' ');
+        push(out, number);
+    }
+}
+
+fn push_vertices(out: &mut Vec<u8>, mesh: &NewMesh<'_>) {
+    let srgb = srgb_bytes_of_linear();
+    for (v, position) in mesh.positions.iter().enumerate() {
+        push_numbers(out, "v", &position.to_array(), push_f64);
+        if let Some(colours) = &mesh.appearance.colours {
+            let [r, g, b, _] = colours[v].map(|light| f32::from(srgb[usize::from(light)]) / 255.0);
+            push_numbers(out, "", &[r, g, b].map(|channel| (channel * 1e4).round() / 1e4), push_f32);
+        }
+        out.push(b'\n');
+    }
+    for &[u, v] in mesh.appearance.uvs.iter().flatten() {
+        push_numbers(out, "vt", &[u, 1.0 - v], push_f32);
+        out.push(b'\n');
+    }
+    for normal in mesh.appearance.normals.iter().flatten() {
+        push_numbers(out, "vn", normal, push_f32);
+        out.push(b'\n');
+    }
+}
+
+fn push_faces(out: &mut Vec<u8>, mesh: &NewMesh<'_>, material_names: Option<&[String]>) {
+    let mut groups = mesh.appearance.groups.iter().peekable();
+    let (mut object, mut material) = (String::new(), None);
+    let (has_uvs, has_normals) = (mesh.appearance.uvs.is_some(), mesh.appearance.normals.is_some());
+    let mut number = Vec::new();
+    for_each_face(mesh, |corners, triangle| {
+        while let Some(group) = groups.next_if(|group| group.triangles.start as usize <= triangle) {
+            if group.triangles.is_empty() {
+                continue;
+            }
+            if group.node_name != object {
+                push_line(out, &["o ", &one_line(&group.node_name)]);
+                object.clone_from(&group.node_name);
+            }
+            if let Some(names) = material_names
+                && material != Some(group.material)
+            {
+                push_line(out, &["usemtl ", &names[group.material]]);
+                material = Some(group.material);
+            }
+        }
+        out.push(b'f');
+        for corner in corners {
+            number.clear();
+            push_f64(&mut number, f64::from(corner.0) + 1.0);
+            out.push(b' ');
+            out.extend_from_slice(&number);
+            if has_uvs || has_normals {
+                out.push(b'/');
+            }
+            if has_uvs {
+                out.extend_from_slice(&number);
+            }
+            if has_normals {
+                out.push(b'/');
+                out.extend_from_slice(&number);
+            }
+        }
+        out.push(b'\n');
+    });
+}
+
+/// A name that fits on a line.
+fn one_line(name: &str) -> String {
+    name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+/// A name of its own for each material, without the blanks that many readers end a name at.
+fn material_names(look: &Appearance) -> Vec<String> {
+    let mut taken = HashSet::new();
+    let mut names = Vec::new();
+    for (index, material) in look.materials.iter().enumerate() {
+        let safe: String =
+            material.name.chars().map(|c| if c.is_control() || c.is_whitespace() || c == '#' { '_' } else { c }).collect();
+        let mut name = if safe.is_empty() { format!("material_{index}") } else { safe };
+        while !taken.insert(name.clone()) {
+            name = format!("{name}_{index}");
+        }
+        names.push(name);
+    }
+    names
+}
+
+/// The file that each image is written to; `None` for images that no material shows or whose bytes are missing.
+fn image_files(look: &Appearance, stem: &str) -> Vec<Option<String>> {
+    let is_used = |index| look.materials.iter().any(|material| material.base_colour_image == Some(index));
+    let name = |(index, image): (usize, &crate::Image)| {
+        let extension = match image.encoded.as_ref() {
+            [] => return None,
+            [0x89, b'P', b'N', b'G', ..] => "png",
+            [0xff, 0xd8, ..] => "jpg",
+            [b'R', b'I', b'F', b'F', ..] => "webp",
+            [0xab, b'K', b'T', b'X', ..] => "ktx2",
+            _ => image.name.rsplit_once('.').map_or("img", |(_, extension)| extension),
+        };
+        let is_safe = extension.len() <= 8 && extension.bytes().all(|byte| byte.is_ascii_alphanumeric());
+        is_used(index).then(|| format!("{stem}_{index}.{}", if is_safe { extension } else { "img" }))
+    };
+    look.images.iter().enumerate().map(name).collect()
+}
+
+fn library(look: &Appearance, names: &[String], images: &[Option<String>]) -> Vec<u8> {
+    let mut out = Vec::new();
+    for (material, name) in look.materials.iter().zip(names) {
+        push_line(&mut out, &["newmtl ", name]);
+        let [r, g, b, alpha] = material.base_colour;
+        push_numbers(&mut out, "Kd", &[r, g, b].map(|light| (srgb_of_linear(light) * 1e5).round() / 1e5), push_f32);
+        out.push(b'\n');
+        if material.alpha == AlphaMode::Blend {
+            push_numbers(&mut out, "d", &[alpha], push_f32);
+            out.push(b'\n');
+        }
+        let image = material.base_colour_image.and_then(|index| images.get(index)?.as_ref());
+        if let Some(image) = image {
+            push_line(&mut out, &["map_Kd ", image]);
+        }
+    }
+    out
+}
