@@ -2,13 +2,33 @@
 
 use glam::{DAffine3, DVec3};
 use pliant_mesh::{Cancel, Progress};
+use rayon::prelude::*;
 
-use crate::{BindError, HandleBases, Ordering, Problem, SolveError};
+use crate::bases::FRAME_CHUNK;
+use crate::follow::{Follower, carry, followers};
+use crate::handle::{Handle, Motion};
+use crate::partition::Partition;
+use crate::plate::Plate;
+use crate::{BindError, HandleBases, Method, Ordering, Problem, SolveError};
 
 /// A bound problem: everything that does not depend on the handles' transforms is solved.
 #[derive(Debug)]
 pub struct Bound {
     revision: u64,
+    vertex_count: usize,
+    free_count: usize,
+    handles: Vec<Handle>,
+    motions: Vec<Motion>,
+    iteration: u32,
+    solver: Solver,
+    followers: Vec<Follower>,
+    warnings: Vec<String>,
+}
+
+/// What the method computed; later methods join as variants.
+#[derive(Debug)]
+enum Solver {
+    Plate(Box<Plate>),
 }
 
 /// What one step did.
@@ -16,8 +36,8 @@ pub struct Bound {
 pub struct Step {
     /// Whether further steps to the same targets would change nothing. Linear methods: always.
     pub converged: bool,
-    /// The deformation energy, 0 at rest; for the thin plate ½ dᵀ L M⁻¹ L d, without unit (it does not change with
-    /// the model's scale).
+    /// The deformation energy, 0 at rest; for the thin plate ½ dᵀ L M⁻¹ L d, which has no unit and does not change
+    /// with the model's scale. Components without a handle are left out.
     pub energy: f64,
     /// How many steps were taken towards these targets, this one included.
     pub iteration: u32,
@@ -25,48 +45,155 @@ pub struct Step {
 
 impl Bound {
     pub(crate) fn bind(problem: &Problem, ordering: &Ordering, progress: &Progress, cancel: &Cancel) -> Result<Self, BindError> {
-        let _ = (problem, ordering, progress, cancel);
-        unimplemented!()
+        cancel.check()?;
+        let mut partition = Partition::of(problem)?;
+        let (expected, expected_power) = (problem.surface.positions.len(), problem.method.operator_power());
+        if (ordering.vertex_count(), ordering.power()) != (expected, expected_power) {
+            let (found, found_power) = (ordering.vertex_count(), ordering.power());
+            return Err(BindError::Ordering { found, found_power, expected, expected_power });
+        }
+        let positions = &problem.surface.positions;
+        let handles: Vec<Handle> = partition.handles.iter().map(|vertices| Handle::new(vertices.clone(), positions)).collect();
+        let solver = match problem.method {
+            Method::Bilaplacian(_) => {
+                let plate = Plate::bind(problem, &partition, &handles, ordering, progress, cancel)?;
+                partition.warnings.extend(plate.warnings());
+                Solver::Plate(Box::new(plate))
+            }
+        };
+        Ok(Self {
+            revision: problem.revision,
+            vertex_count: positions.len(),
+            free_count: partition.free_count,
+            motions: vec![Motion::default(); handles.len()],
+            handles,
+            iteration: 0,
+            solver,
+            followers: followers(problem.surface, problem.topology, &partition.following, &partition.driven),
+            warnings: partition.warnings,
+        })
     }
+
     /// Sets where the handles are to go: one affine map of world positions a handle, from rest.
     ///
     /// # Errors
     /// A wrong count, or a transform that is not finite; the former targets stay then.
     pub fn set_targets(&mut self, world_targets: &[DAffine3]) -> Result<(), SolveError> {
-        let _ = world_targets;
-        unimplemented!()
+        if world_targets.len() != self.handles.len() {
+            return Err(SolveError::TargetCount { found: world_targets.len(), expected: self.handles.len() });
+        }
+        if let Some(handle) = world_targets.iter().position(|target| !target.is_finite()) {
+            return Err(SolveError::TargetNotFinite { handle });
+        }
+        self.motions = self.handles.iter().zip(world_targets).map(|(handle, target)| handle.motion(target)).collect();
+        self.iteration = 0;
+        Ok(())
     }
+
     /// One step towards the targets: fills `displacements`, one a surface vertex, in world units.
+    ///
+    /// Handle vertices get what their transform says; what nothing moves gets zero to the last bit.
     ///
     /// # Errors
     /// A wrong length, or a result that is not finite; `displacements` is all zero then.
     pub fn step(&mut self, displacements: &mut [DVec3]) -> Result<Step, SolveError> {
-        let _ = displacements;
-        unimplemented!()
+        self.frame(displacements, |plate, motions, displacements| {
+            plate.bases().evaluate(motions, displacements);
+            plate.energy(motions)
+        })
     }
+
     /// As [`Bound::step`], but by solving with the factor in f64 instead of using the handles' bases.
+    ///
+    /// # Errors
+    /// As [`Bound::step`].
     pub fn step_by_back_substitution(&mut self, displacements: &mut [DVec3]) -> Result<Step, SolveError> {
-        let _ = displacements;
-        unimplemented!()
+        self.frame(displacements, |plate, _, displacements| {
+            plate.back_substitute(displacements);
+            plate.energy_of(displacements)
+        })
     }
+
+    /// The handles' vertices and zeros first, then what `solve` makes of them, then the followers and the gate.
+    fn frame(
+        &mut self,
+        displacements: &mut [DVec3],
+        solve: impl FnOnce(&Plate, &[Motion], &mut [DVec3]) -> f64,
+    ) -> Result<Step, SolveError> {
+        displacements.fill(DVec3::ZERO);
+        if displacements.len() != self.vertex_count {
+            return Err(SolveError::OutputLength { found: displacements.len(), expected: self.vertex_count });
+        }
+        self.iteration += 1;
+        let mut step = Step { converged: true, energy: 0.0, iteration: self.iteration };
+        if self.motions.iter().all(Motion::is_rest) {
+            return Ok(step);
+        }
+        let Solver::Plate(plate) = &self.solver;
+        for (handle, motion) in self.motions.iter().enumerate() {
+            for (vertex, coordinates) in plate.prescribed(handle) {
+                displacements[vertex as usize] = motion.displace(coordinates);
+            }
+        }
+        step.energy = solve(plate, &self.motions, displacements);
+        carry(&self.followers, displacements);
+        gate(displacements)?;
+        Ok(step)
+    }
+
+    /// The energy of any displacements, one a surface vertex, as in [`Step::energy`]; `None` where the method has no
+    /// energy or the length is wrong.
+    pub fn energy_of(&self, displacements: &[DVec3]) -> Option<f64> {
+        let Solver::Plate(plate) = &self.solver;
+        (displacements.len() == self.vertex_count).then(|| plate.energy_of(displacements))
+    }
+
     /// The handles' bases, where the method is linear.
     pub fn handle_bases(&self) -> Option<&HandleBases> {
-        unimplemented!()
+        let Solver::Plate(plate) = &self.solver;
+        Some(plate.bases())
     }
+
     /// The energy of the rest shape, as in [`Step::energy`].
     pub fn energy_rest(&self) -> f64 {
+        let Solver::Plate(_) = &self.solver;
         0.0
     }
-    /// Sentences for a person: what components do, what was repaired.
+
+    /// Sentences for a person: what components do that lack a handle or a hold, what was repaired.
     pub fn warnings(&self) -> &[String] {
-        &[]
+        &self.warnings
     }
-    /// How many vertices are free to move.
+
+    /// How many vertices have the role [`crate::Role::Free`].
     pub fn free_count(&self) -> usize {
-        0
+        self.free_count
     }
+
+    /// How many of them the system is solved for: those that a handle can reach.
+    pub fn solved_count(&self) -> usize {
+        self.handle_bases().map_or(0, |bases| bases.vertices().len())
+    }
+
+    /// How many numbers the system's factor stores, 8 bytes each.
+    pub fn factor_len(&self) -> usize {
+        let Solver::Plate(plate) = &self.solver;
+        plate.factor_len()
+    }
+
     /// [`Problem::revision`] of the problem it was bound from.
     pub fn revision(&self) -> u64 {
         self.revision
     }
+}
+
+/// The one way out: no displacement that is not finite passes.
+fn gate(displacements: &mut [DVec3]) -> Result<(), SolveError> {
+    let finite = displacements.par_chunks(FRAME_CHUNK).all(|chunk| chunk.iter().all(|displacement| displacement.is_finite()));
+    if finite {
+        return Ok(());
+    }
+    let vertex = displacements.iter().position(|displacement| !displacement.is_finite()).unwrap_or_default();
+    displacements.fill(DVec3::ZERO);
+    Err(SolveError::NotFinite { vertex: vertex as u32 })
 }

@@ -3,17 +3,34 @@
 //! Rates of change are types: [`Ordering`] changes with the mesh, [`Bound`] with roles, stiffness and options, and a
 //! [`Bound::step`] with the handles' transforms. There is no clock here, no file, no thread of its own: rayon's
 //! current pool is the caller's, and every result is the same bit for bit whatever its size.
+//!
+//! Binding goes [`Problem`] → `partition` (who is solved for) → [`Laplacian`] → `assembly` → `cholesky` in the
+//! restricted `ordering` → `shell` (refine, check) → `plate` ([`HandleBases`], energies) → [`Bound`]. A frame is
+//! [`HandleBases`] and `follow`.
 
+mod assembly;
 mod bases;
 mod bound;
+mod cholesky;
 mod error;
+mod etree;
+mod follow;
+mod handle;
 mod method;
+mod operators;
 mod ordering;
+mod partition;
+mod plate;
 mod problem;
+mod reach;
+mod rigid_fit;
+mod shell;
+mod triangular;
 
 pub use bases::HandleBases;
 pub use bound::{Bound, Step};
 pub use error::{BindError, SolveError};
 pub use method::{Bilaplacian, Method};
+pub use operators::Laplacian;
 pub use ordering::Ordering;
 pub use problem::{Loose, Problem, Role};

@@ -124,7 +124,7 @@ fn warnings(problem: &Problem, loose: &[u32], unheld: &[u32], follows: bool) -> 
     if problem.handle_count == 0 {
         return sentences;
     }
-    let size = |component: u32| problem.topology.components()[component as usize].vertex_count;
+    let size = |component: u32| problem.topology.components()[component as usize].vertices.len();
     let fate = if follows { "the nearest deformed surface" } else { "nothing" };
     let verb = |count: usize| match (follows, count) {
         (true, 1) => "follows",

@@ -1,0 +1,237 @@
+//! The cotangent Laplacian and the mixed areas of a part of the surface.
+//!
+//! Sign: (L f)_i = Σ_j w_ij (f_j − f_i) with w_ij = ½ Σ cot over the triangles on edge ij, so L is symmetric and
+//! *negative* semidefinite (survey, equations 6 and 7, without the division by area), and L M⁻¹ L is positive
+//! semidefinite. It is applied by differences along edges, which gives zero on constants to the last bit, however far
+//! from the origin; a matrix with its diagonal summed up does not.
+//!
+//! Robustness: a triangle's cotangents come from its three edge lengths, *mollified* where they hardly or don't satisfy
+//! the triangle inequality (Sharp & Crane 2020, section 4.5, here triangle by triangle and relative to its own longest
+//! edge, so that sound triangles keep their shape and units don't matter). Each triangle's part of L is then negative
+//! semidefinite whatever its shape, and so is L: edges with a negative weight are no harm. Areas are bounded below by a
+//! millionth of their component's mean. Stiffness scales each *face* by the mean of its corners, which keeps that law;
+//! scaling edges would break it.
+
+use std::collections::BTreeMap;
+
+use pliant_mesh::{Surface, SurfaceVertex, Topology, cotangents, edge_lengths, mixed_corner_areas};
+use rayon::prelude::*;
+
+/// Rows or faces that one task takes: fixed, so that results don't depend on the number of threads.
+pub(crate) const CHUNK: usize = 1024;
+
+/// By how much two edges of a triangle are made to exceed the third, in units of the longest.
+const MOLLIFICATION: f64 = 1e-5;
+
+/// The least area of a vertex, in units of the mean over its component.
+const AREA_FLOOR: f64 = 1e-6;
+
+/// The cotangent Laplacian over local vertices, which are numbered in the order of their surface vertices.
+///
+/// A *full* row knows all neighbours of its vertex; the other vertices have empty rows and only serve as neighbours.
+#[derive(Clone, Debug, Default)]
+pub struct Laplacian {
+    vertices: Vec<u32>,
+    offsets: Vec<u32>,
+    neighbours: Vec<u32>,
+    weights: Vec<f64>,
+    inverse_areas: Vec<f64>,
+    mollified_faces: usize,
+}
+
+/// A surface vertex that has no local number.
+const ABSENT: u32 = u32::MAX;
+
+impl Laplacian {
+    /// The operator with full rows for all of `surface`; `stiffness` has one entry a vertex.
+    pub fn of(surface: &Surface, topology: &Topology, stiffness: &[f64]) -> Self {
+        let all: Vec<u32> = (0..surface.positions.len() as u32).collect();
+        Self::with_rows(surface, topology, stiffness, &all)
+    }
+
+    /// The operator with full rows for the surface vertices `rows` (ascending); their neighbours get empty rows.
+    pub fn with_rows(surface: &Surface, topology: &Topology, stiffness: &[f64], rows: &[u32]) -> Self {
+        let mut local_of = vec![ABSENT; surface.positions.len()];
+        for &row in rows {
+            local_of[row as usize] = 0;
+            for neighbour in topology.neighbours(SurfaceVertex(row)) {
+                local_of[neighbour.index()] = 0;
+            }
+        }
+        let mut vertices = Vec::new();
+        for (vertex, local) in local_of.iter_mut().enumerate() {
+            if *local != ABSENT {
+                *local = vertices.len() as u32;
+                vertices.push(vertex as u32);
+            }
+        }
+        let mut offsets = vec![0; vertices.len() + 1];
+        let mut neighbours = Vec::new();
+        let mut next_row = rows.iter().peekable();
+        for (local, &vertex) in vertices.iter().enumerate() {
+            if next_row.next_if_eq(&&vertex).is_some() {
+                neighbours.extend(topology.neighbours(SurfaceVertex(vertex)).iter().map(|n| local_of[n.index()]));
+            }
+            offsets[local + 1] = neighbours.len() as u32;
+        }
+        let mut operator = Self { vertices, offsets, neighbours, ..Self::default() };
+        operator.fill(surface, topology, stiffness, &local_of);
+        operator
+    }
+
+    /// Cotangents per face first, then gathered per row: both sides of an edge add up the same numbers in the same
+    /// order, so the weights are symmetric to the last bit.
+    fn fill(&mut self, surface: &Surface, topology: &Topology, stiffness: &[f64], local_of: &[u32]) {
+        let mut needed = vec![false; surface.triangles.len()];
+        for (local, &vertex) in self.vertices.iter().enumerate() {
+            if self.is_full(local) {
+                for &face in topology.faces(SurfaceVertex(vertex)) {
+                    needed[face as usize] = true;
+                }
+            }
+        }
+        let faces: Vec<u32> = (0..needed.len()).filter(|&face| needed[face]).map(|face| face as u32).collect();
+        let terms: Vec<FaceTerms> = faces
+            .par_iter()
+            .with_min_len(CHUNK)
+            .map(|&face| FaceTerms::of(surface, stiffness, surface.triangles[face as usize]))
+            .collect();
+        self.mollified_faces = terms.iter().filter(|terms| terms.mollified).count();
+        let mut slot_of_face = vec![ABSENT; surface.triangles.len()];
+        for (slot, &face) in faces.iter().enumerate() {
+            slot_of_face[face as usize] = slot as u32;
+        }
+        let mut rows: Vec<(&mut [f64], f64)> = Vec::with_capacity(self.vertices.len());
+        let mut weights = vec![0.0; self.neighbours.len()];
+        let mut rest = weights.as_mut_slice();
+        for local in 0..self.vertices.len() {
+            let (row, tail) = rest.split_at_mut((self.offsets[local + 1] - self.offsets[local]) as usize);
+            rows.push((row, 0.0));
+            rest = tail;
+        }
+        rows.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(local, (row, area))| {
+            let vertex = SurfaceVertex(self.vertices[local]);
+            let neighbours = self.neighbours(local);
+            if neighbours.is_empty() {
+                return;
+            }
+            for &face in topology.faces(vertex) {
+                let terms = &terms[slot_of_face[face as usize] as usize];
+                let corners = surface.triangles[face as usize];
+                for corner in 0..3 {
+                    if corners[corner] == vertex {
+                        *area += terms.areas[corner];
+                        continue;
+                    }
+                    // The edge from `vertex` to this corner lies opposite the third corner.
+                    let third = (0..3).find(|&other| other != corner && corners[other] != vertex);
+                    let place = neighbours.binary_search(&local_of[corners[corner].index()]);
+                    if let (Some(third), Ok(place)) = (third, place) {
+                        row[place] += terms.half_cotangents[third];
+                    }
+                }
+            }
+        });
+        let mut areas: Vec<f64> = rows.into_iter().map(|(_, area)| area).collect();
+        self.weights = weights;
+        self.floor_areas(topology, &mut areas);
+        self.inverse_areas = areas.iter().map(|&area| if area > 0.0 { area.recip() } else { 0.0 }).collect();
+    }
+
+    fn floor_areas(&self, topology: &Topology, areas: &mut [f64]) {
+        let mut sums = BTreeMap::<u32, (f64, f64)>::new();
+        let component = |local: usize| topology.component(SurfaceVertex(self.vertices[local]));
+        for local in (0..areas.len()).filter(|&local| self.is_full(local)) {
+            let sum = sums.entry(component(local)).or_default();
+            *sum = (sum.0 + areas[local], sum.1 + 1.0);
+        }
+        for local in (0..areas.len()).filter(|&local| self.is_full(local)) {
+            if let Some((area, count)) = sums.get(&component(local)) {
+                // A component of no area at all still has a shape to solve on: its lengths are all that matters then.
+                let mean = if *area > 0.0 { area / count } else { 1.0 };
+                areas[local] = areas[local].max(AREA_FLOOR * mean);
+            }
+        }
+    }
+
+    /// The surface vertex behind each local one, ascending.
+    pub fn vertices(&self) -> &[u32] {
+        &self.vertices
+    }
+
+    /// The local number of a surface vertex.
+    pub fn local(&self, surface_vertex: u32) -> Option<usize> {
+        self.vertices.binary_search(&surface_vertex).ok()
+    }
+
+    /// The local neighbours of `local`, ascending; none where the row is not full.
+    pub fn neighbours(&self, local: usize) -> &[u32] {
+        &self.neighbours[self.offsets[local] as usize..self.offsets[local + 1] as usize]
+    }
+
+    /// The weights w_ij of the edges to [`Laplacian::neighbours`], without unit.
+    pub fn weights(&self, local: usize) -> &[f64] {
+        &self.weights[self.offsets[local] as usize..self.offsets[local + 1] as usize]
+    }
+
+    /// Whether the row of `local` knows all its neighbours. Every surface vertex has one at least.
+    pub fn is_full(&self, local: usize) -> bool {
+        self.offsets[local] < self.offsets[local + 1]
+    }
+
+    /// 1 / M_ii, the mixed Voronoi area's inverse (Meyer et al. 2003); 0 where the row is not full.
+    pub fn inverse_areas(&self) -> &[f64] {
+        &self.inverse_areas
+    }
+
+    /// How many triangles were too flat for cotangents of their own.
+    pub fn mollified_faces(&self) -> usize {
+        self.mollified_faces
+    }
+
+    /// (L f)_i of `local`: Σ_j w_ij (f_j − f_i), 0 where the row is not full.
+    #[inline]
+    pub fn row<const K: usize>(&self, local: usize, f: &[[f64; K]]) -> [f64; K] {
+        let own = f[local];
+        let mut sum = [0.0; K];
+        for (&neighbour, &weight) in self.neighbours(local).iter().zip(self.weights(local)) {
+            let other = f[neighbour as usize];
+            for k in 0..K {
+                sum[k] += weight * (other[k] - own[k]);
+            }
+        }
+        sum
+    }
+
+    /// M⁻¹ L f on the full rows, 0 on the others.
+    pub fn per_area<const K: usize>(&self, f: &[[f64; K]]) -> Vec<[f64; K]> {
+        (0..self.vertices.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|local| self.row(local, f).map(|value| value * self.inverse_areas[local]))
+            .collect()
+    }
+}
+
+struct FaceTerms {
+    half_cotangents: [f64; 3],
+    areas: [f64; 3],
+    mollified: bool,
+}
+
+impl FaceTerms {
+    fn of(surface: &Surface, stiffness: &[f64], corners: [SurfaceVertex; 3]) -> Self {
+        let lengths = edge_lengths(corners.map(|corner| surface.positions[corner.index()]));
+        let sum = lengths[0] + lengths[1] + lengths[2];
+        let longest = lengths[0].max(lengths[1]).max(lengths[2]);
+        let excess = MOLLIFICATION * longest - (sum - 2.0 * longest);
+        let mollified = excess > 0.0;
+        let lengths = if mollified { lengths.map(|length| length + excess) } else { lengths };
+        let stiffness = corners.iter().map(|corner| stiffness[corner.index()]).sum::<f64>() / 3.0;
+        Self {
+            half_cotangents: cotangents(lengths).map(|cotangent| 0.5 * stiffness * cotangent),
+            areas: mixed_corner_areas(lengths),
+            mollified,
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! The thin-plate method: what binding it computes, and its two ways to a frame.
+
+use glam::DVec3;
+use pliant_mesh::{Cancel, Progress, SurfaceVertex};
+use rayon::prelude::*;
+
+use crate::handle::{Handle, Motion};
+use crate::partition::Partition;
+use crate::shell::{Shell, ShellError};
+use crate::{BindError, HandleBases, Laplacian, Ordering, Problem};
+
+/// The bound bi-Laplacian.
+#[derive(Debug)]
+pub(crate) struct Plate {
+    shell: Shell,
+    bases: HandleBases,
+    /// Each handle's vertices as local ones, and their coordinates.
+    prescribed: Vec<Vec<(u32, [f64; 4])>>,
+    /// E = ½ Σ_hk tr(X_hᵀ G_hk X_k) over the motions' 4×3 matrices X; row-major, one 4×4 block a pair of handles.
+    energy_blocks: Vec<[[f64; 4]; 4]>,
+}
+
+/// How far off a handle's solution may be, relative to its largest value.
+const BASES_TOLERANCE: f64 = 1e-7;
+
+impl Plate {
+    /// Assembles, factors, checks, and solves for the bases of `handles`.
+    pub fn bind(
+        problem: &Problem,
+        partition: &Partition,
+        handles: &[Handle],
+        ordering: &Ordering,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, BindError> {
+        let solved = &partition.solved;
+        let component_of = |vertex: u32| problem.topology.component(SurfaceVertex(vertex));
+        let refuse = |error: ShellError| error.into_bind_error(component_of, solved.len());
+        let order = ordering.restricted(problem.topology, solved);
+        cancel.check()?;
+        progress.set(0.1);
+        let rows = bent_rows(problem, solved, handles);
+        let laplacian = Laplacian::with_rows(problem.surface, problem.topology, problem.stiffness, &rows);
+        cancel.check()?;
+        progress.set(0.2);
+        let shell = Shell::factor(laplacian, &order, cancel).map_err(refuse)?;
+        progress.set(0.7);
+        shell.check().map_err(refuse)?;
+        cancel.check()?;
+        progress.set(0.75);
+        let prescribed: Vec<Vec<(u32, [f64; 4])>> = handles
+            .iter()
+            .map(|handle| {
+                let coordinates = |vertex: u32| handle.coordinates(problem.surface.positions[vertex as usize]);
+                let local = |vertex: u32| shell.laplacian.local(vertex).map(|local| (local as u32, coordinates(vertex)));
+                handle.vertices.iter().filter_map(|&vertex| local(vertex)).collect()
+            })
+            .collect();
+        let solved_locals: Vec<u32> = solved.iter().filter_map(|&v| shell.laplacian.local(v)).map(|local| local as u32).collect();
+        let columns: Vec<Columns> =
+            prescribed.par_iter().map(|own| solve_handle(&shell, own, &prescribed, &solved_locals, cancel)).collect::<Result<_, _>>()?;
+        for column in &columns {
+            if !(column.error <= BASES_TOLERANCE) {
+                let vertex = column.worst_vertex;
+                return Err(BindError::Inaccurate { component: component_of(vertex), vertex, error: column.error });
+            }
+        }
+        let mut energy_blocks = vec![[[0.0; 4]; 4]; handles.len() * handles.len()];
+        for (k, column) in columns.iter().enumerate() {
+            for (h, block) in column.energies.iter().enumerate() {
+                energy_blocks[h * handles.len() + k] = *block;
+            }
+        }
+        let reference = reference_handles(problem, partition);
+        let blocks: Vec<Vec<[f32; 4]>> = columns.into_iter().map(|column| column.rows).collect();
+        let bases = HandleBases::new(solved.clone(), &blocks, |vertex| reference[component_of(vertex) as usize]);
+        progress.set(1.0);
+        Ok(Self { shell, bases, prescribed, energy_blocks })
+    }
+
+    /// The handles' bases.
+    pub fn bases(&self) -> &HandleBases {
+        &self.bases
+    }
+
+    /// Sentences about what had to be repaired.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut sentences = Vec::new();
+        match self.shell.laplacian.mollified_faces() {
+            0 => {}
+            1 => sentences.push("1 degenerate triangle was given the smallest safe shape".to_owned()),
+            count => sentences.push(format!("{count} degenerate triangles were given the smallest safe shape")),
+        }
+        if self.shell.shift > 0.0 {
+            sentences.push(format!(
+                "the thin plate was barely stable on this mesh: it was stiffened by {:.0e} of its diagonal and refined",
+                self.shell.shift
+            ));
+        }
+        sentences
+    }
+
+    /// How many numbers the factor stores.
+    pub fn factor_len(&self) -> usize {
+        self.shell.stored()
+    }
+
+    /// The energy of a frame, from the motions alone: no pass over the surface.
+    pub fn energy(&self, motions: &[Motion]) -> f64 {
+        let columns = |motion: &Motion| [motion.linear.x_axis, motion.linear.y_axis, motion.linear.z_axis, motion.shift];
+        let mut sum = 0.0;
+        for (h, left) in motions.iter().map(columns).enumerate() {
+            for (k, right) in motions.iter().map(columns).enumerate() {
+                let block = &self.energy_blocks[h * motions.len() + k];
+                for i in 0..4 {
+                    for j in 0..4 {
+                        sum += block[i][j] * left[i].dot(right[j]);
+                    }
+                }
+            }
+        }
+        // Rigid motions leave a rounding error of either sign.
+        (0.5 * sum).max(0.0)
+    }
+
+    /// The energy of any displacements, one a surface vertex; components without a handle are left out.
+    pub fn energy_of(&self, displacements: &[DVec3]) -> f64 {
+        let d: Vec<[f64; 3]> = self.shell.laplacian.vertices().iter().map(|&v| displacements[v as usize].to_array()).collect();
+        self.shell.energy(&d)
+    }
+
+    /// Solves for the solved vertices' displacements from whatever the other vertices' are.
+    pub fn back_substitute(&self, displacements: &mut [DVec3]) {
+        let vertices = self.shell.laplacian.vertices();
+        let mut d: Vec<[f64; 3]> = vertices.iter().map(|&vertex| displacements[vertex as usize].to_array()).collect();
+        self.shell.solve(&mut d);
+        for &local in self.shell.columns() {
+            displacements[vertices[local as usize] as usize] = DVec3::from_array(d[local as usize]);
+        }
+    }
+
+    /// The handles' vertices and coordinates, as surface vertices.
+    pub fn prescribed(&self, handle: usize) -> impl Iterator<Item = (u32, [f64; 4])> + '_ {
+        let vertices = self.shell.laplacian.vertices();
+        self.prescribed[handle].iter().map(|&(local, coordinates)| (vertices[local as usize], coordinates))
+    }
+}
+
+/// One handle's four columns.
+struct Columns {
+    /// On the solved vertices, ascending. **f32**.
+    rows: Vec<[f32; 4]>,
+    /// C_hᵀ A B of this handle against each handle h.
+    energies: Vec<[[f64; 4]; 4]>,
+    error: f64,
+    worst_vertex: u32,
+}
+
+fn solve_handle(
+    shell: &Shell,
+    own: &[(u32, [f64; 4])],
+    prescribed: &[Vec<(u32, [f64; 4])>],
+    solved_locals: &[u32],
+    cancel: &Cancel,
+) -> Result<Columns, BindError> {
+    cancel.check()?;
+    let mut d = vec![[0.0; 4]; shell.laplacian.vertices().len()];
+    for &(local, coordinates) in own {
+        d[local as usize] = coordinates;
+    }
+    let error = shell.solve(&mut d);
+    let bent = shell.laplacian.per_area(&d);
+    let energy = |handle: &Vec<(u32, [f64; 4])>| {
+        let mut block = [[0.0; 4]; 4];
+        for &(local, coordinates) in handle {
+            let force = shell.laplacian.row(local as usize, &bent);
+            for i in 0..4 {
+                for j in 0..4 {
+                    block[i][j] += coordinates[i] * force[j];
+                }
+            }
+        }
+        block
+    };
+    let rows = solved_locals.iter().map(|&local| d[local as usize].map(|value| value as f32)).collect();
+    let worst_vertex = own.first().map_or(0, |&(local, _)| shell.laplacian.vertices()[local as usize]);
+    Ok(Columns { rows, energies: prescribed.iter().map(energy).collect(), error, worst_vertex })
+}
+
+/// The vertices where L d can differ from zero: solved ones, handles and their neighbours, ascending.
+fn bent_rows(problem: &Problem, solved: &[u32], handles: &[Handle]) -> Vec<u32> {
+    let mut bent = vec![false; problem.surface.positions.len()];
+    for &vertex in solved.iter().chain(handles.iter().flat_map(|handle| &handle.vertices)) {
+        bent[vertex as usize] = true;
+        for neighbour in problem.topology.neighbours(SurfaceVertex(vertex)) {
+            bent[neighbour.index()] = true;
+        }
+    }
+    (0..bent.len()).filter(|&vertex| bent[vertex]).map(|vertex| vertex as u32).collect()
+}
+
+/// The lowest handle of each component in which nothing is fixed.
+fn reference_handles(problem: &Problem, partition: &Partition) -> Vec<Option<u16>> {
+    let mut reference = vec![None; partition.held.len()];
+    for (handle, vertices) in partition.handles.iter().enumerate().rev() {
+        for &vertex in vertices {
+            let component = problem.topology.component(SurfaceVertex(vertex)) as usize;
+            if !partition.held[component] {
+                reference[component] = Some(handle as u16);
+            }
+        }
+    }
+    reference
+}
