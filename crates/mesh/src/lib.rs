@@ -1,1 +1,48 @@
-//! Pliant's mesh.
+//! A triangle surface in memory: topology, geometry, welding, diagnosis, distances along the surface and a
+//! bounding-volume hierarchy, and the one pair of [`Progress`] and [`Cancel`] that every long job takes.
+//!
+//! Three vertex sets exist and must not be mixed; each has its own id type:
+//! [`FileVertex`] (what is saved), [`DrawnVertex`] (a file vertex seen through one node: what is rendered and
+//! picked) and [`SurfaceVertex`] (welded in world space: what is solved). [`Model`] holds the tables between them.
+//!
+//! Long loops run on the rayon pool that the caller installed. How work is cut into pieces never depends on the
+//! number of threads, so results are the same bits whatever it is.
+
+mod areas;
+mod boundary;
+mod bvh;
+mod components;
+mod distance;
+mod distortion;
+mod drawn;
+mod findings;
+pub mod geometry;
+mod gradient;
+mod ids;
+mod joining;
+mod model;
+mod morton;
+mod normals;
+mod progress;
+mod rings;
+pub mod shapes;
+mod surface;
+mod topology;
+mod weld;
+
+pub use bvh::{Bvh, Hit};
+pub use components::Component;
+pub use distance::{DistanceSearch, distances_along_surface};
+pub use distortion::Distortion;
+pub use drawn::Drawn;
+pub use findings::{Finding, Findings};
+pub use geometry::{
+    Bounds, area_of_lengths, bounding_box, cotangents, edge_lengths, face_area, face_areas, face_normal,
+    mixed_corner_areas, mixed_voronoi_areas, signed_volume, vertex_normals,
+};
+pub use gradient::face_gradient;
+pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};
+pub use model::{Model, SurfaceOfFile, WeldOptions};
+pub use progress::{Cancel, Cancelled, Progress};
+pub use surface::Surface;
+pub use topology::Topology;

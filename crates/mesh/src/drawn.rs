@@ -1,0 +1,30 @@
+//! What a file shows: every vertex seen through its node, in world space.
+
+use glam::DVec3;
+
+use crate::{DrawnVertex, FileVertex};
+
+/// The drawn vertices and triangles of a file's default scene, in world space.
+///
+/// Triangles run counter-clockwise seen from outside; mirrored nodes' windings are flipped already. Positions may be
+/// non-finite where the file's are: welding sets such vertices aside.
+#[derive(Clone, Debug, Default)]
+pub struct Drawn {
+    /// World position of each drawn vertex.
+    pub positions: Vec<DVec3>,
+    /// Triangles over drawn vertices; every id is in range.
+    pub triangles: Vec<[DrawnVertex; 3]>,
+    /// The file vertex behind each drawn vertex.
+    pub file_vertex: Vec<FileVertex>,
+    /// How many vertices the file has, drawn or not.
+    pub file_vertex_count: usize,
+}
+
+impl Drawn {
+    /// A file that shows each of its vertices once, in its own order.
+    pub fn once(positions: Vec<DVec3>, triangles: Vec<[DrawnVertex; 3]>) -> Self {
+        let file_vertex_count = positions.len();
+        let file_vertex = (0..file_vertex_count as u32).map(FileVertex).collect();
+        Self { positions, triangles, file_vertex, file_vertex_count }
+    }
+}

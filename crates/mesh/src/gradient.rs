@@ -1,0 +1,63 @@
+//! Deformation gradients of triangles.
+
+use glam::{DMat3, DVec3};
+
+use crate::geometry::is_without_area;
+
+/// The linear map that takes the rest triangle's edges to the deformed one's and its unit normal to the deformed one's
+/// (Sumner and Popović 2004, equation 4, with the normal kept a unit). The identity where either has no area.
+///
+/// It tells all that happened to the surface at this triangle: a rigid motion gives its rotation. Normals turn by its
+/// inverse transpose, tangents by itself.
+pub fn face_gradient(rest: [DVec3; 3], deformed: [DVec3; 3]) -> DMat3 {
+    if is_without_area(rest) || is_without_area(deformed) {
+        return DMat3::IDENTITY;
+    }
+    let [e1, e2, n] = frame(rest);
+    let [d1, d2, m] = frame(deformed);
+    // The basis dual to (e1, e2, n): g1·e1 = 1, g1·e2 = 0, g1·n = 0 and so on.
+    let double_area = e1.cross(e2).dot(n);
+    let (g1, g2) = (e2.cross(n) / double_area, n.cross(e1) / double_area);
+    let column = |axis: usize| d1 * g1[axis] + d2 * g2[axis] + m * n[axis];
+    DMat3::from_cols(column(0), column(1), column(2))
+}
+
+/// Two edges and the unit normal.
+fn frame([a, b, c]: [DVec3; 3]) -> [DVec3; 3] {
+    [b - a, c - a, (b - a).cross(c - a).normalize()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DAffine3, DQuat};
+
+    const REST: [DVec3; 3] =
+        [DVec3::new(1.0, 0.2, -0.5), DVec3::new(1.3, 0.1, -0.4), DVec3::new(0.9, 0.8, -0.1)];
+
+    #[test]
+    fn a_rigid_motion_gives_its_rotation() {
+        let rotation = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -1.0).normalize(), 2.1);
+        let motion = DAffine3::from_rotation_translation(rotation, DVec3::new(3.0, -7.0, 1.0));
+        let gradient = face_gradient(REST, REST.map(|p| motion.transform_point3(p)));
+        assert!(gradient.abs_diff_eq(DMat3::from_quat(rotation), 1e-12));
+    }
+
+    #[test]
+    fn edges_and_normals_go_where_they_went() {
+        let deformed = [DVec3::ZERO, DVec3::new(0.0, 2.0, 0.0), DVec3::new(0.1, 0.0, -3.0)];
+        let gradient = face_gradient(REST, deformed);
+        let [e1, e2, n] = frame(REST);
+        let [d1, d2, m] = frame(deformed);
+        for (from, to) in [(e1, d1), (e2, d2), (n, m)] {
+            assert!((gradient * from).abs_diff_eq(to, 1e-12));
+        }
+    }
+
+    #[test]
+    fn a_triangle_without_area_tells_nothing() {
+        let line = [DVec3::ZERO, DVec3::X, 2.0 * DVec3::X];
+        assert_eq!(face_gradient(line, REST), DMat3::IDENTITY);
+        assert_eq!(face_gradient(REST, line), DMat3::IDENTITY);
+    }
+}

@@ -1,0 +1,143 @@
+//! A file's geometry, welded: the drawn set, the surface, and the tables from one to the other.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::weld::{Welded, weld};
+use crate::{
+    Bounds, Cancel, Cancelled, Drawn, FileVertex, Findings, Progress, Surface, SurfaceVertex,
+    Topology, bounding_box,
+};
+
+/// How equal positions are joined.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct WeldOptions {
+    /// Positions closer than this share of the bounding box's diagonal are joined, from 0 (equal ones only) to 1e-4
+    /// (larger shares are taken as that); `None` joins nothing.
+    pub tolerance: Option<f64>,
+}
+
+impl Default for WeldOptions {
+    fn default() -> Self {
+        Self { tolerance: Some(1e-7) }
+    }
+}
+
+/// The drawn set, the welded surface and the tables between them.
+#[derive(Clone, Debug, Default)]
+pub struct Model {
+    /// What the file shows.
+    pub drawn: Drawn,
+    /// What is solved.
+    pub surface: Surface,
+    /// Who neighbours whom on the surface.
+    pub topology: Topology,
+    /// The surface vertex behind each drawn vertex; `None` where no kept triangle uses it.
+    pub surface_of_drawn: Vec<Option<SurfaceVertex>>,
+    /// The drawn triangle behind each surface triangle, corner for corner.
+    pub drawn_triangle_of_surface: Vec<u32>,
+    /// What is wrong with the mesh.
+    pub findings: Findings,
+}
+
+impl Model {
+    /// Welds `drawn` into a surface. Anything that can't be solved is set aside and told in the findings; a file with
+    /// no usable triangle gives an empty surface.
+    pub fn weld(
+        drawn: Drawn,
+        options: &WeldOptions,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
+        let Welded { surface, surface_of_drawn, drawn_triangle_of_surface, first_file_vertex, mut findings } =
+            weld(&drawn, options, progress, cancel)?;
+        cancel.check()?;
+        let topology = Topology::with_file_vertices(&surface, &first_file_vertex);
+        cancel.check()?;
+        progress.set(0.9);
+        report_topology(&topology, &first_file_vertex, &mut findings);
+        progress.set(1.0);
+        Ok(Self { drawn, surface, topology, surface_of_drawn, drawn_triangle_of_surface, findings })
+    }
+
+    /// The bounding box of the vertices that kept triangles use; `None` of an empty surface.
+    pub fn bounds(&self) -> Option<Bounds> {
+        bounding_box(&self.surface.positions)
+    }
+
+    /// The table from the file's vertices to the surface's.
+    pub fn surface_of_file(&self) -> SurfaceOfFile {
+        SurfaceOfFile::of_drawn(&self.drawn, &self.surface_of_drawn)
+    }
+
+    /// Each drawn vertex's rest position plus the displacement of its surface vertex (`displacements`, one each),
+    /// into `out`. Where the displacement is zero, and where there is no surface vertex, the rest position's own bits.
+    pub fn drawn_positions(&self, displacements: &[DVec3], out: &mut Vec<DVec3>) {
+        out.resize(self.drawn.positions.len(), DVec3::ZERO);
+        out.par_iter_mut()
+            .zip_eq(&self.drawn.positions)
+            .zip_eq(&self.surface_of_drawn)
+            .with_min_len(8192)
+            .for_each(|((moved, &rest), surface_vertex)| {
+                let displacement = surface_vertex.map_or(DVec3::ZERO, |v| displacements[v.index()]);
+                // Adding zero would turn −0 into 0.
+                *moved = if displacement == DVec3::ZERO { rest } else { rest + displacement };
+            });
+    }
+}
+
+/// Tells the topology's findings in file vertices.
+fn report_topology(topology: &Topology, first_file_vertex: &[FileVertex], findings: &mut Findings) {
+    let file_vertex = |v: u32| first_file_vertex[v as usize].0;
+    let [edges, vertices, misoriented] = topology.oddities().map(|finding| finding.clone().renamed(file_vertex));
+    findings.non_manifold_edges = edges;
+    findings.non_manifold_vertices = vertices;
+    findings.misoriented_edges = misoriented;
+    for [v, _] in topology.boundary_edge_list() {
+        findings.boundary_edges.push(file_vertex(v.0));
+    }
+    for rim in topology.boundary_loops() {
+        findings.boundary_loops.push(file_vertex(rim[0].0));
+    }
+    for component in topology.components() {
+        findings.components.push(component.first_file_vertex.0);
+    }
+}
+
+/// The surface vertices behind each file vertex.
+#[derive(Clone, Debug, Default)]
+pub struct SurfaceOfFile {
+    offsets: Vec<u32>,
+    list: Vec<SurfaceVertex>,
+}
+
+impl SurfaceOfFile {
+    fn of_drawn(drawn: &Drawn, surface_of_drawn: &[Option<SurfaceVertex>]) -> Self {
+        let mut pairs: Vec<(FileVertex, SurfaceVertex)> = drawn
+            .file_vertex
+            .iter()
+            .zip(surface_of_drawn)
+            .filter_map(|(&file_vertex, &surface_vertex)| Some((file_vertex, surface_vertex?)))
+            .collect();
+        pairs.par_sort_unstable();
+        pairs.dedup();
+        let mut offsets = vec![0; drawn.file_vertex_count + 1];
+        for (file_vertex, _) in &pairs {
+            offsets[file_vertex.index() + 1] += 1;
+        }
+        for v in 0..drawn.file_vertex_count {
+            offsets[v + 1] += offsets[v];
+        }
+        Self { offsets, list: pairs.into_iter().map(|(_, surface_vertex)| surface_vertex).collect() }
+    }
+
+    /// The surface vertices of `vertex`, ascending: none where no kept triangle uses it (or the file has no such
+    /// vertex), two where two nodes show it in two places.
+    pub fn of(&self, vertex: FileVertex) -> &[SurfaceVertex] {
+        let row = self.offsets.get(vertex.index()..=vertex.index() + 1);
+        match row {
+            Some(&[start, end]) => &self.list[start as usize..end as usize],
+            _ => &[],
+        }
+    }
+}

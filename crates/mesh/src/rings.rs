@@ -1,0 +1,178 @@
+//! One-rings: who stands around each vertex, how many triangles lie on each edge, and what is odd about them.
+
+use rayon::prelude::*;
+
+use crate::{Finding, SurfaceVertex};
+
+/// Vertices a piece of the parallel walk.
+const PIECE: usize = 8192;
+
+/// The rows and findings of a range of vertices, or of all.
+#[derive(Default)]
+pub(crate) struct Rings {
+    /// The length of each vertex's row.
+    pub(crate) degrees: Vec<u32>,
+    /// The rows: neighbours ascending.
+    pub(crate) neighbours: Vec<SurfaceVertex>,
+    /// How many triangles lie on the edge to each neighbour, 255 where there are more.
+    pub(crate) face_counts: Vec<u8>,
+    /// Edges with one triangle, directed against it: with the hole on the left.
+    pub(crate) boundary: Vec<[SurfaceVertex; 2]>,
+    /// Edges with more than two triangles; the examples are their lower surface vertices.
+    pub(crate) non_manifold_edges: Finding,
+    /// Edges along which both triangles run the same way; the examples are their lower surface vertices.
+    pub(crate) misoriented_edges: Finding,
+    /// Vertices whose triangles form more than one fan.
+    pub(crate) non_manifold_vertices: Finding,
+}
+
+/// Rows of triangles around vertices.
+pub(crate) struct FaceRows {
+    pub(crate) offsets: Vec<u32>,
+    pub(crate) list: Vec<u32>,
+}
+
+/// The triangles around each vertex, ascending.
+pub(crate) fn face_rows(vertex_count: usize, triangles: &[[SurfaceVertex; 3]]) -> FaceRows {
+    let mut offsets = vec![0u32; vertex_count + 2];
+    for triangle in triangles {
+        for v in triangle {
+            offsets[v.index() + 2] += 1;
+        }
+    }
+    for v in 2..offsets.len() {
+        offsets[v] += offsets[v - 1];
+    }
+    // Shifted by one, each start moves on to the next row's start while its row fills.
+    let mut list = vec![0u32; 3 * triangles.len()];
+    for (t, triangle) in triangles.iter().enumerate() {
+        for v in triangle {
+            let next = &mut offsets[v.index() + 1];
+            list[*next as usize] = t as u32;
+            *next += 1;
+        }
+    }
+    offsets.pop();
+    FaceRows { offsets, list }
+}
+
+/// Walks around every vertex.
+pub(crate) fn rings(vertex_count: usize, triangles: &[[SurfaceVertex; 3]], faces: &FaceRows) -> Rings {
+    let pieces: Vec<Rings> = (0..vertex_count.div_ceil(PIECE))
+        .into_par_iter()
+        .map(|piece| {
+            let mut rings = Rings::default();
+            let mut walk = Walk::default();
+            for v in piece * PIECE..((piece + 1) * PIECE).min(vertex_count) {
+                let row = faces.offsets[v] as usize..faces.offsets[v + 1] as usize;
+                walk.around(SurfaceVertex(v as u32), triangles, &faces.list[row], &mut rings);
+            }
+            rings
+        })
+        .collect();
+    let total = pieces.iter().map(|piece| piece.neighbours.len()).sum();
+    let mut all = Rings {
+        degrees: Vec::with_capacity(vertex_count),
+        neighbours: Vec::with_capacity(total),
+        face_counts: Vec::with_capacity(total),
+        ..Rings::default()
+    };
+    for piece in &pieces {
+        all.degrees.extend_from_slice(&piece.degrees);
+        all.neighbours.extend_from_slice(&piece.neighbours);
+        all.face_counts.extend_from_slice(&piece.face_counts);
+        all.boundary.extend_from_slice(&piece.boundary);
+        all.non_manifold_edges.extend(&piece.non_manifold_edges);
+        all.misoriented_edges.extend(&piece.misoriented_edges);
+        all.non_manifold_vertices.extend(&piece.non_manifold_vertices);
+    }
+    all
+}
+
+/// Memory for the walk around one vertex.
+#[derive(Default)]
+struct Walk {
+    /// The far ends of the edges of each triangle at the vertex: neighbour, whether the triangle runs towards the
+    /// vertex along it, and the triangle's place in the row. Packed, so that they sort fast.
+    spokes: Vec<u64>,
+    /// Union-find over the row's triangles.
+    fan: Vec<u32>,
+}
+
+impl Walk {
+    fn around(&mut self, v: SurfaceVertex, triangles: &[[SurfaceVertex; 3]], row: &[u32], rings: &mut Rings) {
+        self.spokes.clear();
+        self.fan.clear();
+        for (place, &t) in row.iter().enumerate() {
+            let [next, previous] = others(triangles[t as usize], v);
+            self.spokes.push(u64::from(next.0) << 32 | place as u64);
+            self.spokes.push(u64::from(previous.0) << 32 | INWARD | place as u64);
+            self.fan.push(place as u32);
+        }
+        self.spokes.sort_unstable();
+        let mut fans = row.len();
+        let mut first = 0;
+        let mut degree = 0;
+        while first < self.spokes.len() {
+            let neighbour = SurfaceVertex((self.spokes[first] >> 32) as u32);
+            let mut last = first + 1;
+            let mut inward = usize::from(self.spokes[first] & INWARD != 0);
+            while last < self.spokes.len() && (self.spokes[last] >> 32) as u32 == neighbour.0 {
+                fans -= usize::from(self.join(self.spokes[first], self.spokes[last]));
+                inward += usize::from(self.spokes[last] & INWARD != 0);
+                last += 1;
+            }
+            let count = last - first;
+            degree += 1;
+            rings.neighbours.push(neighbour);
+            rings.face_counts.push(count.min(255) as u8);
+            if count == 1 && inward == 1 {
+                // The triangle runs from the neighbour to here, so the hole's rim runs from here to there.
+                rings.boundary.push([v, neighbour]);
+            }
+            if v < neighbour {
+                if count > 2 {
+                    rings.non_manifold_edges.push(v.0);
+                } else if count == 2 && inward != 1 {
+                    rings.misoriented_edges.push(v.0);
+                }
+            }
+            first = last;
+        }
+        rings.degrees.push(degree);
+        if fans > 1 {
+            rings.non_manifold_vertices.push(v.0);
+        }
+    }
+
+    /// Joins the fans of two spokes' triangles; whether they were apart.
+    fn join(&mut self, a: u64, b: u64) -> bool {
+        let (a, b) = (self.root(a), self.root(b));
+        self.fan[a.max(b)] = a.min(b) as u32;
+        a != b
+    }
+
+    fn root(&mut self, spoke: u64) -> usize {
+        let mut place = (spoke & (INWARD - 1)) as usize;
+        while self.fan[place] as usize != place {
+            let parent = self.fan[place] as usize;
+            self.fan[place] = self.fan[parent];
+            place = parent;
+        }
+        place
+    }
+}
+
+/// A spoke's bit for its direction, above its triangle's place in the row (below 2³¹).
+const INWARD: u64 = 1 << 31;
+
+/// The corners after and before `v`.
+fn others([a, b, c]: [SurfaceVertex; 3], v: SurfaceVertex) -> [SurfaceVertex; 2] {
+    if v == a {
+        [b, c]
+    } else if v == b {
+        [c, a]
+    } else {
+        [a, b]
+    }
+}

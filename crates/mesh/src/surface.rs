@@ -1,0 +1,33 @@
+//! The welded triangle surface that is solved.
+
+use glam::DVec3;
+
+use crate::SurfaceVertex;
+
+/// Welded vertices and the triangles over them, in world space, f64.
+///
+/// Vertices stand in Morton order of their rest positions and triangles by their lowest vertex, so that neighbours on
+/// the surface are neighbours in memory. Every vertex is used by a triangle; every triangle has three different
+/// vertices; no two triangles have the same three vertices. Zero-area triangles, non-manifold edges, holes and several
+/// components may occur.
+#[derive(Clone, Debug, Default)]
+pub struct Surface {
+    /// World positions, all finite.
+    pub positions: Vec<DVec3>,
+    /// Counter-clockwise seen from outside.
+    pub triangles: Vec<[SurfaceVertex; 3]>,
+}
+
+impl Surface {
+    /// The three positions of triangle `t`.
+    #[inline]
+    pub fn corners(&self, t: usize) -> [DVec3; 3] {
+        corners(self.triangles[t], &self.positions)
+    }
+}
+
+/// The positions of a triangle's corners.
+#[inline]
+pub(crate) fn corners(triangle: [SurfaceVertex; 3], positions: &[DVec3]) -> [DVec3; 3] {
+    triangle.map(|v| positions[v.index()])
+}

@@ -1,0 +1,186 @@
+//! Who neighbours whom: one-rings, triangles around vertices, components and rims, as compressed rows.
+
+use crate::boundary::trace_loops;
+use crate::components::{Component, components};
+use crate::rings::{FaceRows, face_rows, rings};
+use crate::{FileVertex, Finding, Surface, SurfaceVertex};
+
+/// The connectivity of a [`Surface`].
+///
+/// Rows are compressed: row `v` of a list is `list[offsets[v]..offsets[v + 1]]`. Offsets are `u32`, so a surface has
+/// at most 2³² / 3 triangles.
+#[derive(Clone, Debug, Default)]
+pub struct Topology {
+    neighbour_offsets: Vec<u32>,
+    neighbour_list: Vec<SurfaceVertex>,
+    edge_face_counts: Vec<u8>,
+    face_offsets: Vec<u32>,
+    face_list: Vec<u32>,
+    boundary: Vec<[SurfaceVertex; 2]>,
+    component_of_vertex: Vec<u32>,
+    components: Vec<Component>,
+    non_manifold_edges: Finding,
+    non_manifold_vertices: Finding,
+    misoriented_edges: Finding,
+}
+
+impl Topology {
+    /// The connectivity of `surface`; components of equal size stand by their lowest surface vertex.
+    pub fn of(surface: &Surface) -> Self {
+        let own: Vec<FileVertex> = (0..surface.positions.len() as u32).map(FileVertex).collect();
+        Self::with_file_vertices(surface, &own)
+    }
+
+    /// The connectivity of `surface`; components of equal size stand by their lowest file vertex, which is the least
+    /// of `first_file_vertex` (one entry a surface vertex) over their vertices.
+    pub fn with_file_vertices(surface: &Surface, first_file_vertex: &[FileVertex]) -> Self {
+        let vertex_count = surface.positions.len();
+        let FaceRows { offsets: face_offsets, list: face_list } = face_rows(vertex_count, &surface.triangles);
+        let faces = FaceRows { offsets: face_offsets, list: face_list };
+        let rings = rings(vertex_count, &surface.triangles, &faces);
+        let mut neighbour_offsets = Vec::with_capacity(vertex_count + 1);
+        neighbour_offsets.push(0);
+        let mut end = 0;
+        for degree in rings.degrees {
+            end += degree;
+            neighbour_offsets.push(end);
+        }
+        let (component_of_vertex, components) =
+            components(&surface.triangles, first_file_vertex);
+        Self {
+            neighbour_offsets,
+            neighbour_list: rings.neighbours,
+            edge_face_counts: rings.face_counts,
+            face_offsets: faces.offsets,
+            face_list: faces.list,
+            boundary: rings.boundary,
+            component_of_vertex,
+            components,
+            non_manifold_edges: rings.non_manifold_edges,
+            non_manifold_vertices: rings.non_manifold_vertices,
+            misoriented_edges: rings.misoriented_edges,
+        }
+    }
+
+    /// How many vertices the surface has.
+    pub fn vertex_count(&self) -> usize {
+        self.component_of_vertex.len()
+    }
+
+    /// The vertices that share an edge with `v`, ascending, without `v`.
+    #[inline]
+    pub fn neighbours(&self, v: SurfaceVertex) -> &[SurfaceVertex] {
+        &self.neighbour_list[row(&self.neighbour_offsets, v)]
+    }
+
+    /// How many triangles lie on the edge to each of [`Self::neighbours`]; 255 where there are more.
+    #[inline]
+    pub fn edge_face_counts(&self, v: SurfaceVertex) -> &[u8] {
+        &self.edge_face_counts[row(&self.neighbour_offsets, v)]
+    }
+
+    /// The triangles around `v`, ascending.
+    #[inline]
+    pub fn faces(&self, v: SurfaceVertex) -> &[u32] {
+        &self.face_list[row(&self.face_offsets, v)]
+    }
+
+    /// Row starts into [`Self::neighbour_list`]: one a vertex and the list's length (nothing for a default topology).
+    pub fn neighbour_offsets(&self) -> &[u32] {
+        &self.neighbour_offsets
+    }
+
+    /// Every vertex's one-ring, row after row: twice the edges.
+    pub fn neighbour_list(&self) -> &[SurfaceVertex] {
+        &self.neighbour_list
+    }
+
+    /// Row starts into [`Self::face_list`]: one a vertex and the list's length (nothing for a default topology).
+    pub fn face_offsets(&self) -> &[u32] {
+        &self.face_offsets
+    }
+
+    /// Every vertex's triangles, row after row: three times the triangles.
+    pub fn face_list(&self) -> &[u32] {
+        &self.face_list
+    }
+
+    /// The component that `v` belongs to, as an index into [`Self::components`].
+    #[inline]
+    pub fn component(&self, v: SurfaceVertex) -> u32 {
+        self.component_of_vertex[v.index()]
+    }
+
+    /// The components by falling vertex count, equal ones by their first file vertex.
+    pub fn components(&self) -> &[Component] {
+        &self.components
+    }
+
+    /// Every edge once, as its lower and its higher vertex, in ascending order.
+    pub fn edges(&self) -> impl Iterator<Item = [SurfaceVertex; 2]> + '_ {
+        (0..self.vertex_count() as u32).map(SurfaceVertex).flat_map(move |v| {
+            let ring = self.neighbours(v);
+            let above = ring.partition_point(|&u| u < v);
+            ring[above..].iter().map(move |&u| [v, u])
+        })
+    }
+
+    /// How many edges there are.
+    pub fn edge_count(&self) -> usize {
+        self.neighbour_list.len() / 2
+    }
+
+    /// How many edges have one triangle.
+    pub fn boundary_edges(&self) -> usize {
+        self.boundary.len()
+    }
+
+    /// The edges with one triangle, directed with the hole on the left, by their first vertex.
+    pub fn boundary_edge_list(&self) -> &[[SurfaceVertex; 2]] {
+        &self.boundary
+    }
+
+    /// How many edges have more than two triangles.
+    pub fn non_manifold_edges(&self) -> usize {
+        self.non_manifold_edges.count
+    }
+
+    /// How many vertices' triangles form more than one fan (triangles that share an edge are in one fan).
+    pub fn non_manifold_vertices(&self) -> usize {
+        self.non_manifold_vertices.count
+    }
+
+    /// How many edges lie between two triangles that disagree about which side is outside.
+    pub fn misoriented_edges(&self) -> usize {
+        self.misoriented_edges.count
+    }
+
+    /// Whether no edge has one triangle only.
+    pub fn is_closed(&self) -> bool {
+        self.boundary.is_empty()
+    }
+
+    /// Whether `v` lies on an edge with one triangle.
+    pub fn is_boundary_vertex(&self, v: SurfaceVertex) -> bool {
+        self.edge_face_counts(v).contains(&1)
+    }
+
+    /// The holes' rims, each vertex once in each loop, with the hole on the left; by rising first vertex found.
+    ///
+    /// A rim that passes a vertex twice is cut into loops there. Where more than two triangles share an edge a rim may
+    /// end at it: such a chain counts as a loop too.
+    pub fn boundary_loops(&self) -> Vec<Vec<SurfaceVertex>> {
+        trace_loops(&self.boundary)
+    }
+
+    /// The findings about edges and vertices, their examples surface vertices: non-manifold edges, non-manifold
+    /// vertices, misoriented edges.
+    pub(crate) fn oddities(&self) -> [&Finding; 3] {
+        [&self.non_manifold_edges, &self.non_manifold_vertices, &self.misoriented_edges]
+    }
+}
+
+#[inline]
+fn row(offsets: &[u32], v: SurfaceVertex) -> std::ops::Range<usize> {
+    offsets[v.index()] as usize..offsets[v.index() + 1] as usize
+}
