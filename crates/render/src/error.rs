@@ -30,7 +30,7 @@ pub enum NoGpu {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum RenderError {
     /// A slice whose length contradicts the number of vertices.
-    #[error("{what} has {found} entries for {expected} vertices; give one entry a vertex")]
+    #[error("{what}: {found} entries for {expected} vertices; give one entry a vertex")]
     Length {
         /// Which slice.
         what: &'static str,

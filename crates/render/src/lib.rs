@@ -11,6 +11,8 @@
 //!
 //! Invariant: no mesh type, no solver, no egui, no camera, no files.
 
+mod buffers;
+mod edges;
 mod error;
 mod frame;
 mod guard;
@@ -18,11 +20,17 @@ mod headless;
 mod image;
 mod material;
 mod overlay;
+mod palette;
 mod pick;
+mod pipelines;
+mod readback;
 mod renderer;
+mod shaders;
 mod surface;
+mod surface_data;
 mod target;
 mod texture;
+mod uniforms;
 mod view;
 
 pub use error::{NoGpu, RenderError};
@@ -31,9 +39,11 @@ pub use headless::{Headless, device_descriptor};
 pub use image::Image;
 pub use material::{AlphaMode, Material, MaterialGroup};
 pub use overlay::{Overlay, OverlayLine, OverlayTriangle};
+pub use palette::region;
 pub use pick::{IdTarget, PickRequest, Picked, PickedIds, PixelRect};
 pub use renderer::Renderer;
-pub use surface::{ColourSpace, Surface, SurfaceData};
+pub use surface::Surface;
+pub use surface_data::{ColourSpace, SurfaceData};
 pub use target::{Samples, Target};
 pub use texture::{TextureData, Wrap};
 pub use view::View;

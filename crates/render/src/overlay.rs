@@ -1,5 +1,9 @@
 //! Marks above the surfaces: lines of a width in pixels and flat triangles, in the world's coordinates.
 
+use std::ops::Range;
+
+use crate::uniforms::{OverlayLineInstance, OverlayVertex};
+
 /// A layer of marks, drawn after the surfaces: triangles first, then lines, each in order. What a surface hides is
 /// drawn too, fainter, so that a gizmo inside a body can be grasped.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -30,4 +34,54 @@ pub struct OverlayLine {
     pub colours: [[u8; 4]; 2],
     /// Width in pixels of the picture, more than zero.
     pub width_px: f32,
+}
+
+/// All layers of a frame, ready to upload, and each layer's range in them.
+#[derive(Debug, Default)]
+pub(crate) struct OverlayBatch {
+    pub(crate) vertices: Vec<OverlayVertex>,
+    pub(crate) lines: Vec<OverlayLineInstance>,
+    pub(crate) layers: Vec<LayerRanges>,
+}
+
+/// Where a layer's marks are in an [`OverlayBatch`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct LayerRanges {
+    pub(crate) vertices: Range<u32>,
+    pub(crate) lines: Range<u32>,
+}
+
+impl OverlayBatch {
+    pub(crate) fn of(overlays: &[Overlay]) -> Self {
+        let mut batch = Self::default();
+        for overlay in overlays {
+            let hidden_share = overlay.hidden_share;
+            let (first_vertex, first_line) =
+                (batch.vertices.len() as u32, batch.lines.len() as u32);
+            for triangle in &overlay.triangles {
+                for (&position, &colour) in triangle.corners.iter().zip(&triangle.colours) {
+                    batch.vertices.push(OverlayVertex {
+                        position,
+                        colour,
+                        hidden_share,
+                    });
+                }
+            }
+            batch
+                .lines
+                .extend(overlay.lines.iter().map(|line| OverlayLineInstance {
+                    from: line.ends[0],
+                    width_px: line.width_px,
+                    to: line.ends[1],
+                    hidden_share,
+                    from_colour: line.colours[0],
+                    to_colour: line.colours[1],
+                }));
+            batch.layers.push(LayerRanges {
+                vertices: first_vertex..batch.vertices.len() as u32,
+                lines: first_line..batch.lines.len() as u32,
+            });
+        }
+        batch
+    }
 }

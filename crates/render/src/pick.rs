@@ -1,16 +1,25 @@
-//! Which triangles lie under the pointer.
+//! Which triangles lie under the pointer: the frame's surfaces drawn once more, with triangle numbers for colours.
+//!
+//! A ray against a tree on the processor is faster for a single point; this answers for rectangles (what a lasso may
+//! take is what is *seen*), and with exactly what the picture shows, since both share their vertex shader.
 
-use crate::{RenderError, Renderer};
+use crate::guard::guarded;
+use crate::pipelines::ID_FORMAT;
+use crate::readback::Readback;
+use crate::{Frame, RenderError, Renderer, Target};
 
-/// The hidden target that triangle numbers are drawn into. Made to measure by [`Renderer::pick`].
+/// The hidden target that triangle numbers are drawn into. Made to measure by [`Renderer::pick`]; keep it.
 #[derive(Debug, Default)]
-pub struct IdTarget {}
+pub struct IdTarget {
+    attachments: Option<IdAttachments>,
+}
 
-impl IdTarget {
-    /// An empty one.
-    pub fn new() -> Self {
-        Self::default()
-    }
+#[derive(Debug)]
+struct IdAttachments {
+    size_px: [u32; 2],
+    ids: wgpu::Texture,
+    ids_view: wgpu::TextureView,
+    depth: wgpu::TextureView,
 }
 
 /// A rectangle of pixels, from the upper left corner of the picture.
@@ -24,18 +33,6 @@ pub struct PixelRect {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-}
-
-impl PixelRect {
-    /// One pixel.
-    pub fn pixel(x: u32, y: u32) -> Self {
-        Self {
-            x,
-            y,
-            width: 1,
-            height: 1,
-        }
-    }
 }
 
 /// The triangle seen in a pixel.
@@ -58,13 +55,196 @@ pub struct PickedIds {
 
 /// A pick whose answer is on its way.
 #[derive(Debug)]
-pub struct PickRequest {}
+pub struct PickRequest {
+    rect: PixelRect,
+    /// The triangle number, plus 1, that follows each surface's last one.
+    ends: Vec<u32>,
+    /// None where the rectangle has no pixel.
+    readback: Option<Readback>,
+}
+
+impl IdTarget {
+    /// An empty one.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    fn resize(&mut self, device: &wgpu::Device, size_px: [u32; 2]) -> &IdAttachments {
+        let kept = self
+            .attachments
+            .take()
+            .filter(|attachments| attachments.size_px == size_px);
+        self.attachments
+            .insert(kept.unwrap_or_else(|| IdAttachments::new(device, size_px)))
+    }
+}
+
+impl IdAttachments {
+    fn new(device: &wgpu::Device, size_px: [u32; 2]) -> Self {
+        let texture = |label, format, usage| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d {
+                    width: size_px[0],
+                    height: size_px[1],
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            })
+        };
+        let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let ids = texture(
+            "triangle numbers",
+            ID_FORMAT,
+            attachment | wgpu::TextureUsages::COPY_SRC,
+        );
+        let depth = texture("triangle depth", Target::DEPTH_FORMAT, attachment);
+        Self {
+            size_px,
+            ids_view: ids.create_view(&wgpu::TextureViewDescriptor::default()),
+            ids,
+            depth: depth.create_view(&wgpu::TextureViewDescriptor::default()),
+        }
+    }
+}
+
+impl PixelRect {
+    /// One pixel.
+    pub fn pixel(x: u32, y: u32) -> Self {
+        Self {
+            x,
+            y,
+            width: 1,
+            height: 1,
+        }
+    }
+
+    /// The part inside a picture of `size_px`.
+    fn cut_to(self, size_px: [u32; 2]) -> Self {
+        let (x, y) = (self.x.min(size_px[0]), self.y.min(size_px[1]));
+        Self {
+            x,
+            y,
+            width: self.width.min(size_px[0] - x),
+            height: self.height.min(size_px[1] - y),
+        }
+    }
+}
+
+impl Renderer {
+    /// Asks which triangles a frame of `size_px` shows in `rect` (cut to the picture), without waiting. Overlays do
+    /// not count, and neither do holes that a material's alpha cuts.
+    ///
+    /// # Errors
+    /// [`RenderError::NoTriangleNumbers`] on a device that lacks them, [`RenderError::PictureTooLarge`], and as
+    /// [`Renderer::draw`].
+    pub fn pick(
+        &mut self,
+        target: &mut IdTarget,
+        size_px: [u32; 2],
+        rect: PixelRect,
+        frame: &Frame<'_>,
+    ) -> Result<PickRequest, RenderError> {
+        let rect = rect.cut_to(size_px);
+        let mut ends = Vec::with_capacity(frame.surfaces.len());
+        let mut next = 1_u32;
+        for surface in frame.surfaces {
+            surface.set_id_base(self.queue(), next);
+            next += surface.triangle_count() as u32;
+            ends.push(next);
+        }
+        if rect.width == 0 || rect.height == 0 {
+            return Ok(PickRequest {
+                rect,
+                ends,
+                readback: None,
+            });
+        }
+        let limit = self.device().limits().max_texture_dimension_2d;
+        if size_px.iter().any(|&side| side > limit) {
+            let [width, height] = size_px;
+            return Err(RenderError::PictureTooLarge {
+                width,
+                height,
+                limit,
+            });
+        }
+        self.write_frame(frame, size_px)?;
+        let device = self.device().clone();
+        let pipeline = self.pipelines.id(&device)?.clone();
+        let readback = guarded(&device, "while picking", || {
+            let attachments = target.resize(&device, size_px);
+            let mut encoder = device.create_command_encoder(&Default::default());
+            let mut pass = begin_ids(&mut encoder, attachments);
+            pass.set_scissor_rect(rect.x, rect.y, rect.width, rect.height);
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, self.frame_group(), &[]);
+            for surface in frame
+                .surfaces
+                .iter()
+                .filter(|surface| surface.index_count() > 0)
+            {
+                surface.bind(&mut pass);
+                pass.draw_indexed(0..surface.index_count(), 0, 0..1);
+            }
+            drop(pass);
+            let origin = [rect.x, rect.y];
+            Ok(Readback::submit(
+                self,
+                encoder,
+                &attachments.ids,
+                origin,
+                [rect.width, rect.height],
+            ))
+        })?;
+        Ok(PickRequest {
+            rect,
+            ends,
+            readback: Some(readback),
+        })
+    }
+}
+
+fn begin_ids<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    attachments: &IdAttachments,
+) -> wgpu::RenderPass<'a> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("triangle numbers"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &attachments.ids_view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: &attachments.depth,
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(0.0),
+                store: wgpu::StoreOp::Discard,
+            }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
+}
 
 impl PickRequest {
-    /// The answer if it has arrived, without waiting.
+    /// The answer if it has arrived, without waiting. Answers once.
     pub fn poll(&mut self, renderer: &Renderer) -> Option<Result<PickedIds, RenderError>> {
-        let _ = renderer;
-        None
+        let bytes = match &self.readback {
+            Some(readback) => readback.poll(renderer)?,
+            None => Ok(Vec::new()),
+        };
+        Some(bytes.map(|bytes| self.decoded(&bytes)))
     }
 
     /// The answer, waiting for it.
@@ -72,7 +252,108 @@ impl PickRequest {
     /// # Errors
     /// [`RenderError::Lost`] when the device does not answer.
     pub fn wait(self, renderer: &Renderer) -> Result<PickedIds, RenderError> {
-        let _ = renderer;
-        Err(RenderError::NoTriangleNumbers)
+        let bytes = match &self.readback {
+            Some(readback) => readback.wait(renderer)?,
+            None => Vec::new(),
+        };
+        Ok(self.decoded(&bytes))
+    }
+
+    fn decoded(&self, bytes: &[u8]) -> PickedIds {
+        let ids = bytes
+            .chunks_exact(4)
+            .map(|pixel| {
+                let id = u32::from_le_bytes([pixel[0], pixel[1], pixel[2], pixel[3]]);
+                let surface = self.ends.partition_point(|&end| end <= id);
+                let first = if surface == 0 {
+                    1
+                } else {
+                    self.ends[surface - 1]
+                };
+                (id > 0 && surface < self.ends.len()).then(|| Picked {
+                    surface: surface as u32,
+                    triangle: id - first,
+                })
+            })
+            .collect();
+        PickedIds {
+            rect: self.rect,
+            ids,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_split_among_surfaces_and_zero_is_none() {
+        let rect = PixelRect {
+            x: 0,
+            y: 0,
+            width: 6,
+            height: 1,
+        };
+        // Three triangles, none, two.
+        let request = PickRequest {
+            rect,
+            ends: vec![4, 4, 6],
+            readback: None,
+        };
+        let bytes: Vec<u8> = [0_u32, 1, 3, 4, 5, 6]
+            .iter()
+            .flat_map(|id| id.to_le_bytes())
+            .collect();
+        let picked = |surface, triangle| Some(Picked { surface, triangle });
+        let expected = [
+            None,
+            picked(0, 0),
+            picked(0, 2),
+            picked(2, 0),
+            picked(2, 1),
+            None,
+        ];
+        assert_eq!(request.decoded(&bytes).ids, expected);
+    }
+
+    #[test]
+    fn a_rectangle_is_cut_to_the_picture() {
+        let cut = |x, y, width, height| {
+            PixelRect {
+                x,
+                y,
+                width,
+                height,
+            }
+            .cut_to([10, 8])
+        };
+        assert_eq!(
+            cut(2, 3, 4, 4),
+            PixelRect {
+                x: 2,
+                y: 3,
+                width: 4,
+                height: 4
+            }
+        );
+        assert_eq!(
+            cut(8, 6, u32::MAX, 9),
+            PixelRect {
+                x: 8,
+                y: 6,
+                width: 2,
+                height: 2
+            }
+        );
+        assert_eq!(
+            cut(99, 99, 4, 4),
+            PixelRect {
+                x: 10,
+                y: 8,
+                width: 0,
+                height: 0
+            }
+        );
     }
 }

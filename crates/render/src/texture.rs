@@ -1,5 +1,11 @@
 //! Images on surfaces: sRGB bytes in, a texture with mipmaps on the device.
 
+use std::borrow::Cow;
+
+use crate::RenderError;
+use crate::guard::guarded;
+use crate::shaders::Shader;
+
 /// An image of four sRGB bytes a pixel (alpha straight), rows from the top.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextureData<'a> {
@@ -23,4 +29,223 @@ pub enum Wrap {
     Mirror,
     /// Its border pixels.
     Clamp,
+}
+
+/// Makes textures: holds what mipmaps are made with.
+#[derive(Debug)]
+pub(crate) struct TextureMaker {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    mipmap: wgpu::RenderPipeline,
+    mipmap_sampler: wgpu::Sampler,
+    anisotropy: u16,
+}
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+
+impl TextureMaker {
+    pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(Shader::Mipmap.file_name()),
+            source: wgpu::ShaderSource::Wgsl(Shader::Mipmap.composed().into()),
+        });
+        let mipmap = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("mipmap"),
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vs_mipmap"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fs_mipmap"),
+                compilation_options: Default::default(),
+                targets: &[Some(FORMAT.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let mipmap_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("mipmap"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        // Software devices pay dearly for each of the samples.
+        let is_software = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
+        Self {
+            device: device.clone(),
+            queue: queue.clone(),
+            mipmap,
+            mipmap_sampler,
+            anisotropy: if is_software { 1 } else { 8 },
+        }
+    }
+
+    /// The texture `number` of a surface, scaled down until the device takes it, with all its mipmaps.
+    pub(crate) fn texture(
+        &self,
+        number: usize,
+        data: &TextureData<'_>,
+    ) -> Result<wgpu::TextureView, RenderError> {
+        let (width, height) = (data.width, data.height);
+        let needed = 4 * width as usize * height as usize;
+        if needed == 0 || data.rgba.len() != needed {
+            let found = data.rgba.len();
+            return Err(RenderError::TextureBytes {
+                texture: number,
+                width,
+                height,
+                found,
+            });
+        }
+        let limit = self.device.limits().max_texture_dimension_2d;
+        let (width, height, rgba) = scaled_to_fit(data, limit);
+        guarded(&self.device, "while uploading textures", || {
+            let size = wgpu::Extent3d {
+                width,
+                height,
+                depth_or_array_layers: 1,
+            };
+            let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("base colour"),
+                size,
+                mip_level_count: width.max(height).ilog2() + 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: FORMAT,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_DST
+                    | wgpu::TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            });
+            let rows = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(4 * width),
+                rows_per_image: Some(height),
+            };
+            self.queue
+                .write_texture(texture.as_image_copy(), &rgba, rows, size);
+            self.make_mipmaps(&texture);
+            Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+        })
+    }
+
+    /// A sampler for a texture's borders.
+    pub(crate) fn sampler(&self, wrap: [Wrap; 2]) -> wgpu::Sampler {
+        let mode = |wrap| match wrap {
+            Wrap::Repeat => wgpu::AddressMode::Repeat,
+            Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+            Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
+        };
+        self.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("base colour"),
+            address_mode_u: mode(wrap[0]),
+            address_mode_v: mode(wrap[1]),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            anisotropy_clamp: self.anisotropy,
+            ..Default::default()
+        })
+    }
+
+    fn make_mipmaps(&self, texture: &wgpu::Texture) {
+        let view_of = |level| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                base_mip_level: level,
+                mip_level_count: Some(1),
+                ..Default::default()
+            })
+        };
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let layout = self.mipmap.get_bind_group_layout(0);
+        for level in 1..texture.mip_level_count() {
+            let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("mipmap"),
+                layout: &layout,
+                entries: &[
+                    wgpu::BindGroupEntry {
+                        binding: 0,
+                        resource: wgpu::BindingResource::TextureView(&view_of(level - 1)),
+                    },
+                    wgpu::BindGroupEntry {
+                        binding: 1,
+                        resource: wgpu::BindingResource::Sampler(&self.mipmap_sampler),
+                    },
+                ],
+            });
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("mipmap"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view_of(level),
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations::default(),
+                })],
+                ..Default::default()
+            });
+            pass.set_pipeline(&self.mipmap);
+            pass.set_bind_group(0, &group, &[]);
+            pass.draw(0..3, 0..1);
+        }
+        self.queue.submit([encoder.finish()]);
+    }
+}
+
+/// An image halved until neither side exceeds `limit`, each pixel the mean of the bytes of the four it covers (a
+/// border pixel of an odd side is dropped). Means of sRGB bytes are a little dark; only images beyond any device's
+/// limit pay that.
+fn scaled_to_fit<'a>(data: &TextureData<'a>, limit: u32) -> (u32, u32, Cow<'a, [u8]>) {
+    let (mut width, mut height) = (data.width as usize, data.height as usize);
+    let mut rgba = Cow::Borrowed(data.rgba);
+    while width.max(height) > limit as usize {
+        let (half_width, half_height) = ((width / 2).max(1), (height / 2).max(1));
+        let mut halved = Vec::with_capacity(4 * half_width * half_height);
+        for y in 0..half_height {
+            let rows = [2 * y, (2 * y + 1).min(height - 1)];
+            for x in 0..half_width {
+                let columns = [2 * x, (2 * x + 1).min(width - 1)];
+                for channel in 0..4 {
+                    let mut sum = 0_u32;
+                    for row in rows {
+                        for column in columns {
+                            sum += u32::from(rgba[4 * (row * width + column) + channel]);
+                        }
+                    }
+                    halved.push(((sum + 2) / 4) as u8);
+                }
+            }
+        }
+        (width, height, rgba) = (half_width, half_height, Cow::Owned(halved));
+    }
+    (width as u32, height as u32, rgba)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_image_beyond_the_limit_is_halved_until_it_fits() {
+        let rgba: Vec<u8> = (0..4 * 5 * 2).map(|byte| byte as u8).collect();
+        let data = TextureData {
+            width: 5,
+            height: 2,
+            rgba: &rgba,
+            wrap: [Wrap::Repeat; 2],
+        };
+        assert_eq!(scaled_to_fit(&data, 5), (5, 2, Cow::Borrowed(&rgba[..])));
+        let (width, height, halved) = scaled_to_fit(&data, 4);
+        assert_eq!((width, height), (2, 1));
+        // The first pixel covers bytes 0, 4, 20 and 24 of red.
+        assert_eq!(halved[0], 12);
+        let (width, height, pixel) = scaled_to_fit(&data, 1);
+        assert_eq!((width, height, pixel.len()), (1, 1, 4));
+    }
 }

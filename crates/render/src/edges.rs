@@ -1,0 +1,68 @@
+//! A mesh's edges, each once.
+
+/// Every edge of `triangles` once, its lower vertex number first, in the order of lower and then higher number.
+/// Edges of collapsed triangles that join a vertex to itself are left out.
+///
+/// Edges are bucketed by their lower vertex (a counting sort, linear in the triangles) and the small buckets sorted.
+/// Drawing them beats drawing triangles as outlines: each line is drawn once, so its alpha is right, and no optional
+/// feature of the device is needed.
+pub(crate) fn unique_edges(triangles: &[[u32; 3]], vertex_count: usize) -> Vec<[u32; 2]> {
+    let mut starts = vec![0_u32; vertex_count + 1];
+    for_each_edge(triangles, |low, _| starts[low as usize + 1] += 1);
+    for vertex in 0..vertex_count {
+        starts[vertex + 1] += starts[vertex];
+    }
+    let mut highs = vec![0_u32; starts[vertex_count] as usize];
+    let mut next = starts.clone();
+    for_each_edge(triangles, |low, high| {
+        let slot = &mut next[low as usize];
+        highs[*slot as usize] = high;
+        *slot += 1;
+    });
+    let mut edges = Vec::with_capacity(highs.len() / 2 + 3);
+    for low in 0..vertex_count {
+        let bucket = &mut highs[starts[low] as usize..starts[low + 1] as usize];
+        bucket.sort_unstable();
+        let mut last = low as u32;
+        for &high in bucket.iter().filter(|&&high| high != low as u32) {
+            if high != last {
+                edges.push([low as u32, high]);
+                last = high;
+            }
+        }
+    }
+    edges
+}
+
+fn for_each_edge(triangles: &[[u32; 3]], mut visit: impl FnMut(u32, u32)) {
+    for &[a, b, c] in triangles {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            visit(from.min(to), from.max(to));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_edge_comes_once_on_closed_open_and_broken_meshes() {
+        let tetrahedron = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+        assert_eq!(
+            unique_edges(&tetrahedron, 4),
+            [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]
+        );
+        let strip = [[0, 1, 2], [2, 1, 3]];
+        assert_eq!(
+            unique_edges(&strip, 5),
+            [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]]
+        );
+        let twice_and_collapsed = [[2, 1, 0], [0, 1, 2], [1, 1, 2]];
+        assert_eq!(
+            unique_edges(&twice_and_collapsed, 3),
+            [[0, 1], [0, 2], [1, 2]]
+        );
+        assert!(unique_edges(&[], 0).is_empty());
+    }
+}

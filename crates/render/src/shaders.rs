@@ -1,0 +1,95 @@
+//! The shaders' text, embedded: each file of `shaders/` with its includes put in place.
+//!
+//! The alternative, a preprocessor crate, lost because a line `#include "lib/NAME.wgsl"` replaced by a file's text is
+//! all that a handful of shaders needs; naga sees plain WGSL, so do its messages' line numbers after composing.
+
+/// A shader file of `shaders/`, one a primitive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Shader {
+    Surface,
+    SurfaceId,
+    Wireframe,
+    Background,
+    OverlayTriangle,
+    OverlayLine,
+    Mipmap,
+}
+
+impl Shader {
+    /// All of them.
+    #[cfg(test)]
+    pub(crate) const ALL: [Self; 7] = [
+        Self::Surface,
+        Self::SurfaceId,
+        Self::Wireframe,
+        Self::Background,
+        Self::OverlayTriangle,
+        Self::OverlayLine,
+        Self::Mipmap,
+    ];
+
+    /// The file's name under `shaders/`.
+    pub(crate) fn file_name(self) -> &'static str {
+        match self {
+            Self::Surface => "surface.wgsl",
+            Self::SurfaceId => "surface_id.wgsl",
+            Self::Wireframe => "wireframe.wgsl",
+            Self::Background => "background.wgsl",
+            Self::OverlayTriangle => "overlay_triangle.wgsl",
+            Self::OverlayLine => "overlay_line.wgsl",
+            Self::Mipmap => "mipmap.wgsl",
+        }
+    }
+
+    /// The file's text with its includes in place.
+    pub(crate) fn composed(self) -> String {
+        compose(self.text())
+    }
+
+    fn text(self) -> &'static str {
+        match self {
+            Self::Surface => include_str!("../../../shaders/surface.wgsl"),
+            Self::SurfaceId => include_str!("../../../shaders/surface_id.wgsl"),
+            Self::Wireframe => include_str!("../../../shaders/wireframe.wgsl"),
+            Self::Background => include_str!("../../../shaders/background.wgsl"),
+            Self::OverlayTriangle => include_str!("../../../shaders/overlay_triangle.wgsl"),
+            Self::OverlayLine => include_str!("../../../shaders/overlay_line.wgsl"),
+            Self::Mipmap => include_str!("../../../shaders/mipmap.wgsl"),
+        }
+    }
+}
+
+/// The shared files that an include may name.
+const LIBRARY: [(&str, &str); 4] = [
+    (
+        "lib/frame.wgsl",
+        include_str!("../../../shaders/lib/frame.wgsl"),
+    ),
+    (
+        "lib/colour.wgsl",
+        include_str!("../../../shaders/lib/colour.wgsl"),
+    ),
+    (
+        "lib/surface_vertex.wgsl",
+        include_str!("../../../shaders/lib/surface_vertex.wgsl"),
+    ),
+    (
+        "lib/light.wgsl",
+        include_str!("../../../shaders/lib/light.wgsl"),
+    ),
+];
+
+/// `text` with each include line replaced; one that names no shared file stays, so that the compiler points at it.
+fn compose(text: &str) -> String {
+    let mut composed = String::with_capacity(4 * text.len());
+    for line in text.lines() {
+        let included = line
+            .trim()
+            .strip_prefix("#include \"")
+            .and_then(|rest| rest.strip_suffix('"'))
+            .and_then(|name| LIBRARY.iter().find(|(shared, _)| *shared == name));
+        composed.push_str(included.map_or(line, |(_, shared)| shared));
+        composed.push('\n');
+    }
+    composed
+}
