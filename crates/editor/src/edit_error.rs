@@ -1,0 +1,173 @@
+//! Why an edit was refused: one sentence that names the culprit and the remedy.
+
+/// Why an edit can't be read, or can't be applied to a model.
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
+pub enum EditError {
+    /// The text is no JSON.
+    #[error("the edit is not valid JSON: {0}")]
+    Json(String),
+    /// The edit's `version` is one that this program does not know.
+    #[error("the edit's `version` is {found}, and this program reads version 1: set it to 1 or use a newer Pliant")]
+    Version {
+        /// What stands there.
+        found: String,
+    },
+    /// A member that the format does not have.
+    #[error("unknown member `{member}` in {place}: {remedy}")]
+    UnknownMember {
+        /// The member's name.
+        member: String,
+        /// Where it stands, e.g. `handles[0].transform`.
+        place: String,
+        /// The nearest known name, or all of them.
+        remedy: String,
+    },
+    /// A name (of a method, an axis, ..) that the format does not have.
+    #[error("unknown name `{name}` at {place}: {remedy}")]
+    UnknownName {
+        /// The name that stands there.
+        name: String,
+        /// Where it stands.
+        place: String,
+        /// The nearest known name, or all of them.
+        remedy: String,
+    },
+    /// A member that must be there and is not.
+    #[error("{place} lacks its member `{member}`: add it")]
+    Missing {
+        /// The member's name.
+        member: &'static str,
+        /// Where it should stand.
+        place: String,
+    },
+    /// A value of the wrong kind.
+    #[error("{place} must be {expected}, not {found}")]
+    WrongKind {
+        /// Where it stands.
+        place: String,
+        /// What is asked for, with its article.
+        expected: String,
+        /// What stands there.
+        found: String,
+    },
+    /// A value outside of its range.
+    #[error("{place} is {found}, which is out of range: give {allowed}")]
+    OutOfRange {
+        /// Where it stands.
+        place: String,
+        /// What stands there.
+        found: String,
+        /// The range in words.
+        allowed: String,
+    },
+    /// Two members that exclude each other.
+    #[error("{place} has both `{first}` and `{second}`: keep one of them")]
+    Both {
+        /// Where they stand.
+        place: String,
+        /// The one.
+        first: &'static str,
+        /// The other.
+        second: String,
+    },
+    /// A vertex number that the file does not have.
+    #[error("{place} names vertex {vertex}, but the file has {count} vertices: use numbers from 0 to {}", .count.saturating_sub(1))]
+    NoSuchVertex {
+        /// Where it is named.
+        place: String,
+        /// The number.
+        vertex: u64,
+        /// How many vertices the file has.
+        count: usize,
+    },
+    /// A component number that the surface does not have.
+    #[error("{place} names component {component}, but the surface has {count}: use numbers from 0 to {}", .count.saturating_sub(1))]
+    NoSuchComponent {
+        /// Where it is named.
+        place: String,
+        /// The number.
+        component: u32,
+        /// How many components the surface has.
+        count: usize,
+    },
+    /// A per-vertex field whose length is not the file's vertex count.
+    #[error("{place} has {found} values, but the file has {count} vertices: give one value for each")]
+    FieldLength {
+        /// Where it stands.
+        place: String,
+        /// How many values there are.
+        found: usize,
+        /// How many vertices the file has.
+        count: usize,
+    },
+    /// A handle without vertices.
+    #[error("handle `{handle}` (handles[{index}]) selects no vertex that a triangle uses: widen its `select`")]
+    EmptyHandle {
+        /// The handle's name.
+        handle: String,
+        /// Its place in the list.
+        index: usize,
+    },
+    /// A vertex in two handles.
+    #[error(
+        "handles `{first}` and `{second}` share {shared} of the surface's vertices, such as the file's vertex \
+         {file_vertex}: take them out of one of the two"
+    )]
+    SharedVertex {
+        /// The handle that comes first in the list.
+        first: String,
+        /// The other.
+        second: String,
+        /// How many surface vertices both hold.
+        shared: usize,
+        /// One of them, by the file's number.
+        file_vertex: u32,
+    },
+    /// More handles than there are numbers for.
+    #[error("the edit has {0} handles, more than the 65535 that an edit may have: join some of them")]
+    TooManyHandles(usize),
+}
+
+/// "did you mean `scale`?" where a known name is near, else the list of them.
+pub(crate) fn remedy(name: &str, known: &[&str]) -> String {
+    let near = known.iter().map(|known| (edit_distance(name, known), known)).min();
+    match near {
+        Some((distance, known)) if distance <= 2.max(name.chars().count() / 3) && distance < known.len() => {
+            format!("did you mean `{known}`?")
+        }
+        _ => format!("known are {}", listed(known)),
+    }
+}
+
+fn listed(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// Levenshtein's distance in characters.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    // A name longer than any known one by far needs no exact distance, and must not cost time.
+    for (i, ca) in a.chars().take(64).enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, &cb) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(ca != cb);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(row[j] + 1).min(row[j + 1] + 1);
+        }
+    }
+    row[b.len()] + a.chars().skip(64).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_near_name_is_proposed_and_a_far_one_lists_all() {
+        assert_eq!(remedy("scales", &["scale", "pivot"]), "did you mean `scale`?");
+        assert_eq!(remedy("Rotaton", &["rotation", "scale"]), "did you mean `rotation`?");
+        assert_eq!(remedy("banana", &["x", "y"]), "known are `x`, `y`");
+    }
+}

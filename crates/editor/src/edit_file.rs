@@ -1,0 +1,217 @@
+//! An edit as it stands in `EDIT.json`: regions, handles, stiffness and method, described so that they fit any mesh.
+//!
+//! The members are read by hand from JSON's values rather than derived, because every refusal must name the member or
+//! value that it speaks of, where it stands and what would be right.
+
+use pliant_deform::{Loose, Method};
+use serde_json::{Value, json};
+
+use crate::HandleTransform;
+use crate::edit_error::EditError;
+use crate::edit_node::{Members, Node, ROOT};
+use crate::method_form::{method_to_value, read_method};
+use crate::selector::Selector;
+
+/// The version of the edit format that is read and written.
+pub const EDIT_VERSION: u64 = 1;
+
+/// The smallest and the largest stiffness that an edit may give.
+pub const STIFFNESS_RANGE: std::ops::RangeInclusive<f64> = 0.001..=1000.0;
+
+/// An edit, as stored.
+#[derive(Clone, PartialEq, Debug)]
+pub struct EditFile {
+    /// The method and its options.
+    pub method: Method,
+    /// The vertices that may move; those outside are fixed.
+    pub region: Selector,
+    /// The vertices that are held still; they win over `region`.
+    pub fixed: Selector,
+    /// The handles; they win over both.
+    pub handles: Vec<HandleEntry>,
+    /// Painted stiffness; the later entry wins, and it is 1 where no entry speaks.
+    pub stiffness: Vec<StiffnessEntry>,
+    /// What components that nothing holds do.
+    pub loose: Loose,
+}
+
+/// A handle: which vertices move, and how.
+#[derive(Clone, PartialEq, Debug)]
+pub struct HandleEntry {
+    /// Its name, for a person. An edit that gives none gets "handle 1", "handle 2", ..
+    pub name: String,
+    /// Its vertices.
+    pub select: Selector,
+    /// How they move.
+    pub transform: HandleTransform,
+}
+
+/// A part of the stiffness field.
+#[derive(Clone, PartialEq, Debug)]
+pub enum StiffnessEntry {
+    /// One value on a selection.
+    Select {
+        /// Where.
+        select: Selector,
+        /// The stiffness there, in [`STIFFNESS_RANGE`].
+        value: f64,
+    },
+    /// The whole field: one value in [`STIFFNESS_RANGE`] for each of the file's vertices. Twins that were welded take
+    /// the value of the one with the lowest number.
+    PerVertex(Vec<f64>),
+}
+
+impl Default for EditFile {
+    /// The edit with nothing but a version and a method.
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            region: Selector::All,
+            fixed: Selector::None,
+            handles: Vec::new(),
+            stiffness: Vec::new(),
+            loose: Loose::Follow,
+        }
+    }
+}
+
+impl EditFile {
+    /// Reads an edit's JSON text.
+    ///
+    /// # Errors
+    /// Whatever the format does not have is refused by its name and place.
+    pub fn parse(text: &str) -> Result<Self, EditError> {
+        // Some editors put a byte order mark in front.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let value: Value = serde_json::from_str(text).map_err(|error| EditError::Json(error.to_string()))?;
+        Self::from_value(&value)
+    }
+
+    /// Reads an edit from a JSON value.
+    ///
+    /// # Errors
+    /// As [`EditFile::parse`].
+    pub fn from_value(value: &Value) -> Result<Self, EditError> {
+        const KNOWN: [&str; 7] = ["version", "method", "region", "fixed", "handles", "stiffness", "loose"];
+        let root = Node::new(value, ROOT);
+        // The version first: another one may have members that this one lacks.
+        if let Some(found) = value.get("version")
+            && found.as_u64() != Some(EDIT_VERSION)
+        {
+            return Err(EditError::Version { found: found.to_string() });
+        }
+        let members = root.object("an object with `version` and `method`", &KNOWN)?;
+        members.require("version")?;
+        Ok(Self {
+            method: read_method(&members.require("method")?)?,
+            region: read_selector(&members, "region", Selector::All)?,
+            fixed: read_selector(&members, "fixed", Selector::None)?,
+            handles: match members.get("handles") {
+                Some(handles) => {
+                    handles.elements("a list of handles")?.enumerate().map(|(i, node)| read_handle(i, &node)).collect()
+                }
+                None => Ok(Vec::new()),
+            }?,
+            stiffness: match members.get("stiffness") {
+                Some(entries) => {
+                    entries.elements("a list of stiffness entries")?.map(|node| read_stiffness(&node)).collect()
+                }
+                None => Ok(Vec::new()),
+            }?,
+            loose: match members.get("loose") {
+                Some(loose) => read_loose(&loose)?,
+                None => Loose::Follow,
+            },
+        })
+    }
+
+    /// The edit as a JSON value; reading it back gives an equal edit.
+    pub fn to_value(&self) -> Value {
+        let handle = |handle: &HandleEntry| {
+            json!({
+                "name": handle.name, "select": handle.select.to_value(), "transform": handle.transform.to_value(),
+            })
+        };
+        let stiffness = |entry: &StiffnessEntry| match entry {
+            StiffnessEntry::Select { select, value } => json!({ "select": select.to_value(), "value": value }),
+            StiffnessEntry::PerVertex(values) => json!({ "per_vertex": values }),
+        };
+        json!({
+            "version": EDIT_VERSION,
+            "method": method_to_value(&self.method),
+            "region": self.region.to_value(),
+            "fixed": self.fixed.to_value(),
+            "handles": self.handles.iter().map(handle).collect::<Vec<_>>(),
+            "stiffness": self.stiffness.iter().map(stiffness).collect::<Vec<_>>(),
+            "loose": match self.loose {
+                Loose::Follow => "follow",
+                Loose::Rest => "rest",
+            },
+        })
+    }
+
+    /// The edit as JSON text with a newline at its end.
+    pub fn to_json(&self) -> String {
+        format!("{:#}\n", self.to_value())
+    }
+
+    /// Whether no handle of the edit moves anything.
+    pub fn changes_nothing(&self) -> bool {
+        self.handles.iter().all(|handle| handle.transform.is_identity())
+    }
+}
+
+fn read_selector(members: &Members<'_>, name: &str, default: Selector) -> Result<Selector, EditError> {
+    members.get(name).map_or(Ok(default), |node| Selector::read(&node))
+}
+
+fn read_handle(index: usize, node: &Node<'_>) -> Result<HandleEntry, EditError> {
+    let members = node.object("a handle: an object with `name`, `select` and `transform`", &[
+        "name", "select", "transform",
+    ])?;
+    Ok(HandleEntry {
+        name: match members.get("name") {
+            Some(name) => name.string("a name")?.to_owned(),
+            None => format!("handle {}", index + 1),
+        },
+        select: Selector::read(&members.require("select")?)?,
+        transform: match members.get("transform") {
+            Some(transform) => HandleTransform::read(&transform)?,
+            None => HandleTransform::IDENTITY,
+        },
+    })
+}
+
+fn read_stiffness(node: &Node<'_>) -> Result<StiffnessEntry, EditError> {
+    let expected = "a stiffness entry: an object with `select` and `value`, or with `per_vertex`";
+    let members = node.object(expected, &["select", "value", "per_vertex"])?;
+    if let Some(values) = members.get("per_vertex") {
+        if let Some(second) = members.names().find(|&name| name != "per_vertex") {
+            let place = node.place().to_owned();
+            return Err(EditError::Both { place, first: "per_vertex", second: second.to_owned() });
+        }
+        return Ok(StiffnessEntry::PerVertex(values.list("a list of numbers", stiffness_value)?));
+    }
+    Ok(StiffnessEntry::Select {
+        select: Selector::read(&members.require("select")?)?,
+        value: stiffness_value(&members.require("value")?)?,
+    })
+}
+
+fn stiffness_value(node: &Node<'_>) -> Result<f64, EditError> {
+    let value = node.number()?;
+    if STIFFNESS_RANGE.contains(&value) {
+        Ok(value)
+    } else {
+        let (least, most) = (STIFFNESS_RANGE.start(), STIFFNESS_RANGE.end());
+        Err(node.out_of_range(format!("a stiffness from {least} to {most}")))
+    }
+}
+
+fn read_loose(node: &Node<'_>) -> Result<Loose, EditError> {
+    match node.string("\"follow\" or \"rest\"")? {
+        "follow" => Ok(Loose::Follow),
+        "rest" => Ok(Loose::Rest),
+        name => Err(node.unknown_name(name, &["follow", "rest"])),
+    }
+}
