@@ -1,1 +1,7 @@
-fn main() {}
+//! The program `pliant`: everything is in the library.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    pliant_app::cli::main()
+}

@@ -1,0 +1,64 @@
+//! `pliant apply`: an edit applied to a file.
+
+use std::path::Path;
+
+use pliant_deform::Method;
+use pliant_editor::EditFile;
+use pliant_io::Format;
+
+use super::arguments::ApplyArguments;
+use super::{Console, on_threads};
+use crate::{AppError, engine, files};
+
+pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Result<(), AppError> {
+    let ApplyArguments { file, edit: edit_path, output, report, frames, method, threads } = arguments;
+    let output_name = output.to_string_lossy();
+    Format::of_name(&output_name).map_err(|error| AppError::Arguments(format!("--output: {error}")))?;
+    let method = method.as_deref().map(method_named).transpose()?;
+    if let Some(report) = report {
+        for (other, role) in [(file, "FILE"), (edit_path, "--edit"), (output, "--output")] {
+            if same_file(report, other) {
+                let report = report.display();
+                return Err(AppError::Arguments(format!("--report {report} is {role} as well: give it another name")));
+            }
+        }
+    }
+    let mut edit = read_edit(edit_path)?;
+    if let Some(method) = method {
+        edit.method = method;
+    }
+    let job = engine::Apply {
+        file,
+        edit: &edit,
+        edit_path,
+        output,
+        report: report.as_deref(),
+        frames: *frames,
+    };
+    let (watch, staging) = (&console.watch, &console.staging);
+    on_threads(*threads, || engine::apply(&job, watch, staging))??;
+    Ok(())
+}
+
+/// Reads an edit's file.
+pub(super) fn read_edit(path: &Path) -> Result<EditFile, AppError> {
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("pliant")) {
+        return Err(AppError::ProjectAsEdit(path.to_owned()));
+    }
+    let text = files::read_text(path)?;
+    EditFile::parse(&text).map_err(|source| AppError::Edit { edit: path.to_owned(), source })
+}
+
+fn method_named(name: &str) -> Result<Method, AppError> {
+    Method::from_name(name).ok_or_else(|| {
+        AppError::Arguments(format!("--method {name} is not known: use one of {}", Method::NAMES.join(", ")))
+    })
+}
+
+fn same_file(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| {
+        let folder = std::fs::canonicalize(files::folder_of(path)).ok()?;
+        Some(std::fs::canonicalize(path).unwrap_or_else(|_| folder.join(path.file_name().unwrap_or_default())))
+    };
+    a == b || place(a).is_some_and(|a| place(b) == Some(a))
+}

@@ -1,0 +1,245 @@
+//! The command line's arguments.
+
+use std::path::PathBuf;
+
+use clap::builder::RangedU64ValueParser;
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use pliant_deform::Method;
+
+use crate::version::VERSION;
+
+/// Bends scanned meshes.
+#[derive(Parser, Debug)]
+#[command(
+    name = "pliant",
+    version = VERSION,
+    about = "Bends scanned meshes: opens glb, gltf, obj, ply, stl and off, and saves them back with nothing lost but \
+             the old shape",
+    args_conflicts_with_subcommands = true,
+    disable_help_subcommand = true
+)]
+pub(crate) struct Arguments {
+    /// The file to open in the window; without it, the built-in sample
+    pub file: Option<PathBuf>,
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+#[derive(Subcommand, Debug)]
+pub(crate) enum Command {
+    /// Say what a file holds and what is wrong with its mesh
+    Info(InfoArguments),
+    /// Apply an edit to a file
+    Apply(ApplyArguments),
+    /// Draw a file as a picture
+    Render(RenderArguments),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct InfoArguments {
+    /// The file: glb, gltf, obj, ply, stl or off
+    pub file: PathBuf,
+    /// Print JSON instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct ApplyArguments {
+    /// The file to bend: glb, gltf, obj, ply, stl or off
+    pub file: PathBuf,
+    /// The edit
+    #[arg(long, value_name = "EDIT.json")]
+    pub edit: PathBuf,
+    /// The file to write; its extension tells its format
+    #[arg(long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Where to write what was done, how long it took and how far the shape was distorted
+    #[arg(long, value_name = "REPORT.json")]
+    pub report: Option<PathBuf>,
+    /// Replay the edit as a drag of N frames (1 to 100000) instead of one solve
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=100_000))]
+    pub frames: Option<usize>,
+    /// Use this method with its defaults instead of the edit's
+    #[arg(long, value_name = "NAME")]
+    pub method: Option<String>,
+    /// How many threads to use (1 to 1024); without it, all cores. The result is the same whatever their number
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
+    pub threads: Option<usize>,
+}
+
+/// What `pliant render` draws, and how.
+#[derive(Args, Clone, PartialEq, Eq, Debug)]
+pub struct RenderArguments {
+    /// The file to draw: glb, gltf, obj, ply, stl or off
+    pub file: PathBuf,
+    /// The picture to write
+    #[arg(long, value_name = "OUT.png")]
+    pub output: PathBuf,
+    /// Draw the file with this edit applied
+    #[arg(long, value_name = "EDIT.json")]
+    pub edit: Option<PathBuf>,
+    /// The picture's size in pixels
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800")]
+    pub size: PictureSize,
+    /// The axis that points up
+    #[arg(long, value_enum, default_value = "y")]
+    pub up: Up,
+    /// From where to look
+    #[arg(long, value_enum, default_value = "three-quarter")]
+    pub view: View,
+    /// How to colour the surface
+    #[arg(long, value_enum, default_value = "clay")]
+    pub shading: Shading,
+}
+
+/// The axis that points up in a picture.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+#[expect(missing_docs, reason = "each variant is what its name says")]
+pub enum Up {
+    Y,
+    Z,
+}
+
+/// From where a picture looks.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+#[expect(missing_docs, reason = "each variant is what its name says")]
+pub enum View {
+    Front,
+    Back,
+    Left,
+    Right,
+    Top,
+    Bottom,
+    ThreeQuarter,
+}
+
+/// How a picture colours the surface.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+#[expect(missing_docs, reason = "each variant is what its name says")]
+pub enum Shading {
+    Clay,
+    Material,
+    Regions,
+    Stiffness,
+    Distortion,
+}
+
+/// A picture's size in pixels, 1 to 16384 each way.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct PictureSize {
+    /// How wide.
+    pub width: u32,
+    /// How high.
+    pub height: u32,
+}
+
+impl std::str::FromStr for PictureSize {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |text: &str| text.parse().ok().filter(|side| (1..=16384).contains(side));
+        let sides = text.split_once(['x', 'X']).and_then(|(width, height)| Some((side(width)?, side(height)?)));
+        match sides {
+            Some((width, height)) => Ok(Self { width, height }),
+            None => Err("a size is WIDTHxHEIGHT, such as 1280x800, each from 1 to 16384".to_owned()),
+        }
+    }
+}
+
+/// Reads the arguments, the program's name first. What comes back as an error may be the help that was asked for.
+pub(crate) fn parse(arguments: Vec<std::ffi::OsString>) -> Result<Arguments, clap::Error> {
+    let command = Arguments::command().mut_subcommand("apply", |apply| apply.after_help(methods_help()));
+    Arguments::from_arg_matches(&command.try_get_matches_from(arguments)?)
+}
+
+/// Each method with its options, for the help.
+fn methods_help() -> String {
+    let mut help = "Methods and their options, as they stand in the edit's `method`:".to_owned();
+    for name in Method::NAMES {
+        help += &format!("\n  {name}");
+        let options = pliant_editor::method_options(name);
+        if options.is_empty() {
+            help += "\n      has no options";
+        }
+        for option in options {
+            help += &format!("\n      {}: {}", option.name, option.says);
+        }
+    }
+    help
+}
+
+/// A refusal of arguments as one line.
+pub(crate) fn one_line(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let mut line = String::new();
+    for part in text.lines().map(str::trim).take_while(|part| !part.starts_with("Usage:")) {
+        if part.is_empty() || part.starts_with("For more information") {
+            continue;
+        }
+        let part = part.strip_prefix("error: ").unwrap_or(part);
+        if let Some(tip) = part.strip_prefix("tip: ") {
+            line += "; ";
+            line += tip;
+        } else {
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line += part;
+        }
+    }
+    line + "; see `pliant --help`"
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+
+    fn parse_words(line: &str) -> Result<Arguments, clap::Error> {
+        parse(line.split_whitespace().map(Into::into).collect())
+    }
+
+    #[test]
+    fn the_arguments_are_sound() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn a_bare_file_is_for_the_window_and_a_command_is_itself() {
+        assert_eq!(parse_words("pliant scan.glb").unwrap().file, Some("scan.glb".into()));
+        assert!(parse_words("pliant").unwrap().command.is_none());
+        assert!(matches!(parse_words("pliant info a.ply --json").unwrap().command, Some(Command::Info(_))));
+    }
+
+    #[test]
+    fn a_picture_has_the_size_that_was_asked_for() {
+        let line = "pliant render a.ply --output a.png --size 64x48 --up z --view three-quarter --shading regions";
+        let Some(Command::Render(render)) = parse_words(line).unwrap().command else { panic!("not a render") };
+        assert_eq!(render.size, PictureSize { width: 64, height: 48 });
+        for size in ["64", "0x48", "ax3", "64x48x2", "99999x2"] {
+            assert!(size.parse::<PictureSize>().is_err(), "{size}");
+        }
+    }
+
+    #[test]
+    fn every_refusal_is_one_line_that_names_the_culprit() {
+        for (line, culprit) in [
+            ("pliant apply a.ply --output b.ply", "--edit"),
+            ("pliant apply a.ply --edit e.json --output b.ply --frames 0", "--frames"),
+            ("pliant apply a.ply --edit e.json --output b.ply --threads none", "--threads"),
+            ("pliant apply a.ply --edit e.json --output b.ply --frame 3", "--frame"),
+            ("pliant render a.ply --output a.png --view behind", "behind"),
+            ("pliant a.ply b.ply", "b.ply"),
+        ] {
+            let said = one_line(&parse_words(line).unwrap_err());
+            assert!(!said.contains('\n') && said.contains(culprit), "{line}: {said}");
+        }
+    }
+
+    #[test]
+    fn the_help_of_apply_lists_every_method() {
+        let help = parse_words("pliant apply --help").unwrap_err().render().to_string();
+        assert!(Method::NAMES.iter().all(|name| help.contains(name)), "{help}");
+    }
+}

@@ -1,0 +1,28 @@
+//! Ctrl-C: a command stops within a second and leaves no file behind.
+
+use std::io::Write;
+use std::time::Duration;
+
+use crate::AppError;
+use crate::files::Staging;
+use crate::watch::Watch;
+
+/// How long a command has to stop by itself.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Raises the flag on Ctrl-C. A command that has not ended a little later (a factorisation can't be stopped half-way)
+/// is ended here, without its files.
+pub(super) fn listen(watch: &Watch, staging: &Staging) {
+    let (cancel, staging) = (watch.cancel.clone(), staging.clone());
+    // Without a handler Ctrl-C still ends the program; only a temporary file may stay then.
+    let _ = ctrlc::set_handler(move || {
+        cancel.cancel();
+        std::thread::sleep(PATIENCE);
+        // Held until the process is gone, so that nothing is renamed into place meanwhile.
+        if let Some(_guard) = staging.discard() {
+            let interrupted = AppError::Interrupted;
+            let _ = writeln!(std::io::stderr(), "\r\x1b[Kpliant: {interrupted}");
+            std::process::exit(i32::from(interrupted.status()));
+        }
+    });
+}

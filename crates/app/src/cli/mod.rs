@@ -1,0 +1,94 @@
+//! The command line (`cli.md`): arguments in, files and an exit status out.
+
+mod apply;
+mod arguments;
+mod info;
+mod interrupt;
+mod progress_line;
+mod render;
+
+use std::ffi::OsString;
+use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::process::ExitCode;
+
+pub use arguments::{PictureSize, RenderArguments, Shading, Up, View};
+
+use crate::AppError;
+use crate::files::Staging;
+use crate::watch::Watch;
+use arguments::Command;
+
+/// Where a command speaks and how it is watched and stopped.
+pub struct Console<'a> {
+    /// Standard output, or what stands in for it.
+    pub out: &'a mut dyn Write,
+    /// Standard error, or what stands in for it: refusals, each one line.
+    pub err: &'a mut dyn Write,
+    /// What the command is doing, and whether it is still wanted.
+    pub watch: Watch,
+    /// The files that it is writing.
+    pub staging: Staging,
+}
+
+/// The program: the process's own arguments and streams, progress on a terminal, and Ctrl-C.
+pub fn main() -> ExitCode {
+    let (watch, staging) = (Watch::default(), Staging::default());
+    interrupt::listen(&watch, &staging);
+    let stderr = io::stderr();
+    let progress = stderr.is_terminal().then(|| progress_line::show(watch.clone()));
+    let mut err = progress_line::ErasingWriter::new(progress);
+    let mut console = Console { out: &mut io::stdout().lock(), err: &mut err, watch, staging };
+    ExitCode::from(run(std::env::args_os().collect(), &mut console))
+}
+
+/// Does what the arguments say (the program's name comes first) and gives the exit status: 0 done, 1 refused, 2 wrong
+/// arguments. A refusal is one line on `console.err`.
+pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
+    let result = match arguments::parse(arguments) {
+        Ok(arguments) => match arguments.command {
+            Some(Command::Info(arguments)) => info::run(&arguments, console),
+            Some(Command::Apply(arguments)) => apply::run(&arguments, console),
+            Some(Command::Render(arguments)) => render::run(&arguments, console),
+            None => open_window(arguments.file),
+        },
+        Err(help) if !help.use_stderr() => print(console.out, &help.render().to_string()),
+        Err(error) => Err(AppError::Arguments(arguments::one_line(&error))),
+    };
+    let error = match result {
+        Ok(()) => return 0,
+        // Whatever a cancelled job gave as its error, the person stopped it.
+        Err(_) if console.watch.cancel.is_cancelled() => AppError::Interrupted,
+        Err(error) => error,
+    };
+    let line = error.to_string().replace(['\n', '\r'], " ");
+    // Where not even an error can be told, the status tells it.
+    let _ = writeln!(console.err, "pliant: {line}");
+    error.status()
+}
+
+fn open_window(file: Option<std::path::PathBuf>) -> Result<(), AppError> {
+    let _ = file;
+    Err(AppError::Unsupported("this version has no window yet: use `pliant info` and `pliant apply`".to_owned()))
+}
+
+/// Prints a text. Whoever closed the pipe has read enough.
+fn print(out: &mut dyn Write, text: &str) -> Result<(), AppError> {
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(AppError::System(format!("standard output can't be written: {error}; check where it goes")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Runs `work` on a pool of its own: `threads` of them, or one a core.
+fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T, AppError> {
+    let mut builder = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = threads {
+        builder = builder.num_threads(threads);
+    }
+    let pool = builder.build().map_err(|error| {
+        AppError::System(format!("the threads can't be started ({error}): give a smaller --threads"))
+    })?;
+    Ok(pool.install(work))
+}

@@ -1,0 +1,73 @@
+//! A line on the terminal that says what is being done and how far it is.
+
+use std::io::{self, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use crate::watch::Watch;
+
+/// Erases the terminal's line.
+const ERASE: &str = "\r\x1b[K";
+
+/// A line that is being shown; dropping it erases it.
+pub(super) struct ProgressLine {
+    done: Arc<AtomicBool>,
+    /// Held while something is printed.
+    shown: Arc<Mutex<bool>>,
+}
+
+/// Shows what `watch` says ten times a second, from a quarter of a second on: shorter work needs no line.
+pub(super) fn show(watch: Watch) -> ProgressLine {
+    let (done, shown) = (Arc::new(AtomicBool::new(false)), Arc::new(Mutex::new(false)));
+    let line = ProgressLine { done: done.clone(), shown: shown.clone() };
+    std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(250));
+        loop {
+            let mut shown = shown.lock().unwrap_or_else(PoisonError::into_inner);
+            if done.load(Ordering::Relaxed) {
+                return;
+            }
+            if let Some((doing, fraction)) = watch.now() {
+                let percent = (fraction * 100.0) as u32;
+                let _ = write!(io::stderr(), "{ERASE}{doing} {percent}%");
+                *shown = true;
+            }
+            drop(shown);
+            std::thread::sleep(Duration::from_millis(100));
+        }
+    });
+    line
+}
+
+impl Drop for ProgressLine {
+    fn drop(&mut self) {
+        self.done.store(true, Ordering::Relaxed);
+        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        if std::mem::take(&mut *shown) {
+            let _ = write!(io::stderr(), "{ERASE}");
+        }
+    }
+}
+
+/// Standard error that takes the progress line away before anything is said.
+pub(super) struct ErasingWriter {
+    line: Option<ProgressLine>,
+}
+
+impl ErasingWriter {
+    pub(super) fn new(line: Option<ProgressLine>) -> Self {
+        Self { line }
+    }
+}
+
+impl Write for ErasingWriter {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.line = None;
+        io::stderr().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        io::stderr().flush()
+    }
+}

@@ -1,0 +1,288 @@
+//! The one way from a file on disk to an edited file on disk, which the command line and the window both go:
+//! read → weld → resolve the edit → order → bind → frames → distortion → save.
+//!
+//! Each part is a function of its own, so that the window can keep what has not changed; [`apply`] is all of them in a
+//! row with a clock beside them.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use glam::DVec3;
+use pliant_deform::{Bound, Method, Ordering, Problem};
+use pliant_editor::{EditFile, Setup};
+use pliant_io::{Format, Save, Scene};
+use pliant_mesh::{Cancel, Model, Progress, WeldOptions, vertex_normals};
+
+use crate::AppError;
+use crate::files::{self, Neighbours, Staged, Staging};
+use crate::report::{Distortion, Energy, FrameTimes, Report, finite_or};
+use crate::watch::Watch;
+
+/// A frame ends after so many steps, converged or not.
+const MOST_STEPS: usize = 1000;
+
+/// A file, read and welded.
+#[derive(Debug)]
+pub struct Loaded {
+    /// Where it was read from.
+    pub path: PathBuf,
+    /// The file as stored.
+    pub scene: Scene,
+    /// Its geometry.
+    pub model: Model,
+}
+
+/// Reads and welds a file.
+///
+/// # Errors
+/// A file that can't be read; [`AppError::Interrupted`] soon after `cancel` is raised.
+pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
+    let name = path.to_string_lossy();
+    let format = Format::of_name(&name)?;
+    let progress = watch.begin("reading");
+    let bytes = files::read(path)?;
+    let opened = pliant_io::read(bytes, format, &name, &Neighbours::of(path), &progress, &watch.cancel);
+    let opened = opened.map_err(AppError::Read)?;
+    let progress = watch.begin("welding");
+    let model = Model::weld(opened.drawn, weld, &progress, &watch.cancel).map_err(|_| AppError::Interrupted)?;
+    Ok(Loaded { path: path.to_owned(), scene: opened.scene, model })
+}
+
+/// Orders a model's equations for a method, once for all regions.
+///
+/// # Errors
+/// [`AppError::Interrupted`] soon after `cancel` is raised.
+pub fn order(model: &Model, method: &Method, progress: &Progress, cancel: &Cancel) -> Result<Ordering, AppError> {
+    Ordering::of(&model.topology, method.operator_power(), progress, cancel).map_err(|_| AppError::Interrupted)
+}
+
+/// Binds a setup.
+///
+/// # Errors
+/// What stands in the way of a solution, naming `file`.
+pub fn bind(
+    file: &Path,
+    model: &Model,
+    setup: &Setup,
+    ordering: &Ordering,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<Bound, AppError> {
+    let problem = Problem {
+        surface: &model.surface,
+        topology: &model.topology,
+        roles: &setup.roles,
+        handle_count: setup.handles.len(),
+        stiffness: &setup.stiffness,
+        loose: setup.loose,
+        method: &setup.method,
+        revision: 0,
+    };
+    problem.bind(ordering, progress, cancel).map_err(|source| AppError::Bind { file: file.to_owned(), source })
+}
+
+/// Prepares a scene's files for `output`: encoded, written beside their targets and synced, to be committed.
+///
+/// # Errors
+/// What the format can't hold, or the disk can't take; nothing is left behind then.
+pub fn stage_save(
+    loaded: &Loaded,
+    positions: &[DVec3],
+    output: &Path,
+    staging: &Staging,
+) -> Result<(Staged, Vec<String>), AppError> {
+    let refuse = |source| AppError::Save { file: output.to_owned(), source };
+    let name = output.file_name().unwrap_or_default().to_string_lossy();
+    let save = Save {
+        drawn: &loaded.model.drawn,
+        positions,
+        format: Format::of_name(&name)?,
+        name: &name,
+        placement: files::placement(&loaded.path, output),
+    };
+    let saved = loaded.scene.save(&save).map_err(refuse)?;
+    // Neighbours first: the file that names them must not stand there without them.
+    let mut names: Vec<(&str, &[u8])> = saved.files.iter().map(|file| (&*file.name, &*file.bytes)).collect();
+    let count = names.len();
+    names.rotate_left(1.min(count));
+    let staged = staging.stage(files::folder_of(output), names)?;
+    Ok((staged, saved.warnings))
+}
+
+/// What [`apply`] is to do.
+#[derive(Clone, Debug)]
+pub struct Apply<'a> {
+    /// The file to be bent.
+    pub file: &'a Path,
+    /// How.
+    pub edit: &'a EditFile,
+    /// Where the edit was read from, for messages.
+    pub edit_path: &'a Path,
+    /// The file to be written.
+    pub output: &'a Path,
+    /// Where the report goes, if anywhere.
+    pub report: Option<&'a Path>,
+    /// Replays the edit as a drag of so many frames; `None` is one solve to the target.
+    pub frames: Option<usize>,
+}
+
+/// Applies an edit to a file and writes the result and the report, or nothing at all.
+///
+/// # Errors
+/// Whatever refuses the file, the edit or the result. OUT is as it was then.
+pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Report, AppError> {
+    let start = Instant::now();
+    let loaded = load(apply.file, &WeldOptions::default(), watch)?;
+    let load_ms = ms_since(start);
+    let model = &loaded.model;
+    if model.surface.triangles.is_empty() {
+        return Err(AppError::NoTriangles(apply.file.to_owned()));
+    }
+    let setup = apply.edit.resolve(model).map_err(|source| AppError::Edit { edit: apply.edit_path.to_owned(), source })?;
+
+    let solution = if apply.edit.changes_nothing() {
+        Solution::at_rest(model, &setup)
+    } else {
+        solve(apply, model, &setup, watch)?
+    };
+    if watch.cancel.is_cancelled() {
+        return Err(AppError::Interrupted);
+    }
+
+    let progress = watch.begin("saving");
+    let start = Instant::now();
+    let (mut staged, save_warnings) = stage_save(&loaded, &solution.positions, apply.output, staging)?;
+    let save_ms = ms_since(start);
+    progress.set(1.0);
+
+    let distortion = pliant_mesh::Distortion::of(&model.surface, &model.topology, &solution.surface_positions);
+    let mut warnings = loaded.scene.notes().to_vec();
+    warnings.extend(solution.warnings);
+    warnings.extend(save_warnings);
+    let report = Report {
+        method: setup.method.name().to_owned(),
+        vertices: model.drawn.file_vertex_count,
+        welded_vertices: model.surface.positions.len(),
+        free_vertices: solution.free_vertices,
+        load_ms,
+        order_ms: solution.order_ms,
+        bind_ms: solution.bind_ms,
+        save_ms,
+        frames: solution.frames,
+        iterations: solution.iterations,
+        converged: solution.converged,
+        energy: solution.energy,
+        distortion: Distortion {
+            edge_stretch_mean: finite_or(distortion.edge_stretch_mean, 1.0),
+            edge_stretch_max: finite_or(distortion.edge_stretch_max, f64::MAX),
+            flipped_faces: distortion.flipped_faces,
+            volume_ratio: finite_or(distortion.volume_ratio, 1.0),
+        },
+        warnings,
+    };
+    if let Some(path) = apply.report {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let text = report.to_json();
+        staged = staged.and(staging.stage(files::folder_of(path), [(&*name, text.as_bytes())])?);
+    }
+    if watch.cancel.is_cancelled() {
+        return Err(AppError::Interrupted);
+    }
+    staged.commit()?;
+    Ok(report)
+}
+
+/// What came of the frames.
+struct Solution {
+    /// Of each drawn vertex, in world space.
+    positions: Vec<DVec3>,
+    /// Of each surface vertex, in world space.
+    surface_positions: Vec<DVec3>,
+    free_vertices: usize,
+    order_ms: f64,
+    bind_ms: f64,
+    frames: FrameTimes,
+    iterations: f64,
+    converged: bool,
+    energy: Energy,
+    warnings: Vec<String>,
+}
+
+impl Solution {
+    /// Nothing is solved where nothing is to change.
+    fn at_rest(model: &Model, setup: &Setup) -> Self {
+        Self {
+            positions: model.drawn.positions.clone(),
+            surface_positions: model.surface.positions.clone(),
+            free_vertices: setup.free_count(),
+            order_ms: 0.0,
+            bind_ms: 0.0,
+            frames: FrameTimes::default(),
+            iterations: 0.0,
+            converged: true,
+            energy: Energy::default(),
+            warnings: Vec::new(),
+        }
+    }
+}
+
+fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Result<Solution, AppError> {
+    let start = Instant::now();
+    let ordering = order(model, &setup.method, &watch.begin("ordering"), &watch.cancel)?;
+    let order_ms = ms_since(start);
+    let start = Instant::now();
+    let mut bound = bind(apply.file, model, setup, &ordering, &watch.begin("binding"), &watch.cancel)?;
+    let bind_ms = ms_since(start);
+
+    let refuse = |source| AppError::Solve { file: apply.file.to_owned(), source };
+    let progress = watch.begin("bending");
+    let count = apply.frames.unwrap_or(1);
+    let mut displacements = vec![DVec3::ZERO; model.surface.positions.len()];
+    let mut positions = Vec::new();
+    let mut normals = Vec::new();
+    let (mut solve_ms, mut normals_ms) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    let mut surface_positions = model.surface.positions.clone();
+    let (mut iterations, mut last) = (0_u64, pliant_deform::Step::default());
+    for frame in 1..=count {
+        if watch.cancel.is_cancelled() {
+            return Err(AppError::Interrupted);
+        }
+        let targets = setup.targets(frame as f64 / count as f64);
+        let start = Instant::now();
+        bound.set_targets(&targets).map_err(refuse)?;
+        last = bound.step(&mut displacements).map_err(refuse)?;
+        for _ in 1..MOST_STEPS {
+            if last.converged || watch.cancel.is_cancelled() {
+                break;
+            }
+            last = bound.step(&mut displacements).map_err(refuse)?;
+        }
+        model.drawn_positions(&displacements, &mut positions);
+        solve_ms.push(ms_since(start));
+        iterations += u64::from(last.iteration);
+
+        for ((new, rest), d) in surface_positions.iter_mut().zip(&model.surface.positions).zip(&displacements) {
+            *new = *rest + *d;
+        }
+        let start = Instant::now();
+        vertex_normals(&model.surface.triangles, &model.topology, &surface_positions, &mut normals);
+        normals_ms.push(ms_since(start));
+        progress.set(frame as f32 / count as f32);
+    }
+    Ok(Solution {
+        positions,
+        surface_positions,
+        free_vertices: bound.free_count(),
+        order_ms,
+        bind_ms,
+        frames: FrameTimes::of(&mut solve_ms, &mut normals_ms),
+        iterations: iterations as f64 / count.max(1) as f64,
+        converged: last.converged,
+        energy: Energy { rest: finite_or(bound.energy_rest(), 0.0), r#final: finite_or(last.energy, f64::MAX) },
+        warnings: bound.warnings().to_vec(),
+    })
+}
+
+fn ms_since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}

@@ -1,0 +1,28 @@
+//! What a long piece of work is doing, how far it is, and whether it is still wanted.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use pliant_mesh::{Cancel, Progress};
+
+/// Shared between the work and who watches it. Cloning shares it.
+#[derive(Clone, Debug, Default)]
+pub struct Watch {
+    /// Raised when the result is no longer wanted.
+    pub cancel: Cancel,
+    stage: Arc<Mutex<Option<(&'static str, Progress)>>>,
+}
+
+impl Watch {
+    /// Says that `doing` ("reading", "binding") begins; the work tells its progress through what comes back.
+    pub fn begin(&self, doing: &'static str) -> Progress {
+        let progress = Progress::new();
+        *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = Some((doing, progress.clone()));
+        progress
+    }
+
+    /// What is being done, and its share from 0 to 1.
+    pub fn now(&self) -> Option<(&'static str, f32)> {
+        let stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner);
+        stage.as_ref().map(|(doing, progress)| (*doing, progress.get()))
+    }
+}
