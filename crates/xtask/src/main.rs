@@ -1,1 +1,62 @@
-fn main() {}
+//! Pliant's own commands: `cargo xtask run|test|check|bench|assets`.
+//!
+//! Only the standard library is used, so that this builds in seconds on a machine that has nothing else yet.
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a command speaks to the person who gave it"
+)]
+
+mod arguments;
+mod assets;
+mod bench;
+mod check;
+mod display;
+mod install;
+mod make_assets;
+mod process;
+mod requirement;
+mod run;
+mod system;
+mod test;
+mod verdict;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use arguments::Command;
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let command = match arguments::parse(&words) {
+        Ok(command) => command,
+        Err(sentence) => {
+            eprintln!("{sentence}\n\n{}", arguments::HELP);
+            return ExitCode::from(2);
+        }
+    };
+    let done = match command {
+        Command::Help => {
+            println!("{}", arguments::HELP);
+            Ok(())
+        }
+        Command::Run { file, consent } => run::run(file.as_deref(), consent),
+        Command::Test { filters, consent } => test::test(&filters, consent),
+        Command::Check => check::check(),
+        Command::Bench { sections, scale } => bench::bench(&sections, scale),
+        Command::Assets(order) => make_assets::make_assets(&order),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(sentence) => {
+            eprintln!("{sentence}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The workspace's folder.
+pub fn root() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.ancestors().nth(2).unwrap_or(here).to_path_buf()
+}

@@ -1,0 +1,179 @@
+//! What the person asked for, from the words after `cargo xtask`.
+
+use std::path::PathBuf;
+
+use crate::bench::Scale;
+use crate::install::Consent;
+
+/// What `cargo xtask` answers when asked for help or in words it doesn't know.
+pub const HELP: &str = "\
+usage: cargo xtask COMMAND
+
+  run [FILE] [--yes]         build Pliant and open its window on the sample, or on FILE; without a display,
+                             do the sample's edit headless and say where the result is
+  test [FILTER..] [--yes]    everything that must pass: formatting, clippy, every test
+  check                      the fast part of that: formatting, clippy, unit tests
+  bench [SECTION..] [--full] measure, and print tables
+  assets [NAME..] [--triangles N] [--output DIR]
+                             make the samples; with --triangles the creature at that size (60k, 600k, 5M)
+
+`run` and `test` look for what they need and install it with apt where they may; --yes answers their questions.";
+
+/// One command with what it needs to know.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Command {
+    /// Say what there is.
+    Help,
+    /// The main job.
+    Run {
+        /// A mesh in place of the sample.
+        file: Option<PathBuf>,
+        /// May packages be installed without a question?
+        consent: Consent,
+    },
+    /// Everything that must pass.
+    Test {
+        /// Names handed on to the tests; formatting and clippy are skipped when there are any.
+        filters: Vec<String>,
+        /// May packages be installed without a question?
+        consent: Consent,
+    },
+    /// The fast part of `Test`.
+    Check,
+    /// Measurements.
+    Bench {
+        /// Names of sections; empty for all.
+        sections: Vec<String>,
+        /// How large the meshes get.
+        scale: Scale,
+    },
+    /// The samples.
+    Assets(Order),
+}
+
+/// Which samples to make, how fine, and where to put them.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Order {
+    /// Names of samples; empty for all.
+    pub names: Vec<String>,
+    /// A size for the creature in place of the committed one.
+    pub triangles: Option<usize>,
+    /// A folder in place of `assets`, or of `target/assets` for other sizes.
+    pub output: Option<PathBuf>,
+}
+
+/// Reads the words after `cargo xtask`.
+///
+/// # Errors
+/// One sentence naming the word that isn't understood.
+pub fn parse(words: &[String]) -> Result<Command, String> {
+    let Some((command, rest)) = words.split_first() else {
+        return Ok(Command::Help);
+    };
+    let (mut names, mut consent, mut scale, mut order) = (Vec::new(), Consent::Ask, Scale::Usual, Order::default());
+    let mut rest = rest.iter();
+    while let Some(word) = rest.next() {
+        let mut value = || {
+            rest.next()
+                .cloned()
+                .ok_or_else(|| format!("`{word}` wants a value after it."))
+        };
+        match (command.as_str(), word.as_str()) {
+            ("run" | "test", "--yes") => consent = Consent::Given,
+            ("bench", "--full") => scale = Scale::Full,
+            ("assets", "--triangles") => order.triangles = Some(count(&value()?)?),
+            ("assets", "--output") => order.output = Some(value()?.into()),
+            (_, "--help" | "-h") => return Ok(Command::Help),
+            (_, option) if option.starts_with('-') => {
+                return Err(format!("`cargo xtask {command}` has no option `{option}`."));
+            }
+            _ => names.push(word.clone()),
+        }
+    }
+    match command.as_str() {
+        "help" | "--help" | "-h" => Ok(Command::Help),
+        "run" if names.len() > 1 => Err(format!("`cargo xtask run` opens one file; `{}` is a second.", names[1])),
+        "run" => Ok(Command::Run {
+            file: names.into_iter().next().map(PathBuf::from),
+            consent,
+        }),
+        "test" => Ok(Command::Test {
+            filters: names,
+            consent,
+        }),
+        "check" if names.is_empty() => Ok(Command::Check),
+        "check" => Err(format!(
+            "`cargo xtask check` takes no names; for `{}` use `cargo xtask test`.",
+            names[0]
+        )),
+        "bench" => Ok(Command::Bench { sections: names, scale }),
+        "assets" => Ok(Command::Assets(Order { names, ..order })),
+        _ => Err(format!("There is no command `{command}`.")),
+    }
+}
+
+/// A count such as `60000`, `600k` or `5M`.
+fn count(word: &str) -> Result<usize, String> {
+    let (digits, factor) = match word.strip_suffix(['k', 'K']) {
+        Some(digits) => (digits, 1_000),
+        None => word
+            .strip_suffix(['m', 'M'])
+            .map_or((word, 1), |digits| (digits, 1_000_000)),
+    };
+    match digits.parse::<usize>().ok().and_then(|n| n.checked_mul(factor)) {
+        Some(n) if (1_000..=20_000_000).contains(&n) => Ok(n),
+        _ => Err(format!(
+            "`{word}` is no number of triangles from 1000 to 20M; write 600k or 5M."
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(line: &str) -> Result<Command, String> {
+        parse(&line.split_whitespace().map(str::to_owned).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn commands_and_their_options_are_read() {
+        assert_eq!(parsed(""), Ok(Command::Help));
+        assert_eq!(
+            parsed("test --yes"),
+            Ok(Command::Test {
+                filters: vec![],
+                consent: Consent::Given
+            })
+        );
+        assert_eq!(
+            parsed("run a.glb"),
+            Ok(Command::Run {
+                file: Some("a.glb".into()),
+                consent: Consent::Ask
+            })
+        );
+        let order = Order {
+            names: vec![],
+            triangles: Some(600_000),
+            output: Some("x".into()),
+        };
+        assert_eq!(parsed("assets --triangles 600k --output x"), Ok(Command::Assets(order)));
+        assert_eq!(count("5M"), Ok(5_000_000));
+    }
+
+    #[test]
+    fn what_is_not_understood_is_named() {
+        for (line, culprit) in [
+            ("fly", "fly"),
+            ("test --full", "--full"),
+            ("run a b", "`b`"),
+            ("check mesh", "mesh"),
+            ("assets --triangles", "--triangles"),
+            ("assets --triangles 5x", "5x"),
+            ("assets --triangles 99999999999999999999M", "99999999999999999999M"),
+        ] {
+            assert!(parsed(line).is_err_and(|sentence| sentence.contains(culprit)), "{line}");
+        }
+    }
+}

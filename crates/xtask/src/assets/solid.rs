@@ -1,0 +1,147 @@
+//! Solids as signed distances (negative inside) and the ways to join them.
+//!
+//! The distances are bounds where exactness costs more than it gives (ellipsoids): extraction asks only for the sign
+//! and a slope near one.
+
+use super::vector::{Vec3, v};
+
+/// Distance to a sphere.
+pub fn sphere(p: Vec3, centre: Vec3, radius: f64) -> f64 {
+    (p - centre).length() - radius
+}
+
+/// About the distance to an ellipsoid with half axes `radii` along x, y and z.
+pub fn ellipsoid(p: Vec3, centre: Vec3, radii: Vec3) -> f64 {
+    let q = p - centre;
+    let near = q.over(radii).length();
+    let slope = q.over(radii).over(radii).length();
+    if slope > 0.0 {
+        near * (near - 1.0) / slope
+    } else {
+        -radii.x.min(radii.y).min(radii.z)
+    }
+}
+
+/// Distance to two spheres and the cone that touches both.
+pub fn round_cone(p: Vec3, a: Vec3, radius_a: f64, b: Vec3, radius_b: f64) -> f64 {
+    let axis = b - a;
+    let length = axis.length();
+    let along_axis = axis * (1.0 / length);
+    let q = p - a;
+    let y = q.dot(along_axis);
+    let x = (q - along_axis * y).length();
+    let sine = (radius_a - radius_b) / length;
+    let cosine = (1.0 - sine * sine).max(0.0).sqrt();
+    let along = y * cosine - x * sine;
+    if along < 0.0 {
+        q.length() - radius_a
+    } else if along > length * cosine {
+        (p - b).length() - radius_b
+    } else {
+        x * cosine + y * sine - radius_a
+    }
+}
+
+/// Distance to a chain of round cones through `knots` of centre and radius.
+pub fn chain(p: Vec3, knots: &[(Vec3, f64)]) -> f64 {
+    knots
+        .windows(2)
+        .map(|k| round_cone(p, k[0].0, k[0].1, k[1].0, k[1].1))
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// A smooth chain: the Catmull-Rom curve through `knots`, in `pieces` round cones a span.
+pub fn smooth_knots(knots: &[(Vec3, f64)], pieces: usize) -> Vec<(Vec3, f64)> {
+    let at = |i: isize| knots[i.clamp(0, knots.len() as isize - 1) as usize];
+    let mut out = Vec::new();
+    for span in 0..knots.len() as isize - 1 {
+        let (k0, k1, k2, k3) = (at(span - 1), at(span), at(span + 1), at(span + 2));
+        for piece in 0..pieces {
+            let t = piece as f64 / pieces as f64;
+            let (t2, t3) = (t * t, t * t * t);
+            let w = [
+                -t3 + 2.0 * t2 - t,
+                3.0 * t3 - 5.0 * t2 + 2.0,
+                -3.0 * t3 + 4.0 * t2 + t,
+                t3 - t2,
+            ];
+            let centre = (k0.0 * w[0] + k1.0 * w[1] + k2.0 * w[2] + k3.0 * w[3]) * 0.5;
+            let radius = (k0.1 * w[0] + k1.1 * w[1] + k2.1 * w[2] + k3.1 * w[3]) * 0.5;
+            out.push((centre, radius));
+        }
+    }
+    out.push(at(knots.len() as isize - 1));
+    out
+}
+
+/// The union of two solids, their crease filled over a width of about `width`.
+pub fn smooth_union(a: f64, b: f64, width: f64) -> f64 {
+    let overlap = (width - (a - b).abs()).max(0.0) / width;
+    a.min(b) - overlap * overlap * width * 0.25
+}
+
+/// `a` without `b`, the edge rounded over a width of about `width`.
+pub fn smooth_difference(a: f64, b: f64, width: f64) -> f64 {
+    -smooth_union(-a, b, width)
+}
+
+/// 0 below `from`, 1 above `to`, a smooth step between; `from` may lie above `to`.
+pub fn step(from: f64, to: f64, x: f64) -> f64 {
+    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Colour `a` turning into colour `b` as `t` goes from 0 to 1.
+pub fn mix(a: Vec3, b: Vec3, t: f64) -> Vec3 {
+    a.lerp(b, t.clamp(0.0, 1.0))
+}
+
+/// A colour from its sRGB hexadecimal form, made linear as glTF wants its vertex colours.
+///
+/// The curve is a cubic within 0.003 of sRGB's, because powers are not the same on every machine.
+pub fn srgb(hex: u32) -> Vec3 {
+    let linear = |c: u32| {
+        let s = f64::from(c & 0xff) / 255.0;
+        s * (s * (s * 0.305306011 + 0.682171111) + 0.012522878)
+    };
+    v(linear(hex >> 16), linear(hex >> 8), linear(hex))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_round_cone_holds_both_spheres_and_has_slope_one() {
+        let (a, b) = (v(0.0, 0.0, 0.0), v(1.0, 2.0, 0.5));
+        for i in 0..500_i32 {
+            let t = f64::from(i);
+            let p = v((t * 0.37) % 4.0 - 2.0, (t * 0.73) % 5.0 - 1.0, (t * 0.11) % 3.0 - 1.5);
+            let d = round_cone(p, a, 0.5, b, 0.2);
+            assert!(d <= sphere(p, a, 0.5) + 1e-12 && d <= sphere(p, b, 0.2) + 1e-12);
+            let q = p + v(1e-3, -2e-3, 1e-3);
+            assert!((round_cone(q, a, 0.5, b, 0.2) - d).abs() <= (q - p).length() * (1.0 + 1e-9));
+        }
+    }
+
+    #[test]
+    fn a_smooth_union_contains_both_and_equals_them_far_apart() {
+        assert_eq!(smooth_union(0.1, 0.9, 0.5), 0.1);
+        assert!(smooth_union(0.1, 0.2, 0.5) < 0.1);
+        assert!(smooth_difference(-0.5, -0.1, 0.2) >= 0.1);
+    }
+
+    #[test]
+    fn smooth_knots_pass_through_the_given_ones() {
+        let knots = [
+            (v(0.0, 0.0, 0.0), 1.0),
+            (v(1.0, 0.0, 0.0), 0.5),
+            (v(1.0, 1.0, 0.0), 0.2),
+        ];
+        let smooth = smooth_knots(&knots, 4);
+        assert_eq!(smooth.len(), 9);
+        for (i, knot) in knots.iter().enumerate() {
+            assert!((smooth[4 * i].0 - knot.0).length() < 1e-12 && (smooth[4 * i].1 - knot.1).abs() < 1e-12);
+        }
+    }
+}

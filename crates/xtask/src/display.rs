@@ -1,0 +1,67 @@
+//! A display of our own: Xvfb with a window manager, ended when dropped.
+
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+
+use crate::system;
+
+/// A virtual display.
+pub struct Display {
+    name: String,
+    children: Vec<Child>,
+}
+
+impl Display {
+    /// Starts a display with a number that is free, or says why there is none.
+    ///
+    /// # Errors
+    /// One sentence when Xvfb can't be started.
+    pub fn start() -> Result<Self, String> {
+        let failed = |why: &str| format!("Xvfb gives no display ({why}): install the package xvfb.");
+        let program = system::program("Xvfb").ok_or_else(|| failed("not found"))?;
+        let mut server = Command::new(program)
+            .args(["-displayfd", "1", "-screen", "0", "1600x1000x24", "-nolisten", "tcp"])
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .map_err(|e| failed(&e.to_string()))?;
+        let mut number = String::new();
+        let answered = server
+            .stdout
+            .take()
+            .map(|pipe| BufReader::new(pipe).read_line(&mut number));
+        let mut display = Self {
+            name: format!(":{}", number.trim()),
+            children: vec![server],
+        };
+        if !matches!(answered, Some(Ok(1..))) {
+            return Err(failed("it ended at once"));
+        }
+        if let Some(manager) = system::program("openbox") {
+            let manager = Command::new(manager)
+                .env("DISPLAY", &display.name)
+                .stdin(Stdio::null())
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .spawn();
+            display.children.extend(manager);
+        }
+        Ok(display)
+    }
+
+    /// Its name as `DISPLAY` wants it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        for child in self.children.iter_mut().rev() {
+            // It may have ended by itself; then there is nothing to end.
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}

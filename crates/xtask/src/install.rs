@@ -1,0 +1,133 @@
+//! Seeing to it that what a command needs is there.
+
+use std::io::{BufRead, IsTerminal, Write};
+use std::process::{Command, Stdio};
+
+use crate::process;
+use crate::requirement::{Requirement, missing_packages};
+use crate::system::{self, System};
+
+/// May packages be installed without a question?
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Consent {
+    /// Ask first.
+    Ask,
+    /// Yes.
+    Given,
+}
+
+/// What there is after looking and installing.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Prepared {
+    /// Everything.
+    Complete,
+    /// Not everything, on a system whose packages we don't know: the sentence says what is skipped.
+    Without(String),
+}
+
+/// Looks for `requirements` and installs what is missing where that may be done; `purpose` says what they're for.
+///
+/// # Errors
+/// One sentence naming the packages, on a system that has apt, when they can't be installed from here.
+pub fn prepare(requirements: &[&[Requirement]], purpose: &str, consent: Consent) -> Result<Prepared, String> {
+    let system = System::here();
+    if let System::Other { name } = &system {
+        return Ok(Prepared::Without(format!(
+            "On {name}, {purpose} are not looked after: what they need there is not known yet, so they may be skipped."
+        )));
+    }
+    let packages = missing_packages(requirements);
+    if packages.is_empty() {
+        return Ok(Prepared::Complete);
+    }
+    if !matches!(system, System::Debian { .. }) || system::program("apt-get").is_none() {
+        return Ok(Prepared::Without(format!(
+            "{} has no apt, so {purpose} are skipped; they need what Debian calls {}.",
+            system.name(),
+            packages.join(" ")
+        )));
+    }
+    let by_hand = format!(
+        "sudo apt-get update && sudo apt-get install -y --no-install-recommends {}",
+        packages.join(" ")
+    );
+    let prefix: &[&str] = if system::is_root() {
+        println!("Installing for {purpose}: {}", packages.join(" "));
+        &[]
+    } else if system::program("sudo").is_some() && agreed(&by_hand, purpose, consent) {
+        &["sudo"]
+    } else {
+        return Err(format!(
+            "For {purpose} install these packages and start again: {by_hand}"
+        ));
+    };
+    let failed = |sentence: String| format!("{sentence} For {purpose} install these packages: {by_hand}");
+    process::succeed(&mut apt(prefix, &["update"])).map_err(failed)?;
+    let install = [&["install", "-y", "--no-install-recommends"], packages.as_slice()].concat();
+    process::succeed(&mut apt(prefix, &install)).map_err(failed)?;
+    let missing = missing_packages(requirements);
+    if missing.is_empty() {
+        Ok(Prepared::Complete)
+    } else {
+        Err(format!(
+            "Though installed, what {} bring for {purpose} is not found.",
+            missing.join(" ")
+        ))
+    }
+}
+
+/// An apt-get command that asks nothing, its talk on standard error.
+fn apt(prefix: &[&str], arguments: &[&str]) -> Command {
+    let words = [
+        prefix,
+        &["env", "DEBIAN_FRONTEND=noninteractive", "apt-get", "-q"],
+        arguments,
+    ]
+    .concat();
+    let mut command = Command::new(words[0]);
+    command
+        .args(&words[1..])
+        .stdin(Stdio::inherit())
+        .stdout(Stdio::from(std::io::stderr()));
+    command
+}
+
+/// Shows the line and asks whether to run it; nobody there to answer means no.
+fn agreed(line: &str, purpose: &str, consent: Consent) -> bool {
+    println!("For {purpose} some packages are missing:\n\n  {line}\n");
+    if consent == Consent::Given {
+        return true;
+    }
+    if !std::io::stdin().is_terminal() {
+        return false;
+    }
+    print!("Run it now? [y/N] ");
+    let mut answer = String::new();
+    let heard = std::io::stdout()
+        .flush()
+        .and_then(|()| std::io::stdin().lock().read_line(&mut answer));
+    heard.is_ok() && matches!(answer.trim(), "y" | "Y" | "yes" | "Yes")
+}
+
+/// Sees to cargo's own parts: rustfmt and clippy, which a minimal toolchain lacks.
+///
+/// # Errors
+/// One sentence naming the part when it is missing and rustup can't add it.
+pub fn prepare_toolchain() -> Result<(), String> {
+    for (command, component) in [("fmt", "rustfmt"), ("clippy", "clippy")] {
+        let mut probe = process::cargo(&[command, "--version"]);
+        let there = probe
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .status()
+            .is_ok_and(|status| status.success());
+        if !there {
+            let mut add = Command::new("rustup");
+            add.args(["component", "add", component]).current_dir(crate::root());
+            process::succeed(&mut add).map_err(|sentence| {
+                format!("{sentence} Add {component} to the Rust toolchain by hand and start again.")
+            })?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,64 @@
+//! Starting other programs.
+
+use std::ffi::OsStr;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+/// What a program prints, or nothing when it can't be started or fails.
+pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
+    let program = crate::system::program(program)?;
+    let output = Command::new(program)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .stderr(Stdio::null())
+        .output()
+        .ok()?;
+    output
+        .status
+        .success()
+        .then(|| String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// A cargo command in the workspace's folder: the same cargo that started this program.
+pub fn cargo(arguments: &[&str]) -> Command {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(arguments).current_dir(crate::root());
+    if std::env::var_os("CI").is_some() {
+        // A machine that builds once has no use for what makes the second build fast.
+        command.env("CARGO_INCREMENTAL", "0");
+    }
+    command
+}
+
+/// The folder that cargo builds into.
+pub fn target_folder() -> PathBuf {
+    let root = crate::root();
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder))
+}
+
+/// Runs a command to its end.
+///
+/// # Errors
+/// One sentence with the command's words when it can't be started or fails.
+pub fn succeed(command: &mut Command) -> Result<(), String> {
+    let words = words(command);
+    let status = command
+        .status()
+        .map_err(|e| format!("`{words}` can't be started: {e}."))?;
+    if status.success() {
+        Ok(())
+    } else {
+        Err(format!("`{words}` failed ({status})."))
+    }
+}
+
+/// The command as one would type it.
+pub fn words(command: &Command) -> String {
+    let name = std::path::Path::new(command.get_program())
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy();
+    let arguments = command.get_args().map(OsStr::to_string_lossy);
+    std::iter::once(name).chain(arguments).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,108 @@
+//! What building and testing Pliant needs from the system, how to see that it is there, and which package brings it.
+
+use crate::system;
+
+/// One thing that must be there.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Requirement {
+    /// How it shows that it's there.
+    pub evidence: Evidence,
+    /// The Debian and Ubuntu package that brings it.
+    pub package: &'static str,
+}
+
+/// How something shows that it's there.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Evidence {
+    /// A program on the search path.
+    Program(&'static str),
+    /// A shared library that the loader finds.
+    Library(&'static str),
+    /// Any Vulkan driver.
+    VulkanDriver,
+    /// Mesa's software Vulkan driver.
+    SoftwareVulkanDriver,
+}
+
+const fn library(name: &'static str, package: &'static str) -> Requirement {
+    Requirement {
+        evidence: Evidence::Library(name),
+        package,
+    }
+}
+
+const fn tool(name: &'static str, package: &'static str) -> Requirement {
+    Requirement {
+        evidence: Evidence::Program(name),
+        package,
+    }
+}
+
+/// For pictures: Vulkan and some driver.
+pub const PICTURES: &[Requirement] = &[
+    library("libvulkan.so.1", "libvulkan1"),
+    Requirement {
+        evidence: Evidence::VulkanDriver,
+        package: "mesa-vulkan-drivers",
+    },
+];
+
+/// For a window: what winit loads at run time.
+pub const WINDOW: &[Requirement] = &[
+    library("libX11.so.6", "libx11-6"),
+    library("libX11-xcb.so.1", "libx11-xcb1"),
+    library("libXcursor.so.1", "libxcursor1"),
+    library("libXi.so.6", "libxi6"),
+    library("libxkbcommon.so.0", "libxkbcommon0"),
+    library("libxkbcommon-x11.so.0", "libxkbcommon-x11-0"),
+    library("libwayland-client.so.0", "libwayland-client0"),
+];
+
+/// For the tests beyond that: a display of their own, a hand on its mouse, and the driver that pictures bind to.
+pub const TESTS: &[Requirement] = &[
+    Requirement {
+        evidence: Evidence::SoftwareVulkanDriver,
+        package: "mesa-vulkan-drivers",
+    },
+    tool("Xvfb", "xvfb"),
+    tool("xdotool", "xdotool"),
+    tool("openbox", "openbox"),
+    tool("wmctrl", "wmctrl"),
+];
+
+/// The packages of those that are not there, each once.
+pub fn missing_packages(requirements: &[&[Requirement]]) -> Vec<&'static str> {
+    let mut packages = Vec::new();
+    for requirement in requirements.iter().copied().flatten() {
+        if !requirement.evidence.is_there() && !packages.contains(&requirement.package) {
+            packages.push(requirement.package);
+        }
+    }
+    packages
+}
+
+impl Evidence {
+    fn is_there(self) -> bool {
+        match self {
+            Self::Program(name) => system::program(name).is_some(),
+            Self::Library(name) => system::has_library(name),
+            Self::VulkanDriver => !system::vulkan_drivers().is_empty(),
+            Self::SoftwareVulkanDriver => system::software_vulkan_driver().is_some(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn missing_things_name_their_package_once() {
+        let absent = [
+            tool("no-such-program-of-ours", "one"),
+            library("libnosuchthing.so.9", "one"),
+            tool("sh", "two"),
+        ];
+        assert_eq!(missing_packages(&[&absent, &absent]), ["one"]);
+    }
+}

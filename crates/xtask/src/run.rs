@@ -1,0 +1,99 @@
+//! `cargo xtask run`: the main job on the sample.
+
+use std::path::{Path, PathBuf};
+
+use crate::install::{Consent, Prepared, prepare};
+use crate::process::{cargo, succeed, target_folder};
+use crate::requirement::{PICTURES, WINDOW};
+
+/// Builds Pliant and opens its window on `file` or on the sample; without a display the sample's edit is done headless.
+///
+/// # Errors
+/// One sentence naming what failed.
+pub fn run(file: Option<&Path>, consent: Consent) -> Result<(), String> {
+    let has_display = ["DISPLAY", "WAYLAND_DISPLAY"]
+        .iter()
+        .any(|name| std::env::var_os(name).is_some_and(|v| !v.is_empty()));
+    let has_window = has_display || !cfg!(all(unix, not(target_os = "macos")));
+    if has_window {
+        if let Prepared::Without(sentence) = prepare(&[PICTURES, WINDOW], "the window and its pictures", consent)? {
+            println!("{sentence}");
+        }
+        build()?;
+        let sample = crate::root().join("assets/creature.glb");
+        let file = file.map_or(Ok(sample), std::path::absolute);
+        let file = file.map_err(|e| format!("The file's path can't be completed: {e}."))?;
+        return pliant(&[&file.display().to_string()]);
+    }
+    if let Some(file) = file {
+        return Err(format!(
+            "There is no display to open {} on; use `pliant apply` or `pliant render` on it.",
+            file.display()
+        ));
+    }
+    headless(consent)
+}
+
+/// The sample's edit from the command line, and a picture before and after where the machine can make one.
+fn headless(consent: Consent) -> Result<(), String> {
+    println!("There is no display, so the sample's edit is done without the window.");
+    let pictures = match prepare(&[PICTURES], "the pictures", consent) {
+        Ok(Prepared::Complete) => true,
+        Ok(Prepared::Without(sentence)) | Err(sentence) => {
+            println!("{sentence}");
+            false
+        }
+    };
+    build()?;
+    let (sample, edit) = ("assets/creature.glb", "assets/creature.edit.json");
+    let folder = target_folder().join("sample");
+    std::fs::create_dir_all(&folder).map_err(|e| format!("{} can't be made: {e}.", folder.display()))?;
+    let at = |name: &str| folder.join(name).display().to_string();
+    let edited = at("creature-edited.glb");
+    pliant(&["apply", sample, "--edit", edit, "--output", &edited])?;
+    let mut made: Vec<PathBuf> = vec![edited.into()];
+    if pictures {
+        for (name, edit) in [("creature-before.png", None), ("creature-after.png", Some(edit))] {
+            let picture = at(name);
+            let mut arguments = vec!["render", sample, "--output", &picture];
+            arguments.extend(edit.iter().flat_map(|edit| ["--edit", edit]));
+            pliant(&arguments)?;
+            made.push(picture.into());
+        }
+    }
+    println!("\n{sample} was bent by {edit}:");
+    for file in made {
+        println!("  {}", file.display());
+    }
+    Ok(())
+}
+
+/// Builds the optimised program.
+fn build() -> Result<(), String> {
+    println!("Building Pliant; the first time takes some minutes.");
+    succeed(&mut cargo(&[
+        "build",
+        "--locked",
+        "--release",
+        "--package",
+        "pliant-app",
+        "--bin",
+        "pliant",
+    ]))
+}
+
+/// Runs the built program in the workspace's folder.
+fn pliant(arguments: &[&str]) -> Result<(), String> {
+    let fixed = [
+        "run",
+        "--locked",
+        "--quiet",
+        "--release",
+        "--package",
+        "pliant-app",
+        "--bin",
+        "pliant",
+        "--",
+    ];
+    succeed(&mut cargo(&[&fixed, arguments].concat()))
+}

@@ -1,0 +1,174 @@
+//! What tests said, counted: the sum over every `test result:` line and over our own steps.
+
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use crate::process;
+
+/// Counts so far, and the names of what failed.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Verdict {
+    passed: usize,
+    ignored: usize,
+    filtered: usize,
+    failures: Vec<String>,
+    steps: Vec<String>,
+}
+
+impl Verdict {
+    /// Runs one command as a test of its own name.
+    pub fn step(&mut self, name: &str, command: &mut Command) {
+        println!("\n── {name}: {}", process::words(command));
+        let started = Instant::now();
+        let result = process::succeed(command);
+        self.record(name, result, started);
+    }
+
+    /// Runs a `cargo test` command: its lines are shown and counted.
+    pub fn tests(&mut self, name: &str, command: &mut Command) {
+        println!("\n── {name}: {}", process::words(command));
+        let started = Instant::now();
+        let failures = self.failures.len();
+        let result = self.listen(command);
+        // A test that failed is named already; anything else that went wrong (it didn't compile) is this step's.
+        let result = if self.failures.len() > failures { Ok(()) } else { result };
+        self.record(name, result, started);
+    }
+
+    fn record(&mut self, name: &str, result: Result<(), String>, started: Instant) {
+        let seconds = started.elapsed().as_secs_f64();
+        match result {
+            Ok(()) => self.passed += 1,
+            Err(sentence) => {
+                eprintln!("{sentence}");
+                self.failures.push(name.to_owned());
+            }
+        }
+        let word = if self.failures.iter().any(|failure| failure == name) {
+            "FAILED"
+        } else {
+            "ok"
+        };
+        self.steps.push(format!("test {name} ... {word} ({seconds:.0} s)"));
+    }
+
+    fn listen(&mut self, command: &mut Command) -> Result<(), String> {
+        let words = process::words(command);
+        let cannot = |e: std::io::Error| format!("`{words}` can't be run: {e}.");
+        let mut child = command.stdout(Stdio::piped()).spawn().map_err(cannot)?;
+        if let Some(pipe) = child.stdout.take() {
+            let mut lines = BufReader::new(pipe);
+            let mut line = Vec::new();
+            while lines.read_until(b'\n', &mut line).map_err(cannot)? > 0 {
+                let mut out = std::io::stdout().lock();
+                out.write_all(&line).and_then(|()| out.flush()).map_err(cannot)?;
+                self.count(String::from_utf8_lossy(&line).trim_end());
+                line.clear();
+            }
+        }
+        let status = child.wait().map_err(cannot)?;
+        if status.success() {
+            Ok(())
+        } else {
+            Err(format!("`{words}` failed ({status})."))
+        }
+    }
+
+    /// Takes in one line of cargo's.
+    fn count(&mut self, line: &str) {
+        if let Some(name) = line
+            .strip_prefix("test ")
+            .and_then(|rest| rest.strip_suffix(" ... FAILED"))
+        {
+            self.failures.push(name.to_owned());
+        }
+        let Some((_, counts)) = line
+            .strip_prefix("test result: ")
+            .and_then(|rest| rest.split_once(". "))
+        else {
+            return;
+        };
+        for part in counts.split("; ") {
+            let Some((Ok(number), what)) = part.split_once(' ').map(|(n, what)| (n.parse::<usize>(), what)) else {
+                continue;
+            };
+            match what {
+                "passed" => self.passed += number,
+                "ignored" => self.ignored += number,
+                "filtered out" => self.filtered += number,
+                _ => {}
+            }
+        }
+    }
+
+    /// Prints the sum, in cargo's own form, as the last lines.
+    ///
+    /// # Errors
+    /// One sentence when anything failed.
+    pub fn conclude(self, started: Instant) -> Result<(), String> {
+        print!("\n{}", self.summary(started.elapsed().as_secs_f64()));
+        match self.failures.len() {
+            0 => Ok(()),
+            1 => Err(format!("{} failed.", self.failures[0])),
+            n => Err(format!("{n} tests failed: they are named above.")),
+        }
+    }
+
+    fn summary(&self, seconds: f64) -> String {
+        let mut text = String::new();
+        for step in &self.steps {
+            text += step;
+            text += "\n";
+        }
+        if !self.failures.is_empty() {
+            text += "\nfailures:\n";
+            for failure in &self.failures {
+                text += &format!("    {failure}\n");
+            }
+        }
+        let word = if self.failures.is_empty() { "ok" } else { "FAILED" };
+        text + &format!(
+            "\ntest result: {word}. {} passed; {} failed; {} ignored; 0 measured; {} filtered out; finished in {seconds:.2}s\n",
+            self.passed,
+            self.failures.len(),
+            self.ignored,
+            self.filtered,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_are_summed_and_failures_named() {
+        let mut verdict = Verdict::default();
+        for line in [
+            "running 3 tests",
+            "test one::two ... ok",
+            "test one::three ... FAILED",
+            "test result: FAILED. 2 passed; 1 failed; 4 ignored; 0 measured; 5 filtered out; finished in 0.1s",
+            "test result: ok. 7 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.1s",
+        ] {
+            verdict.count(line);
+        }
+        let summary = verdict.summary(2.0);
+        assert!(summary.contains("\nfailures:\n    one::three\n"), "{summary}");
+        let last =
+            "test result: FAILED. 9 passed; 1 failed; 4 ignored; 0 measured; 5 filtered out; finished in 2.00s\n";
+        assert!(summary.ends_with(last), "{summary}");
+        assert!(verdict.conclude(Instant::now()).is_err());
+    }
+
+    #[test]
+    fn a_step_that_fails_is_a_failure_and_one_that_succeeds_is_a_pass() {
+        let mut verdict = Verdict::default();
+        verdict.step("good", &mut Command::new("true"));
+        verdict.step("bad", &mut Command::new("false"));
+        verdict.step("absent", &mut Command::new("no-such-program-of-ours"));
+        assert_eq!(verdict.failures, ["bad", "absent"]);
+        assert_eq!(verdict.passed, 1);
+    }
+}
