@@ -33,10 +33,7 @@ pub fn decode_image(encoded: &[u8]) -> Result<Rgba8, ImageError> {
     limits.max_image_height = Some(LONGEST_SIDE_PX);
     limits.max_alloc = Some(u64::from(LONGEST_SIDE_PX) * u64::from(LONGEST_SIDE_PX) * 8);
     reader.limits(limits);
-    let image = reader
-        .decode()
-        .map_err(|error| failed(&error))?
-        .into_rgba8();
+    let image = reader.decode().map_err(|error| failed(&error))?.into_rgba8();
     Ok(Rgba8 {
         width: image.width(),
         height: image.height(),
@@ -44,13 +41,14 @@ pub fn decode_image(encoded: &[u8]) -> Result<Rgba8, ImageError> {
     })
 }
 
-/// The MIME type that an image's first bytes tell, for glTF; `None` for anything but PNG and JPEG.
+/// The MIME type that an image's first bytes tell, for glTF; `None` for kinds that no glTF extension knows.
 pub(crate) fn mime_type(encoded: &[u8]) -> Option<&'static str> {
-    if encoded.starts_with(b"\x89PNG\r\n\x1a\n") {
-        Some("image/png")
-    } else if encoded.starts_with(&[0xff, 0xd8, 0xff]) {
-        Some("image/jpeg")
-    } else {
-        None
+    let is_webp = encoded.starts_with(b"RIFF") && encoded.get(8..12) == Some(b"WEBP");
+    match encoded {
+        [0x89, b'P', b'N', b'G', ..] => Some("image/png"),
+        [0xff, 0xd8, 0xff, ..] => Some("image/jpeg"),
+        [0xab, b'K', b'T', b'X', b' ', b'2', b'0', ..] => Some("image/ktx2"),
+        _ if is_webp => Some("image/webp"),
+        _ => None,
     }
 }

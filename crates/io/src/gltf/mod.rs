@@ -1,31 +1,115 @@
 //! glTF 2.0: the JSON and the buffers stay as read, and a save patches them.
 
+mod accessor;
+mod changes;
+mod claims;
+mod container;
+mod deliver;
+mod document;
+mod fault;
+mod geometry;
+mod json;
+mod look;
+mod pack;
+mod patch;
+mod primitive;
+mod tree;
+mod uri;
+
 use pliant_mesh::Drawn;
 
+use self::document::Document;
+use self::fault::Fault;
+use self::geometry::Pieces;
+use self::patch::Patched;
+use self::primitive::Primitive;
 use crate::moved::Moved;
 use crate::save::{Save, Saved};
 use crate::scene::{Source, Summary};
 use crate::{Appearance, Format, ReadError, SaveError};
 
+/// A glTF as read, and how its drawn set is made up.
 #[derive(Debug)]
-pub(crate) struct Stored {}
-
-pub(crate) fn read(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn), ReadError> {
-    Err(source.malformed(format, "not read yet"))
+pub(crate) struct Stored {
+    format: Format,
+    document: Document,
+    /// Primitives by mesh.
+    meshes: Vec<Vec<Primitive>>,
+    pieces: Pieces,
+    notes: Vec<String>,
 }
+
+/// Reads a GLB or a `.gltf` with its neighbours.
+pub(crate) fn read(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn), ReadError> {
+    open(source, format).map_err(|fault| fault.of_file(source.name, format))
+}
+
+fn open(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn), Fault> {
+    let mut document = Document::read(source, format)?;
+    let mut notes = std::mem::take(&mut document.notes);
+    let meshes = primitive::primitives(&document)?;
+    let placed = tree::placed_meshes(&document, &mut notes)?;
+    let (drawn, pieces) = geometry::drawn(&document, &meshes, &placed, source.progress, source.cancel)?;
+    Ok((
+        Stored {
+            format,
+            document,
+            meshes,
+            pieces,
+            notes,
+        },
+        drawn,
+    ))
+}
+
 impl Stored {
     pub fn notes(&self) -> &[String] {
-        &[]
+        &self.notes
     }
+
     pub fn summary(&self) -> Summary {
-        Summary::default()
+        let json = &self.document.json;
+        let count = |key: &str| json.member(json.root(), key).map_or(0, |at| json.elements(at).count());
+        Summary {
+            meshes: self.meshes.len(),
+            primitives: self.meshes.iter().map(Vec::len).sum(),
+            nodes: self.document.nodes_at.len(),
+            materials: self.document.materials.len(),
+            images: self.document.images.len(),
+            skins: count("skins"),
+            animations: count("animations"),
+            morph_targets: self
+                .meshes
+                .iter()
+                .flatten()
+                .map(|primitive| primitive.target_count)
+                .sum(),
+        }
     }
+
     pub fn appearance(&self) -> Appearance {
-        Appearance::default()
+        look::appearance(&self.document, &self.meshes, &self.pieces)
     }
-    pub fn save(&self, _save: &Save<'_>, _moved: &Moved<'_>) -> Result<Saved, SaveError> {
-        Err(SaveError::TooLarge {
-            format: Format::Glb,
-        })
+
+    /// The file as GLB or `.gltf`, with the moved vertices' numbers in place of the stored ones.
+    pub fn save(&self, save: &Save<'_>, moved: &Moved<'_>) -> Result<Saved, SaveError> {
+        let Self {
+            document,
+            meshes,
+            pieces,
+            ..
+        } = self;
+        let patched = if moved.is_nothing() {
+            Patched::unchanged(document)
+        } else {
+            let changes = changes::changes(document, meshes, pieces, moved)?;
+            patch::patch(document, meshes, pieces, &changes, save.format)?
+        };
+        match (self.format, save.format) {
+            (Format::Glb, Format::Gltf) => deliver::unpacked(document, patched, save),
+            // A GLB that is called .gltf goes through `in_its_kind`, which keeps its container.
+            (Format::Gltf, Format::Glb) if document.container.is_none() => pack::packed(document, patched, save),
+            _ => deliver::in_its_kind(document, patched, save),
+        }
     }
 }

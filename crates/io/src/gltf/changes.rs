@@ -1,0 +1,197 @@
+//! The new numbers of moved vertices, in each node's own space.
+
+use glam::{DMat3, DVec3, Vec3, Vec4};
+use pliant_mesh::DrawnVertex;
+use rayon::prelude::*;
+
+use super::accessor::Layout;
+use super::document::Document;
+use super::geometry::{Part, Pieces};
+use super::look;
+use super::primitive::Primitive;
+use crate::SaveError;
+use crate::frames::{Frames, carried_normal, carried_tangent};
+use crate::moved::Moved;
+
+/// An attribute that follows the deformation.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Semantic {
+    Position,
+    Normal,
+    Tangent,
+}
+
+impl Semantic {
+    pub const ALL: [Self; 3] = [Self::Position, Self::Normal, Self::Tangent];
+
+    /// The attribute's name in a primitive.
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Position => "POSITION",
+            Self::Normal => "NORMAL",
+            Self::Tangent => "TANGENT",
+        }
+    }
+
+    /// Numbers in an element.
+    pub const fn lanes(self) -> usize {
+        match self {
+            Self::Position | Self::Normal => 3,
+            Self::Tangent => 4,
+        }
+    }
+
+    /// The accessor that a primitive names for it.
+    pub fn accessor(self, primitive: &Primitive) -> Option<usize> {
+        match self {
+            Self::Position => primitive.position,
+            Self::Normal => primitive.normal,
+            Self::Tangent => primitive.tangent,
+        }
+    }
+}
+
+/// Elements whose stored bits change and what they become, ascending; numbers beyond an attribute's own are 0.
+pub(super) type Change = Vec<(u32, [f32; 4])>;
+
+/// What becomes of a part's attributes.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub(super) struct PartChange {
+    pub position: Change,
+    pub normal: Change,
+    pub tangent: Change,
+}
+
+impl PartChange {
+    pub fn of(&self, semantic: Semantic) -> &Change {
+        match semantic {
+            Semantic::Position => &self.position,
+            Semantic::Normal => &self.normal,
+            Semantic::Tangent => &self.tangent,
+        }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        Semantic::ALL.iter().all(|&semantic| self.of(semantic).is_empty())
+    }
+}
+
+/// Vertices that a thread handles at a time.
+const CHUNK: usize = 1 << 13;
+
+/// The changes of every part, in the parts' order.
+pub(super) fn changes(
+    document: &Document,
+    meshes: &[Vec<Primitive>],
+    pieces: &Pieces,
+    moved: &Moved<'_>,
+) -> Result<Vec<PartChange>, SaveError> {
+    let has_normals = pieces.parts.iter().any(|part| {
+        let primitive = &meshes[part.mesh][part.primitive];
+        primitive.normal.is_some() || primitive.tangent.is_some()
+    });
+    let frames = has_normals.then(|| moved.frames(&look::world_normals(document, meshes, pieces)));
+    let of_part = |part| part_change(document, meshes, part, moved, frames.as_ref());
+    pieces.parts.iter().map(of_part).collect()
+}
+
+fn part_change(
+    document: &Document,
+    meshes: &[Vec<Primitive>],
+    part: &Part,
+    moved: &Moved<'_>,
+    frames: Option<&Frames>,
+) -> Result<PartChange, SaveError> {
+    let vertex = |element: u32| DrawnVertex(part.vertices.start + element);
+    let count = part.vertices.end - part.vertices.start;
+    let elements: Vec<u32> = (0..count).filter(|&element| moved.moves(vertex(element))).collect();
+    if elements.is_empty() {
+        return Ok(PartChange::default());
+    }
+    let primitive = &meshes[part.mesh][part.primitive];
+    let world_from_node = part.world_from_node.matrix3;
+    let node_from_world = world_from_node.inverse();
+    let stored = |accessor: Option<usize>| look::attribute::<4>(document, part, accessor);
+    let positions = stored(primitive.position).unwrap_or_default();
+    let normals = stored(primitive.normal);
+    let tangents = stored(primitive.tangent);
+
+    let position = changed(&elements, &positions, |element, stored| {
+        // The displacement, not the position, goes back: far from the origin nothing of it is lost. f32 begins here.
+        let v = vertex(element).index();
+        let by = node_from_world * (moved.positions[v] - moved.drawn.positions[v]);
+        (xyz(stored) + by).as_vec3().extend(0.0)
+    });
+    if let Some(&(element, _)) = position.iter().find(|(_, new)| !new.iter().all(|x| x.is_finite())) {
+        return Err(SaveError::NotFinite {
+            file_vertex: moved.drawn.file_vertex[vertex(element).index()].0,
+        });
+    }
+    let gradient = |element: u32| -> Option<DMat3> {
+        let world = frames?.gradient(vertex(element))?;
+        Some(node_from_world * world * world_from_node)
+    };
+    let normal = normals.as_ref().map_or_else(Change::new, |normals| {
+        changed(&elements, normals, |element, stored| match gradient(element) {
+            Some(gradient) => carried_normal(gradient, xyz(stored)).as_vec3().extend(0.0),
+            None => Vec4::from_array(stored),
+        })
+    });
+    let tangent = tangents.as_ref().map_or_else(Change::new, |tangents| {
+        changed(&elements, tangents, |element, stored| match gradient(element) {
+            Some(gradient) => {
+                let up = normals
+                    .as_ref()
+                    .map_or(DVec3::ZERO, |normals| xyz(normals[element as usize]));
+                let new_up = carried_normal(gradient, up);
+                carried_tangent(gradient, up, new_up, xyz(stored))
+                    .as_vec3()
+                    .extend(stored[3])
+            }
+            None => Vec4::from_array(stored),
+        })
+    });
+    Ok(PartChange {
+        position,
+        normal,
+        tangent,
+    })
+}
+
+/// The elements for which `new` gives other bits than the stored ones.
+fn changed(elements: &[u32], stored: &[[f32; 4]], new: impl Fn(u32, [f32; 4]) -> Vec4 + Sync) -> Change {
+    let of_element = |&element: &u32| {
+        let old = *stored.get(element as usize)?;
+        let new = new(element, old).to_array();
+        (new.map(f32::to_bits) != old.map(f32::to_bits)).then_some((element, new))
+    };
+    elements.par_iter().with_min_len(CHUNK).filter_map(of_element).collect()
+}
+
+fn xyz([x, y, z, _]: [f32; 4]) -> DVec3 {
+    Vec3::new(x, y, z).as_dvec3()
+}
+
+/// Whether two changes of one accessor come to the same but for the rounding of different nodes' transforms.
+pub(super) fn comes_to_the_same(document: &Document, accessor: usize, a: &Change, b: &Change) -> bool {
+    if a == b {
+        return true;
+    }
+    let Ok(layout) = Layout::of(document, accessor) else {
+        return false;
+    };
+    let stored = layout.floats::<4>(document);
+    let size = stored
+        .iter()
+        .flatten()
+        .filter(|x| x.is_finite())
+        .fold(0.0_f32, |most, x| most.max(x.abs()));
+    let tolerance = 4.0 * f32::EPSILON * size;
+    let [a, b] = [a, b].map(|change| {
+        let mut whole = stored.clone();
+        change.iter().for_each(|&(element, new)| whole[element as usize] = new);
+        whole
+    });
+    let is_near = |(x, y): (&f32, &f32)| x.to_bits() == y.to_bits() || (x - y).abs() <= tolerance;
+    a.as_flattened().iter().zip(b.as_flattened()).all(is_near)
+}

@@ -1,0 +1,185 @@
+//! How a glTF looks: attributes of its drawn vertices, materials and images.
+
+use std::sync::Arc;
+
+use ::gltf::json;
+use ::gltf::json::texture::WrappingMode;
+use ::gltf::json::validation::Checked;
+use glam::{DMat3, DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::accessor::Layout;
+use super::document::{Document, ImageFile};
+use super::geometry::{Part, Pieces};
+use super::primitive::Primitive;
+use crate::appearance::{AlphaMode, Appearance, Group, Image, Material, Wrap};
+
+/// Vertices that a thread handles at a time.
+const CHUNK: usize = 1 << 14;
+
+/// The appearance of the drawn set that `pieces` describe.
+pub(super) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Appearance {
+    let mut out = Appearance {
+        normals: gather(pieces, [0.0; 3], |part| {
+            let normals = attribute::<3>(document, part, primitive(meshes, part).normal)?;
+            let world = normal_matrix(part);
+            let turn = |n: &[f32; 3]| {
+                (world * Vec3::from_array(*n).as_dvec3())
+                    .normalize_or_zero()
+                    .as_vec3()
+                    .to_array()
+            };
+            Some(normals.par_iter().with_min_len(CHUNK).map(turn).collect())
+        }),
+        uvs: gather(pieces, [0.0; 2], |part| {
+            let primitive = primitive(meshes, part);
+            let mut uvs = attribute::<2>(document, part, primitive.uv)?;
+            uvs.iter_mut().for_each(|uv| *uv = primitive.uv_transform.apply(*uv));
+            Some(uvs)
+        }),
+        colours: gather(pieces, [255; 4], |part| {
+            let accessor = primitive(meshes, part).colour?;
+            let has_alpha = Layout::of(document, accessor).ok()?.lanes == 4;
+            let colours = attribute::<4>(document, part, Some(accessor))?;
+            let byte = |x: f32| (x * 255.0).round().clamp(0.0, 255.0) as u8;
+            let whole = |[r, g, b, a]: [f32; 4]| [r, g, b, if has_alpha { a } else { 1.0 }].map(byte);
+            Some(colours.into_iter().map(whole).collect())
+        }),
+        groups: Vec::new(),
+        materials: document
+            .materials
+            .iter()
+            .map(|material| self::material(document, material))
+            .collect(),
+        images: (0..document.images.len())
+            .map(|image| self::image(document, image))
+            .collect(),
+    };
+    // Primitives without a material share one that stands behind the file's own.
+    let default_material = out.materials.len();
+    if pieces
+        .pieces
+        .iter()
+        .any(|piece| of_piece(meshes, pieces, piece.part, piece.primitive).material.is_none())
+    {
+        out.materials.push(self::material(document, &json::Material::default()));
+    }
+    out.groups = pieces
+        .pieces
+        .iter()
+        .map(|piece| Group {
+            triangles: piece.triangles.clone(),
+            material: of_piece(meshes, pieces, piece.part, piece.primitive)
+                .material
+                .unwrap_or(default_material),
+            node_name: document.name(document.nodes_at[pieces.parts[piece.part].node]),
+        })
+        .collect();
+    out
+}
+
+/// The rest normals of all drawn vertices in world space, of unit length, zero where there are none.
+pub(super) fn world_normals(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<DVec3> {
+    let mut out = Vec::new();
+    for part in &pieces.parts {
+        let normals = attribute::<3>(document, part, primitive(meshes, part).normal);
+        let normals = normals.unwrap_or_else(|| vec![[0.0; 3]; part.vertices.len()]);
+        let world = normal_matrix(part);
+        let turn = |n: &[f32; 3]| (world * Vec3::from_array(*n).as_dvec3()).normalize_or_zero();
+        out.par_extend(normals.par_iter().with_min_len(CHUNK).map(turn));
+    }
+    out
+}
+
+/// An attribute of a part's vertices; `None` where it has none of the right count.
+pub(super) fn attribute<const N: usize>(
+    document: &Document,
+    part: &Part,
+    accessor: Option<usize>,
+) -> Option<Vec<[f32; N]>> {
+    let layout = Layout::of(document, accessor?).ok()?;
+    (layout.count == part.vertices.len()).then(|| layout.floats(document))
+}
+
+fn primitive<'a>(meshes: &'a [Vec<Primitive>], part: &Part) -> &'a Primitive {
+    &meshes[part.mesh][part.primitive]
+}
+
+fn of_piece<'a>(meshes: &'a [Vec<Primitive>], pieces: &Pieces, part: usize, primitive: usize) -> &'a Primitive {
+    &meshes[pieces.parts[part].mesh][primitive]
+}
+
+fn normal_matrix(part: &Part) -> DMat3 {
+    part.world_from_node.matrix3.inverse().transpose()
+}
+
+/// One attribute of all drawn vertices; `None` where no part has it.
+fn gather<T: Copy + Send>(pieces: &Pieces, missing: T, of_part: impl Fn(&Part) -> Option<Vec<T>>) -> Option<Vec<T>> {
+    let mut out: Option<Vec<T>> = None;
+    for part in &pieces.parts {
+        let (start, end) = (part.vertices.start as usize, part.vertices.end as usize);
+        match (of_part(part), out.as_mut()) {
+            (Some(values), Some(out)) => out.extend(values),
+            (Some(values), None) => {
+                let mut all = vec![missing; start];
+                all.extend(values);
+                out = Some(all);
+            }
+            (None, Some(out)) => out.resize(end, missing),
+            (None, None) => {}
+        }
+    }
+    out
+}
+
+fn material(document: &Document, material: &json::Material) -> Material {
+    let surface = &material.pbr_metallic_roughness;
+    let texture = surface
+        .base_color_texture
+        .as_ref()
+        .and_then(|info| document.textures.get(info.index.value()));
+    let sampler = texture
+        .and_then(|texture| texture.sampler)
+        .and_then(|sampler| document.samplers.get(sampler.value()));
+    let alpha = match material.alpha_mode {
+        Checked::Valid(json::material::AlphaMode::Mask) => {
+            AlphaMode::Mask(material.alpha_cutoff.as_ref().map_or(0.5, |cutoff| cutoff.0))
+        }
+        Checked::Valid(json::material::AlphaMode::Blend) => AlphaMode::Blend,
+        _ => AlphaMode::Opaque,
+    };
+    let image = texture
+        .map(|texture| texture.source.value())
+        .filter(|&image| image < document.images.len());
+    Material {
+        name: material.name.clone().unwrap_or_default(),
+        base_colour: surface.base_color_factor.0,
+        base_colour_image: image,
+        metallic: surface.metallic_factor.0,
+        roughness: surface.roughness_factor.0,
+        double_sided: material.double_sided,
+        alpha,
+        wrap: sampler.map_or([Wrap::Repeat; 2], |sampler| {
+            [wrap(sampler.wrap_s), wrap(sampler.wrap_t)]
+        }),
+    }
+}
+
+fn wrap(mode: Checked<WrappingMode>) -> Wrap {
+    match mode {
+        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::ClampToEdge,
+        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::MirroredRepeat,
+        _ => Wrap::Repeat,
+    }
+}
+
+fn image(document: &Document, image: usize) -> Image {
+    let name = match &document.images[image] {
+        ImageFile::Neighbour { path, .. } => path.clone(),
+        _ => document.name(document.images_at[image]),
+    };
+    Image {
+        name,
+        encoded: Arc::from(document.image(image).unwrap_or_default()),
+    }
+}

@@ -1,0 +1,394 @@
+//! A save's changes to the JSON text and the buffers' bytes, and to nothing else.
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, HashMap};
+
+use ::gltf::json::accessor::ComponentType;
+
+use super::accessor::{Layout, Strided};
+use super::changes::{Change, PartChange, Semantic};
+use super::claims::{self, Claim, MeshCopy, Naming, Outcome};
+use super::document::{Buffer, Document};
+use super::geometry::Pieces;
+use super::json::{At, Edits};
+use super::primitive::Primitive;
+use crate::{Format, SaveError};
+
+/// The JSON text and the buffers after an edit.
+#[derive(Debug)]
+pub(super) struct Patched<'a> {
+    /// Without a byte-order mark.
+    pub text: Cow<'a, [u8]>,
+    /// By buffer; borrowed where nothing changed.
+    pub buffers: Vec<Cow<'a, [u8]>>,
+    pub warnings: Vec<String>,
+}
+
+impl<'a> Patched<'a> {
+    /// The document as it was read.
+    pub fn unchanged(document: &'a Document) -> Self {
+        let buffers = (0..document.buffers.len())
+            .map(|buffer| Cow::Borrowed(document.buffer(buffer)))
+            .collect();
+        Self {
+            text: Cow::Borrowed(document.json.text()),
+            buffers,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Whether this is the document as it was read.
+    pub fn is_unchanged(&self) -> bool {
+        let is_borrowed = |cow: &Cow<'_, [u8]>| matches!(cow, Cow::Borrowed(_));
+        is_borrowed(&self.text) && self.buffers.iter().all(is_borrowed)
+    }
+}
+
+/// Everything that is being put together.
+struct Patch<'a> {
+    document: &'a Document,
+    out: Patched<'a>,
+    edits: Edits,
+    /// Edits of each mesh copy's primitives: of clones only, as they apply to a copy of the text.
+    clone_edits: BTreeMap<usize, Edits>,
+    new_accessors: Vec<String>,
+    new_views: Vec<String>,
+}
+
+/// The document with each part's attributes changed.
+pub(super) fn patch<'a>(
+    document: &'a Document,
+    meshes: &[Vec<Primitive>],
+    pieces: &Pieces,
+    changes: &[PartChange],
+    format: Format,
+) -> Result<Patched<'a>, SaveError> {
+    let copies = claims::copies(document, meshes, pieces, changes);
+    let outcomes = claims::outcomes(document, meshes, &copies, changes);
+    let mut patch = Patch {
+        document,
+        out: Patched::unchanged(document),
+        edits: Edits::default(),
+        clone_edits: BTreeMap::new(),
+        new_accessors: Vec::new(),
+        new_views: Vec::new(),
+    };
+    let places = places(document);
+    for (&accessor, outcome) in &outcomes {
+        if !outcome.kept.change.is_empty() {
+            match patch.in_place(accessor, &outcome.kept, &outcomes, &places) {
+                Some(()) => {}
+                None => {
+                    let text = patch.new_accessor(accessor, &outcome.kept, format)?;
+                    patch
+                        .edits
+                        .replace(document.json.span(document.accessors_at[accessor]), text);
+                }
+            }
+        }
+        for claim in &outcome.moved_out {
+            let text = patch.new_accessor(accessor, claim, format)?;
+            let number = document.accessors.len() + patch.new_accessors.len();
+            patch.new_accessors.push(text);
+            for naming in &claim.namings {
+                patch.rename(meshes, &copies, naming, number);
+            }
+        }
+    }
+    patch.clone_meshes(&copies);
+    patch.finish();
+    patch.out.warnings = morph_warnings(document, meshes, pieces, changes);
+    Ok(patch.out)
+}
+
+impl Patch<'_> {
+    /// Writes a change over the accessor's own bytes; `None`, and nothing written, where they can't hold it: they are
+    /// not f32, not there (sparse zeros), or another accessor's too.
+    fn in_place(
+        &mut self,
+        accessor: usize,
+        claim: &Claim<'_>,
+        outcomes: &BTreeMap<usize, Outcome<'_>>,
+        places: &[Vec<Strided>],
+    ) -> Option<()> {
+        let document = self.document;
+        let layout = Layout::of(document, accessor).ok()?;
+        if layout.component != ComponentType::F32 || layout.lanes != claim.semantic.lanes() {
+            return None;
+        }
+        let wants_the_same = |other: usize| {
+            places[other] == places[accessor]
+                && outcomes
+                    .get(&other)
+                    .is_some_and(|outcome| outcome.kept.change == claim.change)
+        };
+        let is_shared = (0..places.len()).any(|other| {
+            other != accessor
+                && places[other]
+                    .iter()
+                    .any(|theirs| places[accessor].iter().any(|ours| ours.overlaps(theirs)))
+                && !wants_the_same(other)
+        });
+        if is_shared {
+            return None;
+        }
+        let entries = layout.sparse_elements(document);
+        let entries: HashMap<u32, usize> = entries
+            .into_iter()
+            .enumerate()
+            .map(|(k, element)| (element, k))
+            .collect();
+        let bytes_of = |element: u32| match (entries.get(&element), &layout.sparse, &layout.dense) {
+            (Some(&entry), Some(sparse), _) => Some((sparse.values.buffer, sparse.values.element(entry))),
+            (None, _, Some(dense)) => Some((dense.buffer, dense.element(element as usize))),
+            _ => None,
+        };
+        let places: Vec<_> = claim
+            .change
+            .iter()
+            .map(|&(element, _)| bytes_of(element))
+            .collect::<Option<_>>()?;
+        for ((buffer, range), (_, new)) in places.into_iter().zip(claim.change) {
+            let bytes = &mut self.out.buffers[buffer].to_mut()[range];
+            for (bytes, number) in bytes.chunks_exact_mut(4).zip(&new[..layout.lanes]) {
+                bytes.copy_from_slice(&number.to_le_bytes());
+            }
+        }
+        self.set_bounds(accessor, &whole(document, &layout, claim.change), layout.lanes);
+        Some(())
+    }
+
+    /// Brings the accessor's min and max, where it has them, to the bounds of its new elements. A number that still
+    /// says the same keeps its text.
+    fn set_bounds(&mut self, accessor: usize, elements: &[[f32; 4]], lanes: usize) {
+        let json = &self.document.json;
+        let bounds = Bounds::of(elements);
+        for (key, bound) in [("min", bounds.min), ("max", bounds.max)] {
+            let Some(list) = json.member(self.document.accessors_at[accessor], key) else {
+                continue;
+            };
+            let numbers: Vec<At> = json.elements(list).collect();
+            if numbers.len() != lanes {
+                continue;
+            }
+            for (at, new) in numbers.into_iter().zip(bound) {
+                let is_said = json.number(at).is_some_and(|old| old as f32 == new);
+                if new.is_finite() && !is_said {
+                    self.edits.replace(json.span(at), number(new));
+                }
+            }
+        }
+    }
+
+    /// The text of an accessor of its own bytes, put behind a buffer's others, that is `accessor` with the change.
+    fn new_accessor(&mut self, accessor: usize, claim: &Claim<'_>, format: Format) -> Result<String, SaveError> {
+        let document = self.document;
+        let json = &document.json;
+        let old = document.accessors_at[accessor];
+        let cannot = |what: String| SaveError::CannotHold {
+            what,
+            format,
+            remedy: "save as .ply, or export the file again with plain f32 attributes".to_owned(),
+        };
+        let layout = Layout::of(document, accessor).map_err(cannot)?;
+        let lanes = claim.semantic.lanes();
+        let elements = whole(document, &layout, claim.change);
+        let home = layout.dense.as_ref().map(|dense| dense.buffer);
+        let home = home.or_else(|| layout.sparse.as_ref().map(|sparse| sparse.values.buffer));
+        let home = home.or_else(|| {
+            document
+                .buffers
+                .iter()
+                .position(|buffer| !matches!(buffer, Buffer::Absent))
+        });
+        let Some(buffer) = home else {
+            return Err(cannot(format!("accessor {accessor}, which is in no buffer,")));
+        };
+        let bytes = self.out.buffers[buffer].to_mut();
+        let offset = bytes.len().next_multiple_of(4);
+        bytes.resize(offset, 0);
+        bytes.extend(
+            elements
+                .iter()
+                .flat_map(|element| &element[..lanes])
+                .flat_map(|number| number.to_le_bytes()),
+        );
+        let length = bytes.len() - offset;
+        let view = document.views.len() + self.new_views.len();
+        self.new_views.push(format!(
+            "{{\"buffer\":{buffer},\"byteOffset\":{offset},\"byteLength\":{length},\"target\":34962}}"
+        ));
+        let mut text = format!(
+            "{{\"bufferView\":{view},\"componentType\":5126,\"count\":{},\"type\":\"VEC{lanes}\"",
+            layout.count
+        );
+        let has_bounds = claim.semantic == Semantic::Position || json.member(old, "min").is_some();
+        let bounds = Bounds::of(&elements);
+        if has_bounds && bounds.is_finite(lanes) {
+            for (key, bound) in [("max", bounds.max), ("min", bounds.min)] {
+                let numbers: Vec<String> = bound[..lanes].iter().map(|&bound| number(bound)).collect();
+                text += &format!(",\"{key}\":[{}]", numbers.join(","));
+            }
+        }
+        for key in ["name", "extras"] {
+            if let Some(at) = json.member(old, key) {
+                text += &format!(",\"{key}\":{}", String::from_utf8_lossy(json.raw(at)));
+            }
+        }
+        text.push('}');
+        Ok(text)
+    }
+
+    /// Lets a primitive's attribute name another accessor.
+    fn rename(&mut self, meshes: &[Vec<Primitive>], copies: &[MeshCopy], naming: &Naming, accessor: usize) {
+        let json = &self.document.json;
+        let copy = &copies[naming.copy];
+        let primitive = meshes[copy.mesh][naming.primitive].at;
+        let Some(at) = json.path(primitive, &["attributes", naming.semantic.key()]) else {
+            return;
+        };
+        let edits = match copy.clone_for {
+            None => &mut self.edits,
+            Some(_) => self.clone_edits.entry(naming.copy).or_default(),
+        };
+        edits.replace(json.span(at), accessor.to_string());
+    }
+
+    /// Adds the clones behind the meshes and lets their nodes show them.
+    fn clone_meshes(&mut self, copies: &[MeshCopy]) {
+        let json = &self.document.json;
+        let mut clones = Vec::new();
+        for (number, copy) in copies.iter().enumerate() {
+            let Some(nodes) = &copy.clone_for else { continue };
+            let span = json.span(self.document.meshes_at[copy.mesh]);
+            let edits = self.clone_edits.remove(&number).unwrap_or_default();
+            clones.push(String::from_utf8_lossy(&edits.apply(json.text(), span)).into_owned());
+            for &node in nodes {
+                if let Some(at) = json.member(self.document.nodes_at[node], "mesh") {
+                    self.edits.replace(json.span(at), number.to_string());
+                }
+            }
+        }
+        self.append("meshes", &clones);
+    }
+
+    fn finish(&mut self) {
+        let document = self.document;
+        let json = &document.json;
+        let (accessors, views) = (
+            std::mem::take(&mut self.new_accessors),
+            std::mem::take(&mut self.new_views),
+        );
+        self.append("accessors", &accessors);
+        self.append("bufferViews", &views);
+        for (buffer, &at) in document.buffers_at.iter().enumerate() {
+            let length = self.out.buffers[buffer].len();
+            if length != document.buffer(buffer).len() {
+                self.edits.set_member(json, at, "byteLength", &length.to_string());
+            }
+        }
+        if !self.edits.is_empty() {
+            self.out.text = Cow::Owned(self.edits.apply(json.text(), 0..json.text().len()));
+        }
+    }
+
+    fn append(&mut self, section: &str, elements: &[String]) {
+        let json = &self.document.json;
+        match json.member(json.root(), section) {
+            Some(list) => self.edits.append_elements(json, list, elements),
+            None if elements.is_empty() => {}
+            None => self
+                .edits
+                .set_member(json, json.root(), section, &format!("[{}]", elements.join(","))),
+        }
+    }
+}
+
+/// Bounds of elements, number by number; not finite where no element's number is.
+struct Bounds {
+    min: [f32; 4],
+    max: [f32; 4],
+}
+
+impl Bounds {
+    fn of(elements: &[[f32; 4]]) -> Self {
+        let mut bounds = Self {
+            min: [f32::INFINITY; 4],
+            max: [f32::NEG_INFINITY; 4],
+        };
+        for element in elements {
+            for lane in 0..4 {
+                // `min` and `max` pass over NaN.
+                bounds.min[lane] = bounds.min[lane].min(element[lane]);
+                bounds.max[lane] = bounds.max[lane].max(element[lane]);
+            }
+        }
+        bounds
+    }
+
+    fn is_finite(&self, lanes: usize) -> bool {
+        self.min[..lanes]
+            .iter()
+            .chain(&self.max[..lanes])
+            .all(|bound| bound.is_finite())
+    }
+}
+
+/// An f32 as text that reads back as the same number, as f64 too: validators compare either way.
+fn number(value: f32) -> String {
+    let value = f64::from(value);
+    // Rust writes no exponent by itself, and a bound may be 1e-38.
+    if value == 0.0 || (1e-5..1e15).contains(&value.abs()) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
+}
+
+/// All elements of an accessor with a change applied.
+fn whole(document: &Document, layout: &Layout, change: &Change) -> Vec<[f32; 4]> {
+    let mut elements = layout.floats::<4>(document);
+    change
+        .iter()
+        .for_each(|&(element, new)| elements[element as usize] = new);
+    elements
+}
+
+/// Where each accessor's elements stand; nothing for those that can't be read.
+fn places(document: &Document) -> Vec<Vec<Strided>> {
+    let of_accessor = |accessor| {
+        let Ok(layout) = Layout::of(document, accessor) else {
+            return Vec::new();
+        };
+        let sparse = layout.sparse.iter().flat_map(|sparse| [sparse.values, sparse.indices]);
+        layout.dense.into_iter().chain(sparse).collect()
+    };
+    (0..document.accessors.len()).map(of_accessor).collect()
+}
+
+/// A sentence for each edited mesh whose morph targets did not turn with it.
+fn morph_warnings(
+    document: &Document,
+    meshes: &[Vec<Primitive>],
+    pieces: &Pieces,
+    changes: &[PartChange],
+) -> Vec<String> {
+    let is_edited = |mesh: usize| {
+        let mut parts = pieces.parts.iter().zip(changes);
+        parts.any(|(part, change)| part.mesh == mesh && !change.is_empty())
+    };
+    let has_targets = |mesh: &usize| meshes[*mesh].iter().any(|primitive| primitive.target_count > 0);
+    (0..meshes.len())
+        .filter(has_targets)
+        .filter(|&mesh| is_edited(mesh))
+        .map(|mesh| {
+            let name = document.name(document.meshes_at[mesh]);
+            let called = if name.is_empty() {
+                String::new()
+            } else {
+                format!(" ({name})")
+            };
+            format!("The morph targets of mesh {mesh}{called} keep their deltas: they did not turn with the edit.")
+        })
+        .collect()
+}

@@ -1,0 +1,181 @@
+//! Meshes' primitives as the file names them.
+
+use super::document::Document;
+use super::fault::Fault;
+use super::json::At;
+
+/// How a primitive's corners make shapes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Mode {
+    Triangles,
+    Strip,
+    Fan,
+    /// Points, lines, line loops and line strips: kept and left alone.
+    Other,
+}
+
+/// The members of a primitive that are read; every index is in range.
+#[derive(Clone, Debug)]
+pub(super) struct Primitive {
+    pub at: At,
+    /// `None`: a mode that glTF does not have.
+    pub mode: Option<Mode>,
+    pub position: Option<usize>,
+    pub normal: Option<usize>,
+    pub tangent: Option<usize>,
+    /// The first vertex colour.
+    pub colour: Option<usize>,
+    /// The texture coordinates that the material's base colour image takes.
+    pub uv: Option<usize>,
+    /// How they are transformed on the way.
+    pub uv_transform: UvTransform,
+    pub indices: Option<usize>,
+    pub material: Option<usize>,
+    /// Morph targets.
+    pub target_count: usize,
+}
+
+/// KHR_texture_transform: scaled, then turned, then shifted.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct UvTransform {
+    pub offset: [f32; 2],
+    /// Counter-clockwise, radians.
+    pub rotation: f32,
+    pub scale: [f32; 2],
+}
+
+impl UvTransform {
+    const IDENTITY: Self = Self {
+        offset: [0.0; 2],
+        rotation: 0.0,
+        scale: [1.0; 2],
+    };
+
+    /// The texture coordinates that the image is looked up at.
+    pub fn apply(&self, [u, v]: [f32; 2]) -> [f32; 2] {
+        if *self == Self::IDENTITY {
+            return [u, v];
+        }
+        let (sin, cos) = self.rotation.sin_cos();
+        let (u, v) = (u * self.scale[0], v * self.scale[1]);
+        [cos * u + sin * v + self.offset[0], cos * v - sin * u + self.offset[1]]
+    }
+}
+
+/// The primitives of every mesh, in the file's order.
+pub(super) fn primitives(document: &Document) -> Result<Vec<Vec<Primitive>>, String> {
+    let json = &document.json;
+    let of_mesh = |(mesh, &at): (usize, &At)| {
+        let list = json.member(at, "primitives");
+        let primitives = list.into_iter().flat_map(|list| json.elements(list)).enumerate();
+        primitives
+            .map(|(number, at)| Primitive::read(document, at, || format!("mesh {mesh} primitive {number}")))
+            .collect()
+    };
+    document.meshes_at.iter().enumerate().map(of_mesh).collect()
+}
+
+impl Primitive {
+    fn read(document: &Document, at: At, what: impl Fn() -> String) -> Result<Self, String> {
+        let json = &document.json;
+        let mode = match json.member(at, "mode").map(|mode| json.number(mode)) {
+            None => Some(Mode::Triangles),
+            Some(Some(4.0)) => Some(Mode::Triangles),
+            Some(Some(5.0)) => Some(Mode::Strip),
+            Some(Some(6.0)) => Some(Mode::Fan),
+            Some(Some(0.0 | 1.0 | 2.0 | 3.0)) => Some(Mode::Other),
+            _ => None,
+        };
+        let accessor = |object: At, key: &str| document.index(object, key, document.accessors.len(), &what);
+        let attributes = json.member(at, "attributes");
+        let attribute = |key: &str| attributes.map_or(Ok(None), |attributes| accessor(attributes, key));
+        let material = document.index(at, "material", document.materials.len(), &what)?;
+        let (uv_set, uv_transform) = material.map_or((0, UvTransform::IDENTITY), |material| uv_of(document, material));
+        let targets = json.member(at, "targets");
+        Ok(Self {
+            at,
+            mode,
+            position: attribute("POSITION")?,
+            normal: attribute("NORMAL")?,
+            tangent: attribute("TANGENT")?,
+            colour: attribute("COLOR_0")?,
+            uv: attribute(&format!("TEXCOORD_{uv_set}"))?,
+            uv_transform,
+            indices: accessor(at, "indices")?,
+            material,
+            target_count: targets.map_or(0, |targets| json.elements(targets).count()),
+        })
+    }
+
+    /// Whether two primitives' vertices look the same, so that their drawn vertices are the same.
+    pub fn has_attributes_of(&self, other: &Self) -> bool {
+        let key = |p: &Self| (p.position, p.normal, p.tangent, p.colour, p.uv);
+        key(self) == key(other) && (self.uv.is_none() || self.uv_transform == other.uv_transform)
+    }
+
+    /// Refuses Draco on the primitive and meshopt on what it reads.
+    pub fn refuse_compression(&self, document: &Document) -> Result<(), Fault> {
+        let json = &document.json;
+        if json
+            .path(self.at, &["extensions", "KHR_draco_mesh_compression"])
+            .is_some()
+        {
+            return Err(compressed("Draco compression (KHR_draco_mesh_compression)"));
+        }
+        let read = [
+            self.position,
+            self.normal,
+            self.tangent,
+            self.colour,
+            self.uv,
+            self.indices,
+        ];
+        for accessor in read.into_iter().flatten() {
+            let accessor = &document.accessors[accessor];
+            let sparse = accessor
+                .sparse
+                .iter()
+                .flat_map(|s| [s.indices.buffer_view, s.values.buffer_view]);
+            for view in accessor.buffer_view.into_iter().chain(sparse) {
+                let Some(&at) = document.views_at.get(view.value()) else {
+                    continue;
+                };
+                for name in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
+                    if json.path(at, &["extensions", name]).is_some() {
+                        return Err(compressed(&format!("meshopt compression ({name})")));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The set of texture coordinates that a material's base colour takes, and their transform.
+fn uv_of(document: &Document, material: usize) -> (u32, UvTransform) {
+    let Some(texture) = &document.materials[material].pbr_metallic_roughness.base_color_texture else {
+        return (0, UvTransform::IDENTITY);
+    };
+    match texture
+        .extensions
+        .as_ref()
+        .and_then(|extensions| extensions.texture_transform.as_ref())
+    {
+        None => (texture.tex_coord, UvTransform::IDENTITY),
+        Some(found) => {
+            let transform = UvTransform {
+                offset: found.offset.0,
+                rotation: found.rotation.0,
+                scale: found.scale.0,
+            };
+            (found.tex_coord.unwrap_or(texture.tex_coord), transform)
+        }
+    }
+}
+
+fn compressed(feature: &str) -> Fault {
+    Fault::Unsupported {
+        feature: feature.to_owned(),
+        remedy: "export it again without compression",
+    }
+}

@@ -1,0 +1,146 @@
+//! The addresses of buffers and images: data within the JSON, neighbours by path, or the web.
+
+use base64::Engine as _;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
+
+/// Where a URI points.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) enum Address {
+    /// Bytes written into the URI itself.
+    Data(Vec<u8>),
+    /// A path, percent-decoded, `/` between folders.
+    Neighbour(String),
+    /// Something with a scheme that is never fetched.
+    Elsewhere,
+}
+
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
+
+/// What a path may not hold as it is.
+const ESCAPED: &AsciiSet = &CONTROLS
+    .add(b' ')
+    .add(b'"')
+    .add(b'#')
+    .add(b'%')
+    .add(b'?')
+    .add(b'\\')
+    .add(b'<')
+    .add(b'>');
+
+/// Reads a URI; in words what is wrong with a broken data URI.
+pub(super) fn address(uri: &str) -> Result<Address, String> {
+    if let Some(rest) = uri
+        .get(..5)
+        .filter(|scheme| scheme.eq_ignore_ascii_case("data:"))
+        .and(uri.get(5..))
+    {
+        let Some((kind, payload)) = rest.split_once(',') else {
+            return Err("a data URI without a comma".to_owned());
+        };
+        let bytes = if kind.to_ascii_lowercase().ends_with(";base64") {
+            BASE64
+                .decode(payload)
+                .map_err(|error| format!("a data URI with broken base64 ({error})"))?
+        } else {
+            percent_decode_str(payload).collect()
+        };
+        return Ok(Address::Data(bytes));
+    }
+    // One letter before a colon is a drive, not a scheme.
+    let has_scheme = uri.split_once(':').is_some_and(|(scheme, _)| {
+        scheme.len() > 1
+            && scheme
+                .bytes()
+                .all(|byte| byte.is_ascii_alphanumeric() || b"+-.".contains(&byte))
+    });
+    if has_scheme {
+        return Ok(Address::Elsewhere);
+    }
+    Ok(Address::Neighbour(match percent_decode_str(uri).decode_utf8() {
+        Ok(path) => path.into_owned(),
+        Err(_) => uri.to_owned(),
+    }))
+}
+
+/// A path in its shortest form if it stays in its folder, `None` if it leaves it (absolute, or by `..`).
+pub(super) fn inside(path: &str) -> Option<String> {
+    let is_absolute = path.starts_with(['/', '\\']) || path.as_bytes().get(1) == Some(&b':');
+    if is_absolute {
+        return None;
+    }
+    let mut steps = Vec::new();
+    for step in path.split(['/', '\\']) {
+        match step {
+            "" | "." => {}
+            ".." => {
+                steps.pop()?;
+            }
+            _ => steps.push(step),
+        }
+    }
+    (!steps.is_empty()).then(|| steps.join("/"))
+}
+
+/// A path as a JSON string that holds its URI.
+pub(super) fn json_uri(path: &str) -> String {
+    serde_json::Value::from(utf8_percent_encode(path, ESCAPED).to_string()).to_string()
+}
+
+/// Bytes as a JSON string that holds a data URI.
+pub(super) fn json_data_uri(mime: &str, bytes: &[u8]) -> String {
+    format!(
+        "\"data:{mime};base64,{}\"",
+        base64::engine::general_purpose::STANDARD.encode(bytes)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_are_told_apart() {
+        let cases = [
+            ("a%20b.bin", Ok(Address::Neighbour("a b.bin".to_owned()))),
+            ("../x/a.bin", Ok(Address::Neighbour("../x/a.bin".to_owned()))),
+            ("https://x.org/a.bin", Ok(Address::Elsewhere)),
+            (
+                "data:application/octet-stream;base64,AQID",
+                Ok(Address::Data(vec![1, 2, 3])),
+            ),
+            ("DATA:;BASE64,AQI=", Ok(Address::Data(vec![1, 2]))),
+            ("data:text/plain,a%20b", Ok(Address::Data(b"a b".to_vec()))),
+        ];
+        for (uri, wanted) in cases {
+            assert_eq!(address(uri), wanted, "{uri}");
+        }
+        assert!(address("data:nothing").is_err());
+        assert!(address("data:;base64,@@@").is_err());
+        assert!(address("däta:").is_ok());
+    }
+
+    #[test]
+    fn paths_that_leave_the_folder_are_known() {
+        for path in ["/a", "..", "../a", "a/../../b", "C:\\a", "\\\\server\\a", "..\\a", ""] {
+            assert_eq!(inside(path), None, "{path}");
+        }
+        assert_eq!(inside("./a//b/../c.bin").as_deref(), Some("a/c.bin"));
+    }
+
+    #[test]
+    fn a_path_survives_its_uri() {
+        for path in ["a b.bin", "ä%.bin", "x/y\"z.bin"] {
+            let json = json_uri(path);
+            let uri: Result<String, _> = serde_json::from_str(&json);
+            assert!(
+                uri.is_ok_and(|uri| address(&uri) == Ok(Address::Neighbour(path.to_owned()))),
+                "{json}"
+            );
+        }
+    }
+}
