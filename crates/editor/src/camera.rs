@@ -1,0 +1,384 @@
+//! The eye: a perspective turntable in f64, so that it works at geographic coordinates too.
+//!
+//! View space looks along −z with x to the right and y up. Clip space has x and y in −1..1, y up, and reversed depth:
+//! 1 at the near plane and 0 infinitely far away, which spreads f32 depth evenly over any distance.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
+
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
+use pliant_mesh::Bounds;
+
+/// Which axis of the world points up on the screen.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum UpAxis {
+    /// As in glTF.
+    #[default]
+    Y,
+    /// As in most scans and in CAD.
+    Z,
+}
+
+/// A side to look from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
+pub enum NamedView {
+    /// From the front: along −z where y is up, along +y where z is up.
+    Front,
+    /// From behind.
+    Back,
+    /// From the left of what is looked at, that is from −x.
+    Left,
+    /// From +x.
+    Right,
+    /// From above.
+    Top,
+    /// From below.
+    Bottom,
+    /// From the front, the right and above.
+    ThreeQuarter,
+}
+
+impl NamedView {
+    /// Every view with the name that the command line uses.
+    pub const NAMES: [(&'static str, Self); 7] = [
+        ("front", Self::Front),
+        ("back", Self::Back),
+        ("left", Self::Left),
+        ("right", Self::Right),
+        ("top", Self::Top),
+        ("bottom", Self::Bottom),
+        ("three-quarter", Self::ThreeQuarter),
+    ];
+
+    /// Yaw and pitch in radians.
+    fn angles_rad(self) -> (f64, f64) {
+        match self {
+            Self::Front => (0.0, 0.0),
+            Self::Back => (PI, 0.0),
+            Self::Left => (-FRAC_PI_2, 0.0),
+            Self::Right => (FRAC_PI_2, 0.0),
+            Self::Top => (0.0, MAX_PITCH_RAD),
+            Self::Bottom => (0.0, -MAX_PITCH_RAD),
+            Self::ThreeQuarter => (0.6, 0.35),
+        }
+    }
+}
+
+/// As far up or down as the turntable tips: the poles themselves.
+const MAX_PITCH_RAD: f64 = FRAC_PI_2;
+/// How far the eye turns per point of dragging.
+const ORBIT_RAD_PER_PX: f64 = 0.007;
+/// How much closer one notch of the wheel comes.
+const ZOOM_PER_LINE: f64 = 1.15;
+
+/// An eye that circles a target.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Camera {
+    /// What is looked at, in world space.
+    pub target: DVec3,
+    /// From the eye to the target, in world units, positive.
+    pub distance: f64,
+    /// Turn about the up axis; 0 looks from the front, growing towards the right-hand side.
+    pub yaw_rad: f64,
+    /// Height above the horizon, −π/2 to π/2.
+    pub pitch_rad: f64,
+    /// The angle of the view's height.
+    pub fov_y_rad: f64,
+    /// Which axis points up.
+    pub up: UpAxis,
+    /// The size of what was framed last, in world units: bounds zooming.
+    pub scale: f64,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        let (yaw_rad, pitch_rad) = NamedView::ThreeQuarter.angles_rad();
+        Self {
+            target: DVec3::ZERO,
+            distance: 3.0,
+            yaw_rad,
+            pitch_rad,
+            fov_y_rad: FRAC_PI_4 * 0.9,
+            up: UpAxis::Y,
+            scale: 1.0,
+        }
+    }
+}
+
+/// A half line in world space.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Ray {
+    /// Where it begins.
+    pub origin: DVec3,
+    /// A unit vector.
+    pub direction: DVec3,
+}
+
+impl Camera {
+    /// World from view: its columns are the view's right, up and backward axes and the eye.
+    pub fn world_from_view(&self) -> DMat4 {
+        let axes = self.axes();
+        let eye = self.eye();
+        DMat4::from_cols(
+            axes.x_axis.extend(0.0),
+            axes.y_axis.extend(0.0),
+            axes.z_axis.extend(0.0),
+            eye.extend(1.0),
+        )
+    }
+
+    /// View from world.
+    pub fn view_from_world(&self) -> DMat4 {
+        let view_from_world = self.axes().transpose();
+        let shift = view_from_world * -self.eye();
+        DMat4::from_cols(
+            view_from_world.x_axis.extend(0.0),
+            view_from_world.y_axis.extend(0.0),
+            view_from_world.z_axis.extend(0.0),
+            shift.extend(1.0),
+        )
+    }
+
+    /// Clip from view for a viewport of this size: reversed depth, infinitely far.
+    pub fn clip_from_view(&self, viewport_px: DVec2) -> DMat4 {
+        let focal = 1.0 / (0.5 * self.fov_y_rad).tan();
+        let aspect = viewport_px.x / viewport_px.y;
+        DMat4::from_cols(
+            DVec4::new(focal / aspect, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, focal, 0.0, 0.0),
+            DVec4::new(0.0, 0.0, 0.0, -1.0),
+            DVec4::new(0.0, 0.0, self.near(), 0.0),
+        )
+    }
+
+    /// Clip from world for a viewport of this size. For GPU positions relative to a centre, multiply by the
+    /// translation to that centre before rounding to f32.
+    pub fn clip_from_world(&self, viewport_px: DVec2) -> DMat4 {
+        self.clip_from_view(viewport_px) * self.view_from_world()
+    }
+
+    /// The distance of the near plane.
+    pub fn near(&self) -> f64 {
+        (self.distance * 1e-3).max(self.scale * 1e-6)
+    }
+
+    /// Where the eye is, in world space.
+    pub fn eye(&self) -> DVec3 {
+        self.target + self.axes().z_axis * self.distance
+    }
+
+    /// The direction in which the eye looks, a unit vector.
+    pub fn forward(&self) -> DVec3 {
+        -self.axes().z_axis
+    }
+
+    /// The view's right, up and backward axes in world space, as columns: a rotation.
+    pub fn axes(&self) -> DMat3 {
+        let (sin_yaw, cos_yaw) = self.yaw_rad.sin_cos();
+        let (sin_pitch, cos_pitch) = self.pitch_rad.sin_cos();
+        // With y up: the eye stands at (sin yaw cos pitch, sin pitch, cos yaw cos pitch) from the target.
+        let right = DVec3::new(cos_yaw, 0.0, -sin_yaw);
+        let backward = DVec3::new(sin_yaw * cos_pitch, sin_pitch, cos_yaw * cos_pitch);
+        let up = backward.cross(right);
+        let axes = DMat3::from_cols(right, up, backward);
+        match self.up {
+            UpAxis::Y => axes,
+            // (x, y, z) with y up becomes (x, −z, y) with z up.
+            UpAxis::Z => {
+                let turn = |v: DVec3| DVec3::new(v.x, -v.z, v.y);
+                DMat3::from_cols(turn(axes.x_axis), turn(axes.y_axis), turn(axes.z_axis))
+            }
+        }
+    }
+
+    /// The ray through a point of the viewport.
+    pub fn ray(&self, position_px: DVec2, viewport_px: DVec2) -> Ray {
+        let offset = DVec2::new(position_px.x - 0.5 * viewport_px.x, 0.5 * viewport_px.y - position_px.y);
+        let in_view = (offset / self.focal_px(viewport_px)).extend(-1.0).normalize();
+        Ray {
+            origin: self.eye(),
+            direction: self.axes() * in_view,
+        }
+    }
+
+    /// Where a point of the world appears in the viewport; `None` behind the eye.
+    pub fn project(&self, world: DVec3, viewport_px: DVec2) -> Option<DVec2> {
+        let in_view = self.axes().transpose() * (world - self.eye());
+        let depth = -in_view.z;
+        if depth <= 0.0 {
+            return None;
+        }
+        let offset = in_view.truncate() * (self.focal_px(viewport_px) / depth);
+        Some(DVec2::new(
+            0.5 * viewport_px.x + offset.x,
+            0.5 * viewport_px.y - offset.y,
+        ))
+    }
+
+    /// World units that one point of the screen spans at the depth of `world` (never below that of the near plane).
+    pub fn world_per_px(&self, world: DVec3, viewport_px: DVec2) -> f64 {
+        let depth = (world - self.eye()).dot(self.forward()).max(self.near());
+        depth / self.focal_px(viewport_px)
+    }
+
+    /// Circles the target as the pointer moves by `delta_px`.
+    pub fn orbit(&mut self, delta_px: DVec2) {
+        self.yaw_rad = (self.yaw_rad - delta_px.x * ORBIT_RAD_PER_PX).rem_euclid(TAU);
+        self.pitch_rad = (self.pitch_rad + delta_px.y * ORBIT_RAD_PER_PX).clamp(-MAX_PITCH_RAD, MAX_PITCH_RAD);
+    }
+
+    /// Moves eye and target across the view, so that what lies at `anchor`'s depth stays under the pointer.
+    pub fn pan(&mut self, delta_px: DVec2, anchor: DVec3, viewport_px: DVec2) {
+        let axes = self.axes();
+        let scale = self.world_per_px(anchor, viewport_px);
+        self.target += (axes.y_axis * delta_px.y - axes.x_axis * delta_px.x) * scale;
+    }
+
+    /// Comes closer by `factor` (above 1) or backs away, with `anchor` staying where it appears.
+    pub fn zoom(&mut self, factor: f64, anchor: DVec3) {
+        let wanted = self.distance / factor;
+        let distance = wanted.clamp(self.scale * 1e-4, self.scale * 1e3);
+        let shrink = distance / self.distance;
+        self.target = anchor + (self.target - anchor) * shrink;
+        self.distance = distance;
+    }
+
+    /// Zooms by wheel notches.
+    pub fn zoom_lines(&mut self, lines: f64, anchor: DVec3) {
+        self.zoom(ZOOM_PER_LINE.powf(lines.clamp(-20.0, 20.0)), anchor);
+    }
+
+    /// Looks at the whole of `bounds` from the present side; nothing happens to what has no size and no place.
+    pub fn frame(&mut self, bounds: &Bounds, viewport_px: DVec2) {
+        let diagonal = bounds.diagonal();
+        if !diagonal.is_finite() {
+            return;
+        }
+        let radius = if diagonal > 0.0 { 0.5 * diagonal } else { self.scale };
+        let aspect = viewport_px.x / viewport_px.y;
+        let half_height = 0.5 * self.fov_y_rad;
+        let half_angle = half_height.min((half_height.tan() * aspect).atan());
+        self.target = bounds.centre();
+        self.distance = 1.05 * radius / half_angle.sin();
+    }
+
+    /// Looks from a named side.
+    pub fn look_from(&mut self, view: NamedView) {
+        (self.yaw_rad, self.pitch_rad) = view.angles_rad();
+    }
+
+    /// Points of the screen per unit of view-space slope.
+    fn focal_px(&self, viewport_px: DVec2) -> f64 {
+        0.5 * viewport_px.y / (0.5 * self.fov_y_rad).tan()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec2, DVec3};
+    use pliant_mesh::Bounds;
+
+    use super::{Camera, NamedView, UpAxis};
+
+    const VIEWPORT_PX: DVec2 = DVec2::new(800.0, 500.0);
+
+    fn cameras() -> Vec<Camera> {
+        let mut cameras = Vec::new();
+        for up in [UpAxis::Y, UpAxis::Z] {
+            for (_, view) in NamedView::NAMES {
+                let mut camera = Camera {
+                    up,
+                    target: DVec3::new(5e5, -3.0, 4e6),
+                    ..Camera::default()
+                };
+                camera.look_from(view);
+                cameras.push(camera);
+            }
+        }
+        cameras
+    }
+
+    #[test]
+    fn a_projected_point_lies_on_its_ray() {
+        for camera in cameras() {
+            let world = camera.target + DVec3::new(0.3, -0.2, 0.4);
+            let pixel = camera.project(world, VIEWPORT_PX).unwrap();
+            let ray = camera.ray(pixel, VIEWPORT_PX);
+            let off = (world - ray.origin).cross(ray.direction).length();
+            assert!(off < 1e-8, "{off}");
+        }
+    }
+
+    #[test]
+    fn clip_space_agrees_with_projection_and_depth_is_reversed() {
+        for camera in cameras() {
+            let near = camera.target + DVec3::new(0.1, 0.1, 0.1);
+            let far = near + camera.forward() * 10.0;
+            let [near_clip, far_clip] = [near, far].map(|p| {
+                let clip = camera.clip_from_world(VIEWPORT_PX) * p.extend(1.0);
+                clip.truncate() / clip.w
+            });
+            let pixel = camera.project(near, VIEWPORT_PX).unwrap();
+            let expected = DVec2::new(pixel.x / 400.0 - 1.0, 1.0 - pixel.y / 250.0);
+            assert!(near_clip.truncate().distance(expected) < 1e-6);
+            assert!(1.0 > near_clip.z && near_clip.z > far_clip.z && far_clip.z > 0.0);
+        }
+    }
+
+    #[test]
+    fn zoom_keeps_the_anchor_where_it_appears() {
+        for mut camera in cameras() {
+            let anchor = camera.target + DVec3::new(0.2, 0.3, -0.1);
+            let before = camera.project(anchor, VIEWPORT_PX).unwrap();
+            camera.zoom_lines(3.0, anchor);
+            let after = camera.project(anchor, VIEWPORT_PX).unwrap();
+            assert!(before.distance(after) < 1e-5);
+        }
+    }
+
+    #[test]
+    fn pan_keeps_the_anchor_under_the_pointer() {
+        for mut camera in cameras() {
+            let anchor = camera.target;
+            let before = camera.project(anchor, VIEWPORT_PX).unwrap();
+            let delta_px = DVec2::new(40.0, -25.0);
+            camera.pan(delta_px, anchor, VIEWPORT_PX);
+            assert!(camera.project(anchor, VIEWPORT_PX).unwrap().distance(before + delta_px) < 1e-5);
+        }
+    }
+
+    #[test]
+    fn framing_shows_every_corner() {
+        let bounds = Bounds {
+            min: DVec3::new(-1.0, 7.0, -3.0),
+            max: DVec3::new(2.0, 9.0, 40.0),
+        };
+        for mut camera in cameras() {
+            for viewport_px in [VIEWPORT_PX, DVec2::new(300.0, 900.0)] {
+                camera.frame(&bounds, viewport_px);
+                for corner in 0..8 {
+                    let pick = |bit: u32, low: f64, high: f64| if corner >> bit & 1 == 0 { low } else { high };
+                    let world = DVec3::new(
+                        pick(0, bounds.min.x, bounds.max.x),
+                        pick(1, bounds.min.y, bounds.max.y),
+                        pick(2, bounds.min.z, bounds.max.z),
+                    );
+                    let pixel = camera.project(world, viewport_px).unwrap();
+                    assert!(pixel.cmpge(DVec2::ZERO).all() && pixel.cmple(viewport_px).all());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn named_views_look_along_their_axis() {
+        let mut camera = Camera::default();
+        camera.look_from(NamedView::Front);
+        assert!(camera.forward().distance(DVec3::NEG_Z) < 1e-12);
+        camera.look_from(NamedView::Right);
+        assert!(camera.forward().distance(DVec3::NEG_X) < 1e-12);
+        camera.up = UpAxis::Z;
+        camera.look_from(NamedView::Front);
+        assert!(camera.forward().distance(DVec3::Y) < 1e-12);
+        assert!(camera.axes().y_axis.distance(DVec3::Z) < 1e-12);
+    }
+}

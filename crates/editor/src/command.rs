@@ -1,0 +1,346 @@
+//! What menus, buttons, keys and the command palette can ask for: commands are data.
+//!
+//! Each command that needs no argument stands in [`Command::LISTED`] with its name, its tooltip, its shortcut and when
+//! it is enabled ([`Editor::is_enabled`](crate::Editor::is_enabled)); panels send the others with their values.
+
+use pliant_deform::{Loose, Method};
+
+use crate::{HandleId, HandleTransform, Key, Modifiers, Shading, ToolMode};
+
+/// Something to be done, with all it needs to know.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Command {
+    /// Takes back the last step.
+    Undo,
+    /// Does the last taken-back step again.
+    Redo,
+    /// Chooses what the left button does on the surface.
+    SetTool(ToolMode),
+    /// The next stroke of the handle brush makes a handle of its own.
+    NewHandle,
+    /// Selects a handle; its gizmo is shown.
+    SelectHandle(HandleId),
+    /// Selects no handle.
+    Deselect,
+    /// Selects the next handle of the list.
+    NextHandle,
+    /// Deletes the selected handle; its vertices are held still.
+    DeleteHandle,
+    /// Takes the selected handle back to where it rests.
+    ResetHandle,
+    /// Names a handle.
+    RenameHandle(HandleId, String),
+    /// Puts a handle where the transform says, about the handle's own pivot.
+    SetHandleTransform(HandleId, HandleTransform),
+    /// How far along the surface a handle takes the surface along.
+    SetReach(HandleId, Reach),
+    /// Makes the present shape the new rest shape: every handle's transform returns to the identity.
+    Apply,
+    /// Takes the rest shape and every handle back to the file's shape.
+    ResetShape,
+    /// Holds everything still again: no handle, no region.
+    ClearRegions,
+    /// Chooses the method and its options.
+    SetMethod(Method),
+    /// Chooses what components that nothing holds do.
+    SetLoose(Loose),
+    /// Sets the stiffness (0.001 to 1000; 1 is a vertex left alone) of every vertex.
+    SetStiffness(Vec<f64>),
+    /// Sets the brush's radius in points, clamped to what the brush allows.
+    SetBrushRadius(f64),
+    /// A larger brush.
+    GrowBrush,
+    /// A smaller brush.
+    ShrinkBrush,
+    /// Frames everything.
+    FrameAll,
+    /// Frames the selected handle and its region.
+    FrameSelected,
+    /// Looks from a named side.
+    View(crate::NamedView),
+    /// Which axis points up on the screen.
+    SetUp(crate::UpAxis),
+    /// How the surface is shaded.
+    SetShading(Shading),
+    /// Shows or hides the wireframe.
+    ToggleWireframe,
+    /// Shows or hides the regions' colours over clay and material.
+    ToggleRegions,
+    /// What the gizmo offers.
+    SetGizmo(crate::GizmoMode),
+    /// Starts moving the selected handle with the pointer.
+    Move,
+    /// Starts turning the selected handle with the pointer.
+    Turn,
+    /// Starts scaling the selected handle with the pointer.
+    Scale,
+    /// Stops the jobs that run; what needs them starts them again.
+    CancelJobs,
+}
+
+/// How far along the surface a handle takes the surface along.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Reach {
+    /// This many of the handle's own radii (above 0).
+    Radii(f64),
+    /// This far in world units (0: only what is painted).
+    Length(f64),
+}
+
+impl Default for Reach {
+    fn default() -> Self {
+        Self::Radii(3.0)
+    }
+}
+
+/// A key with the modifiers that must be held.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Shortcut {
+    /// Exactly these modifiers.
+    pub modifiers: Modifiers,
+    /// The key.
+    pub key: Key,
+}
+
+impl Shortcut {
+    const fn plain(key: Key) -> Self {
+        Self {
+            modifiers: Modifiers::NONE,
+            key,
+        }
+    }
+
+    const fn with(modifiers: Modifiers, key: Key) -> Self {
+        Self { modifiers, key }
+    }
+
+    /// As a menu writes it: "Ctrl+Shift+Z".
+    pub fn label(&self) -> String {
+        let mut label = String::new();
+        for (held, name) in [
+            (self.modifiers.ctrl, "Ctrl+"),
+            (self.modifiers.alt, "Alt+"),
+            (self.modifiers.shift, "Shift+"),
+        ] {
+            if held {
+                label.push_str(name);
+            }
+        }
+        match self.key {
+            Key::Character(character) => label.extend(character.to_uppercase()),
+            Key::Escape => label.push_str("Esc"),
+            Key::Enter => label.push_str("Enter"),
+            Key::Backspace => label.push_str("Backspace"),
+            Key::Delete => label.push_str("Delete"),
+            Key::Home => label.push_str("Home"),
+            Key::Tab => label.push_str("Tab"),
+        }
+        label
+    }
+}
+
+/// A command as a menu or the palette lists it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Listed {
+    /// What is sent.
+    pub command: Command,
+    /// Its name in a menu.
+    pub name: &'static str,
+    /// One sentence that says what it does.
+    pub tooltip: &'static str,
+    /// Keys that send it; the first is shown.
+    pub shortcuts: &'static [Shortcut],
+}
+
+const fn listed(command: Command, name: &'static str, tooltip: &'static str, shortcuts: &'static [Shortcut]) -> Listed {
+    Listed {
+        command,
+        name,
+        tooltip,
+        shortcuts,
+    }
+}
+
+const fn character(character: char) -> Shortcut {
+    Shortcut::plain(Key::Character(character))
+}
+
+impl Command {
+    /// Every command that needs no argument, in the order of a menu.
+    pub const LISTED: &'static [Listed] = &[
+        listed(
+            Command::Undo,
+            "Undo",
+            "Takes back the last step.",
+            &[Shortcut::with(Modifiers::CTRL, Key::Character('z'))],
+        ),
+        listed(
+            Command::Redo,
+            "Redo",
+            "Does the step that was taken back again.",
+            &[
+                Shortcut::with(Modifiers::CTRL_SHIFT, Key::Character('z')),
+                Shortcut::with(Modifiers::CTRL, Key::Character('y')),
+            ],
+        ),
+        listed(
+            Command::SetTool(ToolMode::PaintHandle),
+            "Paint handle",
+            "Paints what you want to move; around it a region follows along.",
+            &[character('1')],
+        ),
+        listed(
+            Command::SetTool(ToolMode::PaintFree),
+            "Paint region",
+            "Paints what may bend along with the handles.",
+            &[character('2')],
+        ),
+        listed(
+            Command::SetTool(ToolMode::PaintFixed),
+            "Paint fixed",
+            "Paints what is held still.",
+            &[character('3')],
+        ),
+        listed(
+            Command::SetTool(ToolMode::Erase),
+            "Erase",
+            "Takes paint away.",
+            &[character('4')],
+        ),
+        listed(
+            Command::SetTool(ToolMode::Select),
+            "Select",
+            "Click a handle to select it; drag it to move it in the plane of the screen.",
+            &[character('5')],
+        ),
+        listed(
+            Command::NewHandle,
+            "New handle",
+            "The next stroke of the handle brush makes a handle of its own.",
+            &[character('n')],
+        ),
+        listed(
+            Command::NextHandle,
+            "Next handle",
+            "Selects the next handle.",
+            &[Shortcut::plain(Key::Tab)],
+        ),
+        listed(
+            Command::Deselect,
+            "Deselect",
+            "Selects no handle.",
+            &[Shortcut::with(Modifiers::ALT, Key::Character('a'))],
+        ),
+        listed(
+            Command::DeleteHandle,
+            "Delete handle",
+            "Deletes the selected handle; the shape stays as it is.",
+            &[Shortcut::plain(Key::Delete), character('x')],
+        ),
+        listed(
+            Command::Move,
+            "Move",
+            "Moves the selected handle with the pointer.",
+            &[character('g')],
+        ),
+        listed(
+            Command::Turn,
+            "Turn",
+            "Turns the selected handle with the pointer.",
+            &[character('r')],
+        ),
+        listed(
+            Command::Scale,
+            "Scale",
+            "Scales the selected handle with the pointer.",
+            &[character('s')],
+        ),
+        listed(
+            Command::ResetHandle,
+            "Reset handle",
+            "Takes the selected handle back to where it rests.",
+            &[Shortcut::with(Modifiers::ALT, Key::Character('g'))],
+        ),
+        listed(
+            Command::Apply,
+            "Apply shape",
+            "Makes the present shape the new rest shape.",
+            &[Shortcut::with(Modifiers::CTRL, Key::Enter)],
+        ),
+        listed(
+            Command::ResetShape,
+            "Reset shape",
+            "Takes the surface back to the file's shape.",
+            &[],
+        ),
+        listed(
+            Command::ClearRegions,
+            "Clear regions",
+            "Removes all handles and regions; the shape stays as it is.",
+            &[],
+        ),
+        listed(
+            Command::FrameAll,
+            "Frame all",
+            "Shows the whole surface.",
+            &[Shortcut::plain(Key::Home)],
+        ),
+        listed(
+            Command::FrameSelected,
+            "Frame selected",
+            "Shows the selected handle.",
+            &[character('.')],
+        ),
+        listed(
+            Command::GrowBrush,
+            "Larger brush",
+            "Makes the brush larger.",
+            &[character(']')],
+        ),
+        listed(
+            Command::ShrinkBrush,
+            "Smaller brush",
+            "Makes the brush smaller.",
+            &[character('[')],
+        ),
+        listed(
+            Command::SetShading(Shading::Clay),
+            "Clay",
+            "Shades the surface like clay.",
+            &[],
+        ),
+        listed(
+            Command::SetShading(Shading::Material),
+            "Material",
+            "Shades the surface with the file's materials.",
+            &[],
+        ),
+        listed(
+            Command::ToggleRegions,
+            "Show regions",
+            "Shows or hides the regions' colours.",
+            &[],
+        ),
+        listed(
+            Command::ToggleWireframe,
+            "Wireframe",
+            "Shows or hides the triangles' edges.",
+            &[character('w')],
+        ),
+        listed(Command::CancelJobs, "Stop", "Stops what is being computed.", &[]),
+    ];
+
+    /// The listed command that this key sends.
+    pub fn of_key(key: Key, modifiers: Modifiers) -> Option<Self> {
+        let pressed = Shortcut { modifiers, key };
+        Self::LISTED
+            .iter()
+            .find(|listed| listed.shortcuts.contains(&pressed))
+            .map(|listed| listed.command.clone())
+    }
+
+    /// The entry of [`Command::LISTED`] for this command.
+    pub fn listed(&self) -> Option<&'static Listed> {
+        Self::LISTED.iter().find(|listed| listed.command == *self)
+    }
+}

@@ -1,0 +1,213 @@
+//! What is saved and undone: the paint, the handles, the options, and the shape they have brought about.
+//!
+//! The [`Document`] holds what a person has said and what has come of it. What follows from it alone, and can be
+//! computed again at any time (the region around the handles, the factorisation), is not in it.
+//!
+//! Cloning is cheap: the long vectors are shared until one side changes.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+use pliant_deform::{Loose, Method};
+
+use crate::{HandleTransform, Reach};
+
+/// A handle's number for as long as the document lives.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct HandleId(pub u16);
+
+/// What was painted on a vertex.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum Paint {
+    /// Nothing: free where a handle reaches, held still elsewhere.
+    #[default]
+    Bare,
+    /// Held still, whatever reaches it.
+    Fixed,
+    /// Free to bend.
+    Free,
+    /// A part of a handle.
+    Handle(HandleId),
+}
+
+/// A handle: a part of the surface that is moved as a whole.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Handle {
+    /// Its number.
+    pub id: HandleId,
+    /// Its name, for a person.
+    pub name: String,
+    /// Its colour, sRGB with alpha.
+    pub colour: [u8; 4],
+    /// Where it was put, from the rest shape, about its pivot.
+    pub transform: HandleTransform,
+    /// The point that its turns and scales leave alone, on the rest shape, in world space.
+    pub pivot: DVec3,
+    /// How far along the surface it takes the surface along.
+    pub reach: Reach,
+}
+
+impl Handle {
+    /// The transform as a map of world positions of the rest shape.
+    pub fn affine(&self) -> DAffine3 {
+        self.transform.affine(self.pivot)
+    }
+
+    /// Whether it is anywhere else than where it rests.
+    pub fn is_displaced(&self) -> bool {
+        !self.transform.is_identity()
+    }
+
+    /// Where its pivot is now, in world space.
+    pub fn centre(&self) -> DVec3 {
+        self.affine().transform_point3(self.pivot)
+    }
+}
+
+/// The edited state of one mesh. Every vector has one element per surface vertex.
+#[derive(Clone, Debug)]
+pub struct Document {
+    pub(crate) paint: Arc<Vec<Paint>>,
+    pub(crate) handles: Vec<Handle>,
+    /// The next handle's number.
+    pub(crate) next_handle: u16,
+    /// Painted stiffness; `None` is 1 everywhere.
+    pub(crate) stiffness: Option<Arc<Vec<f64>>>,
+    pub(crate) method: Method,
+    pub(crate) loose: Loose,
+    /// The rest shape's displacements from the file's.
+    pub(crate) rest: Arc<Vec<DVec3>>,
+    /// Whether a shape was applied: without, `rest` is zero.
+    pub(crate) applied: bool,
+    /// The present shape's displacements from the rest shape.
+    pub(crate) from_rest: Arc<Vec<DVec3>>,
+    /// The sum of both, what is drawn: follows from them.
+    pub(crate) from_file: Arc<Vec<DVec3>>,
+    /// Whether `from_rest` is final for the handles' transforms.
+    pub(crate) settled: bool,
+}
+
+impl Document {
+    /// A fresh document: everything is held still.
+    pub fn new(vertex_count: usize) -> Self {
+        let zero = Arc::new(vec![DVec3::ZERO; vertex_count]);
+        Self {
+            paint: Arc::new(vec![Paint::Bare; vertex_count]),
+            handles: Vec::new(),
+            next_handle: 0,
+            stiffness: None,
+            method: Method::default(),
+            loose: Loose::default(),
+            rest: Arc::clone(&zero),
+            applied: false,
+            from_rest: Arc::clone(&zero),
+            from_file: zero,
+            settled: true,
+        }
+    }
+
+    /// What was painted on each surface vertex.
+    pub fn paint(&self) -> &[Paint] {
+        &self.paint
+    }
+
+    /// The handles, in the order in which they were made.
+    pub fn handles(&self) -> &[Handle] {
+        &self.handles
+    }
+
+    /// The handle with this number.
+    pub fn handle(&self, id: HandleId) -> Option<&Handle> {
+        self.handles.iter().find(|handle| handle.id == id)
+    }
+
+    pub(crate) fn handle_mut(&mut self, id: HandleId) -> Option<&mut Handle> {
+        self.handles.iter_mut().find(|handle| handle.id == id)
+    }
+
+    /// Painted stiffness per surface vertex; `None` is 1 everywhere.
+    pub fn stiffness(&self) -> Option<&[f64]> {
+        self.stiffness.as_ref().map(|field| field.as_slice())
+    }
+
+    /// The method and its options.
+    pub fn method(&self) -> &Method {
+        &self.method
+    }
+
+    /// What components that nothing holds do.
+    pub fn loose(&self) -> Loose {
+        self.loose
+    }
+
+    /// The rest shape's displacements from the file's shape, per surface vertex.
+    pub fn rest(&self) -> &[DVec3] {
+        &self.rest
+    }
+
+    /// The present shape's displacements from the rest shape, per surface vertex.
+    pub fn from_rest(&self) -> &[DVec3] {
+        &self.from_rest
+    }
+
+    /// The present shape's displacements from the file's shape, per surface vertex: what is drawn.
+    pub fn from_file(&self) -> &Arc<Vec<DVec3>> {
+        &self.from_file
+    }
+
+    /// Whether a shape was applied, so that the rest shape is another than the file's.
+    pub fn is_applied(&self) -> bool {
+        self.applied
+    }
+
+    /// Whether the shape is final for the handles' transforms.
+    pub fn is_settled(&self) -> bool {
+        self.settled
+    }
+
+    /// Whether the present shape is another than the rest shape.
+    pub fn is_displaced(&self) -> bool {
+        !self.settled || self.handles.iter().any(Handle::is_displaced)
+    }
+
+    /// Makes the present shape the rest shape. No drawn vertex moves; the handles' pivots go along.
+    pub(crate) fn apply_shape(&mut self) {
+        if !self.is_displaced() {
+            return;
+        }
+        self.rest = Arc::clone(&self.from_file);
+        self.applied = true;
+        self.from_rest = Arc::new(vec![DVec3::ZERO; self.rest.len()]);
+        self.settled = true;
+        for handle in &mut self.handles {
+            handle.pivot = handle.centre();
+            handle.transform = HandleTransform::IDENTITY;
+        }
+    }
+
+    /// Shows a shape that the handles have brought about.
+    pub(crate) fn show(&mut self, from_rest: Arc<Vec<DVec3>>, from_file: Arc<Vec<DVec3>>) {
+        self.from_rest = from_rest;
+        self.from_file = from_file;
+    }
+
+    /// Computes what is drawn from the rest shape and the displacements from it.
+    pub(crate) fn refresh_from_file(&mut self) {
+        self.from_file = sum_of_shapes(self.applied.then_some(&self.rest), &self.from_rest);
+    }
+}
+
+/// What is drawn: the rest shape's displacements, if there are any, plus those from it.
+///
+/// Where nothing is added the bits of the rest shape stay, so that applying a shape moves nothing.
+pub(crate) fn sum_of_shapes(rest: Option<&Arc<Vec<DVec3>>>, from_rest: &Arc<Vec<DVec3>>) -> Arc<Vec<DVec3>> {
+    match rest {
+        None => Arc::clone(from_rest),
+        Some(rest) => Arc::new(
+            rest.iter()
+                .zip(from_rest.iter())
+                .map(|(&rest, &more)| if more == DVec3::ZERO { rest } else { rest + more })
+                .collect(),
+        ),
+    }
+}

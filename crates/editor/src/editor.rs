@@ -1,0 +1,559 @@
+//! The one door: every event comes in here, and what is to be shown goes out.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use pliant_mesh::{Bounds, Model, bounding_box};
+
+use crate::brush::Brush;
+use crate::document::{Document, Handle, HandleId, Paint};
+use crate::engine::{Activity, Arrival, Engine, Finality, moved_alone};
+use crate::history::{HISTORY_BYTES, History};
+use crate::overlay::Overlay;
+use crate::picking::{Pick, Picking};
+use crate::tool::{Tool, ToolMode};
+use crate::transaction::Transaction;
+use crate::{
+    BRUSH_RADIUS_PX, Button, Camera, Command, Cursor, EditFile, Event, Executor, GizmoMode, HandleTransform, JobDone,
+    JobKind, Key, Modifiers, Pointer, Revision, SceneView, Shading,
+};
+use pliant_deform::Role;
+
+/// The program without a window.
+pub struct Editor {
+    pub(crate) engine: Engine,
+    pub(crate) document: Document,
+    pub(crate) history: History,
+    pub(crate) file_name: String,
+    /// What the present revisions belong to.
+    known: Document,
+    known_roles: Arc<Vec<Role>>,
+    known_camera: Camera,
+    /// Whether paint has changed during the stroke that goes on.
+    pub(crate) repainted: bool,
+    regions_revision: u64,
+    camera_revision: u64,
+    pub(crate) camera: Camera,
+    pub(crate) viewport_px: DVec2,
+    /// Whether nobody has moved the camera since everything was framed.
+    pub(crate) is_framed: bool,
+    pub(crate) tool: Tool,
+    pub(crate) mode: ToolMode,
+    pub(crate) pointer: Option<Pointer>,
+    pub(crate) brush: Brush,
+    pub(crate) brush_radius_px: f64,
+    pub(crate) gizmo_mode: GizmoMode,
+    pub(crate) selected: Option<HandleId>,
+    pub(crate) wants_new_handle: bool,
+    pub(crate) shading: Shading,
+    pub(crate) wireframe: bool,
+    pub(crate) shows_regions: bool,
+    pub(crate) problem: Option<String>,
+    pub(crate) overlay: Overlay,
+    /// Events that wait until rays can be answered from what is drawn.
+    held: VecDeque<Event>,
+    shape_counter: u64,
+}
+
+impl Editor {
+    /// An editor without a file. Jobs go to `executor`.
+    pub fn new(executor: Box<dyn Executor>) -> Self {
+        let document = Document::new(0);
+        Self {
+            engine: Engine::new(executor),
+            history: History::new(Arc::clone(&document.from_rest), HISTORY_BYTES),
+            known: document.clone(),
+            known_roles: Arc::default(),
+            known_camera: Camera::default(),
+            repainted: false,
+            document,
+            file_name: String::new(),
+            regions_revision: 0,
+            camera_revision: 0,
+            camera: Camera::default(),
+            viewport_px: DVec2::new(1280.0, 800.0),
+            is_framed: true,
+            tool: Tool::Idle,
+            mode: ToolMode::default(),
+            pointer: None,
+            brush: Brush::default(),
+            brush_radius_px: 30.0,
+            gizmo_mode: GizmoMode::default(),
+            selected: None,
+            wants_new_handle: false,
+            shading: Shading::default(),
+            wireframe: false,
+            shows_regions: true,
+            problem: None,
+            overlay: Overlay::default(),
+            held: VecDeque::new(),
+            shape_counter: 0,
+        }
+    }
+
+    /// The one function through which everything changes.
+    pub fn handle(&mut self, event: Event) {
+        let picked = matches!(&event, Event::JobDone(done) if done.kind == JobKind::Pick);
+        if self.must_wait(&event) {
+            self.held.push_back(event);
+        } else {
+            self.dispatch(event);
+        }
+        self.settle();
+        if !self.held.is_empty() && (picked || self.engine.is_picking_current() || !self.engine.is_busy(JobKind::Pick))
+        {
+            for event in std::mem::take(&mut self.held) {
+                self.dispatch(event);
+                self.settle();
+            }
+        }
+        self.refresh_overlay();
+    }
+
+    /// What the window must show now.
+    pub fn view(&self) -> SceneView<'_> {
+        SceneView {
+            model: self.engine.model.as_ref(),
+            camera: &self.camera,
+            viewport_px: self.viewport_px,
+            shape_revision: self.shape_counter,
+            displacements: &self.document.from_file,
+            regions_revision: self.regions_revision,
+            overlay_revision: self.overlay.revision,
+            camera_revision: self.camera_revision,
+            brush_ring: &self.overlay.ring,
+            gizmo: &self.overlay.gizmo,
+            shading: self.shading,
+            wireframe: self.wireframe,
+            regions: self.shows_regions,
+            tool: self.mode,
+            cursor: self.cursor(),
+            brush_radius_px: self.brush_radius_px,
+            handles: &self.document.handles,
+            selected: self.selected,
+            status: self.status(),
+            problem: self.problem.as_deref(),
+            jobs: self.engine.running(),
+            counts: self.engine.region.counts,
+            undo: self.history.undo_name(),
+            redo: self.history.redo_name(),
+            unsaved: self.history.is_unsaved(),
+            settled: self.is_settled(),
+        }
+    }
+
+    /// The colour of each surface vertex by what it does, sRGB with alpha, replacing `out`: handles in their own
+    /// colours, the free region blue, what is held still grey, and darker where that was painted.
+    ///
+    /// To be fetched again when [`SceneView::regions_revision`] has grown.
+    pub fn region_colours(&self, out: &mut Vec<[u8; 4]>) {
+        const FREE: [u8; 4] = [96, 150, 222, 255];
+        const STILL: [u8; 4] = [178, 178, 178, 255];
+        const FIXED: [u8; 4] = [112, 112, 116, 255];
+        let largest = self
+            .document
+            .handles
+            .iter()
+            .map(|handle| usize::from(handle.id.0) + 1)
+            .max()
+            .unwrap_or(0);
+        let mut of_handle = vec![STILL; largest];
+        for handle in &self.document.handles {
+            of_handle[usize::from(handle.id.0)] = handle.colour;
+        }
+        out.clear();
+        out.extend(
+            self.document
+                .paint
+                .iter()
+                .enumerate()
+                .map(|(vertex, paint)| match *paint {
+                    Paint::Fixed => FIXED,
+                    Paint::Free => FREE,
+                    Paint::Handle(HandleId(id)) => of_handle.get(usize::from(id)).copied().unwrap_or(STILL),
+                    Paint::Bare => match self.engine.region.roles.get(vertex) {
+                        Some(Role::Free) => FREE,
+                        _ => STILL,
+                    },
+                }),
+        );
+    }
+
+    /// The document.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// The steps that can be undone and redone.
+    pub fn history(&self) -> &History {
+        &self.history
+    }
+
+    /// What each surface vertex does, as of the last measured region.
+    pub fn roles(&self) -> &[Role] {
+        &self.engine.region.roles
+    }
+
+    /// Sentences about the present factorisation: what loose parts do, what was repaired.
+    pub fn warnings(&self) -> &[String] {
+        &self.engine.warnings
+    }
+
+    /// The open file's name; empty before the first.
+    pub fn file_name(&self) -> &str {
+        &self.file_name
+    }
+
+    /// What lies under a point of the view, in points; answered from the last shape that rays can be answered from.
+    pub fn pick(&self, position_px: DVec2) -> Option<Pick> {
+        self.picking()?.at(position_px)
+    }
+
+    /// Whether shape and regions are final: nothing is being dragged or painted, and no job runs but those that get
+    /// ready for the pointer or the first drag.
+    pub fn is_settled(&self) -> bool {
+        let busy = |kind| self.engine.is_busy(kind);
+        self.held.is_empty()
+            && matches!(self.tool, Tool::Idle)
+            && !busy(JobKind::Region)
+            && !busy(JobKind::Bind)
+            && !busy(JobKind::Solve)
+            && !(busy(JobKind::Order) && self.document.is_displaced())
+    }
+
+    pub(crate) fn picking(&self) -> Option<Picking<'_>> {
+        Some(Picking {
+            model: self.engine.model.as_deref()?,
+            displacements: &self.document.from_file,
+            bvh: self.engine.bvh.as_deref()?,
+            camera: &self.camera,
+            viewport_px: self.viewport_px,
+        })
+    }
+
+    /// Begins a step of the document.
+    pub(crate) fn begin(&mut self, name: impl Into<String>) -> Transaction {
+        Transaction::begin(name, &self.document, &mut self.history)
+    }
+
+    /// Changes the document in one named step; false if that changed nothing.
+    pub(crate) fn change(&mut self, name: impl Into<String>, change: impl FnOnce(&mut Document)) -> bool {
+        let transaction = self.begin(name);
+        change(&mut self.document);
+        if !Arc::ptr_eq(&transaction.before().from_rest, &self.document.from_rest) {
+            self.engine.drop_solves();
+        }
+        transaction.commit(&self.document, &mut self.history)
+    }
+
+    /// Puts a handle somewhere, in the document as it stands: the surface follows as soon as it can.
+    pub(crate) fn put_handle(&mut self, id: HandleId, transform: HandleTransform) {
+        let Some(handle) = self.document.handle_mut(id) else {
+            return;
+        };
+        if handle.transform == transform {
+            return;
+        }
+        handle.transform = transform;
+        self.document.settled = false;
+        if !self.engine.is_bound()
+            && let Some(model) = self.engine.model.clone()
+        {
+            moved_alone(&mut self.document, &model, id);
+        }
+    }
+
+    /// The bounding box of what is drawn.
+    pub(crate) fn bounds(&self) -> Option<Bounds> {
+        let model = self.engine.model.as_ref()?;
+        let positions: Vec<DVec3> = model
+            .surface
+            .positions
+            .iter()
+            .zip(self.document.from_file.iter())
+            .map(|(&p, &d)| p + d)
+            .collect();
+        bounding_box(&positions)
+    }
+
+    pub(crate) fn frame_all(&mut self) {
+        if let Some(bounds) = self.bounds() {
+            self.camera.frame(&bounds, self.viewport_px);
+            self.is_framed = true;
+        }
+    }
+
+    fn dispatch(&mut self, event: Event) {
+        match event {
+            Event::Viewport { size_px } => self.resize(size_px),
+            Event::PointerMoved(pointer) => {
+                self.pointer = Some(pointer);
+                let tool = std::mem::take(&mut self.tool);
+                self.tool = tool.moved(self, pointer);
+            }
+            Event::PointerLeft => {
+                if matches!(self.tool, Tool::Idle) {
+                    self.pointer = None;
+                }
+            }
+            Event::PointerPressed(pointer, button) => {
+                self.pointer = Some(pointer);
+                let tool = std::mem::take(&mut self.tool);
+                self.tool = tool.pressed(self, pointer, button);
+            }
+            Event::PointerReleased(pointer, button) => {
+                self.pointer = Some(pointer);
+                let tool = std::mem::take(&mut self.tool);
+                self.tool = tool.released(self, pointer, button);
+            }
+            Event::Wheel { pointer, lines } => {
+                let anchor = self.anchor(pointer.position_px);
+                self.camera.zoom_lines(lines, anchor);
+                self.is_framed = false;
+            }
+            Event::Pinch { pointer, factor } => {
+                if factor.is_finite() && factor > 0.0 {
+                    let anchor = self.anchor(pointer.position_px);
+                    self.camera.zoom(factor, anchor);
+                    self.is_framed = false;
+                }
+            }
+            Event::Key(key, modifiers) => self.key(key, modifiers),
+            Event::Command(command) => self.execute(command),
+            Event::JobDone(done) => self.job_done(done),
+            Event::Opened { model, name, edit } => self.open(model, name, edit),
+            Event::Saved => {
+                self.history.sync(&self.document);
+                self.history.mark_saved();
+            }
+        }
+    }
+
+    fn resize(&mut self, size_px: DVec2) {
+        if !(size_px.x >= 1.0 && size_px.y >= 1.0) || !size_px.is_finite() || size_px == self.viewport_px {
+            return;
+        }
+        self.viewport_px = size_px;
+        self.camera_revision += 1;
+        if self.is_framed {
+            self.frame_all();
+        }
+    }
+
+    fn key(&mut self, key: Key, modifiers: Modifiers) {
+        let tool = std::mem::take(&mut self.tool);
+        let (tool, taken) = tool.key(self, key, modifiers);
+        self.tool = tool;
+        if taken {
+            return;
+        }
+        if key == Key::Escape {
+            self.problem = None;
+            self.wants_new_handle = false;
+        } else if let Some(command) = Command::of_key(key, modifiers) {
+            self.execute(command);
+        }
+    }
+
+    fn job_done(&mut self, done: JobDone) {
+        match self.engine.accept(done) {
+            Arrival::Nothing | Arrival::Picking => {}
+            Arrival::Problem(sentence) => self.problem = Some(sentence),
+            Arrival::Shape(solved, finality) => {
+                if self.document.settled || solved.from_rest.len() != self.document.from_rest.len() {
+                    return;
+                }
+                self.document.show(solved.from_rest, solved.from_file);
+                if finality == Finality::Final {
+                    self.document.settled = true;
+                }
+            }
+        }
+    }
+
+    fn open(&mut self, model: Arc<Model>, name: String, edit: Option<EditFile>) {
+        self.abort_tool();
+        self.held.clear();
+        self.problem = None;
+        self.selected = None;
+        self.wants_new_handle = false;
+        self.file_name = name;
+        self.document = match edit.as_ref().map(|edit| crate::exchange::import(edit, &model)) {
+            None => Document::new(model.surface.positions.len()),
+            Some(Ok(document)) => document,
+            Some(Err(error)) => {
+                self.problem = Some(error.to_string());
+                Document::new(model.surface.positions.len())
+            }
+        };
+        self.selected = self.document.handles.first().map(|handle| handle.id);
+        self.history = History::new(Arc::clone(&self.document.from_rest), HISTORY_BYTES);
+        self.brush = Brush::default();
+        if let Some(bounds) = model.bounds() {
+            self.camera.scale = if bounds.diagonal() > 0.0 {
+                bounds.diagonal()
+            } else {
+                1.0
+            };
+        }
+        self.engine.open(model);
+        self.known = self.document.clone();
+        self.shape_counter += 1;
+        self.regions_revision += 1;
+        self.frame_all();
+    }
+
+    /// Ends what the tool is doing without a trace.
+    pub(crate) fn abort_tool(&mut self) {
+        let tool = std::mem::take(&mut self.tool);
+        tool.abort(self);
+    }
+
+    /// Whether the event must wait for rays that answer from what is drawn, or for those that wait already.
+    fn must_wait(&mut self, event: &Event) -> bool {
+        match event {
+            Event::Key(Key::Escape, _) | Event::PointerLeft => {
+                self.held.clear();
+                false
+            }
+            Event::PointerMoved(_) | Event::PointerReleased(..) | Event::Wheel { .. } | Event::Key(..) => {
+                !self.held.is_empty()
+            }
+            Event::PointerPressed(pointer, button) => {
+                let asks = *button == Button::Primary && !pointer.modifiers.alt && matches!(self.tool, Tool::Idle);
+                !self.held.is_empty()
+                    || (asks
+                        && self.engine.is_busy(JobKind::Pick)
+                        && !self.engine.is_picking_current()
+                        && self
+                            .overlay
+                            .hit(pointer.position_px, &self.camera, self.viewport_px)
+                            .is_none())
+            }
+            _ => false,
+        }
+    }
+
+    /// Draws the conclusions from what an event changed: revisions grow, and jobs are asked for.
+    fn settle(&mut self) {
+        let activity = self.tool.activity();
+        self.rest_if_undisplaced();
+        let (known, document) = (&self.known, &self.document);
+        let repainted = std::mem::take(&mut self.repainted)
+            || (activity != Activity::Painting && !Arc::ptr_eq(&known.paint, &document.paint));
+        let recoloured = known.handles.len() != document.handles.len()
+            || known
+                .handles
+                .iter()
+                .zip(&document.handles)
+                .any(|(a, b)| (a.id, a.colour) != (b.id, b.colour));
+        let moved = !same(&known.handles, &document.handles, |a, b| a.affine() == b.affine());
+        let reshaped = !Arc::ptr_eq(&known.from_file, &document.from_file);
+        // While a stroke goes on the problem changes with every event; it counts once, at the end.
+        let problem_changed = activity != Activity::Painting && is_other_problem(known, document);
+        let unsettled_anew = known.settled && !document.settled;
+        if problem_changed {
+            self.engine.problem_changed();
+            self.known = self.document.clone();
+        } else if activity == Activity::Painting {
+            // What the problem is known to be stays.
+            self.known.from_file = Arc::clone(&self.document.from_file);
+        } else {
+            if moved || unsettled_anew {
+                self.engine.targets_changed();
+            }
+            self.known = self.document.clone();
+        }
+        if reshaped {
+            self.engine.shape_changed();
+            self.shape_counter += 1;
+        }
+        if self.selected.is_some_and(|id| self.document.handle(id).is_none()) {
+            self.selected = self.document.handles.last().map(|handle| handle.id);
+        }
+        self.engine.pump(&self.document, activity);
+        if repainted || recoloured || !Arc::ptr_eq(&self.known_roles, &self.engine.region.roles) {
+            self.known_roles = Arc::clone(&self.engine.region.roles);
+            self.regions_revision += 1;
+        }
+        if self.known_camera != self.camera {
+            self.known_camera = self.camera;
+            self.camera_revision += 1;
+        }
+    }
+
+    /// Handles that all rest need no solve: the rest shape is known.
+    fn rest_if_undisplaced(&mut self) {
+        if self.document.settled || self.document.handles.iter().any(Handle::is_displaced) {
+            return;
+        }
+        self.engine.drop_solves();
+        let zero = vec![DVec3::ZERO; self.document.from_rest.len()];
+        self.document.from_rest = Arc::new(zero);
+        self.document.refresh_from_file();
+        self.document.settled = true;
+    }
+
+    /// The point that zooming keeps in place: on the surface under the pointer, or at the target's depth.
+    pub(crate) fn anchor(&self, position_px: DVec2) -> DVec3 {
+        match self.pick(position_px) {
+            Some(pick) => pick.point,
+            None => {
+                let ray = self.camera.ray(position_px, self.viewport_px);
+                ray.origin + ray.direction * (self.camera.distance / ray.direction.dot(self.camera.forward()))
+            }
+        }
+    }
+
+    pub(crate) fn set_brush_radius(&mut self, radius_px: f64) {
+        if radius_px.is_finite() {
+            self.brush_radius_px = radius_px.clamp(*BRUSH_RADIUS_PX.start(), *BRUSH_RADIUS_PX.end());
+        }
+    }
+
+    fn cursor(&self) -> Cursor {
+        match &self.tool {
+            Tool::Navigate(_) => Cursor::Grabbing,
+            Tool::Transform(_) => Cursor::Move,
+            Tool::Paint(_) => Cursor::Brush,
+            Tool::Idle if self.overlay.hovered.is_some() => Cursor::Grab,
+            Tool::Idle if self.overlay.is_over_surface && self.mode != ToolMode::Select => Cursor::Brush,
+            Tool::Idle => Cursor::Arrow,
+        }
+    }
+
+    /// The revision of the shape that jobs are stamped with, for tests of lateness.
+    pub fn shape_stamp(&self) -> Revision {
+        self.engine.shape_revision
+    }
+}
+
+impl std::fmt::Debug for Editor {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Editor")
+            .field("file_name", &self.file_name)
+            .field("mode", &self.mode)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Whether region and factorisation of one document are no good for the other.
+fn is_other_problem(a: &Document, b: &Document) -> bool {
+    let same_stiffness = match (&a.stiffness, &b.stiffness) {
+        (None, None) => true,
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        _ => false,
+    };
+    !Arc::ptr_eq(&a.paint, &b.paint)
+        || !Arc::ptr_eq(&a.rest, &b.rest)
+        || a.applied != b.applied
+        || !same_stiffness
+        || a.method != b.method
+        || a.loose != b.loose
+        || !same(&a.handles, &b.handles, |a, b| (a.id, a.reach) == (b.id, b.reach))
+}
+
+fn same(a: &[Handle], b: &[Handle], equal: impl Fn(&Handle, &Handle) -> bool) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| equal(a, b))
+}

@@ -1,0 +1,143 @@
+//! What reaches the editor from outside: pointer, keys, commands, results of jobs and opened files.
+//!
+//! Events are data, so that a test, a script and the window drive the program through the same door,
+//! [`Editor::handle`](crate::Editor::handle).
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use pliant_mesh::Model;
+
+use crate::{Command, EditFile, JobDone};
+
+/// One thing that happened. No event carries the time: the editor has no clock.
+#[derive(Debug)]
+pub enum Event {
+    /// The 3D view has this size, in points. Sent before the first pointer event and whenever it changes.
+    Viewport {
+        /// Width and height in points, both positive.
+        size_px: DVec2,
+    },
+    /// The pointer moved within the view, or anywhere while a button is held.
+    PointerMoved(Pointer),
+    /// The pointer left the view: nothing is hovered any more.
+    PointerLeft,
+    /// A button went down over the view.
+    PointerPressed(Pointer, Button),
+    /// A button went up.
+    PointerReleased(Pointer, Button),
+    /// The wheel turned or two fingers scrolled by `lines` (positive: towards the surface).
+    Wheel {
+        /// Where the pointer stands.
+        pointer: Pointer,
+        /// Notches of a mouse wheel; fractions for smooth scrolling.
+        lines: f64,
+    },
+    /// Two fingers pinched: `factor` above 1 comes closer.
+    Pinch {
+        /// Where the pointer stands.
+        pointer: Pointer,
+        /// The ratio of the fingers' distances since the last event.
+        factor: f64,
+    },
+    /// A key went down (repeats of a held key included). Characters come in lower case, one event a key.
+    Key(Key, Modifiers),
+    /// Something a menu, a button or the command palette asks for.
+    Command(Command),
+    /// A job that the executor was given has ended, or has an intermediate result.
+    JobDone(JobDone),
+    /// A file was loaded and welded; `edit` is what is to be set up on it.
+    Opened {
+        /// What the file shows and its welded surface.
+        model: Arc<Model>,
+        /// The file's name, for the status line.
+        name: String,
+        /// Regions, handles and transforms to begin with; `None` begins afresh.
+        edit: Option<EditFile>,
+    },
+    /// The document as it stands was written to a file: there is no unsaved work now.
+    Saved,
+}
+
+/// Where the pointer is, and which modifier keys are held.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Pointer {
+    /// Position within the view in points, x to the right and y down from its upper left corner.
+    pub position_px: DVec2,
+    /// The modifier keys.
+    pub modifiers: Modifiers,
+}
+
+/// The modifier keys that are held.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub struct Modifiers {
+    /// Shift.
+    pub shift: bool,
+    /// Ctrl, or Command on a Mac.
+    pub ctrl: bool,
+    /// Alt, or Option on a Mac.
+    pub alt: bool,
+}
+
+impl Modifiers {
+    /// No modifier key.
+    pub const NONE: Self = Self {
+        shift: false,
+        ctrl: false,
+        alt: false,
+    };
+    /// Shift alone.
+    pub const SHIFT: Self = Self {
+        shift: true,
+        ctrl: false,
+        alt: false,
+    };
+    /// Ctrl (or Command) alone.
+    pub const CTRL: Self = Self {
+        shift: false,
+        ctrl: true,
+        alt: false,
+    };
+    /// Ctrl (or Command) and Shift.
+    pub const CTRL_SHIFT: Self = Self {
+        shift: true,
+        ctrl: true,
+        alt: false,
+    };
+    /// Alt (or Option) alone.
+    pub const ALT: Self = Self {
+        shift: false,
+        ctrl: false,
+        alt: true,
+    };
+}
+
+/// A button of the mouse.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
+pub enum Button {
+    /// The left button: the tool.
+    Primary,
+    /// The middle button: the camera.
+    Middle,
+    /// The right button: aborts what is going on.
+    Secondary,
+}
+
+/// A key that means something to the editor.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
+pub enum Key {
+    /// A key that types a character: letters in lower case, digits, punctuation.
+    Character(char),
+    /// Escape.
+    Escape,
+    /// Enter.
+    Enter,
+    /// Backspace.
+    Backspace,
+    /// Delete.
+    Delete,
+    /// Home.
+    Home,
+    /// Tab.
+    Tab,
+}

@@ -1,0 +1,195 @@
+//! Between the document and the edit file that the command line reads.
+
+use std::sync::Arc;
+
+use pliant_deform::Role;
+use pliant_mesh::Model;
+
+use crate::command::Reach;
+use crate::document::{Document, Handle, HandleId, Paint};
+use crate::edit_file::{EditFile, HandleEntry, StiffnessEntry};
+use crate::editor::Editor;
+use crate::engine::region_input;
+use crate::region::Region;
+use crate::tool::handle_colour;
+use crate::{EditError, HandleTransform, Selector};
+
+/// Why a document can't be said as an edit.
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// There is no file.
+    #[error("no file is open: open one before saving an edit")]
+    NoFile,
+    /// The rest shape is not the file's.
+    #[error(
+        "a shape was applied, and an edit starts from the file's shape: save the mesh, open it and go on from there"
+    )]
+    Applied,
+    /// A file vertex is drawn twice, and its two places do different things.
+    #[error("{count} vertices are shown through two nodes and were painted differently there: paint both places alike")]
+    SharedVertices {
+        /// How many surface vertices come out differently.
+        count: usize,
+    },
+    /// What was written can't be read.
+    #[error(transparent)]
+    Edit(#[from] EditError),
+}
+
+impl Editor {
+    /// The document as an edit of the open file: `pliant apply` makes the same positions of it.
+    ///
+    /// # Errors
+    /// No file is open, a shape was applied, or a vertex that two nodes show has two roles.
+    pub fn edit_file(&self) -> Result<EditFile, ExportError> {
+        let model = self.engine.model.as_ref().ok_or(ExportError::NoFile)?;
+        export(&self.document, model)
+    }
+}
+
+/// The document as an edit of its file.
+pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile, ExportError> {
+    if document.applied {
+        return Err(ExportError::Applied);
+    }
+    let region = Region::measure(&region_input(model, document), &pliant_mesh::Cancel::new())
+        .unwrap_or_else(|_| Region::still(document.paint.len()));
+    let ranges = |role: Role| {
+        let mut selected = vec![false; model.drawn.file_vertex_count];
+        for (surface_vertex, file_vertex) in model.surface_of_drawn.iter().zip(&model.drawn.file_vertex) {
+            if surface_vertex.is_some_and(|vertex| region.roles[vertex.index()] == role) {
+                selected[file_vertex.index()] = true;
+            }
+        }
+        ranges_of(&selected)
+    };
+    let mut handles = Vec::new();
+    for (index, &id) in region.handles.iter().enumerate() {
+        if let Some(handle) = document.handle(id) {
+            handles.push(HandleEntry {
+                name: handle.name.clone(),
+                select: ranges(Role::Handle(index as u16)),
+                transform: with_pivot(handle),
+            });
+        }
+    }
+    let stiffness = document.stiffness.as_ref().map(|field| {
+        let mut values = vec![1.0; model.drawn.file_vertex_count];
+        for (surface_vertex, file_vertex) in model.surface_of_drawn.iter().zip(&model.drawn.file_vertex) {
+            if let Some(vertex) = surface_vertex {
+                values[file_vertex.index()] = field[vertex.index()];
+            }
+        }
+        StiffnessEntry::PerVertex(values)
+    });
+    let edit = EditFile {
+        method: document.method.clone(),
+        region: ranges(Role::Free),
+        fixed: Selector::None,
+        handles,
+        stiffness: stiffness.into_iter().collect(),
+        loose: document.loose,
+    };
+    let setup = edit.resolve(model)?;
+    let differing = setup
+        .roles
+        .iter()
+        .zip(region.roles.iter())
+        .filter(|(read, meant)| read != meant)
+        .count();
+    if differing > 0 {
+        return Err(ExportError::SharedVertices { count: differing });
+    }
+    Ok(edit)
+}
+
+/// A document that an edit describes: every vertex's role is painted as the edit says it.
+pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditError> {
+    let setup = edit.resolve(model)?;
+    let mut document = Document::new(model.surface.positions.len());
+    document.paint = Arc::new(
+        setup
+            .roles
+            .iter()
+            .map(|role| match *role {
+                Role::Fixed => Paint::Fixed,
+                Role::Free => Paint::Free,
+                Role::Handle(index) => Paint::Handle(HandleId(index)),
+            })
+            .collect(),
+    );
+    for (index, handle) in setup.handles.iter().enumerate() {
+        let id = HandleId(index as u16);
+        document.handles.push(Handle {
+            id,
+            name: handle.name.clone(),
+            colour: handle_colour(id),
+            transform: without_pivot(handle.transform),
+            pivot: handle.pivot,
+            reach: Reach::Length(0.0),
+        });
+        document.next_handle = id.0.saturating_add(1);
+    }
+    document.stiffness = setup
+        .stiffness
+        .iter()
+        .any(|&stiffness| stiffness != 1.0)
+        .then(|| Arc::new(setup.stiffness.clone()));
+    document.method = setup.method;
+    document.loose = setup.loose;
+    document.settled = !document.handles.iter().any(Handle::is_displaced);
+    Ok(document)
+}
+
+/// The transform without a pivot of its own: within a document the handle has it.
+pub(crate) fn without_pivot(transform: HandleTransform) -> HandleTransform {
+    match transform {
+        HandleTransform::Trs {
+            translation,
+            rotation,
+            scale,
+            ..
+        } => HandleTransform::Trs {
+            translation,
+            rotation,
+            scale,
+            pivot: None,
+        },
+        HandleTransform::Matrix(_) => transform,
+    }
+}
+
+fn with_pivot(handle: &Handle) -> HandleTransform {
+    match handle.transform {
+        HandleTransform::Trs {
+            translation,
+            rotation,
+            scale,
+            ..
+        } => HandleTransform::Trs {
+            translation,
+            rotation,
+            scale,
+            pivot: Some(handle.pivot),
+        },
+        HandleTransform::Matrix(_) => handle.transform,
+    }
+}
+
+/// The set flags as ranges with both ends.
+fn ranges_of(selected: &[bool]) -> Selector {
+    let mut ranges: Vec<[u32; 2]> = Vec::new();
+    for (vertex, _) in selected.iter().enumerate().filter(|(_, selected)| **selected) {
+        let vertex = vertex as u32;
+        match ranges.last_mut() {
+            Some([_, last]) if *last + 1 == vertex => *last = vertex,
+            _ => ranges.push([vertex, vertex]),
+        }
+    }
+    if ranges.is_empty() {
+        Selector::None
+    } else {
+        Selector::Ranges(ranges)
+    }
+}

@@ -1,0 +1,326 @@
+//! What each command does, and when it can.
+
+use std::sync::Arc;
+
+use pliant_mesh::{SurfaceVertex, bounding_box};
+
+use crate::command::{Command, Reach};
+use crate::constraint::Constraint;
+use crate::document::{Handle, HandleId, Paint};
+use crate::editor::Editor;
+use crate::exchange::without_pivot;
+use crate::tool::{Tool, TransformDrag, TransformKind};
+use crate::{HandleTransform, STIFFNESS_RANGE};
+
+/// The factor by which a key sizes the brush.
+const BRUSH_STEP: f64 = 1.2;
+
+impl Editor {
+    /// Whether the command would do anything now.
+    pub fn is_enabled(&self, command: &Command) -> bool {
+        let open = self.engine.model.is_some();
+        let selected = self.selected.and_then(|id| self.document.handle(id));
+        match command {
+            Command::Undo => self.history.undo_name().is_some(),
+            Command::Redo => self.history.redo_name().is_some(),
+            Command::DeleteHandle
+            | Command::Deselect
+            | Command::FrameSelected
+            | Command::Move
+            | Command::Turn
+            | Command::Scale => selected.is_some(),
+            Command::ResetHandle => selected.is_some_and(Handle::is_displaced),
+            Command::NextHandle => !self.document.handles.is_empty(),
+            Command::SelectHandle(id)
+            | Command::RenameHandle(id, _)
+            | Command::SetHandleTransform(id, _)
+            | Command::SetReach(id, _) => self.document.handle(*id).is_some(),
+            Command::Apply => self.document.is_displaced(),
+            Command::ResetShape => self.document.is_displaced() || self.document.applied,
+            Command::ClearRegions => self.document.paint.iter().any(|paint| *paint != Paint::Bare),
+            Command::CancelJobs => self
+                .engine
+                .running()
+                .iter()
+                .any(|(kind, _)| *kind != crate::JobKind::Pick),
+            Command::NewHandle
+            | Command::SetMethod(_)
+            | Command::SetLoose(_)
+            | Command::SetStiffness(_)
+            | Command::FrameAll => open,
+            Command::SetTool(_)
+            | Command::SetBrushRadius(_)
+            | Command::GrowBrush
+            | Command::ShrinkBrush
+            | Command::View(_)
+            | Command::SetUp(_)
+            | Command::SetShading(_)
+            | Command::ToggleWireframe
+            | Command::ToggleRegions
+            | Command::SetGizmo(_) => true,
+        }
+    }
+
+    /// Does what the command says; a command that can't do anything now is ignored.
+    pub(crate) fn execute(&mut self, command: Command) {
+        if !self.is_enabled(&command) {
+            return;
+        }
+        if concerns_document(&command) {
+            let was_idle = matches!(self.tool, Tool::Idle);
+            self.abort_tool();
+            self.problem = None;
+            // Undo during a drag takes back the drag, and nothing before it.
+            if !was_idle && matches!(command, Command::Undo | Command::Redo) {
+                return;
+            }
+        }
+        match command {
+            Command::Undo => {
+                self.engine.drop_solves();
+                self.history.undo(&mut self.document);
+            }
+            Command::Redo => {
+                self.engine.drop_solves();
+                self.history.redo(&mut self.document);
+            }
+            Command::SetTool(mode) => {
+                self.abort_tool();
+                self.mode = mode;
+            }
+            Command::NewHandle => {
+                self.mode = crate::ToolMode::PaintHandle;
+                self.wants_new_handle = true;
+                self.selected = None;
+            }
+            Command::SelectHandle(id) => self.selected = Some(id),
+            Command::Deselect => self.selected = None,
+            Command::NextHandle => self.select_next(),
+            Command::DeleteHandle => self.delete_selected(),
+            Command::ResetHandle => {
+                if let Some(id) = self.selected {
+                    self.transform_handle("Reset", id, HandleTransform::IDENTITY);
+                }
+            }
+            Command::RenameHandle(id, name) => {
+                self.change("Rename handle", |document| {
+                    if let Some(handle) = document.handle_mut(id) {
+                        handle.name = name;
+                    }
+                });
+            }
+            Command::SetHandleTransform(id, transform) => {
+                if transform.affine(glam::DVec3::ZERO).is_finite() {
+                    self.transform_handle("Move", id, without_pivot(transform));
+                } else {
+                    self.problem = Some("The handle's transform is not finite: enter other numbers.".to_owned());
+                }
+            }
+            Command::SetReach(id, reach) => self.set_reach(id, reach),
+            Command::Apply => {
+                self.change("Apply shape", |document| document.apply_shape());
+                self.engine.drop_solves();
+            }
+            Command::ResetShape => self.reset_shape(),
+            Command::ClearRegions => {
+                self.engine.drop_solves();
+                self.change("Clear regions", |document| {
+                    document.apply_shape();
+                    document.paint = Arc::new(vec![Paint::Bare; document.paint.len()]);
+                    document.handles.clear();
+                });
+            }
+            Command::SetMethod(method) => {
+                self.change("Change method", |document| {
+                    document.settled &= document.method == method || !document.is_displaced();
+                    document.method = method;
+                });
+            }
+            Command::SetLoose(loose) => {
+                self.change("Change loose parts", |document| {
+                    document.settled &= document.loose == loose || !document.is_displaced();
+                    document.loose = loose;
+                });
+            }
+            Command::SetStiffness(field) => self.set_stiffness(field),
+            Command::SetBrushRadius(radius_px) => self.set_brush_radius(radius_px),
+            Command::GrowBrush => self.set_brush_radius(self.brush_radius_px * BRUSH_STEP),
+            Command::ShrinkBrush => self.set_brush_radius(self.brush_radius_px / BRUSH_STEP),
+            Command::FrameAll => self.frame_all(),
+            Command::FrameSelected => self.frame_selected(),
+            Command::View(view) => {
+                self.camera.look_from(view);
+                self.is_framed = false;
+            }
+            Command::SetUp(up) => self.camera.up = up,
+            Command::SetShading(shading) => self.shading = shading,
+            Command::ToggleWireframe => self.wireframe = !self.wireframe,
+            Command::ToggleRegions => self.shows_regions = !self.shows_regions,
+            Command::SetGizmo(mode) => self.gizmo_mode = mode,
+            Command::Move => self.begin_transform(TransformKind::Move),
+            Command::Turn => self.begin_transform(TransformKind::Turn),
+            Command::Scale => self.begin_transform(TransformKind::Scale),
+            Command::CancelJobs => self.engine.give_up(),
+        }
+    }
+
+    fn begin_transform(&mut self, kind: TransformKind) {
+        let start_px = self
+            .pointer
+            .map_or(self.viewport_px * 0.5, |pointer| pointer.position_px);
+        if let Some(drag) = TransformDrag::begin(self, kind, Constraint::Free, start_px) {
+            self.tool = Tool::Transform(Box::new(drag));
+        }
+    }
+
+    fn transform_handle(&mut self, verb: &str, id: HandleId, transform: HandleTransform) {
+        let Some(name) = self.document.handle(id).map(|handle| handle.name.clone()) else {
+            return;
+        };
+        let transaction = self.begin(format!("{verb} {name}"));
+        self.put_handle(id, transform);
+        transaction.commit(&self.document, &mut self.history);
+    }
+
+    fn select_next(&mut self) {
+        let handles = &self.document.handles;
+        let present = self
+            .selected
+            .and_then(|id| handles.iter().position(|handle| handle.id == id));
+        let next = present.map_or(0, |index| (index + 1) % handles.len().max(1));
+        self.selected = handles.get(next).map(|handle| handle.id);
+    }
+
+    fn delete_selected(&mut self) {
+        let Some(id) = self.selected else { return };
+        let name = self
+            .document
+            .handle(id)
+            .map_or_else(String::new, |handle| handle.name.clone());
+        self.engine.drop_solves();
+        self.change(format!("Delete {name}"), |document| {
+            document.apply_shape();
+            for paint in Arc::make_mut(&mut document.paint) {
+                if *paint == Paint::Handle(id) {
+                    *paint = Paint::Bare;
+                }
+            }
+            document.handles.retain(|handle| handle.id != id);
+        });
+    }
+
+    /// Widening the region changes roles: the present shape becomes the rest shape first.
+    fn set_reach(&mut self, id: HandleId, reach: Reach) {
+        let (Reach::Radii(size) | Reach::Length(size)) = reach;
+        if !(size.is_finite() && size >= 0.0) {
+            self.problem = Some("A reach is a length of at least 0: enter another number.".to_owned());
+            return;
+        }
+        if self.document.handle(id).is_none_or(|handle| handle.reach == reach) {
+            return;
+        }
+        self.engine.drop_solves();
+        self.change("Change reach", |document| {
+            document.apply_shape();
+            if let Some(handle) = document.handle_mut(id) {
+                handle.reach = reach;
+            }
+        });
+    }
+
+    fn reset_shape(&mut self) {
+        let Some(model) = self.engine.model.clone() else { return };
+        self.engine.drop_solves();
+        self.change("Reset shape", |document| {
+            let was_applied = std::mem::take(&mut document.applied);
+            document.rest = Arc::new(vec![glam::DVec3::ZERO; document.paint.len()]);
+            document.from_rest = Arc::clone(&document.rest);
+            document.from_file = Arc::clone(&document.rest);
+            document.settled = true;
+            for handle in &mut document.handles {
+                handle.transform = HandleTransform::IDENTITY;
+                if was_applied {
+                    handle.pivot = pivot_of(handle.id, &document.paint, &model.surface.positions);
+                }
+            }
+        });
+    }
+
+    fn set_stiffness(&mut self, field: Vec<f64>) {
+        let count = self.document.paint.len();
+        let bad = field.iter().find(|stiffness| !STIFFNESS_RANGE.contains(stiffness));
+        if field.len() != count {
+            self.problem = Some(format!(
+                "The stiffness has {} values for {count} vertices: give one for each.",
+                field.len()
+            ));
+        } else if let Some(bad) = bad {
+            let (low, high) = (STIFFNESS_RANGE.start(), STIFFNESS_RANGE.end());
+            self.problem = Some(format!(
+                "A stiffness of {bad} is not between {low} and {high}: paint another."
+            ));
+        } else {
+            self.change("Change stiffness", |document| {
+                let field = field.iter().any(|&stiffness| stiffness != 1.0).then(|| Arc::new(field));
+                if document.stiffness != field {
+                    document.settled &= !document.is_displaced();
+                    document.stiffness = field;
+                }
+            });
+        }
+    }
+
+    fn frame_selected(&mut self) {
+        let (Some(model), Some(id)) = (self.engine.model.as_ref(), self.selected) else {
+            return;
+        };
+        let members: Vec<glam::DVec3> = (0..self.document.paint.len())
+            .filter(|&vertex| self.document.paint[vertex] == Paint::Handle(id))
+            .map(|vertex| model.surface.positions[vertex] + self.document.from_file[vertex])
+            .collect();
+        if let Some(mut bounds) = bounding_box(&members) {
+            // Its region shows what bends: as much room again on every side.
+            let room = bounds.extent();
+            bounds.min -= room;
+            bounds.max += room;
+            self.camera.frame(&bounds, self.viewport_px);
+            self.is_framed = false;
+        }
+    }
+}
+
+/// The mean position of a handle's vertices.
+fn pivot_of(id: HandleId, paint: &[Paint], positions: &[glam::DVec3]) -> glam::DVec3 {
+    let members = paint
+        .iter()
+        .enumerate()
+        .filter(|(_, paint)| **paint == Paint::Handle(id));
+    crate::region::centroid(positions, members.map(|(vertex, _)| SurfaceVertex(vertex as u32)))
+}
+
+/// Whether the command would change the document, or start to.
+fn concerns_document(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::Undo
+            | Command::Redo
+            | Command::DeleteHandle
+            | Command::ResetHandle
+            | Command::RenameHandle(..)
+            | Command::SetHandleTransform(..)
+            | Command::SetReach(..)
+            | Command::Apply
+            | Command::ResetShape
+            | Command::ClearRegions
+            | Command::SetMethod(_)
+            | Command::SetLoose(_)
+            | Command::SetStiffness(_)
+            | Command::Move
+            | Command::Turn
+            | Command::Scale
+            | Command::SelectHandle(_)
+            | Command::Deselect
+            | Command::NextHandle
+            | Command::NewHandle
+    )
+}

@@ -1,0 +1,260 @@
+//! Undo and redo by deltas: each step holds the other side of what it changed, and swaps it with the document.
+//!
+//! A step holds one copy of each changed value: the old ones while it is done, the new ones while it is undone. So
+//! undo and redo are the same exchange, and bits come back as they were.
+//!
+//! The shape is special: it may arrive after the step that asked for it was committed (a drag whose last solve is
+//! still running, a surface that catches up with an early drag). The history therefore remembers the shape that its
+//! deltas are relative to, and [`History::sync`] re-bases the two neighbouring steps onto the one that is shown.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::{Loose, Method};
+
+use crate::document::{Document, Handle, Paint};
+
+/// How many bytes of deltas are kept before the oldest steps are forgotten.
+pub const HISTORY_BYTES: usize = 256 << 20;
+
+/// A changed part of the document: the values that it does not have at present.
+#[derive(Clone, Debug)]
+pub(crate) enum Change {
+    /// Painted vertices.
+    Paint(Sparse<Paint>),
+    /// The list of handles and the next one's number.
+    Handles(Vec<Handle>, u16),
+    /// The stiffness field.
+    Stiffness(Option<Arc<Vec<f64>>>),
+    /// Method and loose components.
+    Options(Method, Loose),
+    /// The rest shape, and whether there is another than the file's.
+    Rest(Sparse<DVec3>, bool),
+    /// Whether the shape is final for the handles' transforms.
+    Settled(bool),
+}
+
+/// A few elements of a vector, by ascending index.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sparse<T> {
+    pub(crate) indices: Vec<u32>,
+    pub(crate) values: Vec<T>,
+}
+
+impl<T: Copy> Sparse<T> {
+    /// Exchanges the elements with those of `whole`.
+    fn swap(&mut self, whole: &mut [T]) {
+        for (&index, value) in self.indices.iter().zip(&mut self.values) {
+            std::mem::swap(&mut whole[index as usize], value);
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        self.indices.len() * size_of::<u32>() + self.values.len() * size_of::<T>()
+    }
+}
+
+impl Sparse<DVec3> {
+    /// The elements of `other` whose bits differ from those of `present`.
+    pub(crate) fn difference(present: &[DVec3], other: &[DVec3]) -> Self {
+        let mut difference = Self::default();
+        for (index, (here, there)) in present.iter().zip(other).enumerate() {
+            if !bits_equal(*here, *there) {
+                difference.indices.push(index as u32);
+                difference.values.push(*there);
+            }
+        }
+        difference
+    }
+
+    /// `present` with the elements put in.
+    fn applied(&self, present: &[DVec3]) -> Vec<DVec3> {
+        let mut whole = present.to_vec();
+        for (&index, &value) in self.indices.iter().zip(&self.values) {
+            whole[index as usize] = value;
+        }
+        whole
+    }
+}
+
+/// Whether two vectors are the same bits: −0 is not 0 here, since undo gives back what was there.
+pub(crate) fn bits_equal(a: DVec3, b: DVec3) -> bool {
+    a.to_array().map(f64::to_bits) == b.to_array().map(f64::to_bits)
+}
+
+/// A named step.
+#[derive(Clone, Debug)]
+struct Step {
+    name: String,
+    changes: Vec<Change>,
+    /// The shape on the other side, relative to [`History::shape`] if the step is a neighbour of the present.
+    shape: Sparse<DVec3>,
+}
+
+impl Step {
+    fn bytes(&self) -> usize {
+        let changes: usize = self
+            .changes
+            .iter()
+            .map(|change| match change {
+                Change::Paint(sparse) => sparse.bytes(),
+                Change::Rest(sparse, _) => sparse.bytes(),
+                Change::Stiffness(Some(field)) => field.len() * size_of::<f64>(),
+                Change::Handles(handles, _) => handles.len() * size_of::<Handle>(),
+                Change::Stiffness(None) | Change::Options(..) | Change::Settled(_) => size_of::<Change>(),
+            })
+            .sum();
+        size_of::<Self>() + self.name.len() + changes + self.shape.bytes()
+    }
+}
+
+/// The steps behind and ahead of the present.
+#[derive(Clone, Debug)]
+pub struct History {
+    done: VecDeque<Step>,
+    undone: Vec<Step>,
+    /// The shape that the neighbouring steps' deltas are relative to.
+    shape: Arc<Vec<DVec3>>,
+    cap_bytes: usize,
+    /// How many steps lie behind the state that was saved; `None` when that state was forgotten.
+    saved_at: Option<usize>,
+}
+
+impl History {
+    /// An empty history of a document that shows `shape`.
+    pub(crate) fn new(shape: Arc<Vec<DVec3>>, cap_bytes: usize) -> Self {
+        Self {
+            done: VecDeque::new(),
+            undone: Vec::new(),
+            shape,
+            cap_bytes,
+            saved_at: Some(0),
+        }
+    }
+
+    /// The name of the step that undo would take back.
+    pub fn undo_name(&self) -> Option<&str> {
+        self.done.back().map(|step| step.name.as_str())
+    }
+
+    /// The name of the step that redo would do again.
+    pub fn redo_name(&self) -> Option<&str> {
+        self.undone.last().map(|step| step.name.as_str())
+    }
+
+    /// The names of all steps, oldest first, and how many of them are done.
+    pub fn names(&self) -> (Vec<&str>, usize) {
+        let undone = self.undone.iter().rev();
+        (
+            self.done.iter().chain(undone).map(|step| step.name.as_str()).collect(),
+            self.done.len(),
+        )
+    }
+
+    /// The bytes that the deltas take.
+    pub fn bytes(&self) -> usize {
+        self.done.iter().chain(&self.undone).map(Step::bytes).sum()
+    }
+
+    /// Whether the document differs from what was saved.
+    pub fn is_unsaved(&self) -> bool {
+        self.saved_at != Some(self.done.len())
+    }
+
+    /// Notes that the present state was saved.
+    pub(crate) fn mark_saved(&mut self) {
+        self.saved_at = Some(self.done.len());
+    }
+
+    /// Makes the neighbouring steps relative to the shape that the document shows.
+    pub(crate) fn sync(&mut self, document: &Document) {
+        if Arc::ptr_eq(&self.shape, &document.from_rest) {
+            return;
+        }
+        for step in self.done.back_mut().into_iter().chain(self.undone.last_mut()) {
+            let other = step.shape.applied(&self.shape);
+            step.shape = Sparse::difference(&document.from_rest, &other);
+        }
+        self.shape = Arc::clone(&document.from_rest);
+        self.forget_oldest();
+    }
+
+    /// Adds a step with what the document had before it; `shape` is what was shown when it began.
+    ///
+    /// What was undone can't be done again after this.
+    pub(crate) fn push(&mut self, name: String, changes: Vec<Change>, shape: Arc<Vec<DVec3>>) {
+        if self.saved_at.is_some_and(|saved_at| saved_at > self.done.len()) {
+            self.saved_at = None;
+        }
+        self.undone.clear();
+        self.done.push_back(Step {
+            name,
+            changes,
+            shape: Sparse::default(),
+        });
+        // The step's own shape delta is empty relative to what was shown when it began: `sync` makes it the
+        // difference to what came of it.
+        self.shape = shape;
+    }
+
+    /// Takes back the last step; its name, or `None` if there is none.
+    pub(crate) fn undo(&mut self, document: &mut Document) -> Option<String> {
+        self.sync(document);
+        let mut step = self.done.pop_back()?;
+        self.exchange(&mut step, document);
+        let name = step.name.clone();
+        self.undone.push(step);
+        Some(name)
+    }
+
+    /// Does the last undone step again; its name, or `None` if there is none.
+    pub(crate) fn redo(&mut self, document: &mut Document) -> Option<String> {
+        self.sync(document);
+        let mut step = self.undone.pop()?;
+        self.exchange(&mut step, document);
+        let name = step.name.clone();
+        self.done.push_back(step);
+        Some(name)
+    }
+
+    fn exchange(&mut self, step: &mut Step, document: &mut Document) {
+        for change in &mut step.changes {
+            swap(change, document);
+        }
+        step.shape.swap(Arc::make_mut(&mut document.from_rest).as_mut_slice());
+        document.refresh_from_file();
+        self.shape = Arc::clone(&document.from_rest);
+    }
+
+    fn forget_oldest(&mut self) {
+        let mut bytes = self.bytes();
+        while bytes > self.cap_bytes && self.done.len() > 1 {
+            if let Some(oldest) = self.done.pop_front() {
+                bytes -= oldest.bytes();
+                self.saved_at = self.saved_at.and_then(|saved_at| saved_at.checked_sub(1));
+            }
+        }
+    }
+}
+
+/// Exchanges what the change holds with what the document has.
+fn swap(change: &mut Change, document: &mut Document) {
+    match change {
+        Change::Paint(sparse) => sparse.swap(Arc::make_mut(&mut document.paint).as_mut_slice()),
+        Change::Handles(handles, next_handle) => {
+            std::mem::swap(handles, &mut document.handles);
+            std::mem::swap(next_handle, &mut document.next_handle);
+        }
+        Change::Stiffness(stiffness) => std::mem::swap(stiffness, &mut document.stiffness),
+        Change::Options(method, loose) => {
+            std::mem::swap(method, &mut document.method);
+            std::mem::swap(loose, &mut document.loose);
+        }
+        Change::Rest(sparse, applied) => {
+            sparse.swap(Arc::make_mut(&mut document.rest).as_mut_slice());
+            std::mem::swap(applied, &mut document.applied);
+        }
+        Change::Settled(settled) => std::mem::swap(settled, &mut document.settled),
+    }
+}

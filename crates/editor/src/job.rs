@@ -1,0 +1,146 @@
+//! Work that must not hold up the window: what it is, how it is handed out and how its results come back.
+//!
+//! The app gives the editor an [`Executor`]. The editor starts at most one job of each [`JobKind`] at a time and keeps
+//! at most one more pending, the newest ([`JobQueue`](crate::JobQueue)); every job is stamped with the revision it was
+//! made for, and a result whose revision is no longer wanted is dropped.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::{Bound, Ordering};
+use pliant_mesh::{Bvh, Cancel, Progress};
+
+use crate::Region;
+
+/// The jobs the editor hands out, by what they make.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum JobKind {
+    /// The structure that answers "what is under the pointer", built or refitted to the present shape.
+    Pick,
+    /// The mesh's fill-reducing ordering, made once per mesh and operator power.
+    Order,
+    /// Which vertices each handle's reach sets free.
+    Region,
+    /// The factorisation for the present regions.
+    Bind,
+    /// The surface for the present handle transforms.
+    Solve,
+}
+
+impl JobKind {
+    /// Every kind, in the order in which their results build on one another.
+    pub const ALL: [Self; 5] = [Self::Pick, Self::Order, Self::Region, Self::Bind, Self::Solve];
+
+    /// What the job does, for the status line: "binding".
+    pub fn doing(self) -> &'static str {
+        match self {
+            Self::Pick => "getting the surface ready for the pointer",
+            Self::Order => "ordering the equations",
+            Self::Region => "measuring the region",
+            Self::Bind => "binding",
+            Self::Solve => "bending",
+        }
+    }
+}
+
+/// The number of the state that a job was made for. Numbers only grow; none is used twice.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
+pub struct Revision(pub u64);
+
+/// A piece of work for the executor. `work` is to be called once, off the window's thread, and its outcome sent back
+/// as [`Event::JobDone`](crate::Event::JobDone) with the same kind and stamp, whatever the outcome.
+pub struct Job {
+    /// What the job makes.
+    pub kind: JobKind,
+    /// The revision it was made for.
+    pub stamp: Revision,
+    /// How far it is; shared with the work.
+    pub progress: Progress,
+    /// Raised by the editor when the result is no longer wanted; shared with the work.
+    pub cancel: Cancel,
+    /// The work itself.
+    pub work: Box<dyn FnOnce() -> JobOutcome + Send>,
+}
+
+impl Job {
+    /// Does the work here and now.
+    pub fn run(self) -> JobDone {
+        let Self { kind, stamp, work, .. } = self;
+        JobDone {
+            kind,
+            stamp,
+            outcome: work(),
+        }
+    }
+}
+
+impl std::fmt::Debug for Job {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Job")
+            .field("kind", &self.kind)
+            .field("stamp", &self.stamp)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Where jobs run. The app's executor has threads; a test's has a list.
+pub trait Executor {
+    /// Takes a job and returns at once (or, for a tiny program, does the work first). The result comes back as
+    /// [`Event::JobDone`](crate::Event::JobDone), never by calling the editor from here. A job that panics is to be
+    /// answered with [`JobOutcome::Failed`].
+    fn start(&mut self, job: Job);
+}
+
+/// The end of a job.
+#[derive(Debug)]
+pub struct JobDone {
+    /// What the job made.
+    pub kind: JobKind,
+    /// The revision it was made for.
+    pub stamp: Revision,
+    /// What came of it.
+    pub outcome: JobOutcome,
+}
+
+/// What came of a job.
+pub enum JobOutcome {
+    /// The picking structure of a shape.
+    Pick(Arc<Bvh>),
+    /// The mesh's ordering.
+    Ordered(Arc<Ordering>),
+    /// The region that the handles reach.
+    Region(Region),
+    /// A factorisation, ready to be stepped.
+    Bound(Box<Bound>),
+    /// A new shape.
+    Solved(Solved),
+    /// It was cancelled, and nothing is owed.
+    Cancelled,
+    /// It failed; one sentence that names the culprit and the remedy.
+    Failed(String),
+}
+
+impl std::fmt::Debug for JobOutcome {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Pick(_) => "Pick",
+            Self::Ordered(_) => "Ordered",
+            Self::Region(_) => "Region",
+            Self::Bound(_) => "Bound",
+            Self::Solved(_) => "Solved",
+            Self::Cancelled => "Cancelled",
+            Self::Failed(sentence) => return write!(f, "Failed({sentence})"),
+        })
+    }
+}
+
+/// A step's result: displacements per surface vertex.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// From the present rest shape.
+    pub from_rest: Arc<Vec<DVec3>>,
+    /// From the file's shape: what is drawn. The same allocation while nothing was applied.
+    pub from_file: Arc<Vec<DVec3>>,
+    /// Whether further steps would change it.
+    pub converged: bool,
+}

@@ -1,0 +1,76 @@
+//! What lies under the pointer: rays against a hierarchy that is rebuilt by a job whenever the shape settles.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use pliant_mesh::{Bvh, Model, SurfaceVertex};
+
+use crate::camera::{Camera, Ray};
+
+/// A point of the surface under the pointer.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Pick {
+    /// The surface triangle.
+    pub triangle: u32,
+    /// The corner that is nearest to the point.
+    pub vertex: SurfaceVertex,
+    /// The point, in world space.
+    pub point: DVec3,
+    /// The unit normal of the triangle on the side that was met.
+    pub normal: DVec3,
+    /// Whether the outer side was met.
+    pub front: bool,
+}
+
+/// The present shape and the structure that answers rays, which may lag behind it.
+#[derive(Clone)]
+pub(crate) struct Picking<'a> {
+    pub(crate) model: &'a Model,
+    /// Displacements of the surface from the file's shape.
+    pub(crate) displacements: &'a Arc<Vec<DVec3>>,
+    pub(crate) bvh: &'a Bvh,
+    pub(crate) camera: &'a Camera,
+    pub(crate) viewport_px: DVec2,
+}
+
+impl Picking<'_> {
+    /// The present position of a surface vertex.
+    pub(crate) fn position(&self, vertex: SurfaceVertex) -> DVec3 {
+        self.model.surface.positions[vertex.index()] + self.displacements[vertex.index()]
+    }
+
+    /// The present corners of a triangle.
+    pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.model.surface.triangles[triangle as usize].map(|vertex| self.position(vertex))
+    }
+
+    /// The first point of the surface under a point of the viewport.
+    pub(crate) fn at(&self, position_px: DVec2) -> Option<Pick> {
+        self.along(self.camera.ray(position_px, self.viewport_px))
+    }
+
+    /// The first point of the surface along a ray.
+    pub(crate) fn along(&self, ray: Ray) -> Option<Pick> {
+        let hit = self.bvh.ray(ray.origin, ray.direction)?;
+        let vertices = self.model.surface.triangles.get(hit.triangle as usize)?;
+        let corners = self.corners(hit.triangle);
+        let [u, v, w] = hit.barycentric;
+        let nearest = if u >= v && u >= w {
+            0
+        } else if v >= w {
+            1
+        } else {
+            2
+        };
+        let outward = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        let front = outward.dot(ray.direction) <= 0.0;
+        let facing = if front { outward } else { -outward };
+        Some(Pick {
+            triangle: hit.triangle,
+            vertex: vertices[nearest],
+            point: corners[0] * u + corners[1] * v + corners[2] * w,
+            normal: facing.normalize_or(-ray.direction),
+            front,
+        })
+    }
+}

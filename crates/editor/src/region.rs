@@ -1,0 +1,161 @@
+//! What each vertex does, as it follows from paint and handles: the region of influence around each handle.
+//!
+//! A handle sets free what lies within its reach along the rest surface and carries no paint. A component that carries
+//! no paint and that no handle reaches is left to the method as a loose part. Everything else is held still.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::{Loose, Role};
+use pliant_mesh::{Cancel, Cancelled, DistanceSearch, Model, Surface, SurfaceVertex};
+
+use crate::document::{HandleId, Paint};
+use crate::{Counts, Reach};
+
+/// What the region follows from; shared with the job that measures it.
+#[derive(Clone, Debug)]
+pub(crate) struct RegionInput {
+    pub(crate) model: Arc<Model>,
+    pub(crate) paint: Arc<Vec<Paint>>,
+    pub(crate) handles: Vec<(HandleId, Reach)>,
+    /// The rest shape's displacements from the file's; `None` where it is the file's.
+    pub(crate) rest: Option<Arc<Vec<DVec3>>>,
+    pub(crate) loose: Loose,
+}
+
+/// The vertices' roles, and the surface that they hold on.
+#[derive(Clone, Debug)]
+pub struct Region {
+    /// What each surface vertex does.
+    pub roles: Arc<Vec<Role>>,
+    /// The handles that have vertices: [`Role::Handle`]'s number is the index.
+    pub handles: Arc<Vec<HandleId>>,
+    /// Numbers of vertices by role.
+    pub counts: Counts,
+    /// The rest shape, where it is another than the file's.
+    pub(crate) rest_surface: Option<Arc<Surface>>,
+}
+
+impl Region {
+    /// Everything held still.
+    pub(crate) fn still(vertex_count: usize) -> Self {
+        Self {
+            roles: Arc::new(vec![Role::Fixed; vertex_count]),
+            handles: Arc::new(Vec::new()),
+            counts: Counts {
+                fixed: vertex_count,
+                ..Counts::default()
+            },
+            rest_surface: None,
+        }
+    }
+
+    /// Measures the region.
+    pub(crate) fn measure(input: &RegionInput, cancel: &Cancel) -> Result<Self, Cancelled> {
+        let topology = &input.model.topology;
+        let rest_surface = input
+            .rest
+            .as_ref()
+            .map(|rest| Arc::new(displaced(&input.model.surface, rest)));
+        let surface = rest_surface.as_deref().unwrap_or(&input.model.surface);
+        let mut members: Vec<Vec<SurfaceVertex>> = vec![Vec::new(); input.handles.len()];
+        let mut held = vec![false; topology.components().len()];
+        for (vertex, paint) in input.paint.iter().enumerate() {
+            let vertex = SurfaceVertex(vertex as u32);
+            if *paint != Paint::Bare {
+                held[topology.component(vertex) as usize] = true;
+            }
+            if let Paint::Handle(id) = *paint
+                && let Some(index) = input.handles.iter().position(|(handle, _)| *handle == id)
+            {
+                members[index].push(vertex);
+            }
+        }
+        let mut roles = vec![Role::Fixed; input.paint.len()];
+        let mut handles = Vec::new();
+        let mut search = DistanceSearch::default();
+        for ((id, reach), members) in input.handles.iter().zip(&members) {
+            if members.is_empty() {
+                continue;
+            }
+            cancel.check()?;
+            let limit = reach_length(*reach, surface, members);
+            let seeds: Vec<(SurfaceVertex, f64)> = members.iter().map(|&vertex| (vertex, 0.0)).collect();
+            if limit > 0.0 {
+                for &(vertex, _) in search.within(surface, topology, &seeds, limit) {
+                    roles[vertex.index()] = Role::Free;
+                }
+            }
+            handles.push(*id);
+        }
+        let follow = !handles.is_empty() && input.loose == Loose::Follow;
+        let mut counts = Counts::default();
+        for (vertex, paint) in input.paint.iter().enumerate() {
+            let loose = || follow && !held[topology.component(SurfaceVertex(vertex as u32)) as usize];
+            let role = match *paint {
+                Paint::Fixed => Role::Fixed,
+                Paint::Free => Role::Free,
+                Paint::Bare if loose() => Role::Free,
+                Paint::Bare => roles[vertex],
+                Paint::Handle(id) => match handles.iter().position(|&handle| handle == id) {
+                    Some(index) => Role::Handle(index as u16),
+                    None => Role::Fixed,
+                },
+            };
+            match role {
+                Role::Fixed => counts.fixed += 1,
+                Role::Free => counts.free += 1,
+                Role::Handle(_) => counts.handle += 1,
+            }
+            roles[vertex] = role;
+        }
+        Ok(Self {
+            roles: Arc::new(roles),
+            handles: Arc::new(handles),
+            counts,
+            rest_surface,
+        })
+    }
+}
+
+/// The surface with every vertex moved by its displacement.
+pub(crate) fn displaced(surface: &Surface, displacements: &[DVec3]) -> Surface {
+    let positions = surface
+        .positions
+        .iter()
+        .zip(displacements)
+        .map(|(&p, &d)| p + d)
+        .collect();
+    Surface {
+        positions,
+        triangles: surface.triangles.clone(),
+    }
+}
+
+/// A reach in world units.
+fn reach_length(reach: Reach, surface: &Surface, members: &[SurfaceVertex]) -> f64 {
+    match reach {
+        Reach::Length(length) => length,
+        Reach::Radii(radii) => radii * handle_radius(surface, members),
+    }
+}
+
+/// A handle's radius: that of the disc whose points are as far from their centre in the mean square.
+pub(crate) fn handle_radius(surface: &Surface, members: &[SurfaceVertex]) -> f64 {
+    let centre = centroid(&surface.positions, members.iter().copied());
+    let squares: f64 = members
+        .iter()
+        .map(|vertex| surface.positions[vertex.index()].distance_squared(centre))
+        .sum();
+    (2.0 * squares / members.len().max(1) as f64).sqrt()
+}
+
+/// The mean position of some vertices; the origin for none.
+pub(crate) fn centroid(positions: &[DVec3], vertices: impl Iterator<Item = SurfaceVertex>) -> DVec3 {
+    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+    for vertex in vertices {
+        sum += positions[vertex.index()];
+        count += 1.0;
+    }
+    if count > 0.0 { sum / count } else { DVec3::ZERO }
+}

@@ -1,0 +1,105 @@
+//! What the window must show: borrowed from the editor after each event, with revisions that say what changed.
+//!
+//! The app keeps the revisions of what it uploaded last and compares; nothing is uploaded or drawn when none changed.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use pliant_mesh::Model;
+
+use crate::{Camera, GizmoShape, Handle, HandleId, JobKind, ToolMode};
+
+/// Everything the 3D view and the panels around it show.
+#[derive(Debug)]
+pub struct SceneView<'a> {
+    /// The open file's vertex sets; `None` before the first file.
+    pub model: Option<&'a Arc<Model>>,
+    /// The eye: gives the matrices.
+    pub camera: &'a Camera,
+    /// The view's size in points.
+    pub viewport_px: DVec2,
+    /// Grows when [`SceneView::displacements`] changed.
+    pub shape_revision: u64,
+    /// Per surface vertex, from the file's shape: hand it to [`Model::drawn_positions`]. Shared, never changed in place.
+    pub displacements: &'a Arc<Vec<DVec3>>,
+    /// Grows when the colours of regions and handles changed: fetch them by
+    /// [`Editor::region_colours`](crate::Editor::region_colours).
+    pub regions_revision: u64,
+    /// Grows when anything of the overlay (ring, gizmo) changed.
+    pub overlay_revision: u64,
+    /// Grows when the camera changed.
+    pub camera_revision: u64,
+    /// The ring of the brush on the surface under the pointer, a closed line in world space; empty where none is shown.
+    pub brush_ring: &'a [DVec3],
+    /// The selected handle's gizmo, in world space; empty where none is shown.
+    pub gizmo: &'a [GizmoShape],
+    /// How the surface is shaded.
+    pub shading: Shading,
+    /// Whether the triangles' edges are shown.
+    pub wireframe: bool,
+    /// Whether the regions' colours are shown.
+    pub regions: bool,
+    /// What the left button does on the surface.
+    pub tool: ToolMode,
+    /// What the pointer should look like.
+    pub cursor: Cursor,
+    /// The brush's radius in points.
+    pub brush_radius_px: f64,
+    /// The handles, in the order in which they were made.
+    pub handles: &'a [Handle],
+    /// The selected handle.
+    pub selected: Option<HandleId>,
+    /// What the program is doing and what one can do next, in one line.
+    pub status: String,
+    /// The last thing that went wrong, in one sentence, until the next command that works.
+    pub problem: Option<&'a str>,
+    /// Jobs that run, with their progress (0 to 1).
+    pub jobs: Vec<(JobKind, f32)>,
+    /// Numbers of vertices by role.
+    pub counts: Counts,
+    /// What Undo would take back.
+    pub undo: Option<&'a str>,
+    /// What Redo would do again.
+    pub redo: Option<&'a str>,
+    /// Whether the document changed since it was opened or saved.
+    pub unsaved: bool,
+    /// Whether shape and regions are final: no job runs that could change them, and nothing is being dragged.
+    pub settled: bool,
+}
+
+/// Numbers of surface vertices by role.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Counts {
+    /// Held still.
+    pub fixed: usize,
+    /// Free to bend.
+    pub free: usize,
+    /// In a handle.
+    pub handle: usize,
+}
+
+/// How the surface is shaded.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum Shading {
+    /// Plain clay.
+    #[default]
+    Clay,
+    /// The file's materials.
+    Material,
+}
+
+/// What the pointer should look like over the view.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum Cursor {
+    /// An arrow.
+    #[default]
+    Arrow,
+    /// A crosshair: the brush is over the surface.
+    Brush,
+    /// A hand: something can be grabbed.
+    Grab,
+    /// A closed hand: something is being dragged.
+    Grabbing,
+    /// Four arrows: a transform follows the pointer.
+    Move,
+}

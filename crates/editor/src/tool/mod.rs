@@ -1,0 +1,154 @@
+//! What the pointer is doing: one state machine a file, and the idle state that starts them.
+//!
+//! Each takes itself and gives back what comes after it, so a tool that has ended can't be asked anything. A tool that
+//! is aborted leaves no trace.
+
+mod navigate;
+mod paint;
+mod transform;
+
+use glam::DVec2;
+
+pub(crate) use navigate::Navigate;
+pub(crate) use paint::{PaintStroke, handle_colour};
+pub(crate) use transform::{TransformDrag, TransformKind};
+
+use crate::constraint::Constraint;
+use crate::document::Paint;
+use crate::editor::Editor;
+use crate::engine::Activity;
+use crate::gizmo::GizmoPart;
+use crate::{Button, Key, Modifiers, Pointer};
+
+/// What the left button does on the surface.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum ToolMode {
+    /// Paints the selected handle, or a new one.
+    #[default]
+    PaintHandle,
+    /// Paints the free region.
+    PaintFree,
+    /// Paints what is held still.
+    PaintFixed,
+    /// Takes paint away.
+    Erase,
+    /// Selects a handle and drags it.
+    Select,
+}
+
+/// What the pointer is doing.
+#[derive(Debug, Default)]
+pub(crate) enum Tool {
+    /// Nothing.
+    #[default]
+    Idle,
+    /// Moving the camera.
+    Navigate(Navigate),
+    /// Painting.
+    Paint(Box<PaintStroke>),
+    /// Moving, turning or scaling a handle.
+    Transform(Box<TransformDrag>),
+}
+
+impl Tool {
+    pub(crate) fn activity(&self) -> Activity {
+        match self {
+            Self::Idle | Self::Navigate(_) => Activity::Still,
+            Self::Paint(_) => Activity::Painting,
+            Self::Transform(_) => Activity::Dragging,
+        }
+    }
+
+    pub(crate) fn moved(self, editor: &mut Editor, pointer: Pointer) -> Self {
+        match self {
+            Self::Idle => Self::Idle,
+            Self::Navigate(navigate) => navigate.moved(editor, pointer),
+            Self::Paint(stroke) => stroke.moved(editor, pointer),
+            Self::Transform(drag) => drag.moved(editor, pointer),
+        }
+    }
+
+    pub(crate) fn pressed(self, editor: &mut Editor, pointer: Pointer, button: Button) -> Self {
+        match (self, button) {
+            (Self::Idle, _) => begin(editor, pointer, button),
+            (Self::Transform(drag), _) => drag.pressed(editor, pointer, button),
+            (tool, Button::Secondary) => tool.abort(editor),
+            (tool, _) => tool,
+        }
+    }
+
+    pub(crate) fn released(self, editor: &mut Editor, pointer: Pointer, button: Button) -> Self {
+        match self {
+            Self::Idle => Self::Idle,
+            Self::Navigate(navigate) => navigate.released(button),
+            Self::Paint(stroke) => stroke.released(editor, pointer, button),
+            Self::Transform(drag) => drag.released(editor, pointer, button),
+        }
+    }
+
+    /// The tool after the key, and whether the key was its own.
+    pub(crate) fn key(self, editor: &mut Editor, key: Key, modifiers: Modifiers) -> (Self, bool) {
+        match self {
+            Self::Idle => (Self::Idle, false),
+            Self::Transform(drag) => drag.key(editor, key, modifiers),
+            tool if key == Key::Escape => (tool.abort(editor), true),
+            tool => (tool, false),
+        }
+    }
+
+    /// Puts everything back to how it was before the tool began.
+    pub(crate) fn abort(self, editor: &mut Editor) -> Self {
+        match self {
+            Self::Idle => {}
+            Self::Navigate(navigate) => navigate.abort(editor),
+            Self::Paint(stroke) => stroke.abort(editor),
+            Self::Transform(drag) => drag.abort(editor),
+        }
+        Self::Idle
+    }
+}
+
+/// A button went down while nothing was going on: the gizmo comes first, then the surface, then the camera.
+fn begin(editor: &mut Editor, pointer: Pointer, button: Button) -> Tool {
+    let Pointer { position_px, modifiers } = pointer;
+    match button {
+        Button::Secondary => return Tool::Idle,
+        Button::Middle => return Tool::Navigate(Navigate::begin(editor, pointer, button)),
+        Button::Primary if modifiers.alt || modifiers.shift => {
+            return Tool::Navigate(Navigate::begin(editor, pointer, button));
+        }
+        Button::Primary => {}
+    }
+    if let Some(part) = editor.overlay.hit(position_px, &editor.camera, editor.viewport_px)
+        && let Some(drag) = begin_gizmo(editor, position_px, part)
+    {
+        return drag;
+    }
+    let Some(pick) = editor.pick(position_px) else {
+        return Tool::Navigate(Navigate::begin(editor, pointer, button));
+    };
+    editor.problem = None;
+    if editor.mode != ToolMode::Select {
+        return Tool::Paint(Box::new(PaintStroke::begin(editor, pointer)));
+    }
+    let Some(Paint::Handle(handle)) = editor.document.paint().get(pick.vertex.index()).copied() else {
+        return Tool::Navigate(Navigate::begin(editor, pointer, button));
+    };
+    editor.selected = Some(handle);
+    match TransformDrag::begin(editor, TransformKind::Move, Constraint::Free, position_px) {
+        Some(drag) => Tool::Transform(Box::new(drag.held(button, None))),
+        None => Tool::Idle,
+    }
+}
+
+fn begin_gizmo(editor: &mut Editor, position_px: DVec2, part: GizmoPart) -> Option<Tool> {
+    let (kind, constraint) = match part {
+        GizmoPart::Centre => (TransformKind::Move, Constraint::Free),
+        GizmoPart::Arrow(axis) => (TransformKind::Move, Constraint::Axis(axis)),
+        GizmoPart::Square(axis) => (TransformKind::Move, Constraint::Plane(axis)),
+        GizmoPart::Ring(axis) => (TransformKind::Turn, Constraint::Axis(axis)),
+        GizmoPart::Box(axis) => (TransformKind::Scale, Constraint::Axis(axis)),
+    };
+    let drag = TransformDrag::begin(editor, kind, constraint, position_px)?;
+    Some(Tool::Transform(Box::new(drag.held(Button::Primary, Some(part)))))
+}
