@@ -12,7 +12,11 @@ const PIECE: usize = 16_384;
 
 /// The area of every triangle of `surface` with its vertices at `positions`.
 pub fn face_areas(surface: &Surface, positions: &[DVec3]) -> Vec<f64> {
-    surface.triangles.par_iter().map(|&triangle| face_area(corners(triangle, positions))).collect()
+    surface
+        .triangles
+        .par_iter()
+        .map(|&triangle| face_area(corners(triangle, positions)))
+        .collect()
 }
 
 /// Each corner's share of a triangle's area, from edge lengths (entry `i` opposite corner `i`): Meyer, Desbrun,
@@ -33,7 +37,11 @@ pub fn mixed_corner_areas(lengths: [f64; 3]) -> [f64; 3] {
     }
     // Equation 7: an edge's eighth of a square, weighted by the cotangent opposite, goes to both its ends.
     let of_edge: [f64; 3] = std::array::from_fn(|i| 0.125 * lengths[i] * lengths[i] * cot[i]);
-    [of_edge[1] + of_edge[2], of_edge[2] + of_edge[0], of_edge[0] + of_edge[1]]
+    [
+        of_edge[1] + of_edge[2],
+        of_edge[2] + of_edge[0],
+        of_edge[0] + of_edge[1],
+    ]
 }
 
 /// The mixed Voronoi area of every vertex, all finite and not negative; they sum to the surface's area. A vertex whose
@@ -55,7 +63,9 @@ pub fn mixed_voronoi_areas(surface: &Surface) -> Vec<f64> {
 /// The volume inside a closed surface, positive where normals point outward; meaningless for an open one.
 pub fn signed_volume(triangles: &[[SurfaceVertex; 3]], positions: &[DVec3]) -> f64 {
     // Relative to a vertex of the surface: far from the origin the terms would cancel.
-    let Some(&[apex, ..]) = triangles.first() else { return 0.0 };
+    let Some(&[apex, ..]) = triangles.first() else {
+        return 0.0;
+    };
     let apex = positions[apex.index()];
     let pieces: Vec<f64> = triangles
         .par_chunks(PIECE)

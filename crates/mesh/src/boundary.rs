@@ -54,13 +54,19 @@ impl Rim {
         let mut vertices: Vec<SurfaceVertex> = edges.iter().flatten().copied().collect();
         vertices.sort_unstable();
         vertices.dedup();
-        let mut rim = Self { vertices, ends: Vec::with_capacity(2 * edges.len()), starts: Vec::new() };
+        let mut rim = Self {
+            vertices,
+            ends: Vec::with_capacity(2 * edges.len()),
+            starts: Vec::new(),
+        };
         for (edge, &[from, to]) in edges.iter().enumerate() {
             rim.ends.push((rim.local(from), false, edge));
             rim.ends.push((rim.local(to), true, edge));
         }
         rim.ends.sort_unstable();
-        rim.starts = (0..=rim.vertices.len()).map(|v| rim.ends.partition_point(|end| end.0 < v)).collect();
+        rim.starts = (0..=rim.vertices.len())
+            .map(|v| rim.ends.partition_point(|end| end.0 < v))
+            .collect();
         rim
     }
 

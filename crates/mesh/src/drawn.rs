@@ -25,6 +25,11 @@ impl Drawn {
     pub fn once(positions: Vec<DVec3>, triangles: Vec<[DrawnVertex; 3]>) -> Self {
         let file_vertex_count = positions.len();
         let file_vertex = (0..file_vertex_count as u32).map(FileVertex).collect();
-        Self { positions, triangles, file_vertex, file_vertex_count }
+        Self {
+            positions,
+            triangles,
+            file_vertex,
+            file_vertex_count,
+        }
     }
 }

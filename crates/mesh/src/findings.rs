@@ -43,7 +43,10 @@ pub struct Findings {
 impl Finding {
     /// All of `found`, which is in order.
     pub(crate) fn of(found: &[u32]) -> Self {
-        Self { count: found.len(), examples: found[..found.len().min(Findings::EXAMPLES)].to_vec() }
+        Self {
+            count: found.len(),
+            examples: found[..found.len().min(Findings::EXAMPLES)].to_vec(),
+        }
     }
 
     /// Whether nothing was found.
@@ -83,7 +86,11 @@ impl Finding {
             [firsts @ .., last] if self.count == shown.len() => format!("{} and {last}", firsts.join(", ")),
             all => format!("{}, ...", all.join(", ")),
         };
-        format!("{} {} ({examples})", self.count, if self.count == 1 { one } else { many })
+        format!(
+            "{} {} ({examples})",
+            self.count,
+            if self.count == 1 { one } else { many }
+        )
     }
 }
 
@@ -116,15 +123,51 @@ impl Findings {
     /// One sentence for each thing that is not as in a clean, closed, connected mesh; none for such a mesh.
     pub fn sentences(&self) -> Vec<String> {
         let about = [
-            (&self.non_finite_vertices, "vertex has a position that is not a finite number and was set aside", "vertices have positions that are not finite numbers and were set aside"),
-            (&self.non_finite_triangles, "triangle uses such a vertex and was left out", "triangles use such vertices and were left out"),
-            (&self.unreferenced_vertices, "vertex is used by no triangle and keeps its place", "vertices are used by no triangle and keep their places"),
-            (&self.collapsed_triangles, "triangle has two corners in one place and was left out", "triangles have two corners in one place and were left out"),
-            (&self.zero_area_triangles, "triangle has no area", "triangles have no area"),
-            (&self.duplicate_triangles, "triangle repeats an earlier one and was left out", "triangles repeat earlier ones and were left out"),
-            (&self.non_manifold_edges, "edge has more than two triangles", "edges have more than two triangles"),
-            (&self.non_manifold_vertices, "vertex joins parts of the surface that share nothing else", "vertices join parts of the surface that share nothing else"),
-            (&self.misoriented_edges, "edge lies between triangles that disagree about which side is outside", "edges lie between triangles that disagree about which side is outside"),
+            (
+                &self.non_finite_vertices,
+                "vertex has a position that is not a finite number and was set aside",
+                "vertices have positions that are not finite numbers and were set aside",
+            ),
+            (
+                &self.non_finite_triangles,
+                "triangle uses such a vertex and was left out",
+                "triangles use such vertices and were left out",
+            ),
+            (
+                &self.unreferenced_vertices,
+                "vertex is used by no triangle and keeps its place",
+                "vertices are used by no triangle and keep their places",
+            ),
+            (
+                &self.collapsed_triangles,
+                "triangle has two corners in one place and was left out",
+                "triangles have two corners in one place and were left out",
+            ),
+            (
+                &self.zero_area_triangles,
+                "triangle has no area",
+                "triangles have no area",
+            ),
+            (
+                &self.duplicate_triangles,
+                "triangle repeats an earlier one and was left out",
+                "triangles repeat earlier ones and were left out",
+            ),
+            (
+                &self.non_manifold_edges,
+                "edge has more than two triangles",
+                "edges have more than two triangles",
+            ),
+            (
+                &self.non_manifold_vertices,
+                "vertex joins parts of the surface that share nothing else",
+                "vertices join parts of the surface that share nothing else",
+            ),
+            (
+                &self.misoriented_edges,
+                "edge lies between triangles that disagree about which side is outside",
+                "edges lie between triangles that disagree about which side is outside",
+            ),
         ];
         let mut sentences: Vec<String> = about
             .into_iter()
@@ -132,17 +175,27 @@ impl Findings {
             .map(|(finding, one, many)| sentence(finding, one, many))
             .collect();
         if !self.boundary_edges.is_empty() {
-            let holes = Finding { examples: Vec::new(), ..self.boundary_loops.clone() };
+            let holes = Finding {
+                examples: Vec::new(),
+                ..self.boundary_loops.clone()
+            };
             sentences.push(format!(
                 "The surface is open: {} with {} along {} rim{}.",
                 holes.phrase("hole", "holes"),
-                Finding { examples: Vec::new(), ..self.boundary_edges.clone() }.phrase("edge", "edges"),
+                Finding {
+                    examples: Vec::new(),
+                    ..self.boundary_edges.clone()
+                }
+                .phrase("edge", "edges"),
                 if holes.count == 1 { "its" } else { "their" },
                 if holes.count == 1 { "" } else { "s" },
             ));
         }
         if self.components.count > 1 {
-            sentences.push(format!("The surface has {} parts that don't touch.", self.components.count));
+            sentences.push(format!(
+                "The surface has {} parts that don't touch.",
+                self.components.count
+            ));
         }
         sentences
     }

@@ -36,7 +36,10 @@ impl Bounds {
 
     /// The least box that holds both.
     pub fn union(&self, other: &Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
     }
 }
 
@@ -47,7 +50,9 @@ pub fn bounding_box(positions: &[DVec3]) -> Option<Bounds> {
 
 /// The least box of a parallel iterator's positions. Least and greatest don't depend on the order.
 pub(crate) fn bounds_of(positions: impl ParallelIterator<Item = DVec3>) -> Option<Bounds> {
-    positions.map(|p| Bounds { min: p, max: p }).reduce_with(|a, b| a.union(&b))
+    positions
+        .map(|p| Bounds { min: p, max: p })
+        .reduce_with(|a, b| a.union(&b))
 }
 
 /// The area of a triangle.
@@ -62,7 +67,10 @@ pub fn face_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
 
 /// Whether a triangle is a line or a point to within rounding: its height is below 1e-10 of its longest edge.
 pub(crate) fn is_without_area([a, b, c]: [DVec3; 3]) -> bool {
-    let longest_squared = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+    let longest_squared = a
+        .distance_squared(b)
+        .max(b.distance_squared(c))
+        .max(c.distance_squared(a));
     (b - a).cross(c - a).length() <= 1e-10 * longest_squared
 }
 

@@ -32,8 +32,11 @@ mod tests {
     use super::*;
     use glam::{DAffine3, DQuat};
 
-    const REST: [DVec3; 3] =
-        [DVec3::new(1.0, 0.2, -0.5), DVec3::new(1.3, 0.1, -0.4), DVec3::new(0.9, 0.8, -0.1)];
+    const REST: [DVec3; 3] = [
+        DVec3::new(1.0, 0.2, -0.5),
+        DVec3::new(1.3, 0.1, -0.4),
+        DVec3::new(0.9, 0.8, -0.1),
+    ];
 
     #[test]
     fn a_rigid_motion_gives_its_rotation() {

@@ -32,8 +32,10 @@ pub(crate) struct Joined {
 /// `tolerance` is a length; zero joins equal positions only (−0 equals 0) and `None` none.
 pub(crate) fn join(positions: &[DVec3], members: &[u32], bounds: &Bounds, tolerance: Option<f64>) -> Joined {
     let grid = MortonGrid::over(bounds);
-    let mut entries: Vec<Entry> =
-        members.par_iter().map(|&i| (grid.code(positions[i as usize]), i)).collect();
+    let mut entries: Vec<Entry> = members
+        .par_iter()
+        .map(|&i| (grid.code(positions[i as usize]), i))
+        .collect();
     entries.par_sort_unstable();
     let mut representative: Vec<u32> = (0..entries.len() as u32).collect();
     if let Some(tolerance) = tolerance {
@@ -42,7 +44,10 @@ pub(crate) fn join(positions: &[DVec3], members: &[u32], bounds: &Bounds, tolera
             join_across_cells(positions, &entries, &grid, tolerance, &mut representative);
         }
     }
-    Joined { order: entries.into_iter().map(|(_, index)| index).collect(), representative }
+    Joined {
+        order: entries.into_iter().map(|(_, index)| index).collect(),
+        representative,
+    }
 }
 
 /// Runs of this length or more are first thinned to different positions by sorting.
@@ -71,7 +76,13 @@ fn join_within_cells(positions: &[DVec3], entries: &[Entry], tolerance: f64, rep
             }
             if last - first > 1 {
                 let run = piece_start + first..piece_start + last;
-                join_run(positions, &entries[run.clone()], run.start as u32, tolerance, &mut piece[first..last]);
+                join_run(
+                    positions,
+                    &entries[run.clone()],
+                    run.start as u32,
+                    tolerance,
+                    &mut piece[first..last],
+                );
             }
             first = last;
         }
@@ -108,12 +119,7 @@ fn join_run(positions: &[DVec3], run: &[Entry], offset: u32, tolerance: f64, rep
 }
 
 /// Points each of `count` places at the first place of the same position.
-fn join_equal_by_sorting(
-    count: usize,
-    position: impl Fn(usize) -> DVec3,
-    offset: u32,
-    representative: &mut [u32],
-) {
+fn join_equal_by_sorting(count: usize, position: impl Fn(usize) -> DVec3, offset: u32, representative: &mut [u32]) {
     // Adding zero turns −0 into 0, so that both sort alike.
     let key = |place: usize| (position(place) + DVec3::ZERO).to_array().map(ordered_bits);
     let mut places: Vec<([u64; 3], usize)> = (0..count).map(|place| (key(place), place)).collect();
@@ -142,10 +148,18 @@ fn join_across_cells(
     tolerance: f64,
     representative: &mut [u32],
 ) {
-    let standing: Vec<u32> =
-        (0..entries.len() as u32).filter(|&place| representative[place as usize] == place).collect();
+    let standing: Vec<u32> = (0..entries.len() as u32)
+        .filter(|&place| representative[place as usize] == place)
+        .collect();
     let level = coarse_level(entries, &standing, grid.length_in_cells(tolerance));
-    let near = NearPairs { positions, entries, standing: &standing, grid, level, tolerance };
+    let near = NearPairs {
+        positions,
+        entries,
+        standing: &standing,
+        grid,
+        level,
+        tolerance,
+    };
     let mut pairs: Vec<[u32; 2]> = near.find();
     // By rising index of the higher, then of the lower one: the greedy order.
     let index = |place: u32| entries[place as usize].1;
@@ -172,7 +186,10 @@ fn coarse_level(entries: &[Entry], standing: &[u32], tolerance_in_cells: f64) ->
         .map_or(1, |bits| morton::BITS - bits);
     for level in 14.min(finest)..finest {
         let cell = |place: u32| entries[place as usize].0 >> (3 * (morton::BITS - level));
-        if standing.windows(CROWD).all(|window| cell(window[0]) != cell(window[CROWD - 1])) {
+        if standing
+            .windows(CROWD)
+            .all(|window| cell(window[0]) != cell(window[CROWD - 1]))
+        {
             return level;
         }
     }
@@ -233,8 +250,16 @@ impl NearPairs<'_> {
         let in_cells = self.grid.in_cells(self.position(i)) / side;
         // A little more than the tolerance, for the rounding of the cells.
         let reach = self.grid.length_in_cells(self.tolerance) / side * (1.0 + 1e-6) + 1e-9;
-        let lowest = (in_cells - reach).floor().max(DVec3::ZERO).min(DVec3::splat(last_cell)).as_uvec3();
-        let highest = (in_cells + reach).floor().max(DVec3::ZERO).min(DVec3::splat(last_cell)).as_uvec3();
+        let lowest = (in_cells - reach)
+            .floor()
+            .max(DVec3::ZERO)
+            .min(DVec3::splat(last_cell))
+            .as_uvec3();
+        let highest = (in_cells + reach)
+            .floor()
+            .max(DVec3::ZERO)
+            .min(DVec3::splat(last_cell))
+            .as_uvec3();
         if lowest == highest {
             return;
         }
@@ -254,7 +279,9 @@ impl NearPairs<'_> {
 
     fn pairs_with_cell(&self, i: usize, cell: u64, pairs: &mut Vec<[u32; 2]>) {
         let shift = 3 * (morton::BITS - self.level);
-        let first = self.standing.partition_point(|&place| self.entries[place as usize].0 >> shift < cell);
+        let first = self
+            .standing
+            .partition_point(|&place| self.entries[place as usize].0 >> shift < cell);
         for j in first..self.standing.len() {
             if self.cell(j) != cell {
                 break;

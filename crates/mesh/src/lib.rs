@@ -44,5 +44,6 @@ pub use gradient::face_gradient;
 pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};
 pub use model::{Model, SurfaceOfFile, WeldOptions};
 pub use progress::{Cancel, Cancelled, Progress};
+pub use rings::FanKind;
 pub use surface::Surface;
 pub use topology::Topology;

@@ -5,8 +5,7 @@ use rayon::prelude::*;
 
 use crate::weld::{Welded, weld};
 use crate::{
-    Bounds, Cancel, Cancelled, Drawn, FileVertex, Findings, Progress, Surface, SurfaceVertex,
-    Topology, bounding_box,
+    Bounds, Cancel, Cancelled, Drawn, FileVertex, Findings, Progress, Surface, SurfaceVertex, Topology, bounding_box,
 };
 
 /// How equal positions are joined.
@@ -43,21 +42,28 @@ pub struct Model {
 impl Model {
     /// Welds `drawn` into a surface. Anything that can't be solved is set aside and told in the findings; a file with
     /// no usable triangle gives an empty surface.
-    pub fn weld(
-        drawn: Drawn,
-        options: &WeldOptions,
-        progress: &Progress,
-        cancel: &Cancel,
-    ) -> Result<Self, Cancelled> {
-        let Welded { surface, surface_of_drawn, drawn_triangle_of_surface, first_file_vertex, mut findings } =
-            weld(&drawn, options, progress, cancel)?;
+    pub fn weld(drawn: Drawn, options: &WeldOptions, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
+        let Welded {
+            surface,
+            surface_of_drawn,
+            drawn_triangle_of_surface,
+            first_file_vertex,
+            mut findings,
+        } = weld(&drawn, options, progress, cancel)?;
         cancel.check()?;
         let topology = Topology::with_file_vertices(&surface, &first_file_vertex);
         cancel.check()?;
         progress.set(0.9);
         report_topology(&topology, &first_file_vertex, &mut findings);
         progress.set(1.0);
-        Ok(Self { drawn, surface, topology, surface_of_drawn, drawn_triangle_of_surface, findings })
+        Ok(Self {
+            drawn,
+            surface,
+            topology,
+            surface_of_drawn,
+            drawn_triangle_of_surface,
+            findings,
+        })
     }
 
     /// The bounding box of the vertices that kept triangles use; `None` of an empty surface.
@@ -81,7 +87,11 @@ impl Model {
             .for_each(|((moved, &rest), surface_vertex)| {
                 let displacement = surface_vertex.map_or(DVec3::ZERO, |v| displacements[v.index()]);
                 // Adding zero would turn −0 into 0.
-                *moved = if displacement == DVec3::ZERO { rest } else { rest + displacement };
+                *moved = if displacement == DVec3::ZERO {
+                    rest
+                } else {
+                    rest + displacement
+                };
             });
     }
 }
@@ -128,7 +138,10 @@ impl SurfaceOfFile {
         for v in 0..drawn.file_vertex_count {
             offsets[v + 1] += offsets[v];
         }
-        Self { offsets, list: pairs.into_iter().map(|(_, surface_vertex)| surface_vertex).collect() }
+        Self {
+            offsets,
+            list: pairs.into_iter().map(|(_, surface_vertex)| surface_vertex).collect(),
+        }
     }
 
     /// The surface vertices of `vertex`, ascending: none where no kept triangle uses it (or the file has no such

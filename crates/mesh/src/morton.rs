@@ -20,8 +20,15 @@ impl MortonGrid {
         let side = bounds.extent().max_element();
         let cells_per_unit = f64::from(1u32 << BITS) / side;
         // A side so small that its inverse overflows is a point for all we know.
-        let cells_per_unit = if cells_per_unit.is_finite() { cells_per_unit } else { 0.0 };
-        Self { origin: bounds.min, cells_per_unit }
+        let cells_per_unit = if cells_per_unit.is_finite() {
+            cells_per_unit
+        } else {
+            0.0
+        };
+        Self {
+            origin: bounds.min,
+            cells_per_unit,
+        }
     }
 
     /// Position in units of the finest cells, from 0 to `2^BITS` inside the box.
@@ -82,11 +89,17 @@ mod tests {
 
     #[test]
     fn corners_of_the_box_get_the_first_and_the_last_cell() {
-        let bounds = Bounds { min: DVec3::splat(-3.0), max: DVec3::splat(5.0) };
+        let bounds = Bounds {
+            min: DVec3::splat(-3.0),
+            max: DVec3::splat(5.0),
+        };
         let grid = MortonGrid::over(&bounds);
         assert_eq!(grid.code(bounds.min), 0);
         assert_eq!(grid.code(bounds.max), (1 << (3 * BITS)) - 1);
-        let point = MortonGrid::over(&Bounds { min: DVec3::ONE, max: DVec3::ONE });
+        let point = MortonGrid::over(&Bounds {
+            min: DVec3::ONE,
+            max: DVec3::ONE,
+        });
         assert_eq!(point.code(DVec3::ONE), 0);
     }
 }

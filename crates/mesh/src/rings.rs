@@ -16,6 +16,11 @@ pub(crate) struct Rings {
     pub(crate) neighbours: Vec<SurfaceVertex>,
     /// How many triangles lie on the edge to each neighbour, 255 where there are more.
     pub(crate) face_counts: Vec<u8>,
+    /// The rows again, each in the order in which the triangles pass from neighbour to neighbour; ascending where the
+    /// vertex is irregular.
+    pub(crate) fans: Vec<SurfaceVertex>,
+    /// What each vertex's row in `fans` is.
+    pub(crate) fan_kinds: Vec<FanKind>,
     /// Edges with one triangle, directed against it: with the hole on the left.
     pub(crate) boundary: Vec<[SurfaceVertex; 2]>,
     /// Edges with more than two triangles; the examples are their lower surface vertices.
@@ -24,6 +29,17 @@ pub(crate) struct Rings {
     pub(crate) misoriented_edges: Finding,
     /// Vertices whose triangles form more than one fan.
     pub(crate) non_manifold_vertices: Finding,
+}
+
+/// How the triangles around a vertex hang together.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum FanKind {
+    /// One fan all around: each neighbour and the next make a triangle with the vertex, the last one with the first.
+    Closed,
+    /// One fan with two rims: each neighbour and the next make a triangle with the vertex.
+    Open,
+    /// Several fans, an edge with more than two triangles, or triangles that disagree about the outside.
+    Irregular,
 }
 
 /// Rows of triangles around vertices.
@@ -75,12 +91,16 @@ pub(crate) fn rings(vertex_count: usize, triangles: &[[SurfaceVertex; 3]], faces
         degrees: Vec::with_capacity(vertex_count),
         neighbours: Vec::with_capacity(total),
         face_counts: Vec::with_capacity(total),
+        fans: Vec::with_capacity(total),
+        fan_kinds: Vec::with_capacity(vertex_count),
         ..Rings::default()
     };
     for piece in &pieces {
         all.degrees.extend_from_slice(&piece.degrees);
         all.neighbours.extend_from_slice(&piece.neighbours);
         all.face_counts.extend_from_slice(&piece.face_counts);
+        all.fans.extend_from_slice(&piece.fans);
+        all.fan_kinds.extend_from_slice(&piece.fan_kinds);
         all.boundary.extend_from_slice(&piece.boundary);
         all.non_manifold_edges.extend(&piece.non_manifold_edges);
         all.misoriented_edges.extend(&piece.misoriented_edges);
@@ -97,12 +117,19 @@ struct Walk {
     spokes: Vec<u64>,
     /// Union-find over the row's triangles.
     fan: Vec<u32>,
+    /// For each neighbour the triangle (its place in the row) that runs to it from the vertex, if any.
+    triangle_after: Vec<Option<u32>>,
+    /// For each triangle of the row the neighbour (its place in the ring) from which it runs to the vertex.
+    neighbour_before: Vec<u32>,
 }
 
 impl Walk {
     fn around(&mut self, v: SurfaceVertex, triangles: &[[SurfaceVertex; 3]], row: &[u32], rings: &mut Rings) {
         self.spokes.clear();
         self.fan.clear();
+        self.triangle_after.clear();
+        self.neighbour_before.clear();
+        self.neighbour_before.resize(row.len(), 0);
         for (place, &t) in row.iter().enumerate() {
             let [next, previous] = others(triangles[t as usize], v);
             self.spokes.push(u64::from(next.0) << 32 | place as u64);
@@ -111,19 +138,24 @@ impl Walk {
         }
         self.spokes.sort_unstable();
         let mut fans = row.len();
+        let ring_start = rings.neighbours.len();
+        let mut is_regular = true;
         let mut first = 0;
-        let mut degree = 0;
         while first < self.spokes.len() {
             let neighbour = SurfaceVertex((self.spokes[first] >> 32) as u32);
+            let place_in_ring = self.triangle_after.len() as u32;
+            self.triangle_after.push(None);
+            self.link(self.spokes[first], place_in_ring);
             let mut last = first + 1;
             let mut inward = usize::from(self.spokes[first] & INWARD != 0);
             while last < self.spokes.len() && (self.spokes[last] >> 32) as u32 == neighbour.0 {
                 fans -= usize::from(self.join(self.spokes[first], self.spokes[last]));
+                self.link(self.spokes[last], place_in_ring);
                 inward += usize::from(self.spokes[last] & INWARD != 0);
                 last += 1;
             }
             let count = last - first;
-            degree += 1;
+            is_regular &= count == 1 || count == 2 && inward == 1;
             rings.neighbours.push(neighbour);
             rings.face_counts.push(count.min(255) as u8);
             if count == 1 && inward == 1 {
@@ -139,9 +171,48 @@ impl Walk {
             }
             first = last;
         }
-        rings.degrees.push(degree);
+        rings.degrees.push((rings.neighbours.len() - ring_start) as u32);
         if fans > 1 {
             rings.non_manifold_vertices.push(v.0);
+        }
+        if is_regular && fans == 1 {
+            self.order_fan(ring_start, rings);
+        } else {
+            rings.fan_kinds.push(FanKind::Irregular);
+            rings.fans.extend_from_slice(&rings.neighbours[ring_start..]);
+        }
+    }
+
+    fn link(&mut self, spoke: u64, place_in_ring: u32) {
+        let triangle = (spoke & (INWARD - 1)) as u32;
+        if spoke & INWARD == 0 {
+            self.triangle_after[place_in_ring as usize] = Some(triangle);
+        } else {
+            self.neighbour_before[triangle as usize] = place_in_ring;
+        }
+    }
+
+    /// Follows the triangles of a regular vertex from neighbour to neighbour.
+    fn order_fan(&self, ring_start: usize, rings: &mut Rings) {
+        let degree = self.triangle_after.len();
+        let kind = if degree == self.neighbour_before.len() {
+            FanKind::Closed
+        } else {
+            FanKind::Open
+        };
+        rings.fan_kinds.push(kind);
+        // An open fan starts at the one neighbour to which no triangle leads.
+        let mut place = match kind {
+            FanKind::Open => (0..degree as u32)
+                .find(|place| !self.neighbour_before.contains(place))
+                .unwrap_or(0),
+            _ => 0,
+        };
+        for _ in 0..degree {
+            rings.fans.push(rings.neighbours[ring_start + place as usize]);
+            if let Some(triangle) = self.triangle_after[place as usize] {
+                place = self.neighbour_before[triangle as usize];
+            }
         }
     }
 

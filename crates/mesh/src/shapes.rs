@@ -107,7 +107,10 @@ pub fn torus(around: usize, across: usize) -> Drawn {
             })
         })
         .collect();
-    drawn(positions, quads(around, across, |u, v| (v % across) * around + u % around))
+    drawn(
+        positions,
+        quads(around, across, |u, v| (v % across) * around + u % around),
+    )
 }
 
 /// A tube about z from 0 to `length`, radius 1, open at both ends: `around` by `along` cells. Two boundaries.
@@ -164,7 +167,11 @@ pub fn bowtie() -> Drawn {
     let mut triangles = Vec::new();
     for sign in [1.0, -1.0] {
         let n = positions.len();
-        let ends = [DVec3::new(1.0, 0.0, 1.0), DVec3::new(-0.5, 0.9, 1.0), DVec3::new(-0.5, -0.9, 1.0)];
+        let ends = [
+            DVec3::new(1.0, 0.0, 1.0),
+            DVec3::new(-0.5, 0.9, 1.0),
+            DVec3::new(-0.5, -0.9, 1.0),
+        ];
         // A point reflection turns the winding over twice in three axes: once in all.
         positions.extend(ends.map(|p| sign * p));
         let faces = [[0, n + 1, n], [0, n + 2, n + 1], [0, n, n + 2], [n, n + 1, n + 2]];
@@ -193,8 +200,16 @@ pub fn broken(shape: &Drawn) -> Drawn {
 
 /// Every triangle of `shape` with three corners of its own, as an STL has them.
 pub fn soup(shape: &Drawn) -> Drawn {
-    let positions = shape.triangles.iter().flatten().map(|v| shape.positions[v.index()]).collect();
-    drawn(positions, (0..shape.triangles.len()).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]))
+    let positions = shape
+        .triangles
+        .iter()
+        .flatten()
+        .map(|v| shape.positions[v.index()])
+        .collect();
+    drawn(
+        positions,
+        (0..shape.triangles.len()).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]),
+    )
 }
 
 /// Several shapes in one file, one after the other.
@@ -203,8 +218,10 @@ pub fn together(parts: &[Drawn]) -> Drawn {
     for part in parts {
         let (drawn, file) = (all.positions.len() as u32, all.file_vertex_count as u32);
         all.positions.extend(&part.positions);
-        all.triangles.extend(part.triangles.iter().map(|t| t.map(|v| DrawnVertex(v.0 + drawn))));
-        all.file_vertex.extend(part.file_vertex.iter().map(|v| FileVertex(v.0 + file)));
+        all.triangles
+            .extend(part.triangles.iter().map(|t| t.map(|v| DrawnVertex(v.0 + drawn))));
+        all.file_vertex
+            .extend(part.file_vertex.iter().map(|v| FileVertex(v.0 + file)));
         all.file_vertex_count += part.file_vertex_count;
     }
     all
@@ -213,7 +230,10 @@ pub fn together(parts: &[Drawn]) -> Drawn {
 /// `shape` moved by `motion`, which must not mirror.
 pub fn moved(shape: &Drawn, motion: DAffine3) -> Drawn {
     let positions = shape.positions.iter().map(|&p| motion.transform_point3(p)).collect();
-    Drawn { positions, ..shape.clone() }
+    Drawn {
+        positions,
+        ..shape.clone()
+    }
 }
 
 /// One small shape of each class, by name, for laws that hold on all of them.
@@ -226,12 +246,18 @@ pub fn classes() -> Vec<(&'static str, Drawn)> {
         ("closed bar", bar(8, 2, 1)),
         ("open sheet", grid(7, 9)),
         ("open tube", tube(10, 6, 4.0)),
-        ("several components", together(&[icosphere(1), apart(grid(4, 4), 3.0), apart(torus(8, 6), 8.0)])),
+        (
+            "several components",
+            together(&[icosphere(1), apart(grid(4, 4), 3.0), apart(torus(8, 6), 8.0)]),
+        ),
         ("non-manifold edge", non_manifold_fan(5)),
         ("non-manifold vertex", bowtie()),
         ("broken", broken(&icosphere(1))),
         ("soup", soup(&uv_sphere(5, 7))),
-        ("far from the origin", moved(&icosphere(2), DAffine3::from_translation(DVec3::new(4e5, 5e6, 30.0)))),
+        (
+            "far from the origin",
+            moved(&icosphere(2), DAffine3::from_translation(DVec3::new(4e5, 5e6, 30.0))),
+        ),
     ]
 }
 
@@ -254,6 +280,9 @@ fn quads(nu: usize, nv: usize, mut number: impl FnMut(usize, usize) -> usize) ->
 }
 
 fn drawn(positions: Vec<DVec3>, triangles: impl IntoIterator<Item = [usize; 3]>) -> Drawn {
-    let triangles = triangles.into_iter().map(|t| t.map(|v| DrawnVertex(v as u32))).collect();
+    let triangles = triangles
+        .into_iter()
+        .map(|t| t.map(|v| DrawnVertex(v as u32)))
+        .collect();
     Drawn::once(positions, triangles)
 }

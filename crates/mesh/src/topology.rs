@@ -2,7 +2,7 @@
 
 use crate::boundary::trace_loops;
 use crate::components::{Component, components};
-use crate::rings::{FaceRows, face_rows, rings};
+use crate::rings::{FaceRows, FanKind, face_rows, rings};
 use crate::{FileVertex, Finding, Surface, SurfaceVertex};
 
 /// The connectivity of a [`Surface`].
@@ -14,6 +14,8 @@ pub struct Topology {
     neighbour_offsets: Vec<u32>,
     neighbour_list: Vec<SurfaceVertex>,
     edge_face_counts: Vec<u8>,
+    fans: Vec<SurfaceVertex>,
+    fan_kinds: Vec<FanKind>,
     face_offsets: Vec<u32>,
     face_list: Vec<u32>,
     boundary: Vec<[SurfaceVertex; 2]>,
@@ -35,8 +37,7 @@ impl Topology {
     /// of `first_file_vertex` (one entry a surface vertex) over their vertices.
     pub fn with_file_vertices(surface: &Surface, first_file_vertex: &[FileVertex]) -> Self {
         let vertex_count = surface.positions.len();
-        let FaceRows { offsets: face_offsets, list: face_list } = face_rows(vertex_count, &surface.triangles);
-        let faces = FaceRows { offsets: face_offsets, list: face_list };
+        let faces: FaceRows = face_rows(vertex_count, &surface.triangles);
         let rings = rings(vertex_count, &surface.triangles, &faces);
         let mut neighbour_offsets = Vec::with_capacity(vertex_count + 1);
         neighbour_offsets.push(0);
@@ -45,12 +46,13 @@ impl Topology {
             end += degree;
             neighbour_offsets.push(end);
         }
-        let (component_of_vertex, components) =
-            components(&surface.triangles, first_file_vertex);
+        let (component_of_vertex, components) = components(&surface.triangles, first_file_vertex);
         Self {
             neighbour_offsets,
             neighbour_list: rings.neighbours,
             edge_face_counts: rings.face_counts,
+            fans: rings.fans,
+            fan_kinds: rings.fan_kinds,
             face_offsets: faces.offsets,
             face_list: faces.list,
             boundary: rings.boundary,
@@ -77,6 +79,13 @@ impl Topology {
     #[inline]
     pub fn edge_face_counts(&self, v: SurfaceVertex) -> &[u8] {
         &self.edge_face_counts[row(&self.neighbour_offsets, v)]
+    }
+
+    /// The neighbours of `v` counter-clockwise seen from outside, and how they close; ascending where irregular. A
+    /// closed fan starts at the lowest neighbour, an open one at its rim.
+    #[inline]
+    pub fn fan(&self, v: SurfaceVertex) -> (FanKind, &[SurfaceVertex]) {
+        (self.fan_kinds[v.index()], &self.fans[row(&self.neighbour_offsets, v)])
     }
 
     /// The triangles around `v`, ascending.
@@ -176,7 +185,11 @@ impl Topology {
     /// The findings about edges and vertices, their examples surface vertices: non-manifold edges, non-manifold
     /// vertices, misoriented edges.
     pub(crate) fn oddities(&self) -> [&Finding; 3] {
-        [&self.non_manifold_edges, &self.non_manifold_vertices, &self.misoriented_edges]
+        [
+            &self.non_manifold_edges,
+            &self.non_manifold_vertices,
+            &self.misoriented_edges,
+        ]
     }
 }
 

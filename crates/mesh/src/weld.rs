@@ -5,9 +5,7 @@ use rayon::prelude::*;
 use crate::findings::collect;
 use crate::geometry::{bounds_of, is_without_area};
 use crate::joining::{self, Joined};
-use crate::{
-    Cancel, Cancelled, Drawn, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex, WeldOptions,
-};
+use crate::{Cancel, Cancelled, Drawn, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex, WeldOptions};
 
 /// Coordinates beyond this count as not finite: areas and volumes of such a mesh would overflow.
 const LARGEST_COORDINATE: f64 = 1e60;
@@ -52,13 +50,16 @@ pub(crate) fn weld(
     cancel.check()?;
     progress.set(0.1);
 
-    let members: Vec<u32> =
-        (0..uses.len() as u32).filter(|&v| uses[v as usize] == Use::Triangle).collect();
+    let members: Vec<u32> = (0..uses.len() as u32)
+        .filter(|&v| uses[v as usize] == Use::Triangle)
+        .collect();
     let Some(bounds) = bounds_of(members.par_iter().map(|&v| drawn.positions[v as usize])) else {
         findings.non_finite_triangles = collect(drawn.triangles.len(), |_| true);
         return Ok(nothing_to_weld(drawn, findings));
     };
-    let tolerance = options.tolerance.map(|share| share.clamp(0.0, LARGEST_TOLERANCE) * bounds.diagonal());
+    let tolerance = options
+        .tolerance
+        .map(|share| share.clamp(0.0, LARGEST_TOLERANCE) * bounds.diagonal());
     let joined = joining::join(&drawn.positions, &members, &bounds, tolerance);
     cancel.check()?;
     progress.set(0.35);
@@ -70,8 +71,9 @@ pub(crate) fn weld(
         .map(|triangle| triangle.map(|v| group_of_drawn[v.index()]))
         .collect();
     findings.non_finite_triangles = collect(corners.len(), |t| has_unusable_corner(corners[t]));
-    findings.collapsed_triangles =
-        collect(corners.len(), |t| !has_unusable_corner(corners[t]) && is_collapsed(corners[t]));
+    findings.collapsed_triangles = collect(corners.len(), |t| {
+        !has_unusable_corner(corners[t]) && is_collapsed(corners[t])
+    });
     let surface_of_group = number_used_groups(&corners, joined.order.len());
     cancel.check()?;
     progress.set(0.45);
@@ -86,7 +88,9 @@ pub(crate) fn weld(
         .par_iter()
         .map(|&group| match group {
             NONE => None,
-            group => Some(surface_of_group[group as usize]).filter(|&s| s != NONE).map(SurfaceVertex),
+            group => Some(surface_of_group[group as usize])
+                .filter(|&s| s != NONE)
+                .map(SurfaceVertex),
         })
         .collect();
     let mut first_file_vertex = vec![FileVertex(u32::MAX); positions.len()];
@@ -99,7 +103,13 @@ pub(crate) fn weld(
     findings.zero_area_triangles = collect(surface.triangles.len(), |t| is_without_area(surface.corners(t)))
         .renamed(|t| drawn_triangle_of_surface[t as usize]);
     progress.set(0.6);
-    Ok(Welded { surface, surface_of_drawn, drawn_triangle_of_surface, first_file_vertex, findings })
+    Ok(Welded {
+        surface,
+        surface_of_drawn,
+        drawn_triangle_of_surface,
+        first_file_vertex,
+        findings,
+    })
 }
 
 /// No group, no surface vertex.
@@ -117,7 +127,11 @@ fn is_collapsed([a, b, c]: [u32; 3]) -> bool {
 fn uses_of_vertices(drawn: &Drawn, usable: &[bool]) -> Vec<Use> {
     let mut uses = vec![Use::None; drawn.positions.len()];
     for triangle in &drawn.triangles {
-        let by = if triangle.iter().all(|v| usable[v.index()]) { Use::Triangle } else { Use::LeftOutTriangle };
+        let by = if triangle.iter().all(|v| usable[v.index()]) {
+            Use::Triangle
+        } else {
+            Use::LeftOutTriangle
+        };
         for v in triangle {
             uses[v.index()] = uses[v.index()].max(by);
         }
@@ -130,7 +144,9 @@ fn report_vertices(drawn: &Drawn, usable: &[bool], uses: &[Use], findings: &mut 
     let mut is_used = vec![false; drawn.file_vertex_count];
     let mut is_bad = vec![false; drawn.file_vertex_count];
     for (v, file_vertex) in drawn.file_vertex.iter().enumerate() {
-        let Some(is_used) = is_used.get_mut(file_vertex.index()) else { continue };
+        let Some(is_used) = is_used.get_mut(file_vertex.index()) else {
+            continue;
+        };
         *is_used |= uses[v] != Use::None;
         is_bad[file_vertex.index()] |= !usable[v];
     }
@@ -223,6 +239,9 @@ fn sort_triangles(
     }
     repeated.sort_unstable();
     *duplicates = Finding::of(&repeated);
-    let triangles = drawn_triangles.par_iter().map(|&t| in_surface(t as usize).map(SurfaceVertex)).collect();
+    let triangles = drawn_triangles
+        .par_iter()
+        .map(|&t| in_surface(t as usize).map(SurfaceVertex))
+        .collect();
     (triangles, drawn_triangles)
 }

@@ -1,0 +1,136 @@
+//! The hierarchy answers as looking at every triangle does.
+
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
+use glam::{DAffine3, DVec3};
+use pliant_mesh::{Bvh, Hit, Model, SurfaceVertex, shapes};
+
+fn hit_point(model: &Model, hit: &Hit) -> DVec3 {
+    let corners = model.surface.corners(hit.triangle as usize);
+    corners
+        .iter()
+        .zip(hit.barycentric)
+        .map(|(&corner, weight)| weight * corner)
+        .sum()
+}
+
+/// Directions all around.
+fn directions() -> impl Iterator<Item = DVec3> {
+    shapes::icosphere(2).positions.into_iter()
+}
+
+#[test]
+fn rays_from_within_a_closed_surface_always_hit_it() {
+    for offset in [DVec3::ZERO, DVec3::new(4e5, 5e6, 30.0)] {
+        let sphere = shapes::moved(&shapes::icosphere(3), DAffine3::from_translation(offset));
+        let model = shapes::model(sphere);
+        let bvh = Bvh::build(&model.surface.positions, &model.surface.triangles);
+        // Straight at vertices and at the middles of edges, where rays would slip through.
+        let targets = model.surface.positions.iter().copied().chain(
+            model
+                .topology
+                .edges()
+                .map(|edge| edge.map(|v| model.surface.positions[v.index()]))
+                .map(|[a, b]| 0.5 * (a + b)),
+        );
+        for target in targets {
+            let hit = bvh.ray(offset, target - offset).unwrap();
+            assert!((hit.distance - 1.0).abs() < 1e-8);
+            assert!(hit_point(&model, &hit).distance(target) < 1e-8);
+            assert!((hit.barycentric.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn the_first_hit_is_that_of_every_triangle_tried() {
+    for (class, drawn) in shapes::classes() {
+        let model = shapes::model(drawn);
+        let bounds = model.bounds().unwrap();
+        let all = Bvh::build(&model.surface.positions, &model.surface.triangles);
+        let each: Vec<Bvh> = model
+            .surface
+            .triangles
+            .iter()
+            .map(|&t| Bvh::build(&model.surface.positions, &[t]))
+            .collect();
+        for direction in directions().step_by(5) {
+            let origin = bounds.centre() - bounds.diagonal() * direction + 0.1 * bounds.extent();
+            let first = each
+                .iter()
+                .filter_map(|one| one.ray(origin, direction))
+                .map(|hit| hit.distance)
+                .reduce(f64::min);
+            assert_eq!(all.ray(origin, direction).map(|hit| hit.distance), first, "{class}");
+        }
+    }
+}
+
+#[test]
+fn balls_and_nearest_vertices_are_those_of_every_vertex_tried() {
+    for (class, drawn) in shapes::classes() {
+        let model = shapes::model(drawn);
+        let positions = &model.surface.positions;
+        let bvh = Bvh::build(positions, &model.surface.triangles);
+        let bounds = model.bounds().unwrap();
+        let mut found = Vec::new();
+        for direction in directions().step_by(7) {
+            let centre = bounds.centre() + 0.6 * bounds.diagonal() * direction;
+            let radius = 0.4 * bounds.diagonal();
+            bvh.vertices_in_ball(centre, radius, &mut found);
+            let inside: Vec<SurfaceVertex> = (0..positions.len() as u32)
+                .map(SurfaceVertex)
+                .filter(|v| positions[v.index()].distance_squared(centre) <= radius * radius)
+                .collect();
+            assert_eq!(found, inside, "{class}");
+            let (nearest, distance) = bvh.nearest_vertex(centre).unwrap();
+            let least = positions.iter().map(|p| p.distance(centre)).reduce(f64::min);
+            assert_eq!(Some(distance), least, "{class}");
+            assert_eq!(positions[nearest.index()].distance(centre), distance, "{class}");
+        }
+    }
+}
+
+#[test]
+fn a_refitted_hierarchy_answers_as_a_new_one() {
+    let model = shapes::model(shapes::torus(30, 14));
+    let mut bvh = Bvh::build(&model.surface.positions, &model.surface.triangles);
+    let bent: Vec<DVec3> = model
+        .surface
+        .positions
+        .iter()
+        .map(|p| 3.0 * *p + DVec3::new(p.y * p.y, 5.0, p.x.sin()))
+        .collect();
+    bvh.refit(&bent);
+    let fresh = Bvh::build(&bent, &model.surface.triangles);
+    let mut hits = 0;
+    for direction in directions() {
+        let origin = DVec3::new(1.0, 5.0, 0.0) - 20.0 * direction;
+        let (hit, expected) = (bvh.ray(origin, direction), fresh.ray(origin, direction));
+        assert_eq!(hit.map(|h| h.distance), expected.map(|h| h.distance));
+        hits += usize::from(hit.is_some());
+        assert_eq!(bvh.nearest_vertex(origin), fresh.nearest_vertex(origin));
+    }
+    assert!(hits > 10);
+}
+
+#[test]
+fn an_empty_and_a_flat_hierarchy_answer() {
+    let empty = Bvh::build(&[], &[]);
+    assert_eq!(empty.ray(DVec3::ZERO, DVec3::X), None);
+    assert_eq!(empty.nearest_vertex(DVec3::ZERO), None);
+    let sheet = shapes::model(shapes::grid(4, 4));
+    let bvh = Bvh::build(&sheet.surface.positions, &sheet.surface.triangles);
+    let down = bvh.ray(DVec3::new(0.3, 0.6, 2.0), -DVec3::Z).unwrap();
+    assert_eq!(down.distance, 2.0);
+    assert_eq!(
+        bvh.ray(DVec3::new(0.3, 0.6, 2.0), DVec3::Z),
+        None,
+        "nothing behind the origin"
+    );
+    assert_eq!(
+        bvh.ray(DVec3::new(0.3, 0.6, 2.0), DVec3::ZERO),
+        None,
+        "no direction, no hit"
+    );
+}

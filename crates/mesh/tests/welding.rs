@@ -1,0 +1,266 @@
+//! Welding joins what is in one place, leaves out what can't be solved, and tells.
+
+#![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
+
+use glam::{DAffine3, DVec3};
+use pliant_mesh::{
+    Cancel, Cancelled, Drawn, DrawnVertex, FileVertex, Model, Progress, SurfaceVertex, WeldOptions, shapes,
+};
+
+fn weld(drawn: Drawn, tolerance: Option<f64>) -> Model {
+    Model::weld(drawn, &WeldOptions { tolerance }, &Progress::new(), &Cancel::new()).unwrap()
+}
+
+/// A number between -1 and 1 that depends on nothing but `seed`.
+fn noise(seed: usize) -> f64 {
+    let bits = (seed as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let bits = (bits ^ bits >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    (bits >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+fn noise3(seed: usize) -> DVec3 {
+    DVec3::new(noise(3 * seed), noise(3 * seed + 1), noise(3 * seed + 2))
+}
+
+#[test]
+fn the_surface_keeps_its_promises_on_every_class() {
+    for (class, drawn) in shapes::classes() {
+        let model = shapes::model(drawn);
+        let surface = &model.surface;
+        let mut is_used = vec![false; surface.positions.len()];
+        let mut seen = std::collections::BTreeSet::new();
+        for &triangle in &surface.triangles {
+            let mut sorted = triangle;
+            sorted.sort_unstable();
+            assert!(
+                sorted[0] < sorted[1] && sorted[1] < sorted[2],
+                "{class}: corners differ"
+            );
+            assert!(seen.insert(sorted), "{class}: no triangle twice");
+            for v in triangle {
+                is_used[v.index()] = true;
+            }
+        }
+        assert!(is_used.iter().all(|&used| used), "{class}: every vertex is used");
+        assert!(surface.positions.iter().all(|p| p.is_finite()), "{class}");
+        for (t, &drawn_triangle) in model.drawn_triangle_of_surface.iter().enumerate() {
+            let through_table =
+                model.drawn.triangles[drawn_triangle as usize].map(|v| model.surface_of_drawn[v.index()]);
+            assert_eq!(
+                through_table,
+                surface.triangles[t].map(Some),
+                "{class}: corner for corner"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_soup_welds_into_the_shape_it_was_cut_from() {
+    for (class, drawn) in shapes::classes() {
+        if matches!(class, "broken" | "soup") {
+            continue;
+        }
+        let whole = shapes::model(drawn.clone());
+        let soup = shapes::model(shapes::soup(&drawn));
+        assert_eq!(soup.surface.positions, whole.surface.positions, "{class}");
+        assert_eq!(soup.surface.triangles, whole.surface.triangles, "{class}");
+        assert_eq!(soup.topology.edge_count(), whole.topology.edge_count(), "{class}");
+    }
+}
+
+#[test]
+fn corners_within_the_tolerance_join_wherever_they_lie() {
+    let sphere = shapes::uv_sphere(40, 40);
+    for tolerance in [1e-9, 1e-7, 1e-5, 1e-4] {
+        for offset in [DVec3::ZERO, DVec3::new(0.1234, -0.777, 0.501)] {
+            let mut soup = shapes::soup(&shapes::moved(&sphere, DAffine3::from_translation(offset)));
+            let diagonal = 2.0 * 3.0_f64.sqrt();
+            for (i, p) in soup.positions.iter_mut().enumerate() {
+                // Two corners of one vertex are then less than the tolerance apart.
+                *p += noise3(i) * (0.2 * tolerance * diagonal);
+            }
+            let model = weld(soup.clone(), Some(tolerance));
+            assert_eq!(model.surface.positions.len(), sphere.positions.len(), "{tolerance}");
+            assert!(model.topology.is_closed(), "{tolerance}");
+            let apart = weld(soup, Some(0.0));
+            assert!(apart.surface.positions.len() > 2 * sphere.positions.len());
+        }
+    }
+}
+
+#[test]
+fn joining_agrees_with_comparing_all_pairs() {
+    // Clusters and loners at every scale, on the walls of cells too.
+    let mut positions = vec![DVec3::ZERO, DVec3::ONE];
+    for i in 0..300 {
+        let at = (noise3(i) * 8.0).round() / 16.0 + DVec3::splat(0.5);
+        positions.push((at + noise3(i + 1000) * 10f64.powi(-5 - (i as i32 % 4))).clamp(DVec3::ZERO, DVec3::ONE));
+    }
+    let triangles = (0..positions.len() as u32)
+        .map(|v| [v, (v * 7 + 1) % 302, (v * 11 + 3) % 302].map(DrawnVertex))
+        .collect();
+    let drawn = Drawn::once(positions.clone(), triangles);
+    let tolerance = 1e-6;
+    let model = weld(drawn, Some(tolerance / 3.0_f64.sqrt()));
+    // The greedy rule, said plainly.
+    let mut representative: Vec<usize> = Vec::new();
+    for i in 0..positions.len() {
+        let near = (0..i).find(|&j| representative[j] == j && positions[j].distance(positions[i]) <= tolerance);
+        representative.push(near.unwrap_or(i));
+    }
+    assert!((0..positions.len()).any(|i| representative[i] != i));
+    for i in 0..positions.len() {
+        for j in 0..i {
+            let (Some(a), Some(b)) = (model.surface_of_drawn[i], model.surface_of_drawn[j]) else {
+                continue;
+            };
+            assert_eq!(a == b, representative[i] == representative[j], "{i} {j}");
+        }
+    }
+}
+
+#[test]
+fn a_crowd_in_one_cell_stays_apart_or_joins_by_the_rule() {
+    // One far vertex makes all others fall into a few of the grid's cells.
+    let mut far = shapes::soup(&shapes::uv_sphere(20, 20));
+    let last = far.positions.len() - 1;
+    far.positions[last] = DVec3::splat(1e9);
+    let exact = weld(far.clone(), Some(0.0));
+    assert_eq!(
+        exact.surface.positions.len(),
+        shapes::uv_sphere(20, 20).positions.len() + 1
+    );
+    let tolerant = weld(far, Some(1e-7));
+    assert!(
+        tolerant.surface.triangles.len() <= 2,
+        "all within the tolerance of each other"
+    );
+}
+
+#[test]
+fn minus_zero_is_zero_and_keeps_its_bits_in_the_drawn_set() {
+    let mut drawn = shapes::soup(&shapes::grid(2, 2));
+    for (i, p) in drawn.positions.iter_mut().enumerate() {
+        p.z = if i % 2 == 0 { -0.0 } else { 0.0 };
+    }
+    for tolerance in [Some(0.0), Some(1e-7)] {
+        let model = weld(drawn.clone(), tolerance);
+        assert_eq!(model.surface.positions.len(), 9);
+        let mut out = Vec::new();
+        model.drawn_positions(&vec![DVec3::ZERO; 9], &mut out);
+        for (moved, rest) in out.iter().zip(&drawn.positions) {
+            assert_eq!(moved.to_array().map(f64::to_bits), rest.to_array().map(f64::to_bits));
+        }
+    }
+}
+
+#[test]
+fn without_a_tolerance_nothing_is_joined() {
+    let drawn = shapes::soup(&shapes::grid(3, 3));
+    let model = weld(drawn.clone(), None);
+    assert_eq!(model.surface.positions.len(), drawn.positions.len());
+    assert_eq!(model.topology.components().len(), drawn.triangles.len());
+}
+
+#[test]
+fn everything_broken_is_left_out_or_kept_and_counted() {
+    let shape = shapes::icosphere(1);
+    let broken = shapes::broken(&shape);
+    let (vertices, triangles) = (shape.positions.len() as u32, shape.triangles.len() as u32);
+    let model = shapes::model(broken);
+    let findings = &model.findings;
+    let one = |example: u32| (1, vec![example]);
+    let told = |finding: &pliant_mesh::Finding| (finding.count, finding.examples.clone());
+    assert_eq!(told(&findings.non_finite_vertices), one(vertices));
+    assert_eq!(told(&findings.non_finite_triangles), one(triangles));
+    assert_eq!(told(&findings.unreferenced_vertices), one(vertices + 1));
+    assert_eq!(told(&findings.collapsed_triangles), one(triangles + 1));
+    assert_eq!(told(&findings.duplicate_triangles), one(triangles + 2));
+    assert_eq!(told(&findings.zero_area_triangles), one(triangles + 3));
+    assert_eq!(findings.non_manifold_edges.count, 1);
+    assert_eq!(model.surface.triangles.len(), shape.triangles.len() + 1);
+    assert_eq!(model.surface.positions.len(), shape.positions.len() + 1);
+    assert_eq!(model.surface_of_drawn[vertices as usize], None);
+    assert_eq!(model.surface_of_drawn[vertices as usize + 1], None);
+    assert_eq!(findings.sentences().len(), 8, "{:#?}", findings.sentences());
+    assert_eq!(shapes::model(shape).findings.sentences(), Vec::<String>::new());
+}
+
+#[test]
+fn files_without_a_usable_triangle_give_an_empty_surface() {
+    let nan = Drawn::once(vec![DVec3::NAN; 3], vec![[0, 1, 2].map(DrawnVertex)]);
+    let point = Drawn::once(vec![DVec3::ONE; 3], vec![[0, 1, 2].map(DrawnVertex)]);
+    let huge = Drawn::once(
+        vec![DVec3::ONE, DVec3::splat(1e300), DVec3::X],
+        vec![[0, 1, 2].map(DrawnVertex)],
+    );
+    let lone = Drawn::once(vec![DVec3::ONE], vec![]);
+    for drawn in [Drawn::default(), nan, point, huge, lone] {
+        let model = shapes::model(drawn);
+        assert!(model.surface.positions.is_empty() && model.surface.triangles.is_empty());
+        assert!(model.bounds().is_none() && model.topology.components().is_empty());
+        assert!(model.surface_of_drawn.iter().all(Option::is_none));
+        let mut out = Vec::new();
+        model.drawn_positions(&[], &mut out);
+        assert_eq!(out.len(), model.drawn.positions.len());
+    }
+}
+
+#[test]
+fn twins_move_alike_and_others_stay() {
+    let model = shapes::model(shapes::broken(&shapes::uv_sphere(6, 6)));
+    let displacements: Vec<DVec3> = (0..model.surface.positions.len()).map(noise3).collect();
+    let mut out = Vec::new();
+    model.drawn_positions(&displacements, &mut out);
+    for (i, surface_vertex) in model.surface_of_drawn.iter().enumerate() {
+        let rest = model.drawn.positions[i];
+        match surface_vertex {
+            Some(v) => assert_eq!(out[i], rest + displacements[v.index()]),
+            None => assert_eq!(out[i].to_array().map(f64::to_bits), rest.to_array().map(f64::to_bits)),
+        }
+    }
+}
+
+#[test]
+fn a_file_vertex_shown_twice_has_two_surface_vertices() {
+    let bar = shapes::bar(1, 1, 1);
+    let count = bar.positions.len();
+    let mut twice = shapes::together(&[
+        bar.clone(),
+        shapes::moved(&bar, DAffine3::from_translation(DVec3::X * 5.0)),
+    ]);
+    twice.file_vertex = (0..2 * count as u32).map(|v| FileVertex(v % count as u32)).collect();
+    twice.file_vertex_count = count;
+    let model = shapes::model(twice);
+    let table = model.surface_of_file();
+    for v in 0..count {
+        let both = table.of(FileVertex(v as u32));
+        assert_eq!(both.len(), 2);
+        let apart = model.surface.positions[both[1].index()] - model.surface.positions[both[0].index()];
+        assert_eq!(apart.abs(), DVec3::X * 5.0);
+    }
+    assert_eq!(table.of(FileVertex(count as u32)), &[] as &[SurfaceVertex]);
+    assert_eq!(model.topology.components().len(), 2);
+    assert_eq!(model.topology.components()[1].first_file_vertex, FileVertex(0));
+}
+
+#[test]
+fn neighbours_on_the_surface_are_neighbours_in_memory() {
+    let model = shapes::model(shapes::uv_sphere(60, 60));
+    let count = model.surface.positions.len() as u32;
+    let near = model.topology.edges().filter(|[a, b]| b.0 - a.0 < count / 8).count();
+    assert!(near * 10 > model.topology.edge_count() * 8);
+}
+
+#[test]
+fn a_cancelled_weld_gives_nothing_and_progress_ends_at_one() {
+    let cancel = Cancel::new();
+    cancel.cancel();
+    let drawn = shapes::grid(3, 3);
+    let cancelled = Model::weld(drawn.clone(), &WeldOptions::default(), &Progress::new(), &cancel);
+    assert_eq!(cancelled.err(), Some(Cancelled));
+    let progress = Progress::new();
+    Model::weld(drawn, &WeldOptions::default(), &progress, &Cancel::new()).unwrap();
+    assert_eq!(progress.get(), 1.0);
+}
