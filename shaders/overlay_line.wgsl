@@ -4,13 +4,13 @@
 #include "lib/colour.wgsl"
 
 struct OverlayLine {
-    @location(0) from: vec3f,
+    @location(0) start: vec3f,
     @location(1) width_px: f32,
-    @location(2) to: vec3f,
+    @location(2) end: vec3f,
     @location(3) hidden_share: f32,
     // sRGB with straight alpha.
-    @location(4) from_colour: vec4f,
-    @location(5) to_colour: vec4f,
+    @location(4) start_colour: vec4f,
+    @location(5) end_colour: vec4f,
 }
 
 struct LineFragment {
@@ -34,14 +34,14 @@ fn before_the_eye(a: vec4f, b: vec4f) -> vec4f {
 
 @vertex
 fn vs_overlay_line(@builtin(vertex_index) corner: u32, line: OverlayLine) -> LineFragment {
-    let from_whole = frame.clip_from_world * vec4f(line.from, 1.0);
-    let to_whole = frame.clip_from_world * vec4f(line.to, 1.0);
-    let from_clip = before_the_eye(from_whole, to_whole);
-    let to_clip = before_the_eye(to_whole, from_whole);
+    let start_whole = frame.clip_from_world * vec4f(line.start, 1.0);
+    let end_whole = frame.clip_from_world * vec4f(line.end, 1.0);
+    let start_clip = before_the_eye(start_whole, end_whole);
+    let end_clip = before_the_eye(end_whole, start_whole);
     let half_size_px = 0.5 * frame.size_px;
-    let from_px = from_clip.xy / max(from_clip.w, 1e-9) * half_size_px;
-    let to_px = to_clip.xy / max(to_clip.w, 1e-9) * half_size_px;
-    let along = to_px - from_px;
+    let start_px = start_clip.xy / max(start_clip.w, 1e-9) * half_size_px;
+    let end_px = end_clip.xy / max(end_clip.w, 1e-9) * half_size_px;
+    let along = end_px - start_px;
     let length_px = length(along);
     let direction = select(vec2f(1.0, 0.0), along / length_px, length_px > 1e-6);
     let at_end = (corner & 1u) == 1u;
@@ -52,10 +52,10 @@ fn vs_overlay_line(@builtin(vertex_index) corner: u32, line: OverlayLine) -> Lin
     let offset_px = vec2f(-direction.y, direction.x) * side * reach_px;
 
     var out: LineFragment;
-    var position = select(from_clip, to_clip, at_end);
+    var position = select(start_clip, end_clip, at_end);
     position = vec4f(position.xy + offset_px / half_size_px * position.w, position.z * 1.0015, position.w);
     out.position_clip = position;
-    out.colour = premultiplied_from_srgb(select(line.from_colour, line.to_colour, at_end), 1.0);
+    out.colour = premultiplied_from_srgb(select(line.start_colour, line.end_colour, at_end), 1.0);
     out.across_px = side * reach_px;
     out.half_width_px = half_width_px;
     out.hidden_share = line.hidden_share;

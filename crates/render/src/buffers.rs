@@ -75,13 +75,7 @@ impl Streamed {
         match &self.buffer {
             Some(buffer) if buffer.size() >= bytes => refill(device, queue, buffer, contents),
             _ => {
-                self.buffer = Some(filled(
-                    device,
-                    queue,
-                    self.what,
-                    wgpu::BufferUsages::VERTEX,
-                    contents,
-                )?);
+                self.buffer = Some(filled(device, queue, self.what, wgpu::BufferUsages::VERTEX, contents)?);
                 Ok(())
             }
         }

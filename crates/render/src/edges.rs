@@ -54,15 +54,9 @@ mod tests {
             [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]
         );
         let strip = [[0, 1, 2], [2, 1, 3]];
-        assert_eq!(
-            unique_edges(&strip, 5),
-            [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]]
-        );
+        assert_eq!(unique_edges(&strip, 5), [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]]);
         let twice_and_collapsed = [[2, 1, 0], [0, 1, 2], [1, 1, 2]];
-        assert_eq!(
-            unique_edges(&twice_and_collapsed, 3),
-            [[0, 1], [0, 2], [1, 2]]
-        );
+        assert_eq!(unique_edges(&twice_and_collapsed, 3), [[0, 1], [0, 2], [1, 2]]);
         assert!(unique_edges(&[], 0).is_empty());
     }
 }

@@ -4,9 +4,7 @@
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoGpu {
     /// No adapter of any backend, not even a software one.
-    #[error(
-        "no graphics device was found; install a Vulkan driver (a software one such as Mesa's lavapipe is enough)"
-    )]
+    #[error("no graphics device was found; install a Vulkan driver (a software one such as Mesa's lavapipe is enough)")]
     NoAdapter,
     /// An adapter was found, but it gave no device.
     #[error("the graphics device {name} can't be used ({reason}); update its driver")]
@@ -60,9 +58,7 @@ pub enum RenderError {
         count: usize,
     },
     /// An image whose bytes contradict its size.
-    #[error(
-        "texture {texture} of {width} by {height} pixels has {found} bytes; four a pixel are needed"
-    )]
+    #[error("texture {texture} of {width} by {height} pixels has {found} bytes; four a pixel are needed")]
     TextureBytes {
         /// The texture's number.
         texture: usize,
@@ -74,9 +70,7 @@ pub enum RenderError {
         found: usize,
     },
     /// A buffer that this device can't hold.
-    #[error(
-        "{what} need {bytes} bytes, but this device's buffers end at {limit}; open a smaller mesh"
-    )]
+    #[error("{what} need {bytes} bytes, but this device's buffers end at {limit}; open a smaller mesh")]
     TooLarge {
         /// What the buffer holds.
         what: &'static str,
@@ -86,9 +80,7 @@ pub enum RenderError {
         limit: u64,
     },
     /// A picture larger than the device can draw.
-    #[error(
-        "a picture of {width} by {height} pixels is too large, this device draws at most {limit} a side"
-    )]
+    #[error("a picture of {width} by {height} pixels is too large, this device draws at most {limit} a side")]
     PictureTooLarge {
         /// Width asked for, in pixels.
         width: u32,
@@ -109,9 +101,7 @@ pub enum RenderError {
     #[error("this graphics device can't number triangles; pick with a ray instead")]
     NoTriangleNumbers,
     /// Out of memory on the device.
-    #[error(
-        "the graphics device ran out of memory {doing}; close other programs or open a smaller mesh"
-    )]
+    #[error("the graphics device ran out of memory {doing}; close other programs or open a smaller mesh")]
     OutOfMemory {
         /// What we were doing.
         doing: &'static str,

@@ -16,17 +16,16 @@ impl Headless {
     /// # Errors
     /// [`NoGpu`], in one sentence, when there is none or it can't be used.
     pub fn new() -> Result<Self, NoGpu> {
-        let instance =
-            wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let adapter = pollster::block_on(adapter(&instance)).ok_or(NoGpu::NoAdapter)?;
         let name = adapter.get_info().name;
-        let (device, queue) = pollster::block_on(
-            adapter.request_device(&device_descriptor(&adapter)),
-        )
-        .map_err(|error| NoGpu::Refused {
-            name: name.clone(),
-            reason: one_line(&error.to_string()),
-        })?;
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&device_descriptor(&adapter))).map_err(|error| {
+                NoGpu::Refused {
+                    name: name.clone(),
+                    reason: one_line(&error.to_string()),
+                }
+            })?;
         let renderer = Renderer::new(&device, &queue).map_err(|error| NoGpu::Unusable {
             name,
             reason: error.to_string(),

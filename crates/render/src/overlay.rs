@@ -56,8 +56,7 @@ impl OverlayBatch {
         let mut batch = Self::default();
         for overlay in overlays {
             let hidden_share = overlay.hidden_share;
-            let (first_vertex, first_line) =
-                (batch.vertices.len() as u32, batch.lines.len() as u32);
+            let (first_vertex, first_line) = (batch.vertices.len() as u32, batch.lines.len() as u32);
             for triangle in &overlay.triangles {
                 for (&position, &colour) in triangle.corners.iter().zip(&triangle.colours) {
                     batch.vertices.push(OverlayVertex {
@@ -67,16 +66,14 @@ impl OverlayBatch {
                     });
                 }
             }
-            batch
-                .lines
-                .extend(overlay.lines.iter().map(|line| OverlayLineInstance {
-                    from: line.ends[0],
-                    width_px: line.width_px,
-                    to: line.ends[1],
-                    hidden_share,
-                    from_colour: line.colours[0],
-                    to_colour: line.colours[1],
-                }));
+            batch.lines.extend(overlay.lines.iter().map(|line| OverlayLineInstance {
+                start: line.ends[0],
+                width_px: line.width_px,
+                end: line.ends[1],
+                hidden_share,
+                start_colour: line.colours[0],
+                end_colour: line.colours[1],
+            }));
             batch.layers.push(LayerRanges {
                 vertices: first_vertex..batch.vertices.len() as u32,
                 lines: first_line..batch.lines.len() as u32,

@@ -168,11 +168,7 @@ impl Renderer {
         let limit = self.device().limits().max_texture_dimension_2d;
         if size_px.iter().any(|&side| side > limit) {
             let [width, height] = size_px;
-            return Err(RenderError::PictureTooLarge {
-                width,
-                height,
-                limit,
-            });
+            return Err(RenderError::PictureTooLarge { width, height, limit });
         }
         self.write_frame(frame, size_px)?;
         let device = self.device().clone();
@@ -184,11 +180,7 @@ impl Renderer {
             pass.set_scissor_rect(rect.x, rect.y, rect.width, rect.height);
             pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, self.frame_group(), &[]);
-            for surface in frame
-                .surfaces
-                .iter()
-                .filter(|surface| surface.index_count() > 0)
-            {
+            for surface in frame.surfaces.iter().filter(|surface| surface.index_count() > 0) {
                 surface.bind(&mut pass);
                 pass.draw_indexed(0..surface.index_count(), 0, 0..1);
             }
@@ -210,10 +202,7 @@ impl Renderer {
     }
 }
 
-fn begin_ids<'a>(
-    encoder: &'a mut wgpu::CommandEncoder,
-    attachments: &IdAttachments,
-) -> wgpu::RenderPass<'a> {
+fn begin_ids<'a>(encoder: &'a mut wgpu::CommandEncoder, attachments: &IdAttachments) -> wgpu::RenderPass<'a> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("triangle numbers"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -265,21 +254,14 @@ impl PickRequest {
             .map(|pixel| {
                 let id = u32::from_le_bytes([pixel[0], pixel[1], pixel[2], pixel[3]]);
                 let surface = self.ends.partition_point(|&end| end <= id);
-                let first = if surface == 0 {
-                    1
-                } else {
-                    self.ends[surface - 1]
-                };
+                let first = if surface == 0 { 1 } else { self.ends[surface - 1] };
                 (id > 0 && surface < self.ends.len()).then(|| Picked {
                     surface: surface as u32,
                     triangle: id - first,
                 })
             })
             .collect();
-        PickedIds {
-            rect: self.rect,
-            ids,
-        }
+        PickedIds { rect: self.rect, ids }
     }
 }
 
@@ -301,33 +283,15 @@ mod tests {
             ends: vec![4, 4, 6],
             readback: None,
         };
-        let bytes: Vec<u8> = [0_u32, 1, 3, 4, 5, 6]
-            .iter()
-            .flat_map(|id| id.to_le_bytes())
-            .collect();
+        let bytes: Vec<u8> = [0_u32, 1, 3, 4, 5, 6].iter().flat_map(|id| id.to_le_bytes()).collect();
         let picked = |surface, triangle| Some(Picked { surface, triangle });
-        let expected = [
-            None,
-            picked(0, 0),
-            picked(0, 2),
-            picked(2, 0),
-            picked(2, 1),
-            None,
-        ];
+        let expected = [None, picked(0, 0), picked(0, 2), picked(2, 0), picked(2, 1), None];
         assert_eq!(request.decoded(&bytes).ids, expected);
     }
 
     #[test]
     fn a_rectangle_is_cut_to_the_picture() {
-        let cut = |x, y, width, height| {
-            PixelRect {
-                x,
-                y,
-                width,
-                height,
-            }
-            .cut_to([10, 8])
-        };
+        let cut = |x, y, width, height| PixelRect { x, y, width, height }.cut_to([10, 8]);
         assert_eq!(
             cut(2, 3, 4, 4),
             PixelRect {

@@ -95,11 +95,7 @@ impl Pipelines {
             material_layout: layout(
                 device,
                 "material",
-                &[
-                    uniform_entry(0, fragment),
-                    texture_entry(1),
-                    sampler_entry(2),
-                ],
+                &[uniform_entry(0, fragment), texture_entry(1), sampler_entry(2)],
             ),
             picture: [None, None],
             id: None,
@@ -128,20 +124,13 @@ impl Pipelines {
     }
 
     /// The pipeline of triangle numbers.
-    pub(crate) fn id(
-        &mut self,
-        device: &wgpu::Device,
-    ) -> Result<&wgpu::RenderPipeline, RenderError> {
+    pub(crate) fn id(&mut self, device: &wgpu::Device) -> Result<&wgpu::RenderPipeline, RenderError> {
         if !device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
             return Err(RenderError::NoTriangleNumbers);
         }
         if self.id.is_none() {
             let made = guarded(device, "while compiling shaders", || {
-                let maker = Maker::new(
-                    device,
-                    &[&self.frame_layout, &self.surface_layout],
-                    Samples::One,
-                );
+                let maker = Maker::new(device, &[&self.frame_layout, &self.surface_layout], Samples::One);
                 let shader = maker.module(Shader::SurfaceId);
                 let numbers = wgpu::ColorTargetState {
                     format: ID_FORMAT,
@@ -193,12 +182,7 @@ impl PicturePipelines {
                 depth_compare: wgpu::CompareFunction::GreaterEqual,
                 writes_depth: false,
             };
-            maker.pipeline(
-                &maker.module(Shader::Wireframe),
-                "fs_wireframe",
-                &primitive,
-                &blended,
-            )
+            maker.pipeline(&maker.module(Shader::Wireframe), "fs_wireframe", &primitive, &blended)
         };
 
         let maker = Maker::new(device, &[frame], samples);
@@ -210,12 +194,7 @@ impl PicturePipelines {
                 depth_compare: wgpu::CompareFunction::GreaterEqual,
                 writes_depth: false,
             };
-            maker.pipeline(
-                &maker.module(Shader::Background),
-                "fs_background",
-                &primitive,
-                &opaque,
-            )
+            maker.pipeline(&maker.module(Shader::Background), "fs_background", &primitive, &opaque)
         };
         Self {
             clay,
@@ -285,11 +264,10 @@ impl<'a> Maker<'a> {
     }
 
     fn module(&self, shader: Shader) -> wgpu::ShaderModule {
-        self.device
-            .create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(shader.file_name()),
-                source: wgpu::ShaderSource::Wgsl(shader.composed().into()),
-            })
+        self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(shader.file_name()),
+            source: wgpu::ShaderSource::Wgsl(shader.composed().into()),
+        })
     }
 
     fn pipeline(
@@ -299,42 +277,41 @@ impl<'a> Maker<'a> {
         primitive: &Primitive<'_>,
         colour: &wgpu::ColorTargetState,
     ) -> wgpu::RenderPipeline {
-        self.device
-            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(fragment_entry),
-                layout: Some(&self.layout),
-                vertex: wgpu::VertexState {
-                    module: shader,
-                    entry_point: Some(primitive.vertex_entry),
-                    compilation_options: Default::default(),
-                    buffers: primitive.buffers,
-                },
-                primitive: wgpu::PrimitiveState {
-                    topology: primitive.topology,
-                    front_face: wgpu::FrontFace::Ccw,
-                    cull_mode: None,
-                    ..Default::default()
-                },
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    format: Target::DEPTH_FORMAT,
-                    depth_write_enabled: Some(primitive.writes_depth),
-                    depth_compare: Some(primitive.depth_compare),
-                    stencil: Default::default(),
-                    bias: Default::default(),
-                }),
-                multisample: wgpu::MultisampleState {
-                    count: self.samples.count(),
-                    ..Default::default()
-                },
-                fragment: Some(wgpu::FragmentState {
-                    module: shader,
-                    entry_point: Some(fragment_entry),
-                    compilation_options: Default::default(),
-                    targets: &[Some(colour.clone())],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
+        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(fragment_entry),
+            layout: Some(&self.layout),
+            vertex: wgpu::VertexState {
+                module: shader,
+                entry_point: Some(primitive.vertex_entry),
+                compilation_options: Default::default(),
+                buffers: primitive.buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                topology: primitive.topology,
+                front_face: wgpu::FrontFace::Ccw,
+                cull_mode: None,
+                ..Default::default()
+            },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: Target::DEPTH_FORMAT,
+                depth_write_enabled: Some(primitive.writes_depth),
+                depth_compare: Some(primitive.depth_compare),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: wgpu::MultisampleState {
+                count: self.samples.count(),
+                ..Default::default()
+            },
+            fragment: Some(wgpu::FragmentState {
+                module: shader,
+                entry_point: Some(fragment_entry),
+                compilation_options: Default::default(),
+                targets: &[Some(colour.clone())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
     }
 
     fn softened(
@@ -363,11 +340,7 @@ impl<'a> Maker<'a> {
     }
 }
 
-fn layout(
-    device: &wgpu::Device,
-    label: &str,
-    entries: &[wgpu::BindGroupLayoutEntry],
-) -> wgpu::BindGroupLayout {
+fn layout(device: &wgpu::Device, label: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some(label),
         entries,

@@ -26,8 +26,7 @@ impl Readback {
         origin: [u32; 2],
         size_px: [u32; 2],
     ) -> Self {
-        let padded_row =
-            (PIXEL_BYTES * size_px[0]).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+        let padded_row = (PIXEL_BYTES * size_px[0]).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = renderer.device().create_buffer(&wgpu::BufferDescriptor {
             label: Some("readback"),
             size: u64::from(padded_row) * u64::from(size_px[1]),
@@ -59,12 +58,10 @@ impl Readback {
         );
         renderer.queue().submit([encoder.finish()]);
         let (sender, mapped) = mpsc::channel();
-        buffer
-            .slice(..)
-            .map_async(wgpu::MapMode::Read, move |result| {
-                // Nobody listens any more when the request was dropped: that is fine.
-                let _ = sender.send(result);
-            });
+        buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+            // Nobody listens any more when the request was dropped: that is fine.
+            let _ = sender.send(result);
+        });
         Self {
             buffer,
             size_px,
@@ -122,13 +119,7 @@ impl Renderer {
         let size_px = attachments.size_px;
         let readback = guarded(self.device(), "while reading a picture back", || {
             let encoder = self.device().create_command_encoder(&Default::default());
-            Ok(Readback::submit(
-                self,
-                encoder,
-                &attachments.colour,
-                [0, 0],
-                size_px,
-            ))
+            Ok(Readback::submit(self, encoder, &attachments.colour, [0, 0], size_px))
         })?;
         let [width, height] = size_px;
         Ok(Some(Image {
@@ -152,7 +143,6 @@ impl Renderer {
         target.resize(self, size_px, samples)?;
         self.draw(&target, frame)?;
         let [width, height] = size_px;
-        self.read(&target)?
-            .ok_or(RenderError::EmptyPicture { width, height })
+        self.read(&target)?.ok_or(RenderError::EmptyPicture { width, height })
     }
 }

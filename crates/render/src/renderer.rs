@@ -29,9 +29,7 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Refused`] or [`RenderError::OutOfMemory`] when the device does not take our shaders or buffers.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, RenderError> {
-        let pipelines = guarded(device, "while starting to draw", || {
-            Ok(Pipelines::new(device))
-        })?;
+        let pipelines = guarded(device, "while starting to draw", || Ok(Pipelines::new(device)))?;
         let textures = guarded(device, "while starting to draw", || {
             Ok(TextureMaker::new(device, queue))
         })?;
@@ -45,19 +43,9 @@ impl Renderer {
             },
         )?;
         let empty: FrameUniform = bytemuck::Zeroable::zeroed();
-        let frame_buffer = filled(
-            device,
-            queue,
-            "frame uniform",
-            wgpu::BufferUsages::UNIFORM,
-            &[empty],
-        )?;
+        let frame_buffer = filled(device, queue, "frame uniform", wgpu::BufferUsages::UNIFORM, &[empty])?;
         let frame_group = guarded(device, "while starting to draw", || {
-            Ok(uniform_group(
-                device,
-                &pipelines.frame_layout,
-                &frame_buffer,
-            ))
+            Ok(uniform_group(device, &pipelines.frame_layout, &frame_buffer))
         })?;
         Ok(Self {
             device: device.clone(),
@@ -105,8 +93,7 @@ impl Renderer {
         let overlays = OverlayBatch::of(frame.overlays);
         self.overlay_triangles
             .fill(&self.device, &self.queue, &overlays.vertices)?;
-        self.overlay_lines
-            .fill(&self.device, &self.queue, &overlays.lines)?;
+        self.overlay_lines.fill(&self.device, &self.queue, &overlays.lines)?;
         if frame.style.wireframe == Wireframe::On {
             for surface in frame.surfaces {
                 surface.prepare_edges(&self.device, &self.queue)?;
@@ -119,26 +106,13 @@ impl Renderer {
             pass.set_bind_group(0, &self.frame_group, &[]);
             draw_surfaces(&mut pass, pipelines, frame);
             for layer in &overlays.layers {
-                if let (Some(buffer), false) =
-                    (self.overlay_triangles.buffer(), layer.vertices.is_empty())
-                {
+                if let (Some(buffer), false) = (self.overlay_triangles.buffer(), layer.vertices.is_empty()) {
                     pass.set_vertex_buffer(0, buffer.slice(..));
-                    draw_softened(
-                        &mut pass,
-                        &pipelines.overlay_triangles,
-                        layer.vertices.clone(),
-                        0..1,
-                    );
+                    draw_softened(&mut pass, &pipelines.overlay_triangles, layer.vertices.clone(), 0..1);
                 }
-                if let (Some(buffer), false) = (self.overlay_lines.buffer(), layer.lines.is_empty())
-                {
+                if let (Some(buffer), false) = (self.overlay_lines.buffer(), layer.lines.is_empty()) {
                     pass.set_vertex_buffer(0, buffer.slice(..));
-                    draw_softened(
-                        &mut pass,
-                        &pipelines.overlay_lines,
-                        0..4,
-                        layer.lines.clone(),
-                    );
+                    draw_softened(&mut pass, &pipelines.overlay_lines, 0..4, layer.lines.clone());
                 }
             }
             drop(pass);
@@ -147,11 +121,7 @@ impl Renderer {
         })
     }
 
-    pub(crate) fn write_frame(
-        &self,
-        frame: &Frame<'_>,
-        size_px: [u32; 2],
-    ) -> Result<(), RenderError> {
+    pub(crate) fn write_frame(&self, frame: &Frame<'_>, size_px: [u32; 2]) -> Result<(), RenderError> {
         refill(
             &self.device,
             &self.queue,
@@ -190,13 +160,7 @@ impl Renderer {
         texture: Option<(&wgpu::TextureView, [Wrap; 2])>,
     ) -> Result<wgpu::BindGroup, RenderError> {
         let usage = wgpu::BufferUsages::UNIFORM;
-        let buffer = filled(
-            &self.device,
-            &self.queue,
-            "material uniform",
-            usage,
-            &[*uniform],
-        )?;
+        let buffer = filled(&self.device, &self.queue, "material uniform", usage, &[*uniform])?;
         let (view, wrap) = texture.unwrap_or((&self.white, [Wrap::Repeat; 2]));
         guarded(&self.device, "while making bind groups", || {
             let sampler = self.textures.sampler(wrap);
@@ -222,11 +186,7 @@ impl Renderer {
     }
 }
 
-fn uniform_group(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    buffer: &wgpu::Buffer,
-) -> wgpu::BindGroup {
+fn uniform_group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffer: &wgpu::Buffer) -> wgpu::BindGroup {
     device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout,
@@ -260,10 +220,7 @@ fn frame_uniform(frame: &Frame<'_>, size_px: [u32; 2]) -> FrameUniform {
     }
 }
 
-fn begin_picture<'a>(
-    encoder: &'a mut wgpu::CommandEncoder,
-    attachments: &Attachments,
-) -> wgpu::RenderPass<'a> {
+fn begin_picture<'a>(encoder: &'a mut wgpu::CommandEncoder, attachments: &Attachments) -> wgpu::RenderPass<'a> {
     let single = &attachments.colour_view;
     let (view, resolve_target, store) = match &attachments.multisampled {
         Some(samples) => (samples, Some(single), wgpu::StoreOp::Discard),
@@ -295,12 +252,7 @@ fn begin_picture<'a>(
 
 /// Opaque triangles, then the background where nothing is, then what is seen through, then edges.
 fn draw_surfaces(pass: &mut wgpu::RenderPass<'_>, pipelines: &PicturePipelines, frame: &Frame<'_>) {
-    let surfaces = || {
-        frame
-            .surfaces
-            .iter()
-            .filter(|surface| surface.index_count() > 0)
-    };
+    let surfaces = || frame.surfaces.iter().filter(|surface| surface.index_count() > 0);
     let draws_materials = frame.style.shading == Shading::Material;
     for surface in surfaces() {
         surface.bind(pass);
@@ -338,11 +290,7 @@ fn draw_batches(
     surface: &crate::Surface,
     is_wanted: impl Fn(AlphaMode) -> bool,
 ) {
-    for batch in surface
-        .batches()
-        .iter()
-        .filter(|batch| is_wanted(batch.alpha))
-    {
+    for batch in surface.batches().iter().filter(|batch| is_wanted(batch.alpha)) {
         pass.set_pipeline(match batch.alpha {
             AlphaMode::Opaque => &pipelines.material_opaque,
             AlphaMode::Mask { .. } => &pipelines.material_mask,

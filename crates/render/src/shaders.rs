@@ -61,22 +61,13 @@ impl Shader {
 
 /// The shared files that an include may name.
 const LIBRARY: [(&str, &str); 4] = [
-    (
-        "lib/frame.wgsl",
-        include_str!("../../../shaders/lib/frame.wgsl"),
-    ),
-    (
-        "lib/colour.wgsl",
-        include_str!("../../../shaders/lib/colour.wgsl"),
-    ),
+    ("lib/frame.wgsl", include_str!("../../../shaders/lib/frame.wgsl")),
+    ("lib/colour.wgsl", include_str!("../../../shaders/lib/colour.wgsl")),
     (
         "lib/surface_vertex.wgsl",
         include_str!("../../../shaders/lib/surface_vertex.wgsl"),
     ),
-    (
-        "lib/light.wgsl",
-        include_str!("../../../shaders/lib/light.wgsl"),
-    ),
+    ("lib/light.wgsl", include_str!("../../../shaders/lib/light.wgsl")),
 ];
 
 /// `text` with each include line replaced; one that names no shared file stays, so that the compiler points at it.
@@ -93,3 +84,7 @@ fn compose(text: &str) -> String {
     }
     composed
 }
+
+#[cfg(test)]
+#[path = "shader_tests.rs"]
+mod tests;

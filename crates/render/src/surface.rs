@@ -55,15 +55,9 @@ impl Surface {
         let (device, queue) = (renderer.device(), renderer.queue());
         let count = data.positions.len();
         let vertex = wgpu::BufferUsages::VERTEX;
-        let uvs = data
-            .uvs
-            .map_or_else(|| vec![[0.0; 2]; count], <[_]>::to_vec);
-        let colours = data
-            .colours
-            .map_or_else(|| vec![[255; 4]; count], <[_]>::to_vec);
-        let regions = data
-            .regions
-            .map_or_else(|| vec![[0; 4]; count], <[_]>::to_vec);
+        let uvs = data.uvs.map_or_else(|| vec![[0.0; 2]; count], <[_]>::to_vec);
+        let colours = data.colours.map_or_else(|| vec![[255; 4]; count], <[_]>::to_vec);
+        let regions = data.regions.map_or_else(|| vec![[0; 4]; count], <[_]>::to_vec);
         let vertex_buffers = [
             filled(device, queue, "positions", vertex, data.positions)?,
             filled(device, queue, "normals", vertex, data.normals)?,
@@ -71,13 +65,7 @@ impl Surface {
             filled(device, queue, "vertex colours", vertex, &colours)?,
             filled(device, queue, "region colours", vertex, &regions)?,
         ];
-        let index_buffer = filled(
-            device,
-            queue,
-            "triangles",
-            wgpu::BufferUsages::INDEX,
-            data.triangles,
-        )?;
+        let index_buffer = filled(device, queue, "triangles", wgpu::BufferUsages::INDEX, data.triangles)?;
         let uniform = SurfaceUniform {
             id_base: 1,
             colours_are_linear: u32::from(data.colour_space == ColourSpace::Linear),
@@ -91,8 +79,7 @@ impl Surface {
             wgpu::BufferUsages::UNIFORM,
             &[uniform],
         )?;
-        let group =
-            renderer.uniform_group(&renderer.pipelines().surface_layout, &uniform_buffer)?;
+        let group = renderer.uniform_group(&renderer.pipelines().surface_layout, &uniform_buffer)?;
         Ok(Self {
             vertex_count: count,
             triangles: data.triangles.to_vec(),
@@ -123,23 +110,14 @@ impl Surface {
             .get()
             .and_then(Option::as_ref)
             .map_or(0, |edges| edges.buffer.size());
-        self.vertex_buffers
-            .iter()
-            .map(wgpu::Buffer::size)
-            .sum::<u64>()
-            + self.index_buffer.size()
-            + edges
+        self.vertex_buffers.iter().map(wgpu::Buffer::size).sum::<u64>() + self.index_buffer.size() + edges
     }
 
     /// Moves the vertices; seen in the next drawing.
     ///
     /// # Errors
     /// [`RenderError::Length`] unless there is one position a vertex; memory.
-    pub fn update_positions(
-        &self,
-        renderer: &Renderer,
-        positions: &[[f32; 3]],
-    ) -> Result<(), RenderError> {
+    pub fn update_positions(&self, renderer: &Renderer, positions: &[[f32; 3]]) -> Result<(), RenderError> {
         self.update(renderer, "positions", POSITIONS, positions)
     }
 
@@ -147,11 +125,7 @@ impl Surface {
     ///
     /// # Errors
     /// As [`Surface::update_positions`].
-    pub fn update_normals(
-        &self,
-        renderer: &Renderer,
-        normals: &[[f32; 3]],
-    ) -> Result<(), RenderError> {
+    pub fn update_normals(&self, renderer: &Renderer, normals: &[[f32; 3]]) -> Result<(), RenderError> {
         self.update(renderer, "normals", NORMALS, normals)
     }
 
@@ -160,11 +134,7 @@ impl Surface {
     ///
     /// # Errors
     /// As [`Surface::update_positions`].
-    pub fn update_regions(
-        &self,
-        renderer: &Renderer,
-        regions: &[[u8; 4]],
-    ) -> Result<(), RenderError> {
+    pub fn update_regions(&self, renderer: &Renderer, regions: &[[u8; 4]]) -> Result<(), RenderError> {
         self.update(renderer, "region colours", REGIONS, regions)
     }
 
@@ -177,11 +147,7 @@ impl Surface {
     ) -> Result<(), RenderError> {
         if contents.len() != self.vertex_count {
             let (expected, found) = (self.vertex_count, contents.len());
-            return Err(RenderError::Length {
-                what,
-                expected,
-                found,
-            });
+            return Err(RenderError::Length { what, expected, found });
         }
         refill(
             renderer.device(),
@@ -224,11 +190,7 @@ impl Surface {
     }
 
     /// Makes the edges unless they are there.
-    pub(crate) fn prepare_edges(
-        &self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-    ) -> Result<(), RenderError> {
+    pub(crate) fn prepare_edges(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), RenderError> {
         if self.edges.get().is_some() {
             return Ok(());
         }
@@ -254,10 +216,7 @@ impl Surface {
 }
 
 /// The given materials, and the default one after them.
-fn material_groups(
-    renderer: &Renderer,
-    data: &SurfaceData<'_>,
-) -> Result<Vec<wgpu::BindGroup>, RenderError> {
+fn material_groups(renderer: &Renderer, data: &SurfaceData<'_>) -> Result<Vec<wgpu::BindGroup>, RenderError> {
     let textures = data
         .textures
         .iter()
@@ -276,11 +235,7 @@ fn material_groups(
             let uniform = MaterialUniform {
                 base_colour: material.base_colour,
                 alpha_cutoff,
-                back_share: if material.double_sided || !opaque {
-                    1.0
-                } else {
-                    0.45
-                },
+                back_share: if material.double_sided || !opaque { 1.0 } else { 0.45 },
                 padding: [0.0; 2],
             };
             let texture = material
@@ -295,11 +250,7 @@ fn material_groups(
 fn batches(data: &SurfaceData<'_>) -> Vec<Batch> {
     let default_material = data.materials.len();
     let count = data.triangles.len() as u32;
-    let mut groups: Vec<_> = data
-        .groups
-        .iter()
-        .filter(|group| !group.triangles.is_empty())
-        .collect();
+    let mut groups: Vec<_> = data.groups.iter().filter(|group| !group.triangles.is_empty()).collect();
     groups.sort_by_key(|group| group.triangles.start);
     let mut batches: Vec<Batch> = Vec::new();
     let mut push = |triangles: Range<u32>, material: usize| {
@@ -311,10 +262,7 @@ fn batches(data: &SurfaceData<'_>) -> Vec<Batch> {
                 last.triangles.end = triangles.end;
             }
             _ => {
-                let alpha = data
-                    .materials
-                    .get(material)
-                    .map_or(AlphaMode::Opaque, |m| m.alpha);
+                let alpha = data.materials.get(material).map_or(AlphaMode::Opaque, |m| m.alpha);
                 batches.push(Batch {
                     triangles,
                     material,
@@ -358,16 +306,8 @@ mod tests {
 
     #[test]
     fn gaps_between_groups_get_the_default_material_and_neighbours_merge() {
-        let group = |triangles, material| MaterialGroup {
-            triangles,
-            material,
-        };
-        let groups = [
-            group(6..8, 0),
-            group(2..4, 1),
-            group(4..4, 0),
-            group(4..6, 1),
-        ];
+        let group = |triangles, material| MaterialGroup { triangles, material };
+        let groups = [group(6..8, 0), group(2..4, 1), group(4..4, 0), group(4..6, 1)];
         let glass = Material {
             alpha: AlphaMode::Blend,
             ..Material::default()

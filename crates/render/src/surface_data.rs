@@ -65,11 +65,7 @@ pub(crate) fn checked(data: &SurfaceData<'_>) -> Result<(), RenderError> {
     }
     for group in data.groups {
         if !group.triangles.is_empty() {
-            in_range(
-                "triangle",
-                group.triangles.end as usize - 1,
-                data.triangles.len(),
-            )?;
+            in_range("triangle", group.triangles.end as usize - 1, data.triangles.len())?;
         }
         in_range("material", group.material, data.materials.len())?;
     }
@@ -87,11 +83,7 @@ fn in_range(what: &'static str, number: usize, count: usize) -> Result<(), Rende
     if number < count {
         Ok(())
     } else {
-        Err(RenderError::NoSuch {
-            what,
-            number,
-            count,
-        })
+        Err(RenderError::NoSuch { what, number, count })
     }
 }
 

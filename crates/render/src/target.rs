@@ -61,12 +61,7 @@ impl Target {
     /// # Errors
     /// [`RenderError::PictureTooLarge`] beyond the device's limit and [`RenderError::OutOfMemory`]; the target is
     /// then empty.
-    pub fn resize(
-        &mut self,
-        renderer: &Renderer,
-        size_px: [u32; 2],
-        samples: Samples,
-    ) -> Result<bool, RenderError> {
+    pub fn resize(&mut self, renderer: &Renderer, size_px: [u32; 2], samples: Samples) -> Result<bool, RenderError> {
         if size_px.contains(&0) {
             return Ok(self.attachments.take().is_some());
         }
@@ -81,17 +76,11 @@ impl Target {
         let limit = renderer.device().limits().max_texture_dimension_2d;
         if size_px.iter().any(|&side| side > limit) {
             let [width, height] = size_px;
-            return Err(RenderError::PictureTooLarge {
-                width,
-                height,
-                limit,
-            });
+            return Err(RenderError::PictureTooLarge { width, height, limit });
         }
-        self.attachments = Some(guarded(
-            renderer.device(),
-            "while making the view's texture",
-            || Ok(Attachments::new(renderer.device(), size_px, samples)),
-        )?);
+        self.attachments = Some(guarded(renderer.device(), "while making the view's texture", || {
+            Ok(Attachments::new(renderer.device(), size_px, samples))
+        })?);
         Ok(true)
     }
 
@@ -129,31 +118,12 @@ impl Attachments {
             })
         };
         let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let shown =
-            attachment | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
-        let colour = texture(
-            "view colour",
-            Target::COLOUR_FORMAT,
-            1,
-            shown,
-            &[Target::VIEW_FORMAT],
-        );
-        let depth = texture(
-            "view depth",
-            Target::DEPTH_FORMAT,
-            samples.count(),
-            attachment,
-            &[],
-        );
+        let shown = attachment | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        let colour = texture("view colour", Target::COLOUR_FORMAT, 1, shown, &[Target::VIEW_FORMAT]);
+        let depth = texture("view depth", Target::DEPTH_FORMAT, samples.count(), attachment, &[]);
         let multisampled = (samples.count() > 1).then(|| {
-            texture(
-                "view samples",
-                Target::COLOUR_FORMAT,
-                samples.count(),
-                attachment,
-                &[],
-            )
-            .create_view(&wgpu::TextureViewDescriptor::default())
+            texture("view samples", Target::COLOUR_FORMAT, samples.count(), attachment, &[])
+                .create_view(&wgpu::TextureViewDescriptor::default())
         });
         Self {
             size_px,

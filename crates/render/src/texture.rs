@@ -88,11 +88,7 @@ impl TextureMaker {
     }
 
     /// The texture `number` of a surface, scaled down until the device takes it, with all its mipmaps.
-    pub(crate) fn texture(
-        &self,
-        number: usize,
-        data: &TextureData<'_>,
-    ) -> Result<wgpu::TextureView, RenderError> {
+    pub(crate) fn texture(&self, number: usize, data: &TextureData<'_>) -> Result<wgpu::TextureView, RenderError> {
         let (width, height) = (data.width, data.height);
         let needed = 4 * width as usize * height as usize;
         if needed == 0 || data.rgba.len() != needed {
@@ -129,8 +125,7 @@ impl TextureMaker {
                 bytes_per_row: Some(4 * width),
                 rows_per_image: Some(height),
             };
-            self.queue
-                .write_texture(texture.as_image_copy(), &rgba, rows, size);
+            self.queue.write_texture(texture.as_image_copy(), &rgba, rows, size);
             self.make_mipmaps(&texture);
             Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
         })

@@ -49,10 +49,10 @@ pub(crate) struct OverlayVertex {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(crate) struct OverlayLineInstance {
-    pub(crate) from: [f32; 3],
+    pub(crate) start: [f32; 3],
     pub(crate) width_px: f32,
-    pub(crate) to: [f32; 3],
+    pub(crate) end: [f32; 3],
     pub(crate) hidden_share: f32,
-    pub(crate) from_colour: [u8; 4],
-    pub(crate) to_colour: [u8; 4],
+    pub(crate) start_colour: [u8; 4],
+    pub(crate) end_colour: [u8; 4],
 }

@@ -49,13 +49,7 @@ impl View {
 
     /// A parallel view of `half_height` world units above and below the middle; depth is seen from `near` to `far`
     /// in front of the eye (`near` may be negative, and `far` must be more).
-    pub fn orthographic(
-        half_height: f32,
-        aspect: f32,
-        near: f32,
-        far: f32,
-        view_from_world: Mat4,
-    ) -> Self {
+    pub fn orthographic(half_height: f32, aspect: f32, near: f32, far: f32, view_from_world: Mat4) -> Self {
         let depth_scale = 1.0 / (far - near);
         let clip_from_view = Mat4::from_cols(
             Vec4::new(1.0 / (half_height * aspect), 0.0, 0.0, 0.0),
@@ -72,12 +66,7 @@ impl View {
         let back = (eye - target).normalize();
         let right = up.cross(back).normalize();
         let up = back.cross(right);
-        let world_from_view = Mat4::from_cols(
-            right.extend(0.0),
-            up.extend(0.0),
-            back.extend(0.0),
-            eye.extend(1.0),
-        );
+        let world_from_view = Mat4::from_cols(right.extend(0.0), up.extend(0.0), back.extend(0.0), eye.extend(1.0));
         world_from_view.inverse()
     }
 
@@ -103,8 +92,7 @@ mod tests {
 
     #[test]
     fn depth_is_reversed_and_the_eye_is_found_in_both_projections() {
-        let view_from_world =
-            View::look_at(Vec3::new(3.0, 2.0, 5.0), Vec3::new(0.5, 0.0, 0.0), Vec3::Y);
+        let view_from_world = View::look_at(Vec3::new(3.0, 2.0, 5.0), Vec3::new(0.5, 0.0, 0.0), Vec3::Y);
         let towards = (Vec3::new(3.0, 2.0, 5.0) - Vec3::new(0.5, 0.0, 0.0)).normalize();
         let perspective = View::perspective(0.8, 1.5, 0.01, view_from_world);
         let parallel = View::orthographic(2.0, 1.5, 0.0, 20.0, view_from_world);
@@ -123,12 +111,7 @@ mod tests {
     #[test]
     fn what_is_looked_at_is_in_the_middle_and_up_is_up() {
         let target = Vec3::new(0.5, 0.0, 0.0);
-        let view = View::perspective(
-            0.8,
-            1.5,
-            0.01,
-            View::look_at(Vec3::new(3.0, 2.0, 5.0), target, Vec3::Y),
-        );
+        let view = View::perspective(0.8, 1.5, 0.01, View::look_at(Vec3::new(3.0, 2.0, 5.0), target, Vec3::Y));
         let (Some(middle), Some(above)) = (
             view.pixel_from_world(target, [300, 200]),
             view.pixel_from_world(target + Vec3::Y, [300, 200]),
@@ -137,9 +120,6 @@ mod tests {
         };
         assert!((middle.x - 150.0).abs() < 1e-3 && (middle.y - 100.0).abs() < 1e-3);
         assert!(above.y < middle.y && (above.x - middle.x).abs() < 1e-3);
-        assert_eq!(
-            view.pixel_from_world(Vec3::new(30.0, 20.0, 50.0), [300, 200]),
-            None
-        );
+        assert_eq!(view.pixel_from_world(Vec3::new(30.0, 20.0, 50.0), [300, 200]), None);
     }
 }

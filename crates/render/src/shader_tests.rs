@@ -1,0 +1,211 @@
+//! Laws of the shaders that need no device: they are valid, they translate to the languages of the other systems, and
+//! their structs are laid out as the program fills them.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may fail by panicking")]
+
+use std::mem::offset_of;
+
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+
+use super::Shader;
+use crate::pipelines::{OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SURFACE_BUFFERS};
+use crate::uniforms::{FrameUniform, MaterialUniform, OverlayLineInstance, OverlayVertex, SurfaceUniform};
+
+#[test]
+fn every_shader_is_valid() {
+    for shader in Shader::ALL {
+        let (module, _) = validated(shader);
+        assert!(
+            !module.entry_points.is_empty(),
+            "{} has entry points",
+            shader.file_name()
+        );
+    }
+}
+
+#[test]
+fn no_include_is_left_over() {
+    for shader in Shader::ALL {
+        assert!(!shader.composed().contains("#include"), "{}", shader.file_name());
+    }
+}
+
+#[test]
+fn every_shader_translates_to_hlsl() {
+    for shader in Shader::ALL {
+        let (module, info) = validated(shader);
+        let mut text = String::new();
+        let options = naga::back::hlsl::Options {
+            shader_model: naga::back::hlsl::ShaderModel::V6_0,
+            ..Default::default()
+        };
+        let pipeline = naga::back::hlsl::PipelineOptions::default();
+        naga::back::hlsl::Writer::new(&mut text, &options, &pipeline)
+            .write(&module, &info, None)
+            .unwrap_or_else(|error| panic!("{}: {error}", shader.file_name()));
+        assert!(text.contains("SV_Position"), "{} draws", shader.file_name());
+    }
+}
+
+#[test]
+fn every_shader_translates_to_msl() {
+    for shader in Shader::ALL {
+        let (module, info) = validated(shader);
+        let options = naga::back::msl::Options {
+            lang_version: (2, 4),
+            fake_missing_bindings: true,
+            ..Default::default()
+        };
+        let pipeline = naga::back::msl::PipelineOptions::default();
+        let (text, translation) = naga::back::msl::write_string(&module, &info, &options, &pipeline)
+            .unwrap_or_else(|error| panic!("{}: {error}", shader.file_name()));
+        assert!(text.contains("[[position]]"), "{} draws", shader.file_name());
+        for name in translation.entry_point_names {
+            name.unwrap_or_else(|error| panic!("{}: {error}", shader.file_name()));
+        }
+    }
+}
+
+/// The members of `$rust` with their offsets and sizes, for comparison with a WGSL struct.
+macro_rules! layout {
+    ($rust:ident { $($member:ident: $ty:ty),+ $(,)? }) => {
+        (size_of::<$rust>() as u32, vec![$((
+            stringify!($member).to_owned(),
+            offset_of!($rust, $member) as u32,
+            size_of::<$ty>() as u32,
+        )),+])
+    };
+}
+
+#[test]
+fn uniform_structs_are_laid_out_alike() {
+    let frame = layout!(FrameUniform {
+        clip_from_world: [[f32; 4]; 4],
+        view_from_world: [[f32; 4]; 4],
+        eye: [f32; 4],
+        background_top: [f32; 4],
+        background_bottom: [f32; 4],
+        size_px: [f32; 2],
+        region_share: f32,
+        scale_px: f32,
+    });
+    for shader in Shader::ALL.into_iter().filter(|&shader| shader != Shader::Mipmap) {
+        assert_eq!(wgsl_layout(shader, "Frame"), frame, "{}", shader.file_name());
+    }
+    let surface = layout!(SurfaceUniform {
+        id_base: u32,
+        colours_are_linear: u32,
+        mean_edge: f32,
+        padding: u32,
+    });
+    for shader in [Shader::Surface, Shader::SurfaceId, Shader::Wireframe] {
+        assert_eq!(wgsl_layout(shader, "Surface"), surface, "{}", shader.file_name());
+    }
+    let material = layout!(MaterialUniform {
+        base_colour: [f32; 4],
+        alpha_cutoff: f32,
+        back_share: f32,
+        padding: [f32; 2],
+    });
+    assert_eq!(wgsl_layout(Shader::Surface, "Material"), material);
+}
+
+#[test]
+fn vertex_buffers_have_what_shaders_read() {
+    let surface: Vec<_> = SURFACE_BUFFERS.iter().flatten().cloned().collect();
+    assert_attributes(Shader::Surface, "SurfaceVertex", &surface);
+    assert_attributes(Shader::SurfaceId, "SurfaceVertex", &surface);
+    assert_attributes(Shader::OverlayTriangle, "OverlayVertex", &[OVERLAY_TRIANGLE_BUFFER]);
+    assert_attributes(Shader::OverlayLine, "OverlayLine", &[OVERLAY_LINE_BUFFER]);
+}
+
+#[test]
+fn vertex_structs_have_their_members_where_their_buffers_say() {
+    let offsets = |layout: &wgpu::VertexBufferLayout<'_>| -> Vec<u64> {
+        layout.attributes.iter().map(|attribute| attribute.offset).collect()
+    };
+    let triangle = [
+        offset_of!(OverlayVertex, position),
+        offset_of!(OverlayVertex, colour),
+        offset_of!(OverlayVertex, hidden_share),
+    ];
+    assert_eq!(offsets(&OVERLAY_TRIANGLE_BUFFER), triangle.map(|offset| offset as u64));
+    let line = [
+        offset_of!(OverlayLineInstance, start),
+        offset_of!(OverlayLineInstance, width_px),
+        offset_of!(OverlayLineInstance, end),
+        offset_of!(OverlayLineInstance, hidden_share),
+        offset_of!(OverlayLineInstance, start_colour),
+        offset_of!(OverlayLineInstance, end_colour),
+    ];
+    assert_eq!(offsets(&OVERLAY_LINE_BUFFER), line.map(|offset| offset as u64));
+    for buffer in SURFACE_BUFFERS.iter().flatten() {
+        assert_eq!(buffer.array_stride, buffer.attributes[0].format.size());
+    }
+}
+
+fn validated(shader: Shader) -> (naga::Module, ModuleInfo) {
+    let text = shader.composed();
+    let module = naga::front::wgsl::parse_str(&text)
+        .unwrap_or_else(|error| panic!("{}", error.emit_to_string_with_path(&text, shader.file_name())));
+    // Nothing beyond the plain language but triangle numbers, where they are asked for.
+    let capabilities = match shader {
+        Shader::SurfaceId => Capabilities::PRIMITIVE_INDEX,
+        _ => Capabilities::empty(),
+    };
+    let info = Validator::new(ValidationFlags::all(), capabilities)
+        .validate(&module)
+        .unwrap_or_else(|error| panic!("{}", error.emit_to_string_with_path(&text, shader.file_name())));
+    (module, info)
+}
+
+/// Size of a WGSL struct, and name, offset and size of its members.
+fn wgsl_layout(shader: Shader, name: &str) -> (u32, Vec<(String, u32, u32)>) {
+    let (module, _) = validated(shader);
+    let (members, span) = wgsl_struct(&module, shader, name);
+    let sizes = members.iter().map(|member| {
+        let size = module.types[member.ty].inner.size(module.to_ctx());
+        (member.name.clone().unwrap(), member.offset, size)
+    });
+    (span, sizes.collect())
+}
+
+fn wgsl_struct<'a>(module: &'a naga::Module, shader: Shader, name: &str) -> (&'a [naga::StructMember], u32) {
+    let found = module.types.iter().find_map(|(_, ty)| match &ty.inner {
+        naga::TypeInner::Struct { members, span } if ty.name.as_deref() == Some(name) => {
+            Some((members.as_slice(), *span))
+        }
+        _ => None,
+    });
+    found.unwrap_or_else(|| panic!("{} has a struct {name}", shader.file_name()))
+}
+
+/// Every `@location` of a WGSL struct is given by just one attribute, with as many floating-point components.
+fn assert_attributes(shader: Shader, name: &str, buffers: &[wgpu::VertexBufferLayout<'_>]) {
+    let (module, _) = validated(shader);
+    let (members, _) = wgsl_struct(&module, shader, name);
+    let mut read: Vec<(u32, u32)> = Vec::new();
+    for member in members {
+        let Some(naga::Binding::Location { location, .. }) = member.binding else {
+            panic!("{name}.{:?} has a location", member.name)
+        };
+        read.push((location, module.types[member.ty].inner.size(module.to_ctx()) / 4));
+    }
+    let mut given: Vec<(u32, u32)> = buffers
+        .iter()
+        .flat_map(|buffer| buffer.attributes)
+        .map(|attribute| (attribute.shader_location, components(attribute.format)))
+        .collect();
+    read.sort_unstable();
+    given.sort_unstable();
+    assert_eq!(read, given, "{} {name}", shader.file_name());
+}
+
+fn components(format: wgpu::VertexFormat) -> u32 {
+    match format {
+        wgpu::VertexFormat::Float32 => 1,
+        wgpu::VertexFormat::Float32x2 => 2,
+        wgpu::VertexFormat::Float32x3 => 3,
+        wgpu::VertexFormat::Unorm8x4 => 4,
+        other => panic!("say here how many components {other:?} has"),
+    }
+}
