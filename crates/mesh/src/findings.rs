@@ -77,20 +77,18 @@ impl Finding {
         }
     }
 
-    /// "3 vertices (4, 5 and 9)", with the noun in the right number.
-    fn phrase(&self, one: &str, many: &str) -> String {
+    /// "3 vertices (4, 5 and 9)": how many, and the first of them named by `at` and their numbers.
+    fn counted(&self, one: &str, many: &str, at: &str) -> String {
         let shown: Vec<String> = self.examples.iter().take(3).map(u32::to_string).collect();
-        let examples = match shown.as_slice() {
-            [] => return format!("{} {}", self.count, if self.count == 1 { one } else { many }),
-            [only] => only.clone(),
-            [firsts @ .., last] if self.count == shown.len() => format!("{} and {last}", firsts.join(", ")),
-            all => format!("{}, ...", all.join(", ")),
-        };
-        format!(
-            "{} {} ({examples})",
-            self.count,
-            if self.count == 1 { one } else { many }
-        )
+        let noun = if self.count == 1 { one } else { many };
+        match shown.as_slice() {
+            [] => format!("{} {noun}", self.count),
+            [only] => format!("{} {noun} ({at}{only})", self.count),
+            [firsts @ .., last] if self.count == shown.len() => {
+                format!("{} {noun} ({at}{} and {last})", self.count, firsts.join(", "))
+            }
+            all => format!("{} {noun} ({at}{}, ...)", self.count, all.join(", ")),
+        }
     }
 }
 
@@ -122,75 +120,70 @@ impl Findings {
 
     /// One sentence for each thing that is not as in a clean, closed, connected mesh; none for such a mesh.
     pub fn sentences(&self) -> Vec<String> {
-        let about = [
-            (
-                &self.non_finite_vertices,
-                "vertex has a position that is not a finite number and was set aside",
-                "vertices have positions that are not finite numbers and were set aside",
-            ),
-            (
-                &self.non_finite_triangles,
-                "triangle uses such a vertex and was left out",
-                "triangles use such vertices and were left out",
-            ),
-            (
-                &self.unreferenced_vertices,
-                "vertex is used by no triangle and keeps its place",
-                "vertices are used by no triangle and keep their places",
-            ),
-            (
-                &self.collapsed_triangles,
-                "triangle has two corners in one place and was left out",
-                "triangles have two corners in one place and were left out",
-            ),
-            (
-                &self.zero_area_triangles,
-                "triangle has no area",
-                "triangles have no area",
-            ),
-            (
-                &self.duplicate_triangles,
-                "triangle repeats an earlier one and was left out",
-                "triangles repeat earlier ones and were left out",
-            ),
-            (
-                &self.non_manifold_edges,
-                "edge has more than two triangles",
-                "edges have more than two triangles",
-            ),
-            (
-                &self.non_manifold_vertices,
-                "vertex joins parts of the surface that share nothing else",
-                "vertices join parts of the surface that share nothing else",
-            ),
-            (
-                &self.misoriented_edges,
-                "edge lies between triangles that disagree about which side is outside",
-                "edges lie between triangles that disagree about which side is outside",
-            ),
+        let mut sentences = Vec::new();
+        let mut say = |finding: &Finding, [one, many]: [&str; 2], at: &str, [is, are]: [&str; 2]| {
+            if !finding.is_empty() {
+                let rest = if finding.count == 1 { is } else { are };
+                sentences.push(format!("{} {rest}.", finding.counted(one, many, at)));
+            }
+        };
+        let vertices = ["vertex", "vertices"];
+        let triangles = ["triangle", "triangles"];
+        let edges = ["edge", "edges"];
+        let at_vertex = "at vertex ";
+        let not_finite = [
+            "has a position that is not a finite number and was set aside",
+            "have positions that are not finite numbers and were set aside",
         ];
-        let mut sentences: Vec<String> = about
-            .into_iter()
-            .filter(|(finding, _, _)| !finding.is_empty())
-            .map(|(finding, one, many)| sentence(finding, one, many))
-            .collect();
-        if !self.boundary_edges.is_empty() {
-            let holes = Finding {
-                examples: Vec::new(),
-                ..self.boundary_loops.clone()
-            };
-            sentences.push(format!(
-                "The surface is open: {} with {} along {} rim{}.",
-                holes.phrase("hole", "holes"),
-                Finding {
-                    examples: Vec::new(),
-                    ..self.boundary_edges.clone()
-                }
-                .phrase("edge", "edges"),
-                if holes.count == 1 { "its" } else { "their" },
-                if holes.count == 1 { "" } else { "s" },
-            ));
-        }
+        say(&self.non_finite_vertices, vertices, "", not_finite);
+        let use_such = [
+            "uses such a vertex and was left out",
+            "use such vertices and were left out",
+        ];
+        say(&self.non_finite_triangles, triangles, "", use_such);
+        let unused = [
+            "is used by no triangle and keeps its place",
+            "are used by no triangle and keep their places",
+        ];
+        say(&self.unreferenced_vertices, vertices, "", unused);
+        let collapsed = [
+            "has two corners in one place and was left out",
+            "have two corners in one place and were left out",
+        ];
+        say(&self.collapsed_triangles, triangles, "", collapsed);
+        say(
+            &self.zero_area_triangles,
+            triangles,
+            "",
+            ["has no area", "have no area"],
+        );
+        let repeated = [
+            "repeats an earlier one and was left out",
+            "repeat earlier ones and were left out",
+        ];
+        say(&self.duplicate_triangles, triangles, "", repeated);
+        let crowded = ["has more than two triangles", "have more than two triangles"];
+        say(&self.non_manifold_edges, edges, at_vertex, crowded);
+        let pinched = [
+            "joins parts that share nothing else there",
+            "join parts that share nothing else there",
+        ];
+        say(&self.non_manifold_vertices, vertices, "", pinched);
+        let disagree = [
+            "lies between triangles that disagree about which side is outside",
+            "lie between triangles that disagree about which side is outside",
+        ];
+        say(&self.misoriented_edges, edges, at_vertex, disagree);
+        let open = [
+            format!("lies on the rim of {}", self.holes()),
+            format!("lie on the rim of {}", self.holes()),
+        ];
+        say(
+            &self.boundary_edges,
+            edges,
+            at_vertex,
+            open.each_ref().map(String::as_str),
+        );
         if self.components.count > 1 {
             sentences.push(format!(
                 "The surface has {} parts that don't touch.",
@@ -199,11 +192,45 @@ impl Findings {
         }
         sentences
     }
+
+    fn holes(&self) -> String {
+        match self.boundary_loops.count {
+            1 => "a hole".to_owned(),
+            count => format!("{count} holes"),
+        }
+    }
 }
 
-/// Puts the examples after the noun, which is the phrase's first word.
-fn sentence(finding: &Finding, one: &str, many: &str) -> String {
-    let phrase = if finding.count == 1 { one } else { many };
-    let (noun, rest) = phrase.split_once(' ').unwrap_or((phrase, ""));
-    format!("{} {rest}.", finding.phrase(noun, noun))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sentences_count_name_and_agree() {
+        let mut findings = Findings::default();
+        assert!(findings.sentences().is_empty());
+        findings.collapsed_triangles = Finding::of(&[7]);
+        findings.non_manifold_edges = Finding::of(&[1, 2, 9]);
+        findings.duplicate_triangles = Finding::of(&[1, 2, 3, 4, 5]);
+        findings.boundary_edges = Finding::of(&[0, 1, 2, 3]);
+        findings.boundary_loops = Finding::of(&[0]);
+        findings.components = Finding::of(&[0, 5]);
+        assert_eq!(
+            findings.sentences(),
+            [
+                "1 triangle (7) has two corners in one place and was left out.",
+                "5 triangles (1, 2, 3, ...) repeat earlier ones and were left out.",
+                "3 edges (at vertex 1, 2 and 9) have more than two triangles.",
+                "4 edges (at vertex 0, 1, 2, ...) lie on the rim of a hole.",
+                "The surface has 2 parts that don't touch.",
+            ]
+        );
+    }
+
+    #[test]
+    fn many_are_counted_and_few_kept() {
+        let finding = collect(200_000, |i| i % 3 == 1);
+        assert_eq!((finding.count, finding.examples.len()), (66_667, Findings::EXAMPLES));
+        assert_eq!(finding.examples[..3], [1, 4, 7]);
+    }
 }
