@@ -59,6 +59,43 @@ impl Mesh {
         Ok(opposite)
     }
 
+    /// Drops every part but the largest: detail on detail can pinch off a speck, which a scan's clean-up drops too.
+    pub fn keep_largest_part(&mut self) {
+        let mut leader: Vec<u32> = (0..self.positions.len() as u32).collect();
+        for triangle in &self.triangles {
+            let a = find(&mut leader, triangle[0]);
+            for &other in &triangle[1..] {
+                let b = find(&mut leader, other);
+                leader[b as usize] = a;
+            }
+        }
+        let leaders: Vec<u32> = (0..self.positions.len() as u32).map(|i| find(&mut leader, i)).collect();
+        let mut counts = vec![0_u32; leaders.len()];
+        leaders.iter().for_each(|&i| counts[i as usize] += 1);
+        let Some(largest) = (0..counts.len()).rev().max_by_key(|&i| counts[i]) else {
+            return;
+        };
+        let mut kept = 0;
+        let renumbered: Vec<Option<u32>> = leaders
+            .iter()
+            .map(|&i| {
+                let is_kept = i as usize == largest;
+                kept += u32::from(is_kept);
+                is_kept.then(|| kept - 1)
+            })
+            .collect();
+        let mut number = renumbered.iter();
+        self.positions.retain(|_| number.next().is_some_and(Option::is_some));
+        self.triangles.retain_mut(|triangle| {
+            let numbers = triangle.map(|i| renumbered[i as usize]);
+            let [Some(a), Some(b), Some(c)] = numbers else {
+                return false;
+            };
+            *triangle = [a, b, c];
+            true
+        });
+    }
+
     /// That the mesh is one closed, manifold, outward-turned piece whose triangles all have area.
     ///
     /// # Errors
@@ -124,6 +161,15 @@ impl Mesh {
         }
         Ok(())
     }
+}
+
+/// The leader of `i`'s set, the way there halved.
+fn find(leader: &mut [u32], mut i: u32) -> u32 {
+    while leader[i as usize] != i {
+        leader[i as usize] = leader[leader[i as usize] as usize];
+        i = leader[i as usize];
+    }
+    i
 }
 
 /// The half-edge after `h` in its triangle.
@@ -201,6 +247,21 @@ mod tests {
             touching
                 .check_closed()
                 .is_err_and(|sentence| sentence.contains("vertex 0"))
+        );
+    }
+
+    #[test]
+    fn specks_are_dropped() {
+        let mut mesh = tetrahedron();
+        mesh.positions.insert(0, v(9.0, 9.0, 9.0));
+        mesh.triangles.iter_mut().flatten().for_each(|i| *i += 1);
+        mesh.positions
+            .extend([v(5.0, 0.0, 0.0), v(6.0, 0.0, 0.0), v(5.0, 1.0, 0.0)]);
+        mesh.triangles.insert(1, [5, 6, 7]);
+        mesh.keep_largest_part();
+        assert_eq!(
+            (mesh.positions, mesh.triangles),
+            (tetrahedron().positions, tetrahedron().triangles)
         );
     }
 

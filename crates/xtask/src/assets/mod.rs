@@ -93,6 +93,7 @@ pub fn mesh_of(solid: &dyn Solid, triangles: usize) -> Result<Mesh, String> {
     let mut fault = String::new();
     for attempt in 0..8 {
         let mut mesh = surface_nets::extract(solid, size, f64::from(attempt) * 0.137);
+        mesh.keep_largest_part();
         if let Err(sentence) = mesh.check_closed() {
             fault = sentence;
             continue;
