@@ -5,8 +5,8 @@
 #include "lib/light.wgsl"
 
 // Linear albedo of the clay, and of its inside where an open surface shows its back.
-const CLAY: vec3f = vec3f(0.490, 0.440, 0.392);
-const CLAY_INSIDE: vec3f = vec3f(0.215, 0.165, 0.150);
+const CLAY: vec3f = vec3f(0.470, 0.418, 0.366);
+const CLAY_INSIDE: vec3f = vec3f(0.215, 0.160, 0.140);
 
 struct Material {
     base_colour: vec4f,
@@ -25,12 +25,12 @@ struct Material {
 fn fs_clay(in: SurfaceFragment, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
     let to_eye = normalize(in.to_eye_view);
     let n = seen_normal(in.normal_view, to_eye, is_front);
-    let lamps = light(n, to_eye, 28.0);
+    let lamps = light(n, to_eye);
     let albedo = mix(select(CLAY_INSIDE, CLAY, is_front), in.region.rgb, in.region.a);
     // Clay darkens a little towards its contour before the rim lights it: forms separate where they overlap.
-    let contour = 1.0 - 0.34 * lamps.grazing * lamps.grazing;
+    let contour = 1.0 - 0.42 * lamps.grazing * lamps.grazing;
     let colour = albedo * lamps.diffuse * contour + 0.075 * lamps.specular;
-    return vec4f(colour, 1.0);
+    return vec4f(rolled_off(colour), 1.0);
 }
 
 fn material_base(in: SurfaceFragment) -> vec4f {
@@ -40,10 +40,10 @@ fn material_base(in: SurfaceFragment) -> vec4f {
 fn lit_material(in: SurfaceFragment, is_front: bool, base: vec3f) -> vec3f {
     let to_eye = normalize(in.to_eye_view);
     let n = seen_normal(in.normal_view, to_eye, is_front);
-    let lamps = light(n, to_eye, 40.0);
-    let fresnel = 0.04 + 0.30 * pow(lamps.grazing, 5.0);
-    let colour = 1.15 * base * lamps.diffuse + (2.2 * fresnel) * lamps.specular;
-    return colour * select(material.back_share, 1.0, is_front);
+    let lamps = light(n, to_eye);
+    let fresnel = 0.04 + 0.25 * lamps.grazing * lamps.grazing * lamps.grazing;
+    let colour = 1.35 * base * lamps.diffuse + (2.2 * fresnel) * lamps.specular;
+    return rolled_off(colour) * select(material.back_share, 1.0, is_front);
 }
 
 @fragment

@@ -5,6 +5,11 @@ fn linear_from_srgb(encoded: vec3f) -> vec3f {
     return select(high, low, encoded <= vec3f(0.04045));
 }
 
+// The same within 0.005, in three multiplications: for colours that come by the million.
+fn linear_from_srgb_fast(encoded: vec3f) -> vec3f {
+    return encoded * (encoded * (encoded * 0.305306011 + 0.682171111) + 0.012522878);
+}
+
 // Linear light of an sRGB colour with straight alpha, premultiplied.
 fn premultiplied_from_srgb(encoded: vec4f, alpha_share: f32) -> vec4f {
     let alpha = encoded.a * alpha_share;

@@ -1,14 +1,14 @@
 // The lamps, fixed to the eye as in a sculptor's studio: a warm key from the upper left, a cool fill from the right,
 // a rim from behind, and a soft sky. All directions are in view space (x right, y up, z towards the eye).
-const KEY: vec3f = vec3f(-0.452, 0.633, 0.629);
-const FILL: vec3f = vec3f(0.848, -0.053, 0.528);
+const KEY: vec3f = vec3f(-0.503, 0.647, 0.573);
+const FILL: vec3f = vec3f(0.874, -0.175, 0.453);
 const RIM: vec3f = vec3f(0.391, 0.521, -0.759);
 
-const KEY_COLOUR: vec3f = vec3f(1.06, 1.0, 0.93);
-const FILL_COLOUR: vec3f = vec3f(0.17, 0.19, 0.23);
-const RIM_COLOUR: vec3f = vec3f(0.30, 0.32, 0.36);
-const SKY_COLOUR: vec3f = vec3f(0.250, 0.262, 0.285);
-const GROUND_COLOUR: vec3f = vec3f(0.105, 0.098, 0.090);
+const KEY_COLOUR: vec3f = vec3f(1.30, 1.22, 1.12);
+const FILL_COLOUR: vec3f = vec3f(0.110, 0.128, 0.165);
+const RIM_COLOUR: vec3f = vec3f(1.05, 1.15, 1.30);
+const SKY_COLOUR: vec3f = vec3f(0.150, 0.163, 0.185);
+const GROUND_COLOUR: vec3f = vec3f(0.058, 0.050, 0.044);
 
 struct Light {
     // Multiplies the albedo.
@@ -29,21 +29,30 @@ fn seen_normal(normal: vec3f, to_eye: vec3f, is_front: bool) -> vec3f {
     return select(n - 2.0 * facing * to_eye, n, facing >= 0.0);
 }
 
-// Lamps on a surface of unit normal `n`, seen along unit vector `to_eye`; `shininess` is Blinn-Phong's exponent.
-fn light(n: vec3f, to_eye: vec3f, shininess: f32) -> Light {
+// Lamps on a surface of unit normal `n`, seen along unit vector `to_eye`.
+fn light(n: vec3f, to_eye: vec3f) -> Light {
     var out: Light;
-    let facing = max(dot(n, to_eye), 0.0);
-    out.grazing = 1.0 - facing;
-    // The key reaches a little around the corner, as a large soft lamp does.
-    let key = max((dot(n, KEY) + 0.12) / 1.12, 0.0);
-    let fill = max((dot(n, FILL) + 0.25) / 1.25, 0.0);
+    out.grazing = 1.0 - max(dot(n, to_eye), 0.0);
+    // The key reaches around the corner and fades out without a crease, as a large soft lamp does.
+    let reach = max((dot(n, KEY) + 0.35) / 1.35, 0.0);
+    let key = reach * reach;
+    let fill = max((dot(n, FILL) + 0.30) / 1.30, 0.0);
     let sky = mix(GROUND_COLOUR, SKY_COLOUR, 0.5 + 0.5 * n.y);
-    out.diffuse = key * KEY_COLOUR + fill * FILL_COLOUR + sky;
-    let half_way = normalize(KEY + to_eye);
-    let glint = pow(max(dot(n, half_way), 0.0), shininess) * key;
     let edge = out.grazing * out.grazing * out.grazing;
     let rim = edge * max(dot(n, RIM) + 0.45, 0.0);
-    out.specular = glint * KEY_COLOUR;
-    out.diffuse += rim * RIM_COLOUR * 4.0;
+    out.diffuse = key * KEY_COLOUR + fill * FILL_COLOUR + sky + rim * RIM_COLOUR;
+    // Blinn-Phong with exponent 32, by squaring.
+    let half_way = max(dot(n, normalize(KEY + to_eye)), 0.0);
+    let squared = half_way * half_way;
+    let eighth = squared * squared * squared * squared;
+    let glint = eighth * eighth * eighth * eighth;
+    out.specular = (glint * key) * KEY_COLOUR;
     return out;
+}
+
+// Bright light bends softly towards white instead of clipping, as film does; below the knee nothing changes.
+fn rolled_off(light: vec3f) -> vec3f {
+    const KNEE: f32 = 0.50;
+    let over = max(light - KNEE, vec3f(0.0)) / (1.0 - KNEE);
+    return min(light, vec3f(KNEE)) + (1.0 - KNEE) * over / (1.0 + over);
 }

@@ -40,8 +40,8 @@ fn vs_surface(vertex: SurfaceVertex) -> SurfaceFragment {
     let to_eye = frame.eye.xyz - vertex.position * frame.eye.w;
     out.to_eye_view = (frame.view_from_world * vec4f(to_eye, 0.0)).xyz;
     out.uv = vertex.uv;
-    let decoded = select(linear_from_srgb(vertex.colour.rgb), vertex.colour.rgb, surface.colours_are_linear == 1u);
-    out.colour = vec4f(decoded, vertex.colour.a);
-    out.region = vec4f(linear_from_srgb(vertex.region.rgb), vertex.region.a * frame.region_share);
+    let decoded = linear_from_srgb_fast(vertex.colour.rgb);
+    out.colour = vec4f(select(decoded, vertex.colour.rgb, surface.colours_are_linear == 1u), vertex.colour.a);
+    out.region = vec4f(linear_from_srgb_fast(vertex.region.rgb), vertex.region.a * frame.region_share);
     return out;
 }

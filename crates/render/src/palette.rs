@@ -4,9 +4,9 @@
 /// gold is the handle.
 pub mod region {
     /// Held where it is.
-    pub const FIXED: [u8; 4] = [150, 150, 150, 255];
+    pub const FIXED: [u8; 4] = [156, 154, 151, 255];
     /// Follows.
-    pub const FREE: [u8; 4] = [112, 150, 204, 255];
+    pub const FREE: [u8; 4] = [120, 153, 204, 255];
     /// Is moved by hand.
-    pub const HANDLE: [u8; 4] = [236, 184, 62, 255];
+    pub const HANDLE: [u8; 4] = [232, 184, 84, 255];
 }
