@@ -4,6 +4,7 @@
 use glam::DVec3;
 use pliant_mesh::DrawnVertex;
 
+use crate::Appearance;
 use crate::moved::bit_equal;
 use crate::new_mesh::NewMesh;
 
@@ -19,13 +20,19 @@ pub(crate) fn for_each_face(mesh: &NewMesh<'_>, mut visit: impl FnMut(&[DrawnVer
                 triangle += corners.len().saturating_sub(2);
             }
         }
-        None => mesh.triangles.iter().enumerate().for_each(|(triangle, corners)| visit(corners, triangle)),
+        None => mesh
+            .triangles
+            .iter()
+            .enumerate()
+            .for_each(|(triangle, corners)| visit(corners, triangle)),
     }
 }
 
 /// How many faces [`for_each_face`] visits.
 pub(crate) fn face_count(mesh: &NewMesh<'_>) -> usize {
-    mesh.polygons.as_ref().map_or(mesh.triangles.len(), |polygons| polygons.len())
+    mesh.polygons
+        .as_ref()
+        .map_or(mesh.triangles.len(), |polygons| polygons.len())
 }
 
 /// The vertices that a file without texture coordinates and normals needs, and the number of each drawn vertex among
@@ -63,15 +70,28 @@ pub(crate) fn coarse_in_f32(positions: &[DVec3]) -> Option<f64> {
     (rounding > 1.5e-7 * min.distance(max)).then_some(rounding)
 }
 
+/// Whether the mesh has materials that say more than that it is there.
+pub(crate) fn has_materials(look: &Appearance) -> bool {
+    look.materials
+        .iter()
+        .any(|material| material.base_colour != [1.0; 4] || !material.name.is_empty())
+}
+
 /// A warning that names what of the mesh's looks a kind of file can't hold; `None` where it holds all that there is.
 pub(crate) fn lost(kind: &str, lost: &[(&str, Held)]) -> Option<String> {
-    let names: Vec<&str> = lost.iter().filter(|(_, held)| *held == Held::Lost).map(|(name, _)| *name).collect();
+    let names: Vec<&str> = lost
+        .iter()
+        .filter(|(_, held)| *held == Held::Lost)
+        .map(|(name, _)| *name)
+        .collect();
     let list = match names.as_slice() {
         [] => return None,
         [one] => (*one).to_owned(),
         [most @ .., last] => format!("{} and {last}", most.join(", ")),
     };
-    Some(format!("{kind} files don't hold {list}: save as .glb to keep them."))
+    Some(format!(
+        "{kind} output leaves out the {list}: save as .glb to keep them."
+    ))
 }
 
 /// Whether something that the mesh may have is lost.

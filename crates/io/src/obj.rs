@@ -50,7 +50,11 @@ pub(crate) struct Stored {
 pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
     let mut statements = statements::parse(source)?;
     let corners = corners::draw(&statements, source.cancel)?;
-    let libraries: Vec<&[u8]> = statements.libraries.iter().map(|span| &source.bytes[span.clone()]).collect();
+    let libraries: Vec<&[u8]> = statements
+        .libraries
+        .iter()
+        .map(|span| &source.bytes[span.clone()])
+        .collect();
     let mut materials = materials::look_up(source, &libraries, &statements.material_names);
     let groups = groups(&statements, &corners, &mut materials);
     let mut notes = std::mem::take(&mut materials.notes);
@@ -79,7 +83,12 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
 
 /// One group a run; faces without a material get a plain one behind the named ones.
 fn groups(statements: &Statements, corners: &corners::Corners, materials: &mut Materials) -> Vec<Group> {
-    let ends = corners.run_triangles.iter().skip(1).copied().chain([corners.drawn.triangles.len() as u32]);
+    let ends = corners
+        .run_triangles
+        .iter()
+        .skip(1)
+        .copied()
+        .chain([corners.drawn.triangles.len() as u32]);
     let plain = materials.materials.len();
     if statements.runs.iter().any(|run| run.material.is_none()) {
         materials.materials.push(materials::plain(""));
@@ -101,7 +110,13 @@ fn groups(statements: &Statements, corners: &corners::Corners, materials: &mut M
 fn left_out(source: &Source<'_>, statements: &Statements) -> Vec<String> {
     let mut notes = Vec::new();
     let line = |at| line_of(source.bytes, at);
-    let plural = |count: usize, one: &str| if count == 1 { format!("1 {one}") } else { format!("{count} {one}s") };
+    let plural = |count: usize, one: &str| {
+        if count == 1 {
+            format!("1 {one}")
+        } else {
+            format!("{count} {one}s")
+        }
+    };
     if let (count @ 1.., at) = statements.left_out {
         notes.push(format!(
             "{} with fewer than three corners left out of the surface (the first in line {}); the file keeps them.",
@@ -169,7 +184,10 @@ impl Stored {
         if colours.is_empty() {
             return None;
         }
-        let most = colours.iter().flatten().fold(1.0f32, |most, &channel| most.max(channel));
+        let most = colours
+            .iter()
+            .flatten()
+            .fold(1.0f32, |most, &channel| most.max(channel));
         let scale = if most > 1.0 { 1.0 / 255.0 } else { 1.0 };
         let drawn = |&position: &u32| {
             let [r, g, b] = colours[position as usize].map(|channel| byte(linear_of_srgb(channel * scale)));

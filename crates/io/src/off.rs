@@ -1,40 +1,141 @@
-//! Placeholder of the OFF room, replaced by its owner.
+//! OFF and its COFF, NOFF and STOFF variants, read with the place of every vertex, so that saving changes the moved
+//! vertices' coordinates (and normals) and no other byte: comments, colours and faces stay as they are written.
 
-use pliant_mesh::Drawn;
+mod header;
+mod patch;
+mod records;
+mod write;
 
+use std::sync::Arc;
+
+use pliant_mesh::{Drawn, DrawnVertex, FileVertex};
+
+use crate::appearance::{Group, Material};
+use crate::colour::{byte, linear_of_srgb};
 use crate::moved::Moved;
-use crate::new_mesh::{NewMesh, Polygons};
-use crate::save::Saved;
+use crate::new_mesh::Polygons;
+use crate::polygon::triangulate;
 use crate::scene::{Source, Summary};
-use crate::{Appearance, Format, ReadError, SaveError};
+use crate::{Appearance, ReadError, SaveError};
+use records::Records;
 
+pub(crate) use write::write_new;
+
+/// An OFF file as stored.
 #[derive(Debug)]
-pub(crate) struct Stored {}
-
-pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
-    Err(source.malformed(Format::Off, "not read yet"))
+pub(crate) struct Stored {
+    bytes: Arc<[u8]>,
+    /// Without its positions and faces, which the drawn set and `polygons` replace.
+    records: Records,
+    /// The faces, where one has more than three corners.
+    polygons: Option<Polygons>,
+    triangle_count: u32,
+    notes: Vec<String>,
 }
 
-pub(crate) fn write_new(_mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
-    Err(SaveError::TooLarge {
-        format: Format::Off,
-    })
+/// Reads an OFF file.
+pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
+    let (header, cursor) = header::parse(source)?;
+    let mut records = records::read(source, &header, cursor)?;
+    let positions = std::mem::take(&mut records.positions);
+    let corners = std::mem::take(&mut records.corners);
+    let face_ends = std::mem::take(&mut records.face_ends);
+    let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2 * face_ends.len()));
+    let mut start = 0;
+    for &end in &face_ends {
+        let face = &corners[start..end as usize];
+        triangulate(
+            face.len(),
+            |k| positions[face[k] as usize],
+            |triangle| triangles.push(triangle.map(|k| DrawnVertex(face[k]))),
+        );
+        start = end as usize;
+    }
+    let polygons = (triangles.len() != face_ends.len()).then(|| Polygons {
+        offsets: [0].into_iter().chain(face_ends.iter().copied()).collect(),
+        corners: corners.iter().copied().map(DrawnVertex).collect(),
+    });
+    let mut notes = Vec::new();
+    if records.left_out > 0 {
+        let faces = if records.left_out == 1 { "face" } else { "faces" };
+        notes.push(format!(
+            "{} {faces} with fewer than three corners left out of the surface; the file keeps them.",
+            records.left_out
+        ));
+    }
+    let count = positions.len();
+    let drawn = Drawn {
+        positions,
+        triangles,
+        file_vertex: (0..count as u32).map(FileVertex).collect(),
+        file_vertex_count: count,
+    };
+    let triangle_count = drawn.triangles.len() as u32;
+    Ok((
+        Stored {
+            bytes: source.bytes.clone(),
+            records,
+            polygons,
+            triangle_count,
+            notes,
+        },
+        drawn,
+    ))
 }
 
 impl Stored {
-    pub fn notes(&self) -> &[String] {
-        &[]
+    pub(crate) fn notes(&self) -> &[String] {
+        &self.notes
     }
-    pub fn summary(&self) -> Summary {
-        Summary::default()
+
+    pub(crate) fn summary(&self) -> Summary {
+        let meshes = usize::from(self.triangle_count > 0);
+        Summary {
+            meshes,
+            primitives: meshes,
+            nodes: meshes,
+            ..Summary::default()
+        }
     }
-    pub fn appearance(&self) -> Appearance {
-        Appearance::default()
+
+    pub(crate) fn appearance(&self) -> Appearance {
+        let records = &self.records;
+        // Colours are written from 0 to 1 or to 255; a file's largest channel tells.
+        let most = records
+            .colours
+            .iter()
+            .flatten()
+            .fold(1.0f32, |most, &channel| most.max(channel));
+        let scale = if most > 1.0 { 1.0 / 255.0 } else { 1.0 };
+        let colour = |&[r, g, b, alpha]: &[f32; 4]| {
+            let [r, g, b] = [r, g, b].map(|channel| byte(linear_of_srgb(channel * scale)));
+            [r, g, b, if alpha.is_nan() { 255 } else { byte(alpha * scale) }]
+        };
+        let unit = |normal: &glam::DVec3| normal.normalize_or_zero().as_vec3().to_array();
+        Appearance {
+            normals: (!records.normals.is_empty()).then(|| records.normals.iter().map(unit).collect()),
+            uvs: (!records.uvs.is_empty()).then(|| records.uvs.iter().map(|&[u, v]| [u, 1.0 - v]).collect()),
+            colours: (!records.colours.is_empty()).then(|| records.colours.iter().map(colour).collect()),
+            groups: vec![Group {
+                triangles: 0..self.triangle_count,
+                material: 0,
+                node_name: String::new(),
+            }],
+            // Scan formats know no culling, so both sides are drawn.
+            materials: vec![Material {
+                double_sided: true,
+                ..Material::default()
+            }],
+            images: Vec::new(),
+        }
     }
-    pub fn polygons(&self) -> Option<Polygons> {
-        None
+
+    pub(crate) fn polygons(&self) -> Option<Polygons> {
+        self.polygons.clone()
     }
-    pub fn write(&self, _moved: &Moved<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
-        Ok((Vec::new(), Vec::new()))
+
+    /// The file with the moved vertices' numbers changed, and warnings.
+    pub(crate) fn write(&self, moved: &Moved<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
+        Ok((patch::patched(self, moved), Vec::new()))
     }
 }

@@ -13,11 +13,7 @@ const MOST_EARS: usize = 1024;
 /// n − 2 of them, wound as the polygon is; none for fewer than three corners.
 ///
 /// `position` gives the place of a corner, counted within the polygon.
-pub(crate) fn triangulate(
-    corner_count: usize,
-    position: impl Fn(usize) -> DVec3,
-    mut emit: impl FnMut([usize; 3]),
-) {
+pub(crate) fn triangulate(corner_count: usize, position: impl Fn(usize) -> DVec3, mut emit: impl FnMut([usize; 3])) {
     match corner_count {
         0..=2 => {}
         3 => emit([0, 1, 2]),
@@ -136,11 +132,7 @@ mod tests {
 
     fn cut(corners: &[DVec3]) -> Vec<[usize; 3]> {
         let mut triangles = Vec::new();
-        triangulate(
-            corners.len(),
-            |k| corners[k],
-            |triangle| triangles.push(triangle),
-        );
+        triangulate(corners.len(), |k| corners[k], |triangle| triangles.push(triangle));
         triangles
     }
 
@@ -185,16 +177,9 @@ mod tests {
                 let whole: f64 = (0..turned.len())
                     .map(|k| 0.5 * turned[k].cross(turned[(k + 1) % turned.len()]).z)
                     .sum();
-                let sum: f64 = triangles
-                    .iter()
-                    .map(|&triangle| area(&turned, triangle))
-                    .sum();
+                let sum: f64 = triangles.iter().map(|&triangle| area(&turned, triangle)).sum();
                 assert!((sum - whole).abs() < 1e-9, "{sum} of {whole}");
-                assert!(
-                    triangles
-                        .iter()
-                        .all(|&triangle| area(&turned, triangle) >= 0.0)
-                );
+                assert!(triangles.iter().all(|&triangle| area(&turned, triangle) >= 0.0));
             }
         }
     }

@@ -111,9 +111,7 @@ impl<'a> Cursor<'a> {
     pub(crate) fn next_line(&mut self) {
         let rest = &self.bytes[self.at..];
         match rest.iter().position(|&byte| byte == b'\n' || byte == b'\r') {
-            Some(end) if rest[end] == b'\r' && rest.get(end + 1) == Some(&b'\n') => {
-                self.at += end + 2
-            }
+            Some(end) if rest[end] == b'\r' && rest.get(end + 1) == Some(&b'\n') => self.at += end + 2,
             Some(end) => self.at += end + 1,
             None => self.at = self.bytes.len(),
         }
@@ -177,9 +175,7 @@ impl<'a> Cursor<'a> {
         let first = at;
         let mut mantissa = 0u64;
         while let Some(digit @ b'0'..=b'9') = self.bytes.get(at) {
-            mantissa = mantissa
-                .wrapping_mul(10)
-                .wrapping_add(u64::from(digit - b'0'));
+            mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
             at += 1;
         }
         let mut digits = at - first;
@@ -188,25 +184,20 @@ impl<'a> Cursor<'a> {
             at += 1;
             let first_decimal = at;
             while let Some(digit @ b'0'..=b'9') = self.bytes.get(at) {
-                mantissa = mantissa
-                    .wrapping_mul(10)
-                    .wrapping_add(u64::from(digit - b'0'));
+                mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit - b'0'));
                 at += 1;
             }
             decimals = at - first_decimal;
             digits += decimals;
         }
         // Up to here exact: both the mantissa and the power of ten are f64, so one division rounds once.
-        let ends = matches!(
-            self.bytes.get(at),
-            None | Some(b' ' | b'\t'..=b'\r' | b'#' | b'\\')
-        );
-        if ends
-            && digits > 0
-            && digits <= 19
-            && mantissa <= 1 << 53
-            && decimals < POWERS_OF_TEN.len()
-        {
+        let ends = match self.bytes.get(at) {
+            None | Some(b' ' | b'\t'..=b'\r' | b'\\') => true,
+            // A comment, but for `1.#QNAN`.
+            Some(b'#') => digits > 0 && self.bytes[at - 1] != b'.',
+            _ => false,
+        };
+        if ends && digits > 0 && digits <= 19 && mantissa <= 1 << 53 && decimals < POWERS_OF_TEN.len() {
             self.at = at;
             let value = mantissa as f64 / POWERS_OF_TEN[decimals];
             return Some(if negative { -value } else { value });
@@ -232,23 +223,23 @@ impl<'a> Cursor<'a> {
 
 /// The powers of ten that an f64 holds exactly.
 const POWERS_OF_TEN: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
-    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
+    1e21, 1e22,
 ];
 
 /// A word as a real number; C's printed specials (`-nan(ind)`, `1.#INF`) included.
 fn parse_real(word: &[u8]) -> Option<f64> {
-    // The longest decimal of an f64 has fewer than 1100 characters: longer words aren't numbers of ours.
-    let text = std::str::from_utf8(word.get(..word.len().min(2000))?).ok()?;
+    // The longest exact decimal of an f64 has fewer than 1100 characters: longer words aren't numbers of ours.
+    if word.len() > 2000 {
+        return None;
+    }
+    let text = std::str::from_utf8(word).ok()?;
     if let Ok(value) = text.parse::<f64>() {
         return Some(value);
     }
     let unsigned = text.trim_start_matches(['+', '-']).to_ascii_lowercase();
     let sign = if text.starts_with('-') { -1.0 } else { 1.0 };
-    if unsigned.starts_with("nan")
-        || unsigned.starts_with("1.#qnan")
-        || unsigned.starts_with("1.#ind")
-    {
+    if unsigned.starts_with("nan") || unsigned.starts_with("1.#qnan") || unsigned.starts_with("1.#ind") {
         Some(f64::NAN)
     } else if unsigned.starts_with("1.#inf") {
         Some(sign * f64::INFINITY)
@@ -294,16 +285,8 @@ fn non_finite(value: f64) -> &'static str {
 }
 
 /// A [`ReadError::Malformed`] that begins with the line of byte `at`.
-pub(crate) fn malformed_at(
-    source: &Source<'_>,
-    format: Format,
-    at: usize,
-    reason: &str,
-) -> ReadError {
-    source.malformed(
-        format,
-        format!("line {}: {reason}", line_of(source.bytes, at)),
-    )
+pub(crate) fn malformed_at(source: &Source<'_>, format: Format, at: usize, reason: &str) -> ReadError {
+    source.malformed(format, format!("line {}: {reason}", line_of(source.bytes, at)))
 }
 
 /// The line that byte `at` stands on, counted from 1.
@@ -314,11 +297,7 @@ pub(crate) fn line_of(bytes: &[u8], at: usize) -> usize {
         b'\r' => bytes.get(index + 1) != Some(&b'\n'),
         _ => false,
     };
-    1 + before
-        .iter()
-        .enumerate()
-        .filter(|&pair| breaks(pair))
-        .count()
+    1 + before.iter().enumerate().filter(|&pair| breaks(pair)).count()
 }
 
 /// Bytes of a file as text for a sentence: lossy, and no longer than a person would read.
@@ -357,11 +336,8 @@ impl<'a> Splice<'a> {
 
     /// Puts what `write` appends in the place of `span`, which stands behind all spans replaced so far.
     pub(crate) fn replace(&mut self, span: Range<usize>, write: impl FnOnce(&mut Vec<u8>)) {
-        debug_assert!(
-            self.copied <= span.start && span.start <= span.end && span.end <= self.source.len()
-        );
-        self.out
-            .extend_from_slice(&self.source[self.copied..span.start]);
+        debug_assert!(self.copied <= span.start && span.start <= span.end && span.end <= self.source.len());
+        self.out.extend_from_slice(&self.source[self.copied..span.start]);
         write(&mut self.out);
         self.copied = span.end;
     }
@@ -424,13 +400,7 @@ mod tests {
 
     #[test]
     fn a_number_ends_at_a_comment_or_a_continuation() {
-        for (text, end) in [
-            ("1.5#x", 3),
-            ("1.5\\\n", 3),
-            ("1e3#x", 3),
-            ("2 3", 1),
-            ("2\r\n", 1),
-        ] {
+        for (text, end) in [("1.5#x", 3), ("1.5\\\n", 3), ("1e3#x", 3), ("2 3", 1), ("2\r\n", 1)] {
             let mut cursor = Cursor::new(text.as_bytes(), 0);
             assert!(cursor.real().is_some(), "{text}");
             assert_eq!(cursor.at(), end, "{text}");
@@ -450,10 +420,7 @@ mod tests {
                 }
                 let mut text = Vec::new();
                 push_f64(&mut text, value);
-                assert_eq!(
-                    Cursor::new(&text, 0).real().map(f64::to_bits),
-                    Some(value.to_bits())
-                );
+                assert_eq!(Cursor::new(&text, 0).real().map(f64::to_bits), Some(value.to_bits()));
                 assert!(text.len() < 26);
                 let narrow = value as f32;
                 text.clear();

@@ -76,8 +76,11 @@ fn number_combinations(statements: &Statements, out: &mut Corners) {
                 continue;
             }
             let fresh = out.drawn.positions.len() as u32;
-            let known =
-                if steps < LONGEST_CHAIN { fresh } else { *beyond_chains.entry((position, uv, normal)).or_insert(fresh) };
+            let known = if steps < LONGEST_CHAIN {
+                fresh
+            } else {
+                *beyond_chains.entry((position, uv, normal)).or_insert(fresh)
+            };
             if known == fresh {
                 if steps < LONGEST_CHAIN {
                     next[drawn as usize] = fresh;

@@ -51,7 +51,9 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
                 let (file, wrap) = texture_file(texture);
                 material.wrap = [wrap; 2];
                 let uri = join(folder, &file);
-                let image = *image_of.entry(uri.clone()).or_insert_with(|| read_image(source, &uri, &mut out));
+                let image = *image_of
+                    .entry(uri.clone())
+                    .or_insert_with(|| read_image(source, &uri, &mut out));
                 material.base_colour_image = image;
             }
         }
@@ -62,7 +64,11 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
 
 /// The material of faces for which none is named. Scan formats know no culling, so both sides are drawn.
 pub(super) fn plain(name: &str) -> Material {
-    Material { name: name.to_owned(), double_sided: true, ..Material::default() }
+    Material {
+        name: name.to_owned(),
+        double_sided: true,
+        ..Material::default()
+    }
 }
 
 /// More libraries than any file has; beyond this many names, the file only asks for work.
@@ -100,7 +106,14 @@ fn parse(text: &[u8]) -> Vec<tobj::Material> {
                 is_named = words.next().is_some();
                 is_named
             }
-            Some("Kd") => words.by_ref().take(3).filter(|word| word.parse::<f32>().is_ok()).count() == 3,
+            Some("Kd") => {
+                words
+                    .by_ref()
+                    .take(3)
+                    .filter(|word| word.parse::<f32>().is_ok())
+                    .count()
+                    == 3
+            }
             Some("d") => words.next().is_some_and(|word| word.parse::<f32>().is_ok()),
             Some("Tr" | "map_Kd") => words.next().is_some(),
             _ => false,
@@ -110,17 +123,25 @@ fn parse(text: &[u8]) -> Vec<tobj::Material> {
             kept.push('\n');
         }
     }
-    tobj::load_mtl_buf(&mut kept.as_bytes()).map(|(materials, _)| materials).unwrap_or_default()
+    tobj::load_mtl_buf(&mut kept.as_bytes())
+        .map(|(materials, _)| materials)
+        .unwrap_or_default()
 }
 
 /// Takes over what is drawn of a stored material.
 fn dress(material: &mut Material, stored: &tobj::Material) {
-    if let Some(diffuse) = stored.diffuse.filter(|diffuse| diffuse.iter().all(|channel| channel.is_finite())) {
+    if let Some(diffuse) = stored
+        .diffuse
+        .filter(|diffuse| diffuse.iter().all(|channel| channel.is_finite()))
+    {
         for (channel, value) in material.base_colour.iter_mut().zip(diffuse) {
             *channel = linear_of_srgb(value);
         }
     }
-    let transparency = stored.unknown_param.get("Tr").and_then(|value| value.trim().parse::<f32>().ok());
+    let transparency = stored
+        .unknown_param
+        .get("Tr")
+        .and_then(|value| value.trim().parse::<f32>().ok());
     let alpha = stored.dissolve.or(transparency.map(|value| 1.0 - value)).unwrap_or(1.0);
     if (0.0..1.0).contains(&alpha) {
         material.base_colour[3] = alpha;
@@ -135,7 +156,11 @@ fn texture_file(texture: &str) -> (String, Wrap) {
     while let Some(option) = rest.split_whitespace().next().filter(|word| word.starts_with('-')) {
         let behind = rest[option.len()..].trim_start();
         let arguments = match option {
-            "-o" | "-s" | "-t" => behind.split_whitespace().take(3).take_while(|word| word.parse::<f32>().is_ok()).count(),
+            "-o" | "-s" | "-t" => behind
+                .split_whitespace()
+                .take(3)
+                .take_while(|word| word.parse::<f32>().is_ok())
+                .count(),
             "-mm" => 2,
             _ => 1,
         };
@@ -144,7 +169,9 @@ fn texture_file(texture: &str) -> (String, Wrap) {
         }
         rest = behind;
         for _ in 0..arguments {
-            rest = rest.split_once(char::is_whitespace).map_or("", |(_, behind)| behind.trim_start());
+            rest = rest
+                .split_once(char::is_whitespace)
+                .map_or("", |(_, behind)| behind.trim_start());
         }
     }
     (as_uri(rest), wrap)
@@ -161,7 +188,11 @@ fn folder_of(uri: &str) -> &str {
 }
 
 fn join(folder: &str, file: &str) -> String {
-    if file.starts_with('/') { file.to_owned() } else { format!("{folder}{file}") }
+    if file.starts_with('/') {
+        file.to_owned()
+    } else {
+        format!("{folder}{file}")
+    }
 }
 
 /// Reads an image where it is said to be, or by its bare name beside the file (paths of another computer).
@@ -174,12 +205,17 @@ fn read_image(source: &Source<'_>, uri: &str, out: &mut Materials) -> Option<usi
     };
     match read {
         Ok(encoded) => {
-            out.images.push(Image { name: bare.to_owned(), encoded: encoded.into() });
+            out.images.push(Image {
+                name: bare.to_owned(),
+                encoded: encoded.into(),
+            });
             Some(out.images.len() - 1)
         }
         Err(reason) => {
             let uri = excerpt(uri.as_bytes());
-            out.notes.push(format!("The texture {uri} could not be read ({reason}), so its material is drawn plain."));
+            out.notes.push(format!(
+                "The texture {uri} could not be read ({reason}), so its material is drawn plain."
+            ));
             None
         }
     }
@@ -193,7 +229,13 @@ mod tests {
     fn a_library_with_broken_lines_gives_what_it_can() {
         let text = b"Kd 1 1 1\nnewmtl\nnewmtl a b\r\nKd 1\nKd 0.5 0.25 1\nd x\nmap_Kd\nillum q\nmap_Kd -s 1 1 1 -clamp on my tex.png\nnewmtl c\nTr 0.25\n\xff\xfe";
         let materials = parse(text);
-        assert_eq!(materials.iter().map(|material| material.name.as_str()).collect::<Vec<_>>(), ["a b", "c"]);
+        assert_eq!(
+            materials
+                .iter()
+                .map(|material| material.name.as_str())
+                .collect::<Vec<_>>(),
+            ["a b", "c"]
+        );
         assert_eq!(materials[0].diffuse, Some([0.5, 0.25, 1.0]));
         let texture = materials[0].diffuse_texture.as_deref().unwrap_or_default();
         assert_eq!(texture_file(texture), ("my tex.png".to_owned(), Wrap::ClampToEdge));

@@ -27,7 +27,13 @@ pub(super) fn patched(stored: &Stored, moved: &Moved<'_>) -> (Vec<u8>, Vec<Strin
     let write_normal = |splice: &mut Splice<'_>, (index, normal): (u32, DVec3)| {
         // f32 is a hundred times finer than an eye sees, and half as long as f64 in decimals.
         let numbers = normal.to_array().map(|component| component as f32);
-        replace_numbers(splice, &stored.bytes, stored.statements.normal_at[index as usize], numbers, push_f32);
+        replace_numbers(
+            splice,
+            &stored.bytes,
+            stored.statements.normal_at[index as usize],
+            numbers,
+            push_f32,
+        );
     };
     for (vertex, new) in positions.iter().enumerate() {
         let Some(new) = new else { continue };
@@ -77,12 +83,22 @@ fn carried_normals(stored: &Stored, moved: &Moved<'_>, warnings: &mut Vec<String
         return Vec::new();
     }
     let old = &stored.statements.normals;
-    let of_vertex = |v: usize| Some(stored.normal[v]).filter(|&index| index != NONE).map(|index| old[index as usize]);
-    let rest: Vec<DVec3> = (0..stored.normal.len()).map(|v| of_vertex(v).unwrap_or_default()).collect();
+    let of_vertex = |v: usize| {
+        Some(stored.normal[v])
+            .filter(|&index| index != NONE)
+            .map(|index| old[index as usize])
+    };
+    let rest: Vec<DVec3> = (0..stored.normal.len())
+        .map(|v| of_vertex(v).unwrap_or_default())
+        .collect();
     let frames = moved.frames(&rest);
     let carried = |v: usize| {
         let vertex = DrawnVertex(v as u32);
-        if moved.moves(vertex) { frames.carry_normal(vertex, rest[v]) } else { rest[v] }
+        if moved.moves(vertex) {
+            frames.carry_normal(vertex, rest[v])
+        } else {
+            rest[v]
+        }
     };
     let mut wanted = vec![Wanted::default(); old.len()];
     for v in 0..rest.len() {

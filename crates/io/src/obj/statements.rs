@@ -5,10 +5,10 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
 use crate::scene::Source;
 use crate::text::{Cursor, excerpt, malformed_at};
 use crate::{Format, ReadError};
+use glam::DVec3;
 
 /// Stands where a corner names no texture coordinate or no normal.
 pub(super) const NONE: u32 = u32::MAX;
@@ -87,7 +87,9 @@ pub(super) fn parse(source: &Source<'_>) -> Result<Statements, ReadError> {
     while !reader.cursor.is_done() {
         if lines.is_multiple_of(1 << 16) {
             source.cancel.check()?;
-            source.progress.set(0.8 * reader.cursor.at() as f32 / source.bytes.len() as f32);
+            source
+                .progress
+                .set(0.8 * reader.cursor.at() as f32 / source.bytes.len() as f32);
         }
         lines = lines.wrapping_add(1);
         reader.line()?;
@@ -241,9 +243,16 @@ impl<'a> Reader<'a> {
             return Ok(());
         }
         if !self.run_is_open {
-            let object = if self.object.is_empty() { &self.group } else { &self.object };
-            let run =
-                Run { first_face: self.found.face_ends.len(), material: self.material, object: object.clone() };
+            let object = if self.object.is_empty() {
+                &self.group
+            } else {
+                &self.object
+            };
+            let run = Run {
+                first_face: self.found.face_ends.len(),
+                material: self.material,
+                object: object.clone(),
+            };
             self.found.runs.push(run);
             self.run_is_open = true;
         }
@@ -254,7 +263,11 @@ impl<'a> Reader<'a> {
     fn corner(&mut self) -> Result<Corner, ReadError> {
         let at = self.cursor.at();
         let named = self.cursor.integer();
-        let mut corner = Corner { position: NONE, uv: NONE, normal: NONE };
+        let mut corner = Corner {
+            position: NONE,
+            uv: NONE,
+            normal: NONE,
+        };
         let Some(position) = named.and_then(|index| resolve(index, self.found.positions.len())) else {
             let what = excerpt(self.cursor.word());
             let reason = match named {
@@ -270,7 +283,11 @@ impl<'a> Reader<'a> {
                 break;
             }
             self.cursor.step();
-            let count = if slot == 0 { self.found.uvs.len() } else { self.found.normals.len() };
+            let count = if slot == 0 {
+                self.found.uvs.len()
+            } else {
+                self.found.normals.len()
+            };
             if let Some(index) = self.cursor.integer() {
                 let target = if slot == 0 { &mut corner.uv } else { &mut corner.normal };
                 match resolve(index, count) {
@@ -300,8 +317,7 @@ impl<'a> Reader<'a> {
         let highest = self.highest_position;
         if highest.count as usize > self.found.positions.len() {
             let (named, count) = (highest.count, self.found.positions.len());
-            let reason =
-                format!("the face names the vertex {named}, but the file has {count}: correct the number");
+            let reason = format!("the face names the vertex {named}, but the file has {count}: correct the number");
             return Err(self.broken(highest.at, reason));
         }
         let found = &mut self.found;
@@ -335,7 +351,11 @@ fn note(counted: &mut (usize, usize), at: usize) {
 
 /// An index as written (from 1, or from the end when negative) as a number from 0; `None` where it can't exist.
 fn resolve(index: i64, count: usize) -> Option<u32> {
-    let number = if index > 0 { index - 1 } else { index.checked_add(i64::try_from(count).ok()?)? };
+    let number = if index > 0 {
+        index - 1
+    } else {
+        index.checked_add(i64::try_from(count).ok()?)?
+    };
     if index == 0 {
         return None;
     }

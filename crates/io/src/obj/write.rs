@@ -24,22 +24,37 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
     }
     push_vertices(&mut out, mesh);
     push_faces(&mut out, mesh, has_materials.then_some(names.as_slice()));
-    let mut files = vec![OutputFile { name: mesh.name.to_owned(), bytes: out }];
+    let mut files = vec![OutputFile {
+        name: mesh.name.to_owned(),
+        bytes: out,
+    }];
     if has_materials {
         let images = image_files(look, stem);
-        files.push(OutputFile { name: format!("{stem}.mtl"), bytes: library(look, &names, &images) });
+        files.push(OutputFile {
+            name: format!("{stem}.mtl"),
+            bytes: library(look, &names, &images),
+        });
         for (image, name) in look.images.iter().zip(images) {
             if let Some(name) = name {
-                files.push(OutputFile { name, bytes: image.encoded.to_vec() });
+                files.push(OutputFile {
+                    name,
+                    bytes: image.encoded.to_vec(),
+                });
             }
         }
     }
-    Ok(Saved { files, warnings: Vec::new() })
+    Ok(Saved {
+        files,
+        warnings: Vec::new(),
+    })
 }
 
 /// Whether a material says nothing that a reader wouldn't assume.
 fn is_plain(material: &Material) -> bool {
-    let plain = Material { double_sided: material.double_sided, ..materials::plain("") };
+    let plain = Material {
+        double_sided: material.double_sided,
+        ..materials::plain("")
+    };
     *material == plain
 }
 
@@ -62,7 +77,12 @@ fn push_vertices(out: &mut Vec<u8>, mesh: &NewMesh<'_>) {
         push_numbers(out, "v", &position.to_array(), push_f64);
         if let Some(colours) = &mesh.appearance.colours {
             let [r, g, b, _] = colours[v].map(|light| f32::from(srgb[usize::from(light)]) / 255.0);
-            push_numbers(out, "", &[r, g, b].map(|channel| (channel * 1e4).round() / 1e4), push_f32);
+            push_numbers(
+                out,
+                "",
+                &[r, g, b].map(|channel| (channel * 1e4).round() / 1e4),
+                push_f32,
+            );
         }
         out.push(b'\n');
     }
@@ -128,9 +148,22 @@ fn material_names(look: &Appearance) -> Vec<String> {
     let mut taken = HashSet::new();
     let mut names = Vec::new();
     for (index, material) in look.materials.iter().enumerate() {
-        let safe: String =
-            material.name.chars().map(|c| if c.is_control() || c.is_whitespace() || c == '#' { '_' } else { c }).collect();
-        let mut name = if safe.is_empty() { format!("material_{index}") } else { safe };
+        let safe: String = material
+            .name
+            .chars()
+            .map(|c| {
+                if c.is_control() || c.is_whitespace() || c == '#' {
+                    '_'
+                } else {
+                    c
+                }
+            })
+            .collect();
+        let mut name = if safe.is_empty() {
+            format!("material_{index}")
+        } else {
+            safe
+        };
         while !taken.insert(name.clone()) {
             name = format!("{name}_{index}");
         }
@@ -141,7 +174,11 @@ fn material_names(look: &Appearance) -> Vec<String> {
 
 /// The file that each image is written to; `None` for images that no material shows or whose bytes are missing.
 fn image_files(look: &Appearance, stem: &str) -> Vec<Option<String>> {
-    let is_used = |index| look.materials.iter().any(|material| material.base_colour_image == Some(index));
+    let is_used = |index| {
+        look.materials
+            .iter()
+            .any(|material| material.base_colour_image == Some(index))
+    };
     let name = |(index, image): (usize, &crate::Image)| {
         let extension = match image.encoded.as_ref() {
             [] => return None,
@@ -162,7 +199,12 @@ fn library(look: &Appearance, names: &[String], images: &[Option<String>]) -> Ve
     for (material, name) in look.materials.iter().zip(names) {
         push_line(&mut out, &["newmtl ", name]);
         let [r, g, b, alpha] = material.base_colour;
-        push_numbers(&mut out, "Kd", &[r, g, b].map(|light| (srgb_of_linear(light) * 1e5).round() / 1e5), push_f32);
+        push_numbers(
+            &mut out,
+            "Kd",
+            &[r, g, b].map(|light| (srgb_of_linear(light) * 1e5).round() / 1e5),
+            push_f32,
+        );
         out.push(b'\n');
         if material.alpha == AlphaMode::Blend {
             push_numbers(&mut out, "d", &[alpha], push_f32);

@@ -1,0 +1,102 @@
+//! An OFF file's first words: what each vertex holds, and how many vertices and faces there are.
+
+use crate::scene::Source;
+use crate::text::{Cursor, excerpt, malformed_at};
+use crate::{Format, ReadError};
+
+/// What the keyword and the counts say.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) struct Header {
+    /// `N`: a normal behind each position.
+    pub(super) has_normals: bool,
+    /// `C`: a colour behind that.
+    pub(super) has_colours: bool,
+    /// `ST`: texture coordinates last.
+    pub(super) has_uvs: bool,
+    pub(super) vertices: usize,
+    pub(super) faces: usize,
+}
+
+/// Reads the keyword, which some files leave out, and the counts, which stand behind it or on a line of their own.
+/// Gives the cursor behind them.
+///
+/// # Errors
+/// Binary OFF and coordinates of other than three dimensions are refused in words, as are counts that the bytes
+/// can't hold.
+pub(super) fn parse<'a>(source: &Source<'a>) -> Result<(Header, Cursor<'a>), ReadError> {
+    let bytes: &'a [u8] = source.bytes;
+    let fail = |at, reason: &str| malformed_at(source, Format::Off, at, reason);
+    let mut header = Header::default();
+    let mut cursor = Cursor::new(bytes, 0);
+    cursor.skip_space_and_comments();
+    let at = cursor.at();
+    let word = cursor.clone().word();
+    if word.ends_with(b"OFF") || word.first().is_some_and(|byte| !byte.is_ascii_digit()) {
+        let Some(mut flags) = word.strip_suffix(b"OFF") else {
+            return Err(fail(
+                at,
+                &format!(
+                    "'{}' stands where 'OFF' should: export the file anew as OFF",
+                    excerpt(word)
+                ),
+            ));
+        };
+        cursor.word();
+        for (flag, is_set) in [
+            (b"ST".as_slice(), &mut header.has_uvs),
+            (b"C".as_slice(), &mut header.has_colours),
+            (b"N".as_slice(), &mut header.has_normals),
+        ] {
+            if let Some(rest) = flags.strip_prefix(flag) {
+                *is_set = true;
+                flags = rest;
+            }
+        }
+        let unsupported = |feature: &str| ReadError::Unsupported {
+            name: source.name.to_owned(),
+            feature: feature.to_owned(),
+            remedy: "export it anew as ascii OFF with three coordinates a vertex".to_owned(),
+        };
+        match flags {
+            b"" => {}
+            b"4" | b"n" | b"4n" => return Err(unsupported("coordinates of other than three dimensions")),
+            _ => {
+                return Err(fail(
+                    at,
+                    &format!("'{}' is no kind of OFF: export the file anew as OFF", excerpt(word)),
+                ));
+            }
+        }
+        let mut ahead = cursor.clone();
+        ahead.skip_blanks();
+        if ahead.word() == b"BINARY" {
+            return Err(unsupported("the binary kind of OFF"));
+        }
+    }
+    let mut count = |what: &str| {
+        cursor.skip_space_and_comments();
+        let at = cursor.at();
+        let count = cursor.integer().and_then(|count| usize::try_from(count).ok());
+        count.ok_or_else(|| fail(at, &format!("the number of {what} is missing: correct the file's head")))
+    };
+    header.vertices = count("vertices")?;
+    header.faces = count("faces")?;
+    // The number of edges, which nobody needs and some leave out.
+    cursor.skip_blanks();
+    cursor.integer();
+    // Three digits with separators a vertex, one a face; the last needs no separator behind it.
+    let least = header
+        .vertices
+        .saturating_mul(6)
+        .saturating_add(header.faces.saturating_mul(2));
+    if least > cursor.left() + 1 || header.vertices >= u32::MAX as usize {
+        let reason = format!(
+            "the head promises {} vertices and {} faces, but only {} bytes follow: the file is cut short",
+            header.vertices,
+            header.faces,
+            cursor.left()
+        );
+        return Err(source.malformed(Format::Off, reason));
+    }
+    Ok((header, cursor))
+}

@@ -1,0 +1,58 @@
+//! A new OFF file (COFF where there are colours) from any other kind.
+
+use crate::SaveError;
+use crate::colour::srgb_bytes_of_linear;
+use crate::new_faces::{face_count, for_each_face, has_materials, lost, lost_where, merged};
+use crate::new_mesh::NewMesh;
+use crate::save::{OutputFile, Saved};
+use crate::text::push_f64;
+
+/// Writes a mesh's positions, colours and faces. Normals are left to the reader: the variants that hold them beside
+/// colours are read by few.
+pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
+    let look = &mesh.appearance;
+    let srgb = srgb_bytes_of_linear();
+    let (vertices, number) = merged(mesh);
+    let keyword = if look.colours.is_some() { "COFF" } else { "OFF" };
+    let mut out = format!("{keyword}\n{} {} 0\n", vertices.len(), face_count(mesh)).into_bytes();
+    for vertex in &vertices {
+        for (axis, coordinate) in mesh.positions[vertex.index()].to_array().into_iter().enumerate() {
+            if axis > 0 {
+                out.push(b' ');
+            }
+            push_f64(&mut out, coordinate);
+        }
+        if let Some(colours) = &look.colours {
+            let [r, g, b, alpha] = colours[vertex.index()];
+            for channel in [srgb[usize::from(r)], srgb[usize::from(g)], srgb[usize::from(b)], alpha] {
+                out.push(b' ');
+                push_f64(&mut out, f64::from(channel));
+            }
+        }
+        out.push(b'\n');
+    }
+    for_each_face(mesh, |corners, _| {
+        push_f64(&mut out, corners.len() as f64);
+        for corner in corners {
+            out.push(b' ');
+            push_f64(&mut out, f64::from(number[corner.index()]));
+        }
+        out.push(b'\n');
+    });
+    let warning = lost(
+        "OFF",
+        &[
+            ("normals", lost_where(look.normals.is_some())),
+            ("texture coordinates", lost_where(look.uvs.is_some())),
+            ("materials", lost_where(has_materials(look))),
+            ("textures", lost_where(!look.images.is_empty())),
+        ],
+    );
+    Ok(Saved {
+        files: vec![OutputFile {
+            name: mesh.name.to_owned(),
+            bytes: out,
+        }],
+        warnings: warning.into_iter().collect(),
+    })
+}

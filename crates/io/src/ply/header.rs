@@ -1,0 +1,160 @@
+//! A PLY file's header: which elements follow, how many, and of what their records are made.
+
+use super::scalar::{Encoding, Scalar};
+use crate::scene::Source;
+use crate::text::{Cursor, excerpt, malformed_at};
+use crate::{Format, ReadError};
+
+/// What a property's value is in a record.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Kind {
+    Scalar(Scalar),
+    List { count: Scalar, item: Scalar },
+}
+
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct Property {
+    pub(super) name: String,
+    pub(super) kind: Kind,
+}
+
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct Element {
+    pub(super) name: String,
+    /// How many records the header promises; the bytes have to bear it out.
+    pub(super) count: u64,
+    pub(super) properties: Vec<Property>,
+}
+
+impl Element {
+    /// The bytes of a binary record; `None` where a list makes them vary.
+    pub(super) fn stride(&self) -> Option<usize> {
+        self.properties.iter().try_fold(0, |sum, property| match property.kind {
+            Kind::Scalar(scalar) => Some(sum + scalar.size()),
+            Kind::List { .. } => None,
+        })
+    }
+
+    /// The fewest bytes that a record can take: a digit and a separator a number in ascii, empty lists in binary.
+    pub(super) fn least_bytes(&self, encoding: Encoding) -> u64 {
+        let of_property = |property: &Property| match (encoding, property.kind) {
+            (Encoding::Ascii, _) => 2,
+            (_, Kind::Scalar(scalar) | Kind::List { count: scalar, .. }) => scalar.size() as u64,
+        };
+        self.properties.iter().map(of_property).sum()
+    }
+
+    /// The number of the first property with one of these names, whatever their case.
+    pub(super) fn property(&self, names: &[&str]) -> Option<usize> {
+        let is_named = |property: &Property| names.iter().any(|name| property.name.eq_ignore_ascii_case(name));
+        self.properties.iter().position(is_named)
+    }
+}
+
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct Header {
+    pub(super) encoding: Encoding,
+    pub(super) elements: Vec<Element>,
+    /// Where the first record begins.
+    pub(super) data_at: usize,
+}
+
+/// Reads the header, whose lines may end in any way.
+///
+/// # Errors
+/// Anything that would leave the records' layout in doubt.
+pub(super) fn parse(source: &Source<'_>) -> Result<Header, ReadError> {
+    let bytes: &[u8] = source.bytes;
+    let fail = |at, reason: &str| malformed_at(source, Format::Ply, at, reason);
+    let mut cursor = Cursor::new(bytes, 0);
+    if cursor.rest_of_line().trim_ascii() != b"ply" {
+        return Err(fail(0, "the file doesn't begin with 'ply': export it anew as PLY"));
+    }
+    let ends_in_return_alone = bytes.get(cursor.at()) == Some(&b'\r') && bytes.get(cursor.at() + 1) != Some(&b'\n');
+    let mut encoding = None;
+    let mut elements: Vec<Element> = Vec::new();
+    loop {
+        cursor.next_line();
+        if cursor.is_done() {
+            return Err(fail(
+                cursor.at(),
+                "the header has no 'end_header': the file is cut short",
+            ));
+        }
+        let at = cursor.at();
+        let line = cursor.clone().rest_of_line();
+        let words: Vec<&[u8]> = line
+            .split(u8::is_ascii_whitespace)
+            .filter(|word| !word.is_empty())
+            .take(6)
+            .collect();
+        match words.as_slice() {
+            [b"format", name, ..] => {
+                encoding = Some(match *name {
+                    b"ascii" => Encoding::Ascii,
+                    b"binary_little_endian" => Encoding::Little,
+                    b"binary_big_endian" => Encoding::Big,
+                    other => {
+                        return Err(fail(
+                            at,
+                            &format!("'{}' is no format of PLY: export it anew", excerpt(other)),
+                        ));
+                    }
+                });
+            }
+            [b"element", name, count, ..] => {
+                let count = std::str::from_utf8(count).ok().and_then(|count| count.parse().ok());
+                let count = count.ok_or_else(|| fail(at, "the element's count is no number: correct the header"))?;
+                elements.push(Element {
+                    name: text(name),
+                    count,
+                    properties: Vec::new(),
+                });
+            }
+            [b"property", rest @ ..] => {
+                let property = property(rest)
+                    .ok_or_else(|| fail(at, &format!("'{}' is no property: correct the header", excerpt(line))))?;
+                let Some(element) = elements.last_mut() else {
+                    return Err(fail(at, "a property stands before every element: correct the header"));
+                };
+                element.properties.push(property);
+            }
+            [b"end_header", ..] => break,
+            _ => {}
+        }
+    }
+    let encoding = encoding.ok_or_else(|| fail(cursor.at(), "the header has no 'format' line: add one"))?;
+    cursor.rest_of_line();
+    // Data may begin with a byte that looks like the second half of a line end.
+    if ends_in_return_alone {
+        cursor.step()
+    } else {
+        cursor.next_line()
+    }
+    Ok(Header {
+        encoding,
+        elements,
+        data_at: cursor.at(),
+    })
+}
+
+fn property(words: &[&[u8]]) -> Option<Property> {
+    match *words {
+        [b"list", count, item, name, ..] => {
+            let (count, item) = (Scalar::from_name(count)?, Scalar::from_name(item)?);
+            Some(Property {
+                name: text(name),
+                kind: Kind::List { count, item },
+            })
+        }
+        [scalar, name, ..] => Some(Property {
+            name: text(name),
+            kind: Kind::Scalar(Scalar::from_name(scalar)?),
+        }),
+        _ => None,
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}

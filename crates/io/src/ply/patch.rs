@@ -1,0 +1,175 @@
+//! An edited PLY file: the bytes as read, with other numbers for the coordinates and normals of moved vertices.
+
+use glam::{DVec3, Vec3};
+use pliant_mesh::DrawnVertex;
+
+use super::Stored;
+use super::header::{Element, Kind};
+use super::scalar::{Encoding, Scalar, Walk, encode};
+use crate::SaveError;
+use crate::moved::Moved;
+use crate::new_faces::coarse_in_f32;
+use crate::text::{Splice, push_f32, push_f64};
+
+/// The new bytes and the warnings.
+///
+/// # Errors
+/// A position beyond what the file's type of number holds.
+pub(super) fn patched(stored: &Stored, moved: &Moved<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
+    let Some(element) = stored.vertex_element.map(|index| &stored.header.elements[index]) else {
+        return Ok((stored.bytes.to_vec(), Vec::new()));
+    };
+    let edits = Edits::of(stored, element, moved)?;
+    let bytes = match stored.header.encoding {
+        Encoding::Ascii => edits.into_text(stored, element, moved.positions),
+        _ => edits.into_binary(stored, element),
+    };
+    let warnings = whole_numbers_warning(stored, element).into_iter().collect();
+    Ok((bytes, warnings))
+}
+
+/// The type of a vertex's property; `None` for lists.
+fn scalar_of(element: &Element, property: usize) -> Option<Scalar> {
+    match element.properties[property].kind {
+        Kind::Scalar(scalar) => Some(scalar),
+        Kind::List { .. } => None,
+    }
+}
+
+fn whole_numbers_warning(stored: &Stored, element: &Element) -> Option<String> {
+    let are_whole = stored.columns[..3]
+        .iter()
+        .flatten()
+        .any(|&property| scalar_of(element, property).is_some_and(|scalar| scalar.integer_range().is_some()));
+    are_whole
+        .then(|| "The file holds its positions as whole numbers, so the moved ones were rounded to such.".to_owned())
+}
+
+/// One vertex's new numbers.
+struct Edit {
+    vertex: usize,
+    /// x, y, z, then the normal; `None` for what keeps its bytes.
+    numbers: [Option<f64>; 6],
+}
+
+struct Edits(Vec<Edit>);
+
+impl Edits {
+    fn of(stored: &Stored, element: &Element, moved: &Moved<'_>) -> Result<Self, SaveError> {
+        let rest: Vec<DVec3> = stored
+            .normals
+            .iter()
+            .map(|&normal| Vec3::from(normal).as_dvec3())
+            .collect();
+        let frames = (!rest.is_empty()).then(|| moved.frames(&rest));
+        let mut edits = Vec::new();
+        for (vertex, new) in moved.of_file().iter().enumerate() {
+            let Some(new) = new else { continue };
+            let mut numbers = new
+                .to_array()
+                .map(Some)
+                .into_iter()
+                .chain([None; 3])
+                .collect::<Vec<_>>();
+            for (axis, number) in numbers[..3].iter().enumerate() {
+                check(element, stored.columns[axis], vertex, *number)?;
+            }
+            if let Some(frames) = &frames {
+                let normal = frames.carry_normal(DrawnVertex(vertex as u32), rest[vertex]);
+                if normal != rest[vertex] && normal.is_finite() {
+                    numbers.splice(3.., normal.to_array().map(Some));
+                }
+            }
+            let numbers = std::array::from_fn(|slot| numbers[slot]);
+            edits.push(Edit { vertex, numbers });
+        }
+        Ok(Self(edits))
+    }
+
+    fn into_binary(self, stored: &Stored, element: &Element) -> Vec<u8> {
+        let encoding = stored.header.encoding;
+        let mut out = stored.bytes.to_vec();
+        self.visit(stored, element, |scalar, span, value, old| {
+            let value = scalar.nearest(value);
+            if value.to_bits() != old.to_bits() {
+                encode(&mut out, span.start, value, scalar, encoding);
+            }
+        });
+        out
+    }
+
+    fn into_text(self, stored: &Stored, element: &Element, positions: &[DVec3]) -> Vec<u8> {
+        // A file whose text is finer than the type that it names (scans at geographic coordinates, called 'float')
+        // would lose what it says by following the name.
+        let is_finer = coarse_in_f32(positions).is_some();
+        let mut splice = Splice::new(&stored.bytes);
+        self.visit(stored, element, |scalar, span, value, old| {
+            let is_short = scalar == Scalar::F32 && !is_finer;
+            let value = if is_short || scalar != Scalar::F32 {
+                scalar.nearest(value)
+            } else {
+                value
+            };
+            let old = if is_short { scalar.nearest(old) } else { old };
+            if value.to_bits() != old.to_bits() {
+                splice.replace(span, |out| {
+                    if is_short {
+                        push_f32(out, value as f32)
+                    } else {
+                        push_f64(out, value)
+                    }
+                });
+            }
+        });
+        splice.finish()
+    }
+
+    /// Goes through the edited vertices' records and gives each edited number its type, place, new and old value, in
+    /// the order of the bytes.
+    fn visit(
+        self,
+        stored: &Stored,
+        element: &Element,
+        mut change: impl FnMut(Scalar, std::ops::Range<usize>, f64, f64),
+    ) {
+        for edit in self.0 {
+            let mut walk = Walk::new(&stored.bytes, stored.places.of(edit.vertex), stored.header.encoding);
+            for (property, description) in element.properties.iter().enumerate() {
+                let slot = stored.columns[..6].iter().position(|column| *column == Some(property));
+                match description.kind {
+                    Kind::Scalar(scalar) => {
+                        let Some((old, span)) = walk.number(scalar) else { break };
+                        if let Some(value) = slot.and_then(|slot| edit.numbers[slot]) {
+                            change(scalar, span, value, old);
+                        }
+                    }
+                    Kind::List { count, item } => {
+                        let items = walk.number(count).map_or(0, |(count, _)| count as u64);
+                        for _ in 0..items {
+                            if walk.number(item).is_none() {
+                                break;
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Refuses a coordinate that its type can't hold.
+fn check(element: &Element, property: Option<usize>, vertex: usize, number: Option<f64>) -> Result<(), SaveError> {
+    let (Some(scalar), Some(number)) = (property.and_then(|property| scalar_of(element, property)), number) else {
+        return Ok(());
+    };
+    match scalar.integer_range() {
+        Some([least, most]) if !(least..=most).contains(&number.round()) => Err(Stored::cannot_hold(
+            format!("the new position of vertex {vertex}, {number}, beyond the whole numbers of this file,"),
+            "save as .glb or move it less",
+        )),
+        None if !scalar.nearest(number).is_finite() => Err(SaveError::NotFinite {
+            file_vertex: vertex as u32,
+        }),
+        _ => Ok(()),
+    }
+}

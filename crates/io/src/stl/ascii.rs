@@ -1,0 +1,127 @@
+//! Ascii STL: `solid`s of `facet normal … outer loop vertex … vertex … vertex … endloop endfacet`.
+
+use glam::DVec3;
+
+use super::{changed_facets, facet_normal};
+use crate::moved::Moved;
+use crate::new_faces::coarse_in_f32;
+use crate::scene::Source;
+use crate::text::{Cursor, Splice, excerpt, malformed_at, push_f32, push_f64};
+use crate::{Format, ReadError};
+
+/// The corners in order, and the byte of each facet's keyword.
+///
+/// Keywords may be in any case and on any line. A file that ends within its last solid is taken for whole.
+pub(super) fn read(source: &Source<'_>) -> Result<(Vec<DVec3>, Vec<usize>), ReadError> {
+    let mut cursor = Cursor::new(source.bytes, 0);
+    let (mut corners, mut facets) = (Vec::new(), Vec::new());
+    loop {
+        cursor.skip_space();
+        if cursor.is_done() {
+            return Ok((corners, facets));
+        }
+        let at = cursor.at();
+        let word = cursor.word();
+        if word.eq_ignore_ascii_case(b"facet") {
+            if facets.len().is_multiple_of(1 << 16) {
+                source.cancel.check()?;
+                source.progress.set(0.8 * at as f32 / source.bytes.len() as f32);
+            }
+            facets.push(at);
+            corners.extend(facet(source, &mut cursor)?);
+            if corners.len() > u32::MAX as usize - 3 {
+                return Err(ReadError::TooLarge {
+                    name: source.name.to_owned(),
+                    what: format!("{} corners", corners.len()),
+                });
+            }
+        } else if word.eq_ignore_ascii_case(b"solid") || word.eq_ignore_ascii_case(b"endsolid") {
+            // A name, which may be any text.
+            cursor.next_line();
+        } else {
+            return Err(unexpected(source, at, word, "facet"));
+        }
+    }
+}
+
+fn unexpected(source: &Source<'_>, at: usize, word: &[u8], wanted: &str) -> ReadError {
+    let reason = if word.is_empty() {
+        format!("the file ends where '{wanted}' should stand: it is cut short")
+    } else {
+        format!("'{}' stands where '{wanted}' should: correct the line", excerpt(word))
+    };
+    malformed_at(source, Format::Stl, at, &reason)
+}
+
+/// Reads what follows `facet` up to `endfacet`.
+fn facet(source: &Source<'_>, cursor: &mut Cursor<'_>) -> Result<[DVec3; 3], ReadError> {
+    let keyword = |cursor: &mut Cursor<'_>, wanted: &str| {
+        cursor.skip_space();
+        let at = cursor.at();
+        let word = cursor.word();
+        if word.eq_ignore_ascii_case(wanted.as_bytes()) {
+            Ok(())
+        } else {
+            Err(unexpected(source, at, word, wanted))
+        }
+    };
+    let vector = |cursor: &mut Cursor<'_>| -> Result<DVec3, ReadError> {
+        let mut values = [0.0; 3];
+        for value in &mut values {
+            cursor.skip_space();
+            let at = cursor.at();
+            *value = cursor
+                .real()
+                .ok_or_else(|| unexpected(source, at, cursor.clone().word(), "a number"))?;
+        }
+        Ok(DVec3::from_array(values))
+    };
+    keyword(cursor, "normal")?;
+    vector(cursor)?;
+    keyword(cursor, "outer")?;
+    keyword(cursor, "loop")?;
+    let mut corners = [DVec3::ZERO; 3];
+    for corner in &mut corners {
+        keyword(cursor, "vertex")?;
+        *corner = vector(cursor)?;
+    }
+    keyword(cursor, "endloop")?;
+    keyword(cursor, "endfacet")?;
+    Ok(corners)
+}
+
+/// The bytes with the moved corners and their facets' normals changed.
+pub(super) fn patched(bytes: &[u8], facets: &[usize], moved: &Moved<'_>) -> Vec<u8> {
+    // Everyone reads ascii STL as f32; only where that would round visibly is more written.
+    let is_finer = coarse_in_f32(moved.positions).is_some();
+    let push = |out: &mut Vec<u8>, value: f64| {
+        if is_finer {
+            push_f64(out, value)
+        } else {
+            push_f32(out, value as f32)
+        }
+    };
+    let is_same = |old: f64, new: f64| if is_finer { old == new } else { old as f32 == new as f32 };
+    let mut splice = Splice::new(bytes);
+    for (number, corners, has_moved) in changed_facets(moved).take_while(|(number, ..)| *number < facets.len()) {
+        let vectors = [facet_normal(corners), corners[0], corners[1], corners[2]];
+        let has_changed = [true, has_moved[0], has_moved[1], has_moved[2]];
+        let mut cursor = Cursor::new(bytes, facets[number]);
+        let mut slot = 0;
+        while slot < 12 && !cursor.is_done() {
+            cursor.skip_space();
+            let start = cursor.at();
+            // The keywords between the numbers are none, however numbers are spelt.
+            let Some(old) = cursor.real() else {
+                cursor.word();
+                continue;
+            };
+            let new = vectors[slot / 3][slot % 3];
+            if has_changed[slot / 3] && !is_same(old, new) {
+                splice.replace(start..cursor.at(), |out| push(out, new));
+            }
+            slot += 1;
+        }
+    }
+    splice.finish()
+}

@@ -1,0 +1,89 @@
+//! Binary STL: 80 bytes of header, a count, and 50 bytes a facet, little-endian.
+
+use glam::{DVec3, Vec3};
+
+use super::{changed_facets, facet_normal};
+use crate::moved::Moved;
+use crate::scene::Source;
+use crate::{Format, ReadError};
+
+/// Bytes before the first facet.
+const HEADER: usize = 84;
+
+/// Bytes of a facet: the normal, three corners and two attribute bytes.
+const FACET: usize = 50;
+
+fn stored_count(bytes: &[u8]) -> Option<u64> {
+    let count: [u8; 4] = bytes.get(80..HEADER)?.try_into().ok()?;
+    Some(u64::from(u32::from_le_bytes(count)))
+}
+
+/// Whether the bytes are those of a binary file to the last one.
+pub(super) fn has_exact_length(bytes: &[u8]) -> bool {
+    stored_count(bytes).is_some_and(|count| HEADER as u64 + count * FACET as u64 == bytes.len() as u64)
+}
+
+/// The corners in order. Bytes behind the facets are noted and kept.
+pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<DVec3>, ReadError> {
+    let bytes: &[u8] = source.bytes;
+    let Some(count) = stored_count(bytes) else {
+        let reason =
+            "it has neither the 84 bytes of a binary file's head nor the 'solid' of an ascii file: export it anew";
+        return Err(source.malformed(Format::Stl, reason));
+    };
+    let room = (bytes.len() - HEADER) / FACET;
+    if count > room as u64 {
+        let reason = format!("it promises {count} facets but holds only {room}: the file is cut short or not STL");
+        return Err(source.malformed(Format::Stl, reason));
+    }
+    if count > u64::from(u32::MAX / 3) {
+        return Err(ReadError::TooLarge {
+            name: source.name.to_owned(),
+            what: format!("{count} facets"),
+        });
+    }
+    let rest = bytes.len() - HEADER - count as usize * FACET;
+    if rest > 0 {
+        notes.push(format!(
+            "The file promises {count} facets and goes on for {rest} bytes behind them; they are kept but not shown."
+        ));
+    }
+    let mut corners = Vec::with_capacity(3 * count as usize);
+    for (number, facet) in bytes[HEADER..].chunks_exact(FACET).take(count as usize).enumerate() {
+        if number.is_multiple_of(1 << 16) {
+            source.cancel.check()?;
+        }
+        for corner in facet[12..48].chunks_exact(12) {
+            corners.push(vector(corner).as_dvec3());
+        }
+    }
+    Ok(corners)
+}
+
+fn vector(bytes: &[u8]) -> Vec3 {
+    Vec3::from_array(std::array::from_fn(|axis| {
+        f32::from_le_bytes(std::array::from_fn(|byte| bytes[4 * axis + byte]))
+    }))
+}
+
+fn put(out: &mut [u8], vector: DVec3) {
+    // f32: the format's own numbers.
+    for (target, number) in out.chunks_exact_mut(4).zip(vector.as_vec3().to_array()) {
+        target.copy_from_slice(&number.to_le_bytes());
+    }
+}
+
+/// The bytes with the moved corners and their facets' normals changed.
+pub(super) fn patched(bytes: &[u8], facet_count: usize, moved: &Moved<'_>) -> Vec<u8> {
+    let mut out = bytes.to_vec();
+    for (number, corners, has_moved) in changed_facets(moved).take_while(|(number, ..)| *number < facet_count) {
+        let facet = &mut out[HEADER + number * FACET..][..FACET];
+        put(&mut facet[..12], facet_normal(corners));
+        for k in 0..3 {
+            if has_moved[k] {
+                put(&mut facet[12 + 12 * k..24 + 12 * k], corners[k]);
+            }
+        }
+    }
+    out
+}

@@ -1,0 +1,64 @@
+//! A new binary STL file from any other kind.
+
+use crate::SaveError;
+use crate::new_faces::{coarse_in_f32, has_materials, lost, lost_where};
+use crate::new_mesh::NewMesh;
+use crate::save::{OutputFile, Saved};
+
+use super::facet_normal;
+
+/// Writes a mesh's triangles as binary STL, which holds their corners and nothing else.
+pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
+    let look = &mesh.appearance;
+    let mut out = Vec::with_capacity(84 + 50 * mesh.triangles.len());
+    // Not "solid", by which ascii files are told.
+    out.extend_from_slice(b"Pliant");
+    out.resize(80, b' ');
+    out.extend_from_slice(&(mesh.triangles.len() as u32).to_le_bytes());
+    for triangle in mesh.triangles {
+        let corners = triangle.map(|corner| mesh.positions[corner.index()]);
+        let mut push = |vector: glam::DVec3| {
+            // f32: the format's own numbers.
+            vector
+                .as_vec3()
+                .to_array()
+                .iter()
+                .for_each(|number| out.extend_from_slice(&number.to_le_bytes()));
+        };
+        push(facet_normal(corners));
+        corners.into_iter().for_each(&mut push);
+        out.extend_from_slice(&[0; 2]);
+        for (corner, position) in triangle.iter().zip(corners) {
+            if position.is_finite() && !position.as_vec3().is_finite() {
+                return Err(SaveError::NotFinite {
+                    file_vertex: mesh.file_vertex[corner.index()].0,
+                });
+            }
+        }
+    }
+    let mut warnings: Vec<String> = lost(
+        "STL",
+        &[
+            ("normals", lost_where(look.normals.is_some())),
+            ("colours", lost_where(look.colours.is_some())),
+            ("texture coordinates", lost_where(look.uvs.is_some())),
+            ("materials", lost_where(has_materials(look))),
+            ("textures", lost_where(!look.images.is_empty())),
+            ("polygons", lost_where(mesh.polygons.is_some())),
+        ],
+    )
+    .into_iter()
+    .collect();
+    if let Some(rounding) = coarse_in_f32(mesh.positions) {
+        warnings.push(format!(
+            "STL holds 32-bit numbers, which round positions this far from the origin by up to {rounding:.1e}: save as .obj to keep them."
+        ));
+    }
+    Ok(Saved {
+        files: vec![OutputFile {
+            name: mesh.name.to_owned(),
+            bytes: out,
+        }],
+        warnings,
+    })
+}

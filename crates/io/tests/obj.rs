@@ -1,0 +1,279 @@
+//! OBJ: what is read, and that saving changes the moved vertices' lines alone.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
+
+mod text;
+
+use glam::{DQuat, DVec3};
+use pliant_io::{AlphaMode, Format};
+use text::{changed_lines, folder, moved, open, open_in, refusal, save, save_as, try_open};
+
+/// Every form that a line may take: comments, both line ends, continuations, w, colours, groups, a negative index.
+const ODD: &[u8] = b"# caf\xe9 \\\r\nmtllib missing.mtl\n o thing  \nv 0 0 0 1.0 # w\n\tv  1.0 0 \\\n  0\r\nv 1 1 0 0.5 0.25 1\nv 0 1 0\n\
+v 5 5 5\nvt 0 0\nvt 1 1\nvn 0 0 1\ng side\nusemtl red\ns off\nf 1/1/1 2/2/1 3//1 4\nf -5 -4 \\\n -3 # end\nl 1 2\ncurv 0 1";
+
+#[test]
+fn every_form_of_line_is_read_and_unmoved_comes_back_byte_for_byte() {
+    let opened = open(ODD, Format::Obj);
+    let drawn = &opened.drawn;
+    assert_eq!(drawn.file_vertex_count, 5);
+    assert_eq!(drawn.positions[1], DVec3::X);
+    assert_eq!(drawn.triangles.len(), 3);
+    let files = drawn.triangles.map_files(&drawn.file_vertex);
+    assert_eq!(files[2], [0, 1, 2]);
+    assert!(opened.scene.notes().iter().any(|note| note.contains("missing.mtl")));
+    assert_eq!(save(&opened, &drawn.positions), ODD);
+}
+
+trait MapFiles {
+    fn map_files(&self, file_vertex: &[pliant_mesh::FileVertex]) -> Vec<[u32; 3]>;
+}
+
+impl MapFiles for Vec<[pliant_mesh::DrawnVertex; 3]> {
+    fn map_files(&self, file_vertex: &[pliant_mesh::FileVertex]) -> Vec<[u32; 3]> {
+        self.iter()
+            .map(|triangle| triangle.map(|corner| file_vertex[corner.index()].0))
+            .collect()
+    }
+}
+
+#[test]
+fn a_moved_vertex_changes_its_three_numbers_and_nothing_else() {
+    let opened = open(ODD, Format::Obj);
+    let positions = moved(&opened, |file| file == 1, |p| p + DVec3::new(0.125, 0.0, 1e-7));
+    let bytes = save(&opened, &positions);
+    let expected = ODD
+        .to_vec()
+        .splice_text("v  1.0 0 \\\n  0\r\n", "v  1.125 0 \\\n  1e-7\r\n");
+    assert_eq!(String::from_utf8_lossy(&bytes), String::from_utf8_lossy(&expected));
+    let again = open(&bytes, Format::Obj);
+    assert!(text::same_bits(&again.drawn.positions, &positions));
+}
+
+trait SpliceText {
+    fn splice_text(self, from: &str, to: &str) -> Vec<u8>;
+}
+
+impl SpliceText for Vec<u8> {
+    fn splice_text(mut self, from: &str, to: &str) -> Vec<u8> {
+        let at = self
+            .windows(from.len())
+            .position(|window| window == from.as_bytes())
+            .unwrap();
+        self.splice(at..at + from.len(), to.bytes());
+        self
+    }
+}
+
+#[test]
+fn positions_keep_all_their_digits() {
+    let text = b"v 4512345.123456789 0.30000000000000004 -1e-300\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let opened = open(text, Format::Obj);
+    assert_eq!(
+        opened.drawn.positions[0],
+        DVec3::new(4_512_345.123_456_789, 0.300_000_000_000_000_04, -1e-300)
+    );
+    let shift = DVec3::new(1.0 / 3.0, 1e10, 0.0);
+    let positions = moved(&opened, |_| true, |p| p + shift);
+    assert!(text::same_bits(
+        &open(&save(&opened, &positions), Format::Obj).drawn.positions,
+        &positions
+    ));
+}
+
+#[test]
+fn seams_split_what_is_drawn_and_move_as_one() {
+    let text =
+        b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0.5 0.25\nf 1/1 2/2 3/3\nf 1/4 3/3 4/1\n";
+    let opened = open(text, Format::Obj);
+    assert_eq!(opened.drawn.file_vertex_count, 4);
+    assert_eq!(opened.drawn.positions.len(), 5, "v 1 is drawn twice");
+    assert_eq!(opened.drawn.file_vertex[4].0, 0);
+    let look = opened.scene.appearance();
+    assert_eq!(look.uvs.unwrap()[4], [0.5, 0.75], "v runs down");
+    let bytes = save(&opened, &moved(&opened, |file| file == 0, |p| p - DVec3::Z));
+    assert_eq!(changed_lines(text, &bytes), [0]);
+}
+
+#[test]
+fn one_vertex_in_many_seams_is_drawn_once_for_each() {
+    let mut text = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    (0..100).for_each(|k| text.push_str(&format!("vt 0.{k:03} 0\n")));
+    for _ in 0..2 {
+        (1..=100).for_each(|k| text.push_str(&format!("f 1/{k} 2/1 3/1\n")));
+    }
+    let opened = open(text.as_bytes(), Format::Obj);
+    assert_eq!(opened.drawn.positions.len(), 3 + 99);
+    assert_eq!(opened.drawn.triangles[5], opened.drawn.triangles[105]);
+    assert_eq!(opened.drawn.triangles[70], opened.drawn.triangles[170]);
+}
+
+#[test]
+fn polygons_are_drawn_as_triangles_and_saved_as_they_were() {
+    let text = b"v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nv 9 9 9\nf 1 2 3 4\nf 1 2\nf 5\nf\n";
+    let opened = open(text, Format::Obj);
+    // The dart's reflex corner is 3: only the cut through it stays inside.
+    let mut corners: Vec<Vec<u32>> = opened
+        .drawn
+        .triangles
+        .iter()
+        .map(|triangle| triangle.iter().map(|corner| corner.0).collect())
+        .collect();
+    corners.iter_mut().for_each(|triangle| triangle.sort_unstable());
+    assert_eq!(corners, [[0, 1, 2], [0, 2, 3]]);
+    assert!(
+        opened.scene.notes()[0].starts_with("3 faces"),
+        "{:?}",
+        opened.scene.notes()
+    );
+    let off = save_as(&opened, &opened.drawn.positions, Format::Off)
+        .files
+        .swap_remove(0)
+        .bytes;
+    assert!(String::from_utf8(off).unwrap().ends_with("4 0 1 2 3\n"));
+}
+
+#[test]
+fn impossible_corners_are_refused_by_their_line() {
+    let start = "v 0 0 0\nv 1 0 0\n\nv 0 1 0\n";
+    for (face, what) in [
+        ("f 1 2 4\n", "line 5"),
+        ("f 1 2 0\n", "line 5"),
+        ("f 1 2 -4\n", "line 5"),
+        ("f 1 2 x\n", "'x'"),
+        ("f 1 2 3.5\n", "'3.5'"),
+        ("f 1 2 99999999999999999999\n", "line 5"),
+        ("v 1 2\n", "line 5"),
+        ("v 1 2 z\n", "line 5"),
+    ] {
+        let message = refusal(format!("{start}{face}f 1 2 3").as_bytes(), Format::Obj);
+        assert!(message.contains(what) && !message.contains('\n'), "{face}: {message}");
+    }
+}
+
+#[test]
+fn corners_may_name_vertices_that_come_later_and_looks_that_never_come() {
+    let opened = open(b"f 1/9/9 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n", Format::Obj);
+    assert_eq!(opened.drawn.triangles.len(), 1);
+    assert!(opened.scene.notes()[0].contains("without a texture coordinate or normal"));
+    assert!(opened.scene.appearance().uvs.is_none());
+}
+
+#[test]
+fn numbers_that_are_not_finite_are_read_and_kept() {
+    let text = b"v nan 0 0\nv 1 -inf 0\nv 0 1 0\nv 2 2 2\nf 1 2 3\nf 2 3 4\n";
+    let opened = open(text, Format::Obj);
+    assert!(opened.drawn.positions[0].x.is_nan() && opened.drawn.positions[1].y == f64::NEG_INFINITY);
+    assert_eq!(
+        changed_lines(text, &save(&opened, &moved(&opened, |file| file == 3, |p| p * 2.0))),
+        [3]
+    );
+}
+
+/// A bumpy grid of n × n vertices with a normal each.
+fn grid(n: usize, normal_of: impl Fn(usize) -> usize) -> String {
+    let mut text = String::new();
+    for k in 0..n * n {
+        let (x, y) = ((k % n) as f64, (k / n) as f64);
+        text.push_str(&format!("v {x} {y} {}\nvn {} 0 1\n", (x * 0.7).sin() * 0.2, x * 0.01));
+    }
+    for k in 0..n * n {
+        if k % n + 1 < n && k / n + 1 < n {
+            let corner = |k: usize| format!("{}//{}", k + 1, normal_of(k) + 1);
+            text.push_str(&format!(
+                "f {} {} {} {}\n",
+                corner(k),
+                corner(k + 1),
+                corner(k + n + 1),
+                corner(k + n)
+            ));
+        }
+    }
+    text
+}
+
+#[test]
+fn normals_turn_with_a_rigid_motion_and_keep_their_length() {
+    let text = grid(6, |k| k);
+    let opened = open(text.as_bytes(), Format::Obj);
+    let turn = DQuat::from_rotation_x(1.0) * DQuat::from_rotation_y(0.3);
+    let bytes = save(&opened, &moved(&opened, |_| true, |p| turn * p + DVec3::ONE));
+    let normals = |text: &[u8]| -> Vec<DVec3> {
+        let text = String::from_utf8(text.to_vec()).unwrap();
+        let lines = text.lines().filter_map(|line| line.strip_prefix("vn "));
+        lines
+            .map(|line| line.split(' ').map(|w| w.parse().unwrap()).collect::<Vec<f64>>())
+            .map(|n| DVec3::from_slice(&n))
+            .collect()
+    };
+    for (before, after) in normals(text.as_bytes()).into_iter().zip(normals(&bytes)) {
+        assert!((turn * before).distance(after) < 1e-6, "{before} {after}");
+    }
+    let shifted = save(&opened, &moved(&opened, |_| true, |p| p + DVec3::ONE));
+    assert_eq!(
+        normals(&shifted),
+        normals(text.as_bytes()),
+        "a translation turns no normal"
+    );
+}
+
+#[test]
+fn a_normal_that_an_unmoved_vertex_shares_keeps_its_bytes() {
+    let text = grid(6, |_| 7);
+    let opened = open(text.as_bytes(), Format::Obj);
+    let turn = DQuat::from_rotation_x(1.0);
+    let positions = moved(&opened, |file| file > 20, |p| turn * p);
+    let saved = save_as(&opened, &positions, Format::Obj);
+    assert!(
+        saved.warnings[0].contains("kept their old direction"),
+        "{:?}",
+        saved.warnings
+    );
+    let changed = changed_lines(text.as_bytes(), &saved.files[0].bytes);
+    assert!(changed.iter().all(|line| line % 2 == 0 && line / 2 > 20), "{changed:?}");
+    // Where everyone moves alike, the one normal turns.
+    let all = save_as(
+        &opened,
+        &moved(&opened, |_| true, |p| turn * p + DVec3::ONE),
+        Format::Obj,
+    );
+    assert!(all.warnings.is_empty(), "{:?}", all.warnings);
+    assert!(changed_lines(text.as_bytes(), &all.files[0].bytes).contains(&15));
+}
+
+#[test]
+fn materials_and_textures_come_through_the_resolver() {
+    let text = b"mtllib my stuff.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl glass\nf 1 3 2\nusemtl none\nf 2 1 3\n";
+    let library = "newmtl red\nKd 1 0 0\nmap_Kd -clamp on C:\\art\\skin.png\nnewmtl glass\nKd 1\nd 0.5\n";
+    let files = folder(&[("my stuff.mtl", library), ("skin.png", "\u{89}PNG")]);
+    let opened = open_in(text, Format::Obj, &files).unwrap();
+    let look = opened.scene.appearance();
+    assert_eq!(
+        look.groups
+            .iter()
+            .map(|group| (group.triangles.clone(), group.material))
+            .collect::<Vec<_>>(),
+        [(0..1, 0), (1..2, 1), (2..3, 2)]
+    );
+    assert_eq!(look.materials[0].base_colour, [1.0, 0.0, 0.0, 1.0]);
+    assert_eq!(look.materials[0].base_colour_image, Some(0));
+    assert_eq!(
+        (look.materials[1].alpha, look.materials[1].base_colour[3]),
+        (AlphaMode::Blend, 0.5)
+    );
+    assert_eq!(look.materials[2].name, "none");
+    assert!(opened.scene.notes().is_empty(), "{:?}", opened.scene.notes());
+    let plain = try_open(text, Format::Obj).unwrap();
+    assert!(plain.scene.notes()[0].contains("my stuff.mtl"));
+}
+
+#[test]
+fn colours_behind_positions_are_drawn_whether_they_count_to_1_or_255() {
+    let small = open(b"v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0\nf 1 2 3\n", Format::Obj);
+    let large = open(
+        b"v 0 0 0 255 0 0\nv 1 0 0 0 255 0\nv 0 1 0 255 255 255\nf 1 2 3\n",
+        Format::Obj,
+    );
+    let expected = vec![[255, 0, 0, 255], [0, 255, 0, 255], [255, 255, 255, 255]];
+    assert_eq!(small.scene.appearance().colours.unwrap(), expected);
+    assert_eq!(large.scene.appearance().colours.unwrap(), expected);
+}

@@ -1,0 +1,107 @@
+//! STL: both kinds told apart, and that saving changes the moved corners and their facets' normals alone.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
+
+mod text;
+
+use glam::DVec3;
+use pliant_io::Format;
+use text::{changed_bytes, changed_lines, moved, open, refusal, save};
+
+const ASCII: &str = "solid a thing facet\r\n  facet normal 0 0 1\r\n    outer loop\r\n      vertex 0 0 0\r\n      vertex 1.50 0 0\r\n\
+      vertex 0 1 0\r\n    endloop\r\n  endfacet\r\n  FACET NORMAL nan 0 0 OUTER LOOP VERTEX 5 5 5 VERTEX 6 5 5\r\nVERTEX 5 6 5 ENDLOOP ENDFACET\r\n\
+endsolid a thing\r\nsolid\r\nendsolid\r\n";
+
+fn binary(header: &[u8], facets: u32) -> Vec<u8> {
+    let mut out = header.to_vec();
+    out.resize(80, 0xee);
+    out.extend(facets.to_le_bytes());
+    for facet in 0..facets {
+        for number in [0.0, 0.0, 9.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, facet as f32] {
+            out.extend(f32::to_le_bytes(number));
+        }
+        out.extend([facet as u8, 0xab]);
+    }
+    out
+}
+
+#[test]
+fn a_moved_corner_of_an_ascii_facet_changes_its_line_and_the_normal() {
+    let opened = open(ASCII.as_bytes(), Format::Stl);
+    assert_eq!((opened.drawn.file_vertex_count, opened.drawn.triangles.len()), (6, 2));
+    assert_eq!(save(&opened, &opened.drawn.positions), ASCII.as_bytes());
+    let bytes = save(&opened, &moved(&opened, |corner| corner == 1, |p| p - DVec3::Z * 1.5));
+    let expected = ASCII
+        .replace("normal 0 0 1", "normal 0.70710677 0 0.70710677")
+        .replace("1.50 0 0", "1.50 0 -1.5");
+    assert_eq!(String::from_utf8(bytes).unwrap(), expected);
+    let bytes = save(&opened, &moved(&opened, |corner| corner > 2, |p| p + DVec3::X));
+    assert_eq!(changed_lines(ASCII.as_bytes(), &bytes), [8, 9]);
+    assert!(String::from_utf8(bytes).unwrap().contains("NORMAL 0 0 1 OUTER"));
+}
+
+#[test]
+fn binary_files_are_told_by_their_length_even_when_they_begin_with_solid() {
+    for header in [b"solid really binary".as_slice(), b"", b"  SOLID"] {
+        let bytes = binary(header, 3);
+        let opened = open(&bytes, Format::Stl);
+        assert_eq!(opened.drawn.triangles.len(), 3);
+        assert!(opened.scene.notes().is_empty());
+        let positions = moved(&opened, |corner| corner == 5, |p| p * 2.0);
+        let after = save(&opened, &positions);
+        let changed = changed_bytes(&bytes, &after);
+        assert!(
+            changed.iter().all(|at| (84 + 50..84 + 98).contains(at)),
+            "attribute bytes stay: {changed:?}"
+        );
+        let again = open(&after, Format::Stl);
+        assert_eq!(again.drawn.positions, positions);
+        let normal = |k: usize| f32::from_le_bytes(after[134 + 4 * k..138 + 4 * k].try_into().unwrap());
+        let length = (normal(0).powi(2) + normal(1).powi(2) + normal(2).powi(2)).sqrt();
+        assert!((length - 1.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn a_wrong_count_is_refused_when_too_large_and_noted_when_too_small() {
+    let mut bytes = binary(b"x", 3);
+    bytes[80] = 4;
+    assert!(refusal(&bytes, Format::Stl).contains("4 facets but holds only 3"));
+    bytes[80] = 2;
+    let opened = open(&bytes, Format::Stl);
+    assert_eq!(opened.drawn.triangles.len(), 2);
+    assert!(opened.scene.notes()[0].contains("50 bytes behind"));
+    let after = save(&opened, &moved(&opened, |_| true, |p| p + 1.0));
+    assert_eq!(after[184..], bytes[184..]);
+    bytes[80..84].fill(0xff);
+    assert!(refusal(&bytes, Format::Stl).contains("cut short"));
+}
+
+#[test]
+fn broken_ascii_is_refused_by_its_line() {
+    for (text, what) in [
+        (
+            "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0\nvertex 1 0 0",
+            "line 5",
+        ),
+        (
+            "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop",
+            "line 6",
+        ),
+        (
+            "solid\nhello\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 2 0 0",
+            "'hello'",
+        ),
+        ("solid\nfacet normal 0 0 1", "the file ends"),
+        ("", "84 bytes"),
+        ("hello", "84 bytes"),
+    ] {
+        let message = refusal(text.as_bytes(), Format::Stl);
+        assert!(message.contains(what) && !message.contains('\n'), "{message}");
+    }
+    assert!(
+        open(b"solid Empty\nendsolid Empty", Format::Stl)
+            .drawn
+            .triangles
+            .is_empty()
+    );
+}
