@@ -46,9 +46,7 @@ pub enum ReadError {
         reason: String,
     },
     /// The file asks for more than its bytes can justify.
-    #[error(
-        "{name} asks for {what}, more than a file of its size can hold: it is damaged or not meant to be opened"
-    )]
+    #[error("{name} asks for {what}, more than a file of its size can hold: it is damaged or not meant to be opened")]
     TooLarge {
         /// The file's name.
         name: String,
@@ -72,9 +70,7 @@ pub enum SaveError {
         file_vertex: u32,
     },
     /// The positions don't belong to this scene.
-    #[error(
-        "{given} positions were given for the {wanted} drawn vertices of this scene: open the file again"
-    )]
+    #[error("{given} positions were given for the {wanted} drawn vertices of this scene: open the file again")]
     OtherScene {
         /// How many positions were given.
         given: usize,
@@ -100,9 +96,7 @@ pub enum SaveError {
         uri: String,
     },
     /// The output would be larger than its format allows.
-    #[error(
-        "the result is larger than the 4 GiB that {format} can hold: save as .gltf or as another kind"
-    )]
+    #[error("the result is larger than the 4 GiB that {format} can hold: save as .gltf or as another kind")]
     TooLarge {
         /// The kind of OUT.
         format: Format,

@@ -23,14 +23,7 @@ pub enum Format {
 
 impl Format {
     /// Every kind, in the order in which they are listed for a person.
-    pub const ALL: [Self; 6] = [
-        Self::Glb,
-        Self::Gltf,
-        Self::Obj,
-        Self::Ply,
-        Self::Stl,
-        Self::Off,
-    ];
+    pub const ALL: [Self; 6] = [Self::Glb, Self::Gltf, Self::Obj, Self::Ply, Self::Stl, Self::Off];
 
     /// The kind that a file's name or path tells by its extension, whatever its case.
     pub fn of_name(name: &str) -> Result<Self, UnknownFormat> {
@@ -39,9 +32,7 @@ impl Format {
         Self::ALL
             .into_iter()
             .find(|format| format.extension().eq_ignore_ascii_case(extension))
-            .ok_or_else(|| UnknownFormat {
-                name: file.to_owned(),
-            })
+            .ok_or_else(|| UnknownFormat { name: file.to_owned() })
     }
 
     /// The extension without its dot, in lower case.

@@ -38,10 +38,7 @@ impl Frames {
             let gradients: Vec<(DMat3, f64)> = block
                 .par_iter()
                 .map(|corners| {
-                    if corners
-                        .iter()
-                        .all(|corner| group_of[corner.index()] == NO_GROUP)
-                    {
+                    if corners.iter().all(|corner| group_of[corner.index()] == NO_GROUP) {
                         return (DMat3::ZERO, 0.0);
                     }
                     let rest = corners.map(|corner| drawn.positions[corner.index()]);
@@ -73,10 +70,7 @@ impl Frames {
             .into_iter()
             .map(|(sum, area)| turning(sum * area.recip()))
             .collect();
-        Self {
-            group_of,
-            gradients,
-        }
+        Self { group_of, gradients }
     }
 
     /// The gradient at a drawn vertex, in world space; `None` where the vertex did not move, its surroundings did not
@@ -100,11 +94,7 @@ pub(crate) fn carried_normal(gradient: DMat3, normal: DVec3) -> DVec3 {
     // The cofactor matrix is det(F) F⁻ᵀ: the same direction without a division, and defined for a singular F.
     let [x, y, z] = [gradient.x_axis, gradient.y_axis, gradient.z_axis];
     let cofactor = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-    let sign = if gradient.determinant() < 0.0 {
-        -1.0
-    } else {
-        1.0
-    };
+    let sign = if gradient.determinant() < 0.0 { -1.0 } else { 1.0 };
     match (cofactor * normal * sign).try_normalize() {
         Some(direction) => direction * normal.length(),
         None => normal,
@@ -113,12 +103,7 @@ pub(crate) fn carried_normal(gradient: DMat3, normal: DVec3) -> DVec3 {
 
 /// `tangent` carried by `gradient`, of the length it had, and at the angle it had to its normal (a right one in any
 /// sound file), which `new_normal` replaces; itself where that has no direction.
-pub(crate) fn carried_tangent(
-    gradient: DMat3,
-    normal: DVec3,
-    new_normal: DVec3,
-    tangent: DVec3,
-) -> DVec3 {
+pub(crate) fn carried_tangent(gradient: DMat3, normal: DVec3, new_normal: DVec3, tangent: DVec3) -> DVec3 {
     let (Some(old_up), Some(up)) = (normal.try_normalize(), new_normal.try_normalize()) else {
         return (gradient * tangent)
             .try_normalize()

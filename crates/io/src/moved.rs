@@ -23,27 +23,18 @@ pub(crate) struct Moved<'a> {
 impl<'a> Moved<'a> {
     /// Compares new positions with the rest shape. Refuses a wrong count and a moved vertex that is not finite.
     pub fn of(drawn: &'a Drawn, positions: &'a [DVec3]) -> Result<Self, SaveError> {
-        if positions.len() != drawn.positions.len()
-            || drawn.file_vertex.len() != drawn.positions.len()
-        {
+        if positions.len() != drawn.positions.len() || drawn.file_vertex.len() != drawn.positions.len() {
             return Err(SaveError::OtherScene {
                 given: positions.len(),
                 wanted: drawn.positions.len(),
             });
         }
         let mut any = false;
-        for ((rest, new), file) in drawn
-            .positions
-            .iter()
-            .zip(positions)
-            .zip(&drawn.file_vertex)
-        {
+        for ((rest, new), file) in drawn.positions.iter().zip(positions).zip(&drawn.file_vertex) {
             if !bit_equal(*rest, *new) {
                 any = true;
                 if !new.is_finite() {
-                    return Err(SaveError::NotFinite {
-                        file_vertex: file.0,
-                    });
+                    return Err(SaveError::NotFinite { file_vertex: file.0 });
                 }
             }
         }

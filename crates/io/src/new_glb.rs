@@ -1,17 +1,431 @@
-//! A new glTF from the other kinds.
+//! A new glTF from the other kinds: one node, one mesh, a primitive for each material, all over the same vertices.
+//!
+//! Vertices keep the order and number of the drawn ones. Where the shape stands so far out that f32 would round it,
+//! the vertices are taken relative to its centre and the node carries the way there.
 
+use std::collections::BTreeMap;
+
+use glam::{DVec3, Vec3};
+use pliant_mesh::{DrawnVertex, bounding_box};
+use serde_json::{Value, json};
+
+use crate::appearance::{AlphaMode, Material, Wrap};
+use crate::gltf::join_glb;
+use crate::image::mime_type;
+use crate::new_faces::coarse_in_f32;
 use crate::new_mesh::NewMesh;
-use crate::save::Saved;
+use crate::save::{OutputFile, Saved};
 use crate::{Format, SaveError};
 
-pub(crate) fn write_new(_mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
-    Err(SaveError::TooLarge {
-        format: Format::Glb,
+/// The mesh as a GLB.
+pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
+    let built = build(mesh, Format::Glb)?;
+    let text = built.root.to_string();
+    let bytes = join_glb(text.as_bytes(), &built.bin).ok_or(SaveError::TooLarge { format: Format::Glb })?;
+    let file = OutputFile {
+        name: mesh.name.to_owned(),
+        bytes,
+    };
+    Ok(Saved {
+        files: vec![file],
+        warnings: built.warnings,
     })
 }
 
-pub(crate) fn write_new_gltf(_mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
-    Err(SaveError::TooLarge {
-        format: Format::Gltf,
+/// The mesh as a `.gltf` and its buffer, which is called as OUT is.
+pub(crate) fn write_new_gltf(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
+    let mut built = build(mesh, Format::Gltf)?;
+    let buffer_name = format!("{}.bin", stem(mesh.name));
+    built.root["buffers"][0]["uri"] = crate::gltf::encoded_uri(&buffer_name).into();
+    let text = format!("{:#}\n", built.root);
+    let files = vec![
+        OutputFile {
+            name: mesh.name.to_owned(),
+            bytes: text.into_bytes(),
+        },
+        OutputFile {
+            name: buffer_name,
+            bytes: built.bin,
+        },
+    ];
+    Ok(Saved {
+        files,
+        warnings: built.warnings,
     })
+}
+
+/// A glTF that is being put together.
+#[derive(Default)]
+struct Built {
+    root: Value,
+    bin: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+    warnings: Vec<String>,
+}
+
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+const UNSIGNED_BYTE: u32 = 5121;
+const UNSIGNED_SHORT: u32 = 5123;
+const UNSIGNED_INT: u32 = 5125;
+const FLOAT: u32 = 5126;
+
+fn build(mesh: &NewMesh<'_>, format: Format) -> Result<Built, SaveError> {
+    let mut out = Built::default();
+    let finite: Vec<DVec3> = mesh
+        .positions
+        .iter()
+        .copied()
+        .filter(|position| position.is_finite())
+        .collect();
+    let centre = coarse_in_f32(&finite).and_then(|_| bounding_box(&finite));
+    let centre = centre.map_or(DVec3::ZERO, |bounds| bounds.centre());
+    // f32 begins here: glTF positions are f32.
+    let positions: Vec<Vec3> = mesh
+        .positions
+        .iter()
+        .map(|&position| (position - centre).as_vec3())
+        .collect();
+    let by_material = triangles_by_material(mesh, &positions, &mut out.warnings);
+    if by_material.is_empty() {
+        return Err(SaveError::CannotHold {
+            what: "a shape without triangles".to_owned(),
+            format,
+            remedy: "save it as the kind it was".to_owned(),
+        });
+    }
+    let attributes = attributes(&mut out, mesh, &positions);
+    let mut looks = Looks::default();
+    let mut primitives = Vec::new();
+    for (material, triangles) in &by_material {
+        let indices = indices(&mut out, triangles, positions.len());
+        let mut primitive = json!({ "attributes": attributes, "indices": indices });
+        if let Some(material) = mesh.appearance.materials.get(*material) {
+            primitive["material"] = looks.material(&mut out, mesh, material).into();
+        }
+        primitives.push(primitive);
+    }
+    let mut names: Vec<&str> = mesh
+        .appearance
+        .groups
+        .iter()
+        .map(|group| group.node_name.as_str())
+        .collect();
+    names.dedup();
+    if names.len() > 1 {
+        out.warnings.push(format!(
+            "{format} output joins the file's groups: save as .obj to keep them."
+        ));
+    }
+    let name = if let [name] = names[..]
+        && !name.is_empty()
+    {
+        name
+    } else {
+        stem(mesh.name)
+    };
+    let mut node = json!({ "name": name, "mesh": 0 });
+    if centre != DVec3::ZERO {
+        node["translation"] = json!(centre.to_array());
+    }
+    let mut root = json!({
+        "asset": { "version": "2.0", "generator": "Pliant" },
+        "scene": 0,
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [node],
+        "meshes": [{ "name": name, "primitives": primitives }],
+        "buffers": [{ "byteLength": out.bin.len() }],
+        "bufferViews": out.views,
+        "accessors": out.accessors,
+    });
+    looks.add_to(&mut root);
+    out.root = root;
+    Ok(out)
+}
+
+/// The triangles of each material, those with a vertex that glTF can't hold left out.
+fn triangles_by_material(
+    mesh: &NewMesh<'_>,
+    positions: &[Vec3],
+    warnings: &mut Vec<String>,
+) -> BTreeMap<usize, Vec<[DrawnVertex; 3]>> {
+    let mut by_material: BTreeMap<usize, Vec<[DrawnVertex; 3]>> = BTreeMap::new();
+    let mut left_out = 0;
+    let groups = mesh
+        .appearance
+        .groups
+        .iter()
+        .map(|group| (group.material, group.triangles.clone()));
+    let ungrouped = mesh
+        .appearance
+        .groups
+        .is_empty()
+        .then_some((usize::MAX, 0..mesh.triangles.len() as u32));
+    for (material, range) in groups.chain(ungrouped) {
+        let triangles = &mesh.triangles[range.start as usize..range.end as usize];
+        for triangle in triangles {
+            if triangle.iter().all(|corner| positions[corner.index()].is_finite()) {
+                by_material.entry(material).or_default().push(*triangle);
+            } else {
+                left_out += 1;
+            }
+        }
+    }
+    if left_out > 0 {
+        warnings.push(format!(
+            "glTF output leaves out {left_out} triangles with a vertex that is not a finite number."
+        ));
+    }
+    by_material
+}
+
+/// The accessors of the vertices' attributes.
+fn attributes(out: &mut Built, mesh: &NewMesh<'_>, positions: &[Vec3]) -> Value {
+    let looks = &mesh.appearance;
+    // A vertex that is not finite is used by no triangle; it keeps its number and stands with the first sound one.
+    let stand_in = positions
+        .iter()
+        .copied()
+        .find(|position| position.is_finite())
+        .unwrap_or(Vec3::ZERO);
+    let sound = |&position: &Vec3| if position.is_finite() { position } else { stand_in };
+    let sound: Vec<Vec3> = positions.iter().map(sound).collect();
+    let low = sound.iter().copied().fold(Vec3::INFINITY, Vec3::min);
+    let high = sound.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
+    let view = out.view(
+        sound.iter().flat_map(|position| position.to_array()),
+        f32::to_le_bytes,
+        ARRAY_BUFFER,
+    );
+    let position = out.accessor(json!({
+        "bufferView": view, "componentType": FLOAT, "count": positions.len(), "type": "VEC3",
+        "min": low.as_dvec3().to_array(), "max": high.as_dvec3().to_array(),
+    }));
+    let normals = unit_normals(mesh);
+    let view = out.view(
+        normals.iter().flat_map(|normal| normal.to_array()),
+        f32::to_le_bytes,
+        ARRAY_BUFFER,
+    );
+    let normal = out.accessor(json!({
+        "bufferView": view, "componentType": FLOAT, "count": normals.len(), "type": "VEC3",
+    }));
+    let mut attributes = json!({ "POSITION": position, "NORMAL": normal });
+    if let Some(uvs) = &looks.uvs {
+        let numbers = uvs
+            .iter()
+            .flatten()
+            .map(|&number| if number.is_finite() { number } else { 0.0 });
+        let view = out.view(numbers, f32::to_le_bytes, ARRAY_BUFFER);
+        attributes["TEXCOORD_0"] = out
+            .accessor(json!({ "bufferView": view, "componentType": FLOAT, "count": uvs.len(), "type": "VEC2" }))
+            .into();
+    }
+    if let Some(colours) = &looks.colours {
+        let view = out.view(colours.iter().flatten().copied(), u8::to_le_bytes, ARRAY_BUFFER);
+        attributes["COLOR_0"] = out
+            .accessor(json!({
+                "bufferView": view, "componentType": UNSIGNED_BYTE, "normalized": true,
+                "count": colours.len(), "type": "VEC4",
+            }))
+            .into();
+    }
+    attributes
+}
+
+/// Normals of unit length, as glTF insists: the file's own, or where it has none the mean of the faces around, by
+/// area; vertices of one file vertex share it.
+fn unit_normals(mesh: &NewMesh<'_>) -> Vec<Vec3> {
+    let own = |v: usize| {
+        let normals = mesh.appearance.normals.as_ref()?;
+        Vec3::from(normals[v]).as_dvec3().try_normalize()
+    };
+    let lacks_some = (0..mesh.positions.len()).any(|v| own(v).is_none());
+    let mut of_file = vec![DVec3::ZERO; if lacks_some { mesh.file_vertex_count } else { 0 }];
+    if lacks_some {
+        for corners in mesh.triangles {
+            let [a, b, c] = corners.map(|corner| mesh.positions[corner.index()]);
+            let normal = (b - a).cross(c - a);
+            for file in corners.map(|corner| mesh.file_vertex[corner.index()]) {
+                if normal.is_finite() {
+                    of_file[file.index()] += normal;
+                }
+            }
+        }
+    }
+    let of_faces = |v: usize| of_file[mesh.file_vertex[v].index()].try_normalize();
+    let normal = |v: usize| own(v).or_else(|| of_faces(v)).unwrap_or(DVec3::Z).as_vec3();
+    (0..mesh.positions.len()).map(normal).collect()
+}
+
+/// The accessor of a primitive's triangles.
+fn indices(out: &mut Built, triangles: &[[DrawnVertex; 3]], vertex_count: usize) -> usize {
+    let corners = triangles.as_flattened().iter().map(|corner| corner.0);
+    // The largest number of each type is kept for restarting strips.
+    let is_short = vertex_count <= usize::from(u16::MAX);
+    let view = if is_short {
+        out.view(
+            corners.map(|corner| corner as u16),
+            u16::to_le_bytes,
+            ELEMENT_ARRAY_BUFFER,
+        )
+    } else {
+        out.view(corners, u32::to_le_bytes, ELEMENT_ARRAY_BUFFER)
+    };
+    let kind = if is_short { UNSIGNED_SHORT } else { UNSIGNED_INT };
+    out.accessor(json!({
+        "bufferView": view, "componentType": kind, "count": triangles.len() * 3, "type": "SCALAR",
+    }))
+}
+
+impl Built {
+    /// Puts numbers into the buffer, as a view for vertices or indices.
+    fn view<T, const N: usize>(
+        &mut self,
+        numbers: impl Iterator<Item = T>,
+        bytes: impl Fn(T) -> [u8; N],
+        target: u32,
+    ) -> usize {
+        let view = self.bytes(numbers.flat_map(bytes));
+        self.views[view]["target"] = target.into();
+        view
+    }
+
+    /// Puts bytes into the buffer, as a view.
+    fn bytes(&mut self, bytes: impl Iterator<Item = u8>) -> usize {
+        let start = self.bin.len();
+        self.bin.extend(bytes);
+        let length = self.bin.len() - start;
+        self.bin.resize(self.bin.len().next_multiple_of(4), 0);
+        self.views
+            .push(json!({ "buffer": 0, "byteOffset": start, "byteLength": length }));
+        self.views.len() - 1
+    }
+
+    fn accessor(&mut self, accessor: Value) -> usize {
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+}
+
+/// Materials, textures, samplers and images, those that are used.
+#[derive(Default)]
+struct Looks {
+    materials: Vec<Value>,
+    textures: Vec<Value>,
+    samplers: Vec<Value>,
+    images: Vec<Value>,
+    /// The written image of each of the appearance's; `None` where it can't be held.
+    image_of: BTreeMap<usize, Option<usize>>,
+}
+
+impl Looks {
+    fn material(&mut self, out: &mut Built, mesh: &NewMesh<'_>, material: &Material) -> usize {
+        let unit = |number: f32| {
+            f64::from(if number.is_finite() {
+                number.clamp(0.0, 1.0)
+            } else {
+                1.0
+            })
+        };
+        let mut surface = json!({
+            "baseColorFactor": material.base_colour.map(unit),
+            "metallicFactor": unit(material.metallic),
+            "roughnessFactor": unit(material.roughness),
+        });
+        // A texture without coordinates to look it up by is an error in glTF.
+        let image = material.base_colour_image.filter(|_| mesh.appearance.uvs.is_some());
+        if let Some(image) = image.and_then(|image| self.image(out, mesh, image)) {
+            surface["baseColorTexture"] = json!({ "index": self.texture(image, material.wrap) });
+        }
+        let mut value = json!({ "pbrMetallicRoughness": surface });
+        if !material.name.is_empty() {
+            value["name"] = material.name.as_str().into();
+        }
+        if material.double_sided {
+            value["doubleSided"] = true.into();
+        }
+        match material.alpha {
+            AlphaMode::Opaque => {}
+            AlphaMode::Blend => value["alphaMode"] = "BLEND".into(),
+            AlphaMode::Mask(cutoff) => {
+                value["alphaMode"] = "MASK".into();
+                value["alphaCutoff"] = unit(cutoff).into();
+            }
+        }
+        self.materials.push(value);
+        self.materials.len() - 1
+    }
+
+    fn texture(&mut self, image: usize, wrap: [Wrap; 2]) -> usize {
+        let mode = |wrap| match wrap {
+            Wrap::ClampToEdge => 33071,
+            Wrap::MirroredRepeat => 33648,
+            Wrap::Repeat => 10497,
+        };
+        let sampler = json!({ "wrapS": mode(wrap[0]), "wrapT": mode(wrap[1]) });
+        let sampler = index_of(&mut self.samplers, sampler);
+        index_of(&mut self.textures, json!({ "source": image, "sampler": sampler }))
+    }
+
+    fn image(&mut self, out: &mut Built, mesh: &NewMesh<'_>, image: usize) -> Option<usize> {
+        if let Some(&known) = self.image_of.get(&image) {
+            return known;
+        }
+        let found = mesh.appearance.images.get(image)?;
+        let name = &found.name;
+        let mime = mime_type(&found.encoded).filter(|mime| matches!(*mime, "image/png" | "image/jpeg"));
+        let written = match mime {
+            Some(mime) => {
+                let view = out.bytes(found.encoded.iter().copied());
+                let mut value = json!({ "bufferView": view, "mimeType": mime });
+                if !name.is_empty() {
+                    value["name"] = name.as_str().into();
+                }
+                self.images.push(value);
+                Some(self.images.len() - 1)
+            }
+            None if found.encoded.is_empty() => {
+                out.warnings
+                    .push(format!("The image {name} was missing and could not be embedded."));
+                None
+            }
+            None => {
+                out.warnings.push(format!(
+                    "The image {name} is neither PNG nor JPEG, so glTF can't embed it."
+                ));
+                None
+            }
+        };
+        self.image_of.insert(image, written);
+        written
+    }
+
+    fn add_to(self, root: &mut Value) {
+        let sections = [
+            ("materials", self.materials),
+            ("textures", self.textures),
+            ("samplers", self.samplers),
+            ("images", self.images),
+        ];
+        for (key, section) in sections {
+            if !section.is_empty() {
+                root[key] = section.into();
+            }
+        }
+    }
+}
+
+/// Where a value stands in a section, which it joins if it is new.
+fn index_of(section: &mut Vec<Value>, value: Value) -> usize {
+    let known = section.iter().position(|other| *other == value);
+    known.unwrap_or_else(|| {
+        section.push(value);
+        section.len() - 1
+    })
+}
+
+fn stem(name: &str) -> &str {
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }

@@ -53,19 +53,11 @@ impl Polygons {
 
 impl<'a> NewMesh<'a> {
     /// The moved shape with `appearance`, whose normals are carried along here.
-    pub fn of(
-        moved: &Moved<'a>,
-        mut appearance: Appearance,
-        name: &'a str,
-        polygons: Option<Polygons>,
-    ) -> Self {
+    pub fn of(moved: &Moved<'a>, mut appearance: Appearance, name: &'a str, polygons: Option<Polygons>) -> Self {
         if let Some(normals) = appearance.normals.as_mut()
             && !moved.is_nothing()
         {
-            let rest: Vec<DVec3> = normals
-                .iter()
-                .map(|&n| glam::Vec3::from(n).as_dvec3())
-                .collect();
+            let rest: Vec<DVec3> = normals.iter().map(|&n| glam::Vec3::from(n).as_dvec3()).collect();
             let frames = moved.frames(&rest);
             for (v, normal) in normals.iter_mut().enumerate() {
                 let vertex = DrawnVertex(v as u32);

@@ -128,11 +128,7 @@ pub fn read(
     cancel.check()?;
     progress.set(1.0);
     Ok(Opened {
-        scene: Scene {
-            format,
-            bytes,
-            stored,
-        },
+        scene: Scene { format, bytes, stored },
         drawn,
     })
 }
@@ -188,9 +184,7 @@ impl Scene {
         };
         match (&self.stored, save.format) {
             (Stored::Gltf(stored), Format::Glb | Format::Gltf) => stored.save(save, &moved),
-            (_, format) if format == self.format && moved.is_nothing() => {
-                Ok(own((self.bytes.to_vec(), Vec::new())))
-            }
+            (_, format) if format == self.format && moved.is_nothing() => Ok(own((self.bytes.to_vec(), Vec::new()))),
             (Stored::Obj(stored), Format::Obj) => stored.write(&moved).map(own),
             (Stored::Ply(stored), Format::Ply) => stored.write(&moved).map(own),
             (Stored::Stl(stored), Format::Stl) => stored.write(&moved).map(own),

@@ -62,7 +62,7 @@ pub(super) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
         .iter()
         .any(|piece| of_piece(meshes, pieces, piece.part, piece.primitive).material.is_none())
     {
-        out.materials.push(self::material(document, &json::Material::default()));
+        out.materials.push(material(document, &json::Material::default()));
     }
     out.groups = pieces
         .pieces

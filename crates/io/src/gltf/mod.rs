@@ -62,6 +62,16 @@ fn open(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn), Fault> {
     ))
 }
 
+/// A GLB of a JSON text and a buffer; `None` beyond 4 GiB.
+pub(crate) fn join_glb(json: &[u8], bin: &[u8]) -> Option<Vec<u8>> {
+    container::join(json, Some(bin), &[], &[])
+}
+
+/// A neighbour's path as a URI.
+pub(crate) fn encoded_uri(path: &str) -> String {
+    uri::encoded(path)
+}
+
 impl Stored {
     pub fn notes(&self) -> &[String] {
         &self.notes

@@ -86,9 +86,14 @@ pub(super) fn inside(path: &str) -> Option<String> {
     (!steps.is_empty()).then(|| steps.join("/"))
 }
 
+/// A path as a URI.
+pub(super) fn encoded(path: &str) -> String {
+    utf8_percent_encode(path, ESCAPED).to_string()
+}
+
 /// A path as a JSON string that holds its URI.
 pub(super) fn json_uri(path: &str) -> String {
-    serde_json::Value::from(utf8_percent_encode(path, ESCAPED).to_string()).to_string()
+    serde_json::Value::from(encoded(path)).to_string()
 }
 
 /// Bytes as a JSON string that holds a data URI.
