@@ -37,8 +37,9 @@ pub(crate) fn assemble_plate(laplacian: &Laplacian, columns: &[u32], column_of: 
         .par_iter()
         .with_min_len(CHUNK)
         .map(|&vertex| {
-            let square: f64 =
-                laplacian_row(laplacian, vertex).map(|(k, weight)| laplacian.inverse_areas()[k as usize] * weight * weight).sum();
+            let square: f64 = laplacian_row(laplacian, vertex)
+                .map(|(k, weight)| laplacian.inverse_areas()[k as usize] * weight * weight)
+                .sum();
             // A vertex without any weight has an empty row: leave it to the factorisation to say so.
             if square > 0.0 { square.sqrt().recip() } else { 1.0 }
         })
@@ -125,14 +126,20 @@ fn assemble_chunk(
                 chunk.lower_values.push(value * scale[column] * scale[row as usize]);
             }
         }
-        chunk.counts.push(((chunk.upper_rows.len() - before.0) as u32, (chunk.lower_rows.len() - before.1) as u32));
+        chunk.counts.push((
+            (chunk.upper_rows.len() - before.0) as u32,
+            (chunk.lower_rows.len() - before.1) as u32,
+        ));
     }
     chunk
 }
 
 /// The entries of L's row, the diagonal first.
 fn laplacian_row(laplacian: &Laplacian, vertex: u32) -> impl Iterator<Item = (u32, f64)> + '_ {
-    let (neighbours, weights) = (laplacian.neighbours(vertex as usize), laplacian.weights(vertex as usize));
+    let (neighbours, weights) = (
+        laplacian.neighbours(vertex as usize),
+        laplacian.weights(vertex as usize),
+    );
     let diagonal = -weights.iter().sum::<f64>();
     std::iter::once((vertex, diagonal)).chain(neighbours.iter().copied().zip(weights.iter().copied()))
 }

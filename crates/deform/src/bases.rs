@@ -70,38 +70,53 @@ impl HandleBases {
             let reference = reference(vertex);
             match runs.last_mut() {
                 Some(run) if run.reference == reference => run.end = row + 1,
-                _ => runs.push(Run { end: row + 1, reference }),
+                _ => runs.push(Run {
+                    end: row + 1,
+                    reference,
+                }),
             }
         }
-        Self { vertices, handle_count: blocks.len(), rows, runs }
+        Self {
+            vertices,
+            handle_count: blocks.len(),
+            rows,
+            runs,
+        }
     }
 
     /// Writes the displacements of the solved vertices into `displacements`, one a surface vertex; leaves the others.
     pub(crate) fn evaluate(&self, motions: &[Motion], displacements: &mut [DVec3]) {
         let tables = Tables::of(motions, self.runs.iter().map(|run| run.reference));
-        displacements.par_chunks_mut(FRAME_CHUNK).enumerate().for_each(|(chunk, out)| {
-            let first = chunk * FRAME_CHUNK;
-            let place = |vertex: usize| self.vertices.partition_point(|&other| (other as usize) < vertex);
-            let (mut row, end) = (place(first), place(first + out.len()));
-            let mut run = self.runs.partition_point(|run| run.end <= row);
-            while row < end {
-                let Run { end: run_end, reference } = self.runs[run];
-                let (base, table) = tables.get(reference);
-                let until = run_end.min(end);
-                let entries = self.rows[row * self.handle_count..until * self.handle_count].chunks_exact(self.handle_count);
-                for (&vertex, entries) in self.vertices[row..until].iter().zip(entries) {
-                    let mut sum = base;
-                    for (entry, motion) in entries.iter().zip(table) {
-                        // f32 ends here: from the stored basis on everything is f64.
-                        let [x, y, z, w] = entry.map(f64::from);
-                        sum += motion[0] * x + motion[1] * y + motion[2] * z + motion[3] * w;
+        displacements
+            .par_chunks_mut(FRAME_CHUNK)
+            .enumerate()
+            .for_each(|(chunk, out)| {
+                let first = chunk * FRAME_CHUNK;
+                let place = |vertex: usize| self.vertices.partition_point(|&other| (other as usize) < vertex);
+                let (mut row, end) = (place(first), place(first + out.len()));
+                let mut run = self.runs.partition_point(|run| run.end <= row);
+                while row < end {
+                    let Run {
+                        end: run_end,
+                        reference,
+                    } = self.runs[run];
+                    let (base, table) = tables.get(reference);
+                    let until = run_end.min(end);
+                    let entries =
+                        self.rows[row * self.handle_count..until * self.handle_count].chunks_exact(self.handle_count);
+                    for (&vertex, entries) in self.vertices[row..until].iter().zip(entries) {
+                        let mut sum = base;
+                        for (entry, motion) in entries.iter().zip(table) {
+                            // f32 ends here: from the stored basis on everything is f64.
+                            let [x, y, z, w] = entry.map(f64::from);
+                            sum += motion[0] * x + motion[1] * y + motion[2] * z + motion[3] * w;
+                        }
+                        out[vertex as usize - first] = sum;
                     }
-                    out[vertex as usize - first] = sum;
+                    row = until;
+                    run += 1;
                 }
-                row = until;
-                run += 1;
-            }
-        });
+            });
     }
 }
 
@@ -128,7 +143,10 @@ impl Tables {
             let base = motions[reference].shift;
             relative[reference].get_or_insert_with(|| (base, columns(base)));
         }
-        Self { plain: columns(DVec3::ZERO), relative }
+        Self {
+            plain: columns(DVec3::ZERO),
+            relative,
+        }
     }
 
     fn get(&self, reference: Option<u16>) -> (DVec3, &[[DVec3; 4]]) {

@@ -44,16 +44,30 @@ pub struct Step {
 }
 
 impl Bound {
-    pub(crate) fn bind(problem: &Problem, ordering: &Ordering, progress: &Progress, cancel: &Cancel) -> Result<Self, BindError> {
+    pub(crate) fn bind(
+        problem: &Problem,
+        ordering: &Ordering,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, BindError> {
         cancel.check()?;
         let mut partition = Partition::of(problem)?;
         let (expected, expected_power) = (problem.surface.positions.len(), problem.method.operator_power());
         if (ordering.vertex_count(), ordering.power()) != (expected, expected_power) {
             let (found, found_power) = (ordering.vertex_count(), ordering.power());
-            return Err(BindError::Ordering { found, found_power, expected, expected_power });
+            return Err(BindError::Ordering {
+                found,
+                found_power,
+                expected,
+                expected_power,
+            });
         }
         let positions = &problem.surface.positions;
-        let handles: Vec<Handle> = partition.handles.iter().map(|vertices| Handle::new(vertices.clone(), positions)).collect();
+        let handles: Vec<Handle> = partition
+            .handles
+            .iter()
+            .map(|vertices| Handle::new(vertices.clone(), positions))
+            .collect();
         let solver = match problem.method {
             Method::Bilaplacian(_) => {
                 let plate = Plate::bind(problem, &partition, &handles, ordering, progress, cancel)?;
@@ -69,7 +83,12 @@ impl Bound {
             handles,
             iteration: 0,
             solver,
-            followers: followers(problem.surface, problem.topology, &partition.following, &partition.driven),
+            followers: followers(
+                problem.surface,
+                problem.topology,
+                &partition.following,
+                &partition.driven,
+            ),
             warnings: partition.warnings,
         })
     }
@@ -80,12 +99,20 @@ impl Bound {
     /// A wrong count, or a transform that is not finite; the former targets stay then.
     pub fn set_targets(&mut self, world_targets: &[DAffine3]) -> Result<(), SolveError> {
         if world_targets.len() != self.handles.len() {
-            return Err(SolveError::TargetCount { found: world_targets.len(), expected: self.handles.len() });
+            return Err(SolveError::TargetCount {
+                found: world_targets.len(),
+                expected: self.handles.len(),
+            });
         }
         if let Some(handle) = world_targets.iter().position(|target| !target.is_finite()) {
             return Err(SolveError::TargetNotFinite { handle });
         }
-        self.motions = self.handles.iter().zip(world_targets).map(|(handle, target)| handle.motion(target)).collect();
+        self.motions = self
+            .handles
+            .iter()
+            .zip(world_targets)
+            .map(|(handle, target)| handle.motion(target))
+            .collect();
         self.iteration = 0;
         Ok(())
     }
@@ -122,10 +149,17 @@ impl Bound {
     ) -> Result<Step, SolveError> {
         displacements.fill(DVec3::ZERO);
         if displacements.len() != self.vertex_count {
-            return Err(SolveError::OutputLength { found: displacements.len(), expected: self.vertex_count });
+            return Err(SolveError::OutputLength {
+                found: displacements.len(),
+                expected: self.vertex_count,
+            });
         }
         self.iteration += 1;
-        let mut step = Step { converged: true, energy: 0.0, iteration: self.iteration };
+        let mut step = Step {
+            converged: true,
+            energy: 0.0,
+            iteration: self.iteration,
+        };
         if self.motions.iter().all(Motion::is_rest) {
             return Ok(step);
         }
@@ -165,6 +199,11 @@ impl Bound {
         &self.warnings
     }
 
+    /// How many vertices the surface has: the length of what [`Bound::step`] fills.
+    pub fn vertex_count(&self) -> usize {
+        self.vertex_count
+    }
+
     /// How many vertices have the role [`crate::Role::Free`].
     pub fn free_count(&self) -> usize {
         self.free_count
@@ -189,11 +228,16 @@ impl Bound {
 
 /// The one way out: no displacement that is not finite passes.
 fn gate(displacements: &mut [DVec3]) -> Result<(), SolveError> {
-    let finite = displacements.par_chunks(FRAME_CHUNK).all(|chunk| chunk.iter().all(|displacement| displacement.is_finite()));
+    let finite = displacements
+        .par_chunks(FRAME_CHUNK)
+        .all(|chunk| chunk.iter().all(|displacement| displacement.is_finite()));
     if finite {
         return Ok(());
     }
-    let vertex = displacements.iter().position(|displacement| !displacement.is_finite()).unwrap_or_default();
+    let vertex = displacements
+        .iter()
+        .position(|displacement| !displacement.is_finite())
+        .unwrap_or_default();
     displacements.fill(DVec3::ZERO);
     Err(SolveError::NotFinite { vertex: vertex as u32 })
 }

@@ -5,8 +5,8 @@
 use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
-use faer::sparse::linalg::cholesky::{simplicial, supernodal};
 use faer::sparse::linalg::SymbolicSupernodalParams;
+use faer::sparse::linalg::cholesky::{simplicial, supernodal};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 
 use crate::assembly::PlateMatrix;
@@ -33,7 +33,9 @@ impl Factor {
     pub fn of(plate: &PlateMatrix, shift: f64) -> Result<Self, FactorError> {
         let symbolic = analyse(plate).ok_or(FactorError::Memory)?;
         let mut values = Vec::new();
-        values.try_reserve_exact(symbolic.len_val()).map_err(|_| FactorError::Memory)?;
+        values
+            .try_reserve_exact(symbolic.len_val())
+            .map_err(|_| FactorError::Memory)?;
         values.resize(symbolic.len_val(), 0.0);
         let mut factor = Self { symbolic, values };
         factor.fill(plate, shift)?;
@@ -54,9 +56,14 @@ impl Factor {
             shifted = values;
             &shifted
         };
-        let pattern = SymbolicSparseColMatRef::new_unsorted_checked(count, count, &plate.lower_offsets, None, &plate.lower_rows);
+        let pattern =
+            SymbolicSparseColMatRef::new_unsorted_checked(count, count, &plate.lower_offsets, None, &plate.lower_rows);
         let matrix = SparseColMatRef::new(pattern, lower_values);
-        let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(&self.symbolic, Par::Seq, Default::default());
+        let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
+            &self.symbolic,
+            Par::Seq,
+            Default::default(),
+        );
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::Memory)?;
         let outcome = supernodal::factorize_supernodal_numeric_llt(
             &mut self.values,
@@ -86,12 +93,16 @@ impl Factor {
 
 fn analyse(plate: &PlateMatrix) -> Option<supernodal::SymbolicSupernodalCholesky<u32>> {
     let count = plate.scale.len();
-    let pattern = SymbolicSparseColMatRef::new_unsorted_checked(count, count, &plate.upper_offsets, None, &plate.upper_rows);
+    let pattern =
+        SymbolicSparseColMatRef::new_unsorted_checked(count, count, &plate.upper_offsets, None, &plate.upper_rows);
     let mut tree = vec![0_i32; count];
     let mut column_counts = vec![0_u32; count];
     let scratch = simplicial::prefactorize_symbolic_cholesky_scratch::<u32>(count, plate.upper_rows.len());
-    let mut memory = MemBuffer::try_new(scratch.or(supernodal::factorize_supernodal_symbolic_cholesky_scratch::<u32>(count))).ok()?;
-    let tree = simplicial::prefactorize_symbolic_cholesky(&mut tree, &mut column_counts, pattern, MemStack::new(&mut memory));
+    let mut memory =
+        MemBuffer::try_new(scratch.or(supernodal::factorize_supernodal_symbolic_cholesky_scratch::<u32>(count)))
+            .ok()?;
+    let tree =
+        simplicial::prefactorize_symbolic_cholesky(&mut tree, &mut column_counts, pattern, MemStack::new(&mut memory));
     supernodal::factorize_supernodal_symbolic_cholesky(
         pattern,
         tree,

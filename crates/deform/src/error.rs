@@ -20,7 +20,9 @@ pub enum BindError {
         expected: usize,
     },
     /// A vertex belongs to a handle that does not exist.
-    #[error("surface vertex {vertex} belongs to handle {handle}, but there are {handle_count} handles: add the handle or free the vertex")]
+    #[error(
+        "surface vertex {vertex} belongs to handle {handle}, but there are {handle_count} handles: add the handle or free the vertex"
+    )]
     UnknownHandle {
         /// The vertex.
         vertex: u32,
@@ -44,7 +46,9 @@ pub enum BindError {
         value: f64,
     },
     /// The ordering is another mesh's or power's.
-    #[error("the ordering is for {found} vertices and power {found_power}, not for {expected} and {expected_power}: make one from this surface")]
+    #[error(
+        "the ordering is for {found} vertices and power {found_power}, not for {expected} and {expected_power}: make one from this surface"
+    )]
     Ordering {
         /// Its vertices.
         found: usize,

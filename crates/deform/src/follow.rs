@@ -37,14 +37,25 @@ pub(crate) fn followers(surface: &Surface, topology: &Topology, following: &[u32
         return Vec::new();
     }
     let is_driven = |corner: SurfaceVertex| driven.binary_search(&topology.component(corner)).is_ok();
-    let triangles: Vec<_> = surface.triangles.iter().copied().filter(|corners| is_driven(corners[0])).collect();
+    let triangles: Vec<_> = surface
+        .triangles
+        .iter()
+        .copied()
+        .filter(|corners| is_driven(corners[0]))
+        .collect();
     let nearby = Bvh::build(&surface.positions, &triangles);
-    following.par_iter().filter_map(|&component| tie(surface, topology, component, &nearby)).collect()
+    following
+        .par_iter()
+        .filter_map(|&component| tie(surface, topology, component, &nearby))
+        .collect()
 }
 
 fn tie(surface: &Surface, topology: &Topology, component: u32, nearby: &Bvh) -> Option<Follower> {
     let vertices = topology.components()[component as usize].vertices.clone();
-    let world_rest: Vec<DVec3> = vertices.iter().map(|vertex| surface.positions[vertex.index()]).collect();
+    let world_rest: Vec<DVec3> = vertices
+        .iter()
+        .map(|vertex| surface.positions[vertex.index()])
+        .collect();
     let mut nearest: Option<(SurfaceVertex, f64)> = None;
     for &point in &world_rest {
         if let Some(found) = nearby.nearest_vertex(point)
@@ -60,7 +71,12 @@ fn tie(surface: &Surface, topology: &Topology, component: u32, nearby: &Bvh) -> 
     }
     let patch = thinned(patch_around(surface, topology, middle, 0.5 * low.distance(high)));
     let world_patch_rest = patch.iter().map(|vertex| surface.positions[vertex.index()]).collect();
-    Some(Follower { vertices, world_rest, patch, world_patch_rest })
+    Some(Follower {
+        vertices,
+        world_rest,
+        patch,
+        world_patch_rest,
+    })
 }
 
 /// The vertices joined to `middle` within a ball, which is at least [`PATCH_EDGES`] edges large; in walking order.
@@ -96,7 +112,11 @@ pub(crate) fn carry(followers: &[Follower], displacements: &mut [DVec3]) {
     let motions: Vec<Option<RigidMotion>> = followers
         .par_iter()
         .map(|follower| {
-            let patch: Vec<DVec3> = follower.patch.iter().map(|vertex| displacements[vertex.index()]).collect();
+            let patch: Vec<DVec3> = follower
+                .patch
+                .iter()
+                .map(|vertex| displacements[vertex.index()])
+                .collect();
             RigidMotion::fit(&follower.world_patch_rest, &patch)
         })
         .collect();

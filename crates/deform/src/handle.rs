@@ -26,11 +26,23 @@ pub(crate) struct Motion {
 impl Handle {
     /// The frame of a handle with at least one vertex.
     pub fn new(vertices: Vec<u32>, world_positions: &[DVec3]) -> Self {
-        let origin = vertices.first().map_or(DVec3::ZERO, |&vertex| world_positions[vertex as usize]);
-        let offset = vertices.iter().map(|&vertex| world_positions[vertex as usize] - origin).sum::<DVec3>();
+        let origin = vertices
+            .first()
+            .map_or(DVec3::ZERO, |&vertex| world_positions[vertex as usize]);
+        let offset = vertices
+            .iter()
+            .map(|&vertex| world_positions[vertex as usize] - origin)
+            .sum::<DVec3>();
         let world_centre = origin + offset / vertices.len().max(1) as f64;
-        let radius = vertices.iter().map(|&vertex| world_positions[vertex as usize].distance(world_centre)).fold(0.0, f64::max);
-        Self { vertices, world_centre, radius: if radius > 0.0 { radius } else { 1.0 } }
+        let radius = vertices
+            .iter()
+            .map(|&vertex| world_positions[vertex as usize].distance(world_centre))
+            .fold(0.0, f64::max);
+        Self {
+            vertices,
+            world_centre,
+            radius: if radius > 0.0 { radius } else { 1.0 },
+        }
     }
 
     /// A point in the handle's own coordinates, with a last entry 1 for the constant.
@@ -42,7 +54,10 @@ impl Handle {
     /// What `world_target` changes, zero to the last bit where it is the identity.
     pub fn motion(&self, world_target: &DAffine3) -> Motion {
         let change = world_target.matrix3 - DMat3::IDENTITY;
-        Motion { linear: change * self.radius, shift: change * self.world_centre + world_target.translation }
+        Motion {
+            linear: change * self.radius,
+            shift: change * self.world_centre + world_target.translation,
+        }
     }
 }
 

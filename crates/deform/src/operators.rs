@@ -70,11 +70,21 @@ impl Laplacian {
         let mut next_row = rows.iter().peekable();
         for (local, &vertex) in vertices.iter().enumerate() {
             if next_row.next_if_eq(&&vertex).is_some() {
-                neighbours.extend(topology.neighbours(SurfaceVertex(vertex)).iter().map(|n| local_of[n.index()]));
+                neighbours.extend(
+                    topology
+                        .neighbours(SurfaceVertex(vertex))
+                        .iter()
+                        .map(|n| local_of[n.index()]),
+                );
             }
             offsets[local + 1] = neighbours.len() as u32;
         }
-        let mut operator = Self { vertices, offsets, neighbours, ..Self::default() };
+        let mut operator = Self {
+            vertices,
+            offsets,
+            neighbours,
+            ..Self::default()
+        };
         operator.fill(surface, topology, stiffness, &local_of);
         operator
     }
@@ -90,7 +100,10 @@ impl Laplacian {
                 }
             }
         }
-        let faces: Vec<u32> = (0..needed.len()).filter(|&face| needed[face]).map(|face| face as u32).collect();
+        let faces: Vec<u32> = (0..needed.len())
+            .filter(|&face| needed[face])
+            .map(|face| face as u32)
+            .collect();
         let terms: Vec<FaceTerms> = faces
             .par_iter()
             .with_min_len(CHUNK)
@@ -109,33 +122,39 @@ impl Laplacian {
             rows.push((row, 0.0));
             rest = tail;
         }
-        rows.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(local, (row, area))| {
-            let vertex = SurfaceVertex(self.vertices[local]);
-            let neighbours = self.neighbours(local);
-            if neighbours.is_empty() {
-                return;
-            }
-            for &face in topology.faces(vertex) {
-                let terms = &terms[slot_of_face[face as usize] as usize];
-                let corners = surface.triangles[face as usize];
-                for corner in 0..3 {
-                    if corners[corner] == vertex {
-                        *area += terms.areas[corner];
-                        continue;
-                    }
-                    // The edge from `vertex` to this corner lies opposite the third corner.
-                    let third = (0..3).find(|&other| other != corner && corners[other] != vertex);
-                    let place = neighbours.binary_search(&local_of[corners[corner].index()]);
-                    if let (Some(third), Ok(place)) = (third, place) {
-                        row[place] += terms.half_cotangents[third];
+        rows.par_iter_mut()
+            .with_min_len(CHUNK)
+            .enumerate()
+            .for_each(|(local, (row, area))| {
+                let vertex = SurfaceVertex(self.vertices[local]);
+                let neighbours = self.neighbours(local);
+                if neighbours.is_empty() {
+                    return;
+                }
+                for &face in topology.faces(vertex) {
+                    let terms = &terms[slot_of_face[face as usize] as usize];
+                    let corners = surface.triangles[face as usize];
+                    for corner in 0..3 {
+                        if corners[corner] == vertex {
+                            *area += terms.areas[corner];
+                            continue;
+                        }
+                        // The edge from `vertex` to this corner lies opposite the third corner.
+                        let third = (0..3).find(|&other| other != corner && corners[other] != vertex);
+                        let place = neighbours.binary_search(&local_of[corners[corner].index()]);
+                        if let (Some(third), Ok(place)) = (third, place) {
+                            row[place] += terms.half_cotangents[third];
+                        }
                     }
                 }
-            }
-        });
+            });
         let mut areas: Vec<f64> = rows.into_iter().map(|(_, area)| area).collect();
         self.weights = weights;
         self.floor_areas(topology, &mut areas);
-        self.inverse_areas = areas.iter().map(|&area| if area > 0.0 { area.recip() } else { 0.0 }).collect();
+        self.inverse_areas = areas
+            .iter()
+            .map(|&area| if area > 0.0 { area.recip() } else { 0.0 })
+            .collect();
     }
 
     fn floor_areas(&self, topology: &Topology, areas: &mut [f64]) {
@@ -226,7 +245,11 @@ impl FaceTerms {
         let longest = lengths[0].max(lengths[1]).max(lengths[2]);
         let excess = MOLLIFICATION * longest - (sum - 2.0 * longest);
         let mollified = excess > 0.0;
-        let lengths = if mollified { lengths.map(|length| length + excess) } else { lengths };
+        let lengths = if mollified {
+            lengths.map(|length| length + excess)
+        } else {
+            lengths
+        };
         let stiffness = corners.iter().map(|corner| stiffness[corner.index()]).sum::<f64>() / 3.0;
         Self {
             half_cotangents: cotangents(lengths).map(|cotangent| 0.5 * stiffness * cotangent),

@@ -65,7 +65,10 @@ impl Ordering {
                 sink(column_of[vertex as usize]);
             }
         });
-        postorder(&parent).into_iter().map(|column| order[column as usize]).collect()
+        postorder(&parent)
+            .into_iter()
+            .map(|column| order[column as usize])
+            .collect()
     }
 }
 
@@ -81,7 +84,12 @@ fn upper_graph(topology: &Topology, power: u32, cancel: &Cancel) -> Result<(Vec<
                 let (mut counts, mut rows) = (Vec::with_capacity(CHUNK), Vec::new());
                 for vertex in chunk * CHUNK..((chunk + 1) * CHUNK).min(count) {
                     let before = rows.len();
-                    rows.extend(reach.around(topology, vertex as u32).iter().filter(|&&other| (other as usize) < vertex));
+                    rows.extend(
+                        reach
+                            .around(topology, vertex as u32)
+                            .iter()
+                            .filter(|&&other| (other as usize) < vertex),
+                    );
                     counts.push((rows.len() - before) as u32);
                 }
                 Ok((counts, rows))

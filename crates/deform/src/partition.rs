@@ -51,7 +51,12 @@ impl Partition {
         if let Some(handle) = handles.iter().position(Vec::is_empty) {
             return Err(BindError::EmptyHandle { handle });
         }
-        let indices = |test: &dyn Fn(usize) -> bool| (0..component_count).filter(|&c| test(c)).map(|c| c as u32).collect::<Vec<_>>();
+        let indices = |test: &dyn Fn(usize) -> bool| {
+            (0..component_count)
+                .filter(|&c| test(c))
+                .map(|c| c as u32)
+                .collect::<Vec<_>>()
+        };
         let loose = indices(&|c| !held[c] && !driven[c]);
         let follows = problem.loose == Loose::Follow && !handles.is_empty();
         let warnings = warnings(problem, &loose, &indices(&|c| driven[c] && !held[c]), follows);
@@ -69,7 +74,10 @@ impl Partition {
 
 fn check(problem: &Problem) -> Result<(), BindError> {
     let expected = problem.surface.positions.len();
-    for (table, found) in [("the roles' table", problem.roles.len()), ("the stiffness table", problem.stiffness.len())] {
+    for (table, found) in [
+        ("the roles' table", problem.roles.len()),
+        ("the stiffness table", problem.stiffness.len()),
+    ] {
         if found != expected {
             return Err(BindError::Length { table, found, expected });
         }
@@ -78,15 +86,27 @@ fn check(problem: &Problem) -> Result<(), BindError> {
         if let Role::Handle(handle) = *role
             && usize::from(handle) >= problem.handle_count
         {
-            return Err(BindError::UnknownHandle { vertex: vertex as u32, handle, handle_count: problem.handle_count });
+            return Err(BindError::UnknownHandle {
+                vertex: vertex as u32,
+                handle,
+                handle_count: problem.handle_count,
+            });
         }
     }
     for (vertex, &value) in problem.stiffness.iter().enumerate() {
         if !(value.is_finite() && value > 0.0) {
-            return Err(BindError::Stiffness { vertex: vertex as u32, value });
+            return Err(BindError::Stiffness {
+                vertex: vertex as u32,
+                value,
+            });
         }
     }
-    match problem.surface.positions.iter().position(|position| !position.is_finite()) {
+    match problem
+        .surface
+        .positions
+        .iter()
+        .position(|position| !position.is_finite())
+    {
         Some(vertex) => Err(BindError::Position { vertex: vertex as u32 }),
         None => Ok(()),
     }
@@ -113,7 +133,10 @@ fn influenced(problem: &Problem, handles: &[Vec<u32>]) -> Vec<u32> {
             }
         }
     }
-    (0..reached.len()).filter(|&vertex| reached[vertex]).map(|vertex| vertex as u32).collect()
+    (0..reached.len())
+        .filter(|&vertex| reached[vertex])
+        .map(|vertex| vertex as u32)
+        .collect()
 }
 
 /// How many components are named one by one before they are only counted.
@@ -125,7 +148,11 @@ fn warnings(problem: &Problem, loose: &[u32], unheld: &[u32], follows: bool) -> 
         return sentences;
     }
     let size = |component: u32| problem.topology.components()[component as usize].vertices.len();
-    let fate = if follows { "the nearest deformed surface" } else { "nothing" };
+    let fate = if follows {
+        "the nearest deformed surface"
+    } else {
+        "nothing"
+    };
     let verb = |count: usize| match (follows, count) {
         (true, 1) => "follows",
         (true, _) => "follow",

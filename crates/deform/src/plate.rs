@@ -52,17 +52,32 @@ impl Plate {
             .iter()
             .map(|handle| {
                 let coordinates = |vertex: u32| handle.coordinates(problem.surface.positions[vertex as usize]);
-                let local = |vertex: u32| shell.laplacian.local(vertex).map(|local| (local as u32, coordinates(vertex)));
+                let local = |vertex: u32| {
+                    shell
+                        .laplacian
+                        .local(vertex)
+                        .map(|local| (local as u32, coordinates(vertex)))
+                };
                 handle.vertices.iter().filter_map(|&vertex| local(vertex)).collect()
             })
             .collect();
-        let solved_locals: Vec<u32> = solved.iter().filter_map(|&v| shell.laplacian.local(v)).map(|local| local as u32).collect();
-        let columns: Vec<Columns> =
-            prescribed.par_iter().map(|own| solve_handle(&shell, own, &prescribed, &solved_locals, cancel)).collect::<Result<_, _>>()?;
+        let solved_locals: Vec<u32> = solved
+            .iter()
+            .filter_map(|&v| shell.laplacian.local(v))
+            .map(|local| local as u32)
+            .collect();
+        let columns: Vec<Columns> = prescribed
+            .par_iter()
+            .map(|own| solve_handle(&shell, own, &prescribed, &solved_locals, cancel))
+            .collect::<Result<_, _>>()?;
         for column in &columns {
-            if !(column.error <= BASES_TOLERANCE) {
+            if column.error.is_nan() || column.error > BASES_TOLERANCE {
                 let vertex = column.worst_vertex;
-                return Err(BindError::Inaccurate { component: component_of(vertex), vertex, error: column.error });
+                return Err(BindError::Inaccurate {
+                    component: component_of(vertex),
+                    vertex,
+                    error: column.error,
+                });
             }
         }
         let mut energy_blocks = vec![[[0.0; 4]; 4]; handles.len() * handles.len()];
@@ -73,9 +88,16 @@ impl Plate {
         }
         let reference = reference_handles(problem, partition);
         let blocks: Vec<Vec<[f32; 4]>> = columns.into_iter().map(|column| column.rows).collect();
-        let bases = HandleBases::new(solved.clone(), &blocks, |vertex| reference[component_of(vertex) as usize]);
+        let bases = HandleBases::new(solved.clone(), &blocks, |vertex| {
+            reference[component_of(vertex) as usize]
+        });
         progress.set(1.0);
-        Ok(Self { shell, bases, prescribed, energy_blocks })
+        Ok(Self {
+            shell,
+            bases,
+            prescribed,
+            energy_blocks,
+        })
     }
 
     /// The handles' bases.
@@ -89,7 +111,9 @@ impl Plate {
         match self.shell.laplacian.mollified_faces() {
             0 => {}
             1 => sentences.push("1 degenerate triangle was given the smallest safe shape".to_owned()),
-            count => sentences.push(format!("{count} degenerate triangles were given the smallest safe shape")),
+            count => sentences.push(format!(
+                "{count} degenerate triangles were given the smallest safe shape"
+            )),
         }
         if self.shell.shift > 0.0 {
             sentences.push(format!(
@@ -107,7 +131,14 @@ impl Plate {
 
     /// The energy of a frame, from the motions alone: no pass over the surface.
     pub fn energy(&self, motions: &[Motion]) -> f64 {
-        let columns = |motion: &Motion| [motion.linear.x_axis, motion.linear.y_axis, motion.linear.z_axis, motion.shift];
+        let columns = |motion: &Motion| {
+            [
+                motion.linear.x_axis,
+                motion.linear.y_axis,
+                motion.linear.z_axis,
+                motion.shift,
+            ]
+        };
         let mut sum = 0.0;
         for (h, left) in motions.iter().map(columns).enumerate() {
             for (k, right) in motions.iter().map(columns).enumerate() {
@@ -125,14 +156,23 @@ impl Plate {
 
     /// The energy of any displacements, one a surface vertex; components without a handle are left out.
     pub fn energy_of(&self, displacements: &[DVec3]) -> f64 {
-        let d: Vec<[f64; 3]> = self.shell.laplacian.vertices().iter().map(|&v| displacements[v as usize].to_array()).collect();
+        let d: Vec<[f64; 3]> = self
+            .shell
+            .laplacian
+            .vertices()
+            .iter()
+            .map(|&v| displacements[v as usize].to_array())
+            .collect();
         self.shell.energy(&d)
     }
 
     /// Solves for the solved vertices' displacements from whatever the other vertices' are.
     pub fn back_substitute(&self, displacements: &mut [DVec3]) {
         let vertices = self.shell.laplacian.vertices();
-        let mut d: Vec<[f64; 3]> = vertices.iter().map(|&vertex| displacements[vertex as usize].to_array()).collect();
+        let mut d: Vec<[f64; 3]> = vertices
+            .iter()
+            .map(|&vertex| displacements[vertex as usize].to_array())
+            .collect();
         self.shell.solve(&mut d);
         for &local in self.shell.columns() {
             displacements[vertices[local as usize] as usize] = DVec3::from_array(d[local as usize]);
@@ -142,7 +182,9 @@ impl Plate {
     /// The handles' vertices and coordinates, as surface vertices.
     pub fn prescribed(&self, handle: usize) -> impl Iterator<Item = (u32, [f64; 4])> + '_ {
         let vertices = self.shell.laplacian.vertices();
-        self.prescribed[handle].iter().map(|&(local, coordinates)| (vertices[local as usize], coordinates))
+        self.prescribed[handle]
+            .iter()
+            .map(|&(local, coordinates)| (vertices[local as usize], coordinates))
     }
 }
 
@@ -182,9 +224,19 @@ fn solve_handle(
         }
         block
     };
-    let rows = solved_locals.iter().map(|&local| d[local as usize].map(|value| value as f32)).collect();
-    let worst_vertex = own.first().map_or(0, |&(local, _)| shell.laplacian.vertices()[local as usize]);
-    Ok(Columns { rows, energies: prescribed.iter().map(energy).collect(), error, worst_vertex })
+    let rows = solved_locals
+        .iter()
+        .map(|&local| d[local as usize].map(|value| value as f32))
+        .collect();
+    let worst_vertex = own
+        .first()
+        .map_or(0, |&(local, _)| shell.laplacian.vertices()[local as usize]);
+    Ok(Columns {
+        rows,
+        energies: prescribed.iter().map(energy).collect(),
+        error,
+        worst_vertex,
+    })
 }
 
 /// The vertices where L d can differ from zero: solved ones, handles and their neighbours, ascending.
@@ -196,7 +248,10 @@ fn bent_rows(problem: &Problem, solved: &[u32], handles: &[Handle]) -> Vec<u32> 
             bent[neighbour.index()] = true;
         }
     }
-    (0..bent.len()).filter(|&vertex| bent[vertex]).map(|vertex| vertex as u32).collect()
+    (0..bent.len())
+        .filter(|&vertex| bent[vertex])
+        .map(|vertex| vertex as u32)
+        .collect()
 }
 
 /// The lowest handle of each component in which nothing is fixed.

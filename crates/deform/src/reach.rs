@@ -13,7 +13,12 @@ pub(crate) struct Reach {
 impl Reach {
     /// For walks of at most `power` edges over `vertex_count` vertices.
     pub fn new(vertex_count: usize, power: u32) -> Self {
-        Self { power, stamp: 0, stamps: vec![0; vertex_count], found: Vec::new() }
+        Self {
+            power,
+            stamp: 0,
+            stamps: vec![0; vertex_count],
+            found: Vec::new(),
+        }
     }
 
     /// The vertices within `power` edges of `vertex`, each once, without it; nearer ones first.

@@ -46,7 +46,10 @@ impl RigidMotion {
 
 /// The rotation R that maximises tr(R S), S = `covariance` = Σ from toᵀ.
 fn best_rotation(covariance: &DMat3) -> DQuat {
-    let largest = covariance.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let largest = covariance
+        .to_cols_array()
+        .into_iter()
+        .fold(0.0, |a: f64, b| a.max(b.abs()));
     if !(largest > 0.0 && largest.is_finite()) {
         return DQuat::IDENTITY;
     }
@@ -61,12 +64,21 @@ fn best_rotation(covariance: &DMat3) -> DQuat {
     let vectors = jacobi_eigenvectors(&mut n);
     let best = (0..4).fold(0, |best, k| if n[k][k] > n[best][best] { k } else { best });
     let q = DQuat::from_xyzw(vectors[1][best], vectors[2][best], vectors[3][best], vectors[0][best]);
-    if q.length_squared() > 0.5 { q.normalize() } else { DQuat::IDENTITY }
+    if q.length_squared() > 0.5 {
+        q.normalize()
+    } else {
+        DQuat::IDENTITY
+    }
 }
 
 /// Diagonalises a symmetric matrix by Jacobi rotations; the columns of the result are its eigenvectors.
 fn jacobi_eigenvectors(matrix: &mut [[f64; 4]; 4]) -> [[f64; 4]; 4] {
-    let mut vectors = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+    let mut vectors = [
+        [1.0, 0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+    ];
     for _sweep in 0..16 {
         for p in 0..3 {
             for q in p + 1..4 {
@@ -100,7 +112,9 @@ mod tests {
     use glam::{DMat3, DQuat, DVec3};
 
     fn points() -> Vec<DVec3> {
-        (0..20).map(|i| DVec3::new(f64::from(i * 7 % 5), f64::from(i * 3 % 7), f64::from(i % 4))).collect()
+        (0..20)
+            .map(|i| DVec3::new(f64::from(i * 7 % 5), f64::from(i * 3 % 7), f64::from(i % 4)))
+            .collect()
     }
 
     fn check(rest: &[DVec3], rotation: DQuat, shift: DVec3) {
@@ -118,7 +132,11 @@ mod tests {
         let line: Vec<DVec3> = (0..5).map(|i| DVec3::new(f64::from(i), 1.0, 1.0)).collect();
         for rest in [points(), flat, line, vec![DVec3::ONE]] {
             for angle in [0.0, 1e-6, 0.4, 2.0, std::f64::consts::PI] {
-                check(&rest, DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), angle), DVec3::new(0.1, -5.0, 2.0));
+                check(
+                    &rest,
+                    DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), angle),
+                    DVec3::new(0.1, -5.0, 2.0),
+                );
             }
         }
     }

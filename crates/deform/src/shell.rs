@@ -51,8 +51,11 @@ impl Shell {
     /// Factors the plate in which the surface vertices `order` are solved for, eliminated in that order; `laplacian`
     /// has full rows for them and their neighbours.
     pub fn factor(laplacian: Laplacian, order: &[u32], cancel: &Cancel) -> Result<Self, ShellError> {
-        let columns: Vec<u32> =
-            order.iter().filter_map(|&vertex| laplacian.local(vertex)).map(|local| local as u32).collect();
+        let columns: Vec<u32> = order
+            .iter()
+            .filter_map(|&vertex| laplacian.local(vertex))
+            .map(|local| local as u32)
+            .collect();
         let mut column_of = vec![CONSTRAINED; laplacian.vertices().len()];
         for (column, &local) in columns.iter().enumerate() {
             column_of[local as usize] = column as u32;
@@ -64,15 +67,25 @@ impl Shell {
             match Factor::of(&plate, shift) {
                 Ok(factor) => {
                     let scale = std::mem::take(&mut plate.scale);
-                    return Ok(Self { laplacian, columns, scale, factor, shift });
+                    return Ok(Self {
+                        laplacian,
+                        columns,
+                        scale,
+                        factor,
+                        shift,
+                    });
                 }
                 Err(FactorError::Pivot(column)) => failed = failed.or(Some(column)),
                 Err(FactorError::Memory) => return Err(ShellError::OutOfMemory),
             }
             cancel.check().map_err(|_| ShellError::Cancelled)?;
         }
-        let local = failed.and_then(|column| columns.get(column)).map_or(0, |&local| local as usize);
-        Err(ShellError::NotPositiveDefinite { vertex: laplacian.vertices()[local] })
+        let local = failed
+            .and_then(|column| columns.get(column))
+            .map_or(0, |&local| local as usize);
+        Err(ShellError::NotPositiveDefinite {
+            vertex: laplacian.vertices()[local],
+        })
     }
 
     /// The local vertices that are solved for.
@@ -96,25 +109,32 @@ impl Shell {
         for step in 1..=*STEPS.end() {
             let mut x = self.scaled_residual(d);
             self.factor.solve(&mut x);
-            let (mut correction, mut size) = (0.0_f64, 0.0_f64);
+            let (mut correction, mut size, mut finite) = (0.0_f64, 0.0_f64, true);
             for (column, &local) in self.columns.iter().enumerate() {
                 let target = &mut d[local as usize];
                 for k in 0..K {
                     let change = x[column][k] * self.scale[column];
                     target[k] += change;
+                    finite &= target[k].is_finite();
                     correction = correction.max(change.abs());
                     size = size.max(target[k].abs());
                 }
+            }
+            if !finite {
+                return f64::INFINITY;
             }
             if correction == 0.0 {
                 return 0.0;
             }
             // Corrections fall by the same factor each time, so this is what the next one would be.
             let relative = correction / size;
-            let remaining = if step == 1 { relative } else { relative * (relative / last).min(1.0) };
+            let remaining = if step == 1 {
+                relative
+            } else {
+                relative * (relative / last).min(1.0)
+            };
             let falls = step == 1 || relative < 0.5 * last;
             last = relative;
-            // NaN is not below anything: it ends the refinement, too, and fails the checks.
             if step >= *STEPS.start() && (!falls || remaining < NEGLIGIBLE) || step == *STEPS.end() {
                 return remaining;
             }
@@ -140,15 +160,17 @@ impl Shell {
         let mut worst = (0.0, 0);
         for &local in &self.columns {
             let error = (ones[local as usize][0] - 1.0).abs();
-            // Written so that NaN counts as worst.
-            if !(error <= worst.0) {
+            if error > worst.0 || error.is_nan() {
                 worst = (error, local);
             }
         }
         if worst.0 <= TOLERANCE {
             Ok(())
         } else {
-            Err(ShellError::Inaccurate { vertex: self.laplacian.vertices()[worst.1 as usize], error: worst.0 })
+            Err(ShellError::Inaccurate {
+                vertex: self.laplacian.vertices()[worst.1 as usize],
+                error: worst.0,
+            })
         }
     }
 
@@ -173,8 +195,15 @@ impl ShellError {
     /// The error as the caller sees it.
     pub fn into_bind_error(self, component_of: impl Fn(u32) -> u32, free_count: usize) -> BindError {
         match self {
-            Self::NotPositiveDefinite { vertex } => BindError::NotPositiveDefinite { component: component_of(vertex), vertex },
-            Self::Inaccurate { vertex, error } => BindError::Inaccurate { component: component_of(vertex), vertex, error },
+            Self::NotPositiveDefinite { vertex } => BindError::NotPositiveDefinite {
+                component: component_of(vertex),
+                vertex,
+            },
+            Self::Inaccurate { vertex, error } => BindError::Inaccurate {
+                component: component_of(vertex),
+                vertex,
+                error,
+            },
             Self::OutOfMemory => BindError::OutOfMemory { free_count },
             Self::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
         }

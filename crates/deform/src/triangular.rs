@@ -10,7 +10,11 @@ use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 /// Solves L Lᵀ x = b in place.
 ///
 /// `values` are the factor's, `x` has one row a column of the factor.
-pub(crate) fn solve_in_place<const K: usize>(symbolic: &SymbolicSupernodalCholesky<u32>, values: &[f64], x: &mut [[f64; K]]) {
+pub(crate) fn solve_in_place<const K: usize>(
+    symbolic: &SymbolicSupernodalCholesky<u32>,
+    values: &[f64],
+    x: &mut [[f64; K]],
+) {
     let widest = symbolic.nnz_per_super().iter().copied().max().unwrap_or(0) as usize;
     let mut below = vec![[0.0; K]; widest];
     for s in 0..symbolic.n_supernodes() {

@@ -1,0 +1,210 @@
+//! What components do that lack a handle, a hold, or both; and refusals.
+
+use crate::rig::{Scene, step, turned};
+use glam::{DAffine3, DVec3};
+use pliant_deform::{Bilaplacian, BindError, Loose, Method, Ordering, Role};
+use pliant_mesh::{Cancel, Cancelled, Drawn, Progress, SurfaceVertex, shapes};
+
+fn at(shape: Drawn, shift: DVec3, scale: f64) -> Drawn {
+    shapes::moved(
+        &shape,
+        DAffine3::from_translation(shift) * DAffine3::from_scale(DVec3::splat(scale)),
+    )
+}
+
+/// A bar along x, a ball above its far end, a ball above its near end.
+fn bar_with_balls() -> Drawn {
+    shapes::together(&[
+        shapes::bar(12, 2, 2),
+        at(shapes::icosphere(1), DVec3::new(11.0, 1.0, 3.2), 0.6),
+        at(shapes::icosphere(1), DVec3::new(1.0, 1.0, 3.2), 0.5),
+    ])
+}
+
+fn vertices_near(scene: &Scene, shape_top: bool, x_above: f64) -> Vec<usize> {
+    let positions = scene.positions();
+    (0..positions.len())
+        .filter(|&v| (positions[v].z > 2.1) == shape_top && positions[v].x > x_above)
+        .collect()
+}
+
+#[test]
+fn loose_components_move_rigidly_with_the_surface_beside_them() {
+    let scene = Scene::new(bar_with_balls())
+        .with(Role::Fixed, |p| p.x < 4.5 && p.z < 2.1)
+        .with(Role::Handle(0), |p| p.x > 6.5 && p.z < 2.1);
+    let bound = &mut scene.bind();
+    assert_eq!(bound.warnings().len(), 2, "{:?}", bound.warnings());
+    let target = turned(DVec3::new(12.0, 1.0, 1.0), 0.7, DVec3::new(1.0, 2.0, 0.5));
+    let displacements = step(bound, &[target]);
+    // Beside a handle that moves rigidly, the follower makes the same motion; beside what is fixed it stays.
+    for v in vertices_near(&scene, true, 9.0) {
+        let rest = scene.positions()[v];
+        assert!(displacements[v].distance(target.transform_point3(rest) - rest) < 1e-9);
+    }
+    for v in vertices_near(&scene, true, -1.0)
+        .into_iter()
+        .filter(|&v| scene.positions()[v].x < 9.0)
+    {
+        assert_eq!(displacements[v], DVec3::ZERO);
+    }
+}
+
+#[test]
+fn a_follower_keeps_its_shape_whatever_its_patch_does() {
+    let scene = Scene::new(bar_with_balls())
+        .with(Role::Fixed, |p| p.x < 1.0 && p.z < 2.1)
+        .with(Role::Handle(0), |p| p.x > 11.5 && p.z < 2.1);
+    let stretched = DAffine3::from_scale(DVec3::new(1.5, 0.2, 3.0));
+    let displacements = step(&mut scene.bind(), &[stretched]);
+    let ball = vertices_near(&scene, true, 9.0);
+    let mut moved = 0.0_f64;
+    for &a in &ball {
+        moved = moved.max(displacements[a].length());
+        for &b in &ball {
+            let (p, q) = (scene.positions()[a], scene.positions()[b]);
+            assert!(((p + displacements[a]).distance(q + displacements[b]) - p.distance(q)).abs() < 1e-9);
+        }
+    }
+    assert!(moved > 0.1);
+}
+
+#[test]
+fn loose_components_rest_when_they_are_told_to() {
+    let mut scene = Scene::new(bar_with_balls()).with(Role::Handle(0), |p| p.z < 0.5);
+    scene.loose = Loose::Rest;
+    let displacements = scene.moved(&[DAffine3::from_translation(DVec3::X)]);
+    for (displacement, rest) in displacements.iter().zip(scene.positions()) {
+        let expected = if rest.z > 2.1 { DVec3::ZERO } else { DVec3::X };
+        assert!(displacement.distance(expected) < 1e-9);
+    }
+}
+
+#[test]
+fn a_component_that_is_only_fixed_or_beyond_a_fixed_band_stays_and_costs_nothing() {
+    let drawn = shapes::together(&[
+        shapes::tube(12, 30, 30.0),
+        at(shapes::icosphere(2), DVec3::new(9.0, 0.0, 0.0), 1.0),
+    ]);
+    let scene = Scene::new(drawn)
+        .with(Role::Fixed, |p| (p.z > 9.5 && p.z < 11.5 && p.x < 5.0) || p.x > 9.9)
+        .with(Role::Handle(0), |p| p.z < 0.5 && p.x < 5.0);
+    let bound = &mut scene.bind();
+    // Nine rings of twelve between the handle and the band of two rings.
+    assert_eq!(bound.solved_count(), 9 * 12);
+    assert_eq!(
+        bound.free_count(),
+        scene.roles.iter().filter(|role| **role == Role::Free).count()
+    );
+    let displacements = step(bound, &[turned(DVec3::ZERO, 1.0, DVec3::X)]);
+    for (displacement, rest) in displacements.iter().zip(scene.positions()) {
+        assert_eq!(*displacement == DVec3::ZERO, rest.z > 9.5 || rest.x > 5.0, "{rest}");
+    }
+}
+
+#[test]
+fn many_loose_components_are_counted_in_one_sentence() {
+    let mut parts = vec![shapes::bar(4, 2, 2)];
+    parts.extend((0..9).map(|i| at(shapes::icosphere(0), DVec3::new(f64::from(i) * 3.0, 9.0, 0.0), 1.0)));
+    let scene = Scene::new(shapes::together(&parts))
+        .with(Role::Handle(0), |p| p.y < 3.0 && p.x < 1.0)
+        .with(Role::Fixed, |p| p.y < 3.0 && p.x > 3.0);
+    let bound = scene.bind();
+    assert_eq!(bound.warnings().len(), 1);
+    assert!(
+        bound.warnings()[0].starts_with("9 components (108 vertices"),
+        "{}",
+        bound.warnings()[0]
+    );
+}
+
+#[test]
+fn without_handles_or_without_anything_free_there_is_nothing_to_solve() {
+    let scene = Scene::new(shapes::icosphere(2));
+    assert!(scene.moved(&[]).iter().all(|displacement| *displacement == DVec3::ZERO));
+    let scene = Scene::new(shapes::icosphere(2)).with(Role::Handle(0), |_| true);
+    assert!(
+        scene
+            .moved(&[DAffine3::from_translation(DVec3::Y)])
+            .iter()
+            .all(|displacement| displacement.distance(DVec3::Y) < 1e-12)
+    );
+    let scene = Scene::new(Drawn::default());
+    assert!(scene.moved(&[]).is_empty());
+}
+
+#[test]
+fn a_handle_of_one_vertex_pulls() {
+    let scene = Scene::new(shapes::grid(12, 12))
+        .with(Role::Fixed, |p| p.x < 0.01 || p.x > 0.99)
+        .with(Role::Handle(0), |p| p.distance(DVec3::new(0.5, 0.5, 0.0)) < 0.01);
+    let handle = scene.roles.iter().position(|role| *role == Role::Handle(0)).unwrap();
+    let displacements = scene.moved(&[DAffine3::from_translation(DVec3::Z)]);
+    assert_eq!(displacements[handle], DVec3::Z);
+    for neighbour in scene.model.topology.neighbours(SurfaceVertex(handle as u32)) {
+        assert!(displacements[neighbour.index()].z > 0.3);
+    }
+}
+
+#[test]
+fn refusals_name_the_culprit() {
+    let fresh = || Scene::new(shapes::icosphere(1)).with_ends(true);
+    let mut scene = fresh();
+    scene.handle_count = 2;
+    assert_eq!(scene.try_bind().err(), Some(BindError::EmptyHandle { handle: 1 }));
+    scene.handle_count = 0;
+    assert!(matches!(
+        scene.try_bind().err(),
+        Some(BindError::UnknownHandle {
+            handle: 0,
+            handle_count: 0,
+            ..
+        })
+    ));
+    let mut scene = fresh();
+    scene.stiffness[5] = 0.0;
+    assert_eq!(
+        scene.try_bind().err(),
+        Some(BindError::Stiffness { vertex: 5, value: 0.0 })
+    );
+    let mut scene = fresh();
+    scene.roles.pop();
+    assert!(matches!(
+        scene.try_bind().err(),
+        Some(BindError::Length {
+            found: 41,
+            expected: 42,
+            ..
+        })
+    ));
+    let scene = fresh();
+    let other = Ordering::of(&scene.model.topology, 1, &Progress::new(), &Cancel::new()).unwrap();
+    let method = Method::Bilaplacian(Bilaplacian::default());
+    let refused = scene
+        .problem(&method)
+        .bind(&other, &Progress::new(), &Cancel::new())
+        .err();
+    assert!(matches!(
+        refused,
+        Some(BindError::Ordering {
+            found_power: 1,
+            expected_power: 2,
+            ..
+        })
+    ));
+}
+
+#[test]
+fn cancelling_stops_ordering_and_binding() {
+    let scene = Scene::new(shapes::icosphere(2)).with_ends(true);
+    let cancel = Cancel::new();
+    let ordering = Ordering::of(&scene.model.topology, 2, &Progress::new(), &cancel).unwrap();
+    cancel.cancel();
+    assert_eq!(
+        Ordering::of(&scene.model.topology, 2, &Progress::new(), &cancel),
+        Err(Cancelled)
+    );
+    let method = Method::default();
+    let refused = scene.problem(&method).bind(&ordering, &Progress::new(), &cancel).err();
+    assert_eq!(refused, Some(BindError::Cancelled(Cancelled)));
+}

@@ -1,0 +1,8 @@
+//! The solver's laws, on every class of mesh.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+mod components;
+mod laws;
+mod operators;
+mod plate;
+mod rig;

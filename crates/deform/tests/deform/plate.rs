@@ -1,0 +1,117 @@
+//! The thin plate as a material: deflections known by formula, and what stiffness does.
+
+use crate::rig::Scene;
+use glam::{DAffine3, DVec3};
+use pliant_deform::Role;
+use pliant_mesh::shapes;
+
+/// The largest error of a strip, clamped over slabs at both ends, of which one is lifted by 1, against the beam's
+/// cubic 3 s² − 2 s³.
+fn strip_error(cells: usize) -> f64 {
+    let step = 1.0 / cells as f64;
+    // A slab of two rows clamps position and slope.
+    let (from, to) = (1.5 * step, 1.0 - 1.5 * step);
+    let scene = Scene::new(shapes::grid(cells, cells))
+        .with(Role::Fixed, |p| p.x < from)
+        .with(Role::Handle(0), |p| p.x > to);
+    let displacements = scene.moved(&[DAffine3::from_translation(DVec3::Z)]);
+    let (from, to) = (step, 1.0 - step);
+    let mut worst = 0.0_f64;
+    for (displacement, p) in displacements.iter().zip(scene.positions()) {
+        let s = ((p.x - from) / (to - from)).clamp(0.0, 1.0);
+        worst = worst.max((displacement.z - s * s * (3.0 - 2.0 * s)).abs());
+        assert!(displacement.x.abs() < 1e-9 && displacement.y.abs() < 1e-9);
+    }
+    worst
+}
+
+#[test]
+fn a_lifted_strip_converges_to_the_beam() {
+    let errors = [10, 20, 40].map(strip_error);
+    assert!(errors[0] < 0.1, "{errors:?}");
+    assert!(
+        errors[1] < 0.65 * errors[0] && errors[2] < 0.65 * errors[1],
+        "{errors:?}"
+    );
+}
+
+#[test]
+fn the_surface_is_smooth_where_it_meets_what_is_held() {
+    // Thin plates join with equal slope: the first of 32 steps up is far below a 32nd.
+    let scene = Scene::new(shapes::grid(40, 40))
+        .with(Role::Fixed, |p| p.x < 0.11)
+        .with(Role::Handle(0), |p| p.x > 0.89);
+    let displacements = scene.moved(&[DAffine3::from_translation(DVec3::Z)]);
+    let first_row = scene
+        .positions()
+        .iter()
+        .zip(&displacements)
+        .filter(|(p, _)| p.x > 0.12 && p.x < 0.13);
+    for (_, displacement) in first_row {
+        assert!(
+            displacement.z > 0.0 && displacement.z < 0.25 / 32.0,
+            "{}",
+            displacement.z
+        );
+    }
+}
+
+/// How much a band around the middle of a lifted strip bends: Σ |second difference| over it.
+fn bend_of_middle(stiffness: f64) -> f64 {
+    let mut scene = Scene::new(shapes::grid(30, 10))
+        .with(Role::Fixed, |p| p.x < 0.11)
+        .with(Role::Handle(0), |p| p.x > 0.89);
+    let band = |p: DVec3| p.x > 0.25 && p.x < 0.45;
+    for (own, &p) in scene.stiffness.iter_mut().zip(&scene.model.surface.positions) {
+        if band(p) {
+            *own = stiffness;
+        }
+    }
+    let displacements = scene.moved(&[DAffine3::from_translation(DVec3::Z)]);
+    let mut row: Vec<(f64, f64)> = scene
+        .positions()
+        .iter()
+        .zip(&displacements)
+        .filter(|(p, _)| (p.y - 0.5).abs() < 0.01 && band(**p))
+        .map(|(p, d)| (p.x, d.z))
+        .collect();
+    row.sort_by(|a, b| a.0.total_cmp(&b.0));
+    row.windows(3).map(|w| (w[0].1 - 2.0 * w[1].1 + w[2].1).abs()).sum()
+}
+
+#[test]
+fn a_stiffer_band_bends_less() {
+    let bends = [0.01, 0.1, 1.0, 10.0, 100.0].map(bend_of_middle);
+    for pair in bends.windows(2) {
+        assert!(pair[1] < 0.8 * pair[0], "{bends:?}");
+    }
+}
+
+#[test]
+fn stiffness_everywhere_changes_nothing() {
+    let mut scene = Scene::new(shapes::torus(20, 12)).with_ends(true);
+    let targets: Vec<DAffine3> = (0..scene.handle_count)
+        .map(|_| crate::rig::turned(DVec3::ZERO, 0.5, DVec3::Y))
+        .collect();
+    let plain = scene.moved(&targets);
+    scene.stiffness.fill(300.0);
+    assert!(crate::rig::apart(&plain, &scene.moved(&targets)) < 1e-6);
+}
+
+#[test]
+fn extreme_strokes_of_stiffness_still_bind() {
+    for (name, drawn) in shapes::classes() {
+        let mut scene = Scene::new(drawn).with_ends(true);
+        for (vertex, stiffness) in scene.stiffness.iter_mut().enumerate() {
+            *stiffness = if vertex % 4 < 2 { 1000.0 } else { 0.001 };
+        }
+        let targets = vec![DAffine3::from_translation(DVec3::ONE); scene.handle_count];
+        assert!(
+            scene
+                .moved(&targets)
+                .iter()
+                .all(|displacement| displacement.is_finite()),
+            "{name}"
+        );
+    }
+}

@@ -1,0 +1,135 @@
+//! A problem on a shape, and the verbs the laws need.
+
+use glam::{DAffine3, DVec3};
+use pliant_deform::{Bound, Loose, Method, Ordering, Problem, Role};
+use pliant_mesh::{Cancel, Drawn, Model, Progress, SurfaceVertex, shapes};
+
+/// A shape and the roles, stiffness and options on it.
+pub struct Scene {
+    pub model: Model,
+    pub roles: Vec<Role>,
+    pub handle_count: usize,
+    pub stiffness: Vec<f64>,
+    pub loose: Loose,
+}
+
+impl Scene {
+    /// Everything free, no handle.
+    pub fn new(drawn: Drawn) -> Self {
+        let model = shapes::model(drawn);
+        let count = model.surface.positions.len();
+        Self {
+            model,
+            roles: vec![Role::Free; count],
+            handle_count: 0,
+            stiffness: vec![1.0; count],
+            loose: Loose::Follow,
+        }
+    }
+
+    /// Gives `role` to the vertices whose position passes `test`; handles are counted.
+    pub fn with(mut self, role: Role, test: impl Fn(DVec3) -> bool) -> Self {
+        for (own, &position) in self.roles.iter_mut().zip(&self.model.surface.positions) {
+            if test(position) {
+                *own = role;
+            }
+        }
+        if let Role::Handle(handle) = role {
+            self.handle_count = self.handle_count.max(usize::from(handle) + 1);
+        }
+        self
+    }
+
+    /// In every component: its first vertices in x, y or z fixed if `fixed`, its last ones the handles 0 and 1 by turns.
+    pub fn with_ends(mut self, fixed: bool) -> Self {
+        for (number, component) in self.model.topology.components().iter().enumerate() {
+            let mut vertices = component.vertices.clone();
+            vertices.sort_by(|a, b| {
+                let key = |v: &SurfaceVertex| self.model.surface.positions[v.index()].dot(DVec3::new(1.0, 0.31, 0.12));
+                key(a).total_cmp(&key(b)).then(a.cmp(b))
+            });
+            let share = (vertices.len() / 6).max(1);
+            for vertex in &vertices[vertices.len() - share..] {
+                self.roles[vertex.index()] = Role::Handle((number % 2) as u16);
+            }
+            for vertex in &vertices[..share] {
+                self.roles[vertex.index()] = if fixed { Role::Fixed } else { Role::Handle(1) };
+            }
+        }
+        self.handle_count = 2;
+        if !self.roles.contains(&Role::Handle(1)) {
+            self.handle_count = 1;
+        }
+        self
+    }
+
+    pub fn bind(&self) -> Bound {
+        self.try_bind().unwrap()
+    }
+
+    pub fn try_bind(&self) -> Result<Bound, pliant_deform::BindError> {
+        let method = Method::default();
+        let ordering = Ordering::of(
+            &self.model.topology,
+            method.operator_power(),
+            &Progress::new(),
+            &Cancel::new(),
+        )
+        .unwrap();
+        self.problem(&method).bind(&ordering, &Progress::new(), &Cancel::new())
+    }
+
+    pub fn problem<'a>(&'a self, method: &'a Method) -> Problem<'a> {
+        Problem {
+            surface: &self.model.surface,
+            topology: &self.model.topology,
+            roles: &self.roles,
+            handle_count: self.handle_count,
+            stiffness: &self.stiffness,
+            loose: self.loose,
+            method,
+            revision: 7,
+        }
+    }
+
+    /// Binds, moves the handles, and returns the displacements.
+    pub fn moved(&self, targets: &[DAffine3]) -> Vec<DVec3> {
+        step(&mut self.bind(), targets)
+    }
+
+    pub fn positions(&self) -> &[DVec3] {
+        &self.model.surface.positions
+    }
+
+    pub fn diagonal(&self) -> f64 {
+        self.model.bounds().unwrap().diagonal()
+    }
+}
+
+pub fn step(bound: &mut Bound, targets: &[DAffine3]) -> Vec<DVec3> {
+    let mut displacements = vec![DVec3::NAN; bound.vertex_count()];
+    bound.set_targets(targets).unwrap();
+    let step = bound.step(&mut displacements).unwrap();
+    assert!(step.converged && step.energy >= 0.0 && step.energy.is_finite());
+    displacements
+}
+
+pub fn back_substitute(bound: &mut Bound, targets: &[DAffine3]) -> Vec<DVec3> {
+    let mut displacements = vec![DVec3::NAN; bound.vertex_count()];
+    bound.set_targets(targets).unwrap();
+    bound.step_by_back_substitution(&mut displacements).unwrap();
+    displacements
+}
+
+/// The largest distance between two fields.
+pub fn apart(a: &[DVec3], b: &[DVec3]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
+}
+
+/// A rotation about `centre` by `angle_rad` about a slanted axis, then a translation.
+pub fn turned(centre: DVec3, angle_rad: f64, shift: DVec3) -> DAffine3 {
+    DAffine3::from_translation(centre + shift)
+        * DAffine3::from_axis_angle(DVec3::new(0.6, 0.48, 0.64), angle_rad)
+        * DAffine3::from_translation(-centre)
+}
