@@ -151,11 +151,11 @@ impl Renderer {
         frame: &Frame<'_>,
     ) -> Result<PickRequest, RenderError> {
         let rect = rect.cut_to(size_px);
-        let mut ends = Vec::with_capacity(frame.surfaces.len());
+        let (mut bases, mut ends) = (Vec::new(), Vec::new());
         let mut next = 1_u32;
         for surface in frame.surfaces {
-            surface.set_id_base(self.queue(), next);
-            next += surface.triangle_count() as u32;
+            bases.push(next);
+            next = next.saturating_add(surface.triangle_count() as u32);
             ends.push(next);
         }
         if rect.width == 0 || rect.height == 0 {
@@ -174,6 +174,9 @@ impl Renderer {
         let device = self.device().clone();
         let pipeline = self.pipelines.id(&device)?.clone();
         let readback = guarded(&device, "while picking", || {
+            for (surface, &base) in frame.surfaces.iter().zip(&bases) {
+                surface.set_id_base(self.queue(), base);
+            }
             let attachments = target.resize(&device, size_px);
             let mut encoder = device.create_command_encoder(&Default::default());
             let mut pass = begin_ids(&mut encoder, attachments);

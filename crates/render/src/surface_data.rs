@@ -54,6 +54,16 @@ pub(crate) fn checked(data: &SurfaceData<'_>) -> Result<(), RenderError> {
             });
         }
     }
+    // Drawings count indices in 32 bits.
+    const MOST_TRIANGLES: usize = u32::MAX as usize / 3;
+    if data.triangles.len() > MOST_TRIANGLES {
+        let (bytes, limit) = (12 * data.triangles.len() as u64, 12 * MOST_TRIANGLES as u64);
+        return Err(RenderError::TooLarge {
+            what: "triangles",
+            bytes,
+            limit,
+        });
+    }
     for (number, triangle) in data.triangles.iter().enumerate() {
         if let Some(&vertex) = triangle.iter().find(|&&vertex| vertex as usize >= vertices) {
             return Err(RenderError::NoSuchVertex {

@@ -1,0 +1,182 @@
+//! Verbs for tests that draw: a shared device, simple shapes, views and colours.
+#![allow(dead_code, reason = "each test file uses its own part")]
+
+use std::sync::{Mutex, MutexGuard, OnceLock};
+
+use glam::{Mat4, Vec3};
+use pliant_render::{Frame, Headless, Image, Overlay, Renderer, Samples, Style, Surface, SurfaceData, View};
+
+/// The size of test pictures: small, with sides that are no multiples of a row's padding.
+pub const SIZE_PX: [u32; 2] = [150, 100];
+
+/// The renderer of the one device that all tests share, or `None` (with a word) where there is no device.
+pub fn renderer() -> Option<MutexGuard<'static, Headless>> {
+    static HEADLESS: OnceLock<Option<Mutex<Headless>>> = OnceLock::new();
+    let shared = HEADLESS.get_or_init(|| match Headless::new() {
+        Ok(headless) => Some(Mutex::new(headless)),
+        Err(error) => {
+            #[expect(clippy::print_stderr, reason = "a skipped test says so")]
+            {
+                eprintln!("skipped: {error}");
+            }
+            None
+        }
+    });
+    // A test that failed while drawing leaves the renderer as good as it was.
+    shared
+        .as_ref()
+        .map(|headless| headless.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
+}
+
+/// A triangle mesh.
+#[derive(Clone, Default)]
+pub struct Shape {
+    pub positions: Vec<[f32; 3]>,
+    pub normals: Vec<[f32; 3]>,
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Shape {
+    /// The unit sphere: an octahedron whose faces are split in four `levels` times.
+    pub fn sphere(levels: u32) -> Self {
+        let corners = [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z];
+        let faces = [
+            [0, 1, 2],
+            [1, 3, 2],
+            [3, 4, 2],
+            [4, 0, 2],
+            [1, 0, 5],
+            [3, 1, 5],
+            [4, 3, 5],
+            [0, 4, 5],
+        ];
+        let mut triangles: Vec<[Vec3; 3]> = faces.map(|face| face.map(|corner: usize| corners[corner])).to_vec();
+        for _ in 0..levels {
+            triangles = triangles
+                .iter()
+                .flat_map(|&[a, b, c]| {
+                    let middle = |p: Vec3, q: Vec3| (p + q).normalize();
+                    let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+                    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+                })
+                .collect();
+        }
+        let mut shape = Self::default();
+        for triangle in triangles {
+            let first = shape.positions.len() as u32;
+            shape.triangles.push([first, first + 1, first + 2]);
+            shape.positions.extend(triangle.map(|corner| corner.to_array()));
+        }
+        shape.normals = shape.positions.clone();
+        shape
+    }
+
+    /// A square in the plane z = `z` that faces +z, `half` units to each side of (`x`, 0).
+    pub fn square(x: f32, z: f32, half: f32) -> Self {
+        let positions = [
+            [x - half, -half, z],
+            [x + half, -half, z],
+            [x + half, half, z],
+            [x - half, half, z],
+        ];
+        Self {
+            positions: positions.to_vec(),
+            normals: vec![[0.0, 0.0, 1.0]; 4],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+        }
+    }
+
+    /// The same seen from inside.
+    pub fn turned_inside_out(mut self) -> Self {
+        for triangle in &mut self.triangles {
+            triangle.swap(1, 2);
+        }
+        for normal in &mut self.normals {
+            *normal = normal.map(|component| -component);
+        }
+        self
+    }
+
+    pub fn data(&self) -> SurfaceData<'_> {
+        SurfaceData {
+            positions: &self.positions,
+            normals: &self.normals,
+            triangles: &self.triangles,
+            ..Default::default()
+        }
+    }
+
+    pub fn upload(&self, renderer: &Renderer) -> Surface {
+        Surface::new(renderer, &self.data()).expect("the shape is sound")
+    }
+
+    /// The triangle that a ray meets first, and how far from the triangle's border (in barycentric coordinates).
+    pub fn ray(&self, origin: Vec3, direction: Vec3) -> Option<(u32, f32)> {
+        let mut nearest: Option<(f32, u32, f32)> = None;
+        for (number, triangle) in self.triangles.iter().enumerate() {
+            let [a, b, c] = triangle.map(|vertex| Vec3::from(self.positions[vertex as usize]));
+            // Möller and Trumbore, 1997.
+            let (ab, ac) = (b - a, c - a);
+            let p = direction.cross(ac);
+            let determinant = ab.dot(p);
+            if determinant == 0.0 {
+                continue;
+            }
+            let from_a = origin - a;
+            let v = from_a.dot(p) / determinant;
+            let q = from_a.cross(ab);
+            let w = direction.dot(q) / determinant;
+            let distance = ac.dot(q) / determinant;
+            let margin = v.min(w).min(1.0 - v - w);
+            if margin >= 0.0 && distance > 0.0 && nearest.is_none_or(|(best, ..)| distance < best) {
+                nearest = Some((distance, number as u32, margin));
+            }
+        }
+        nearest.map(|(_, number, margin)| (number, margin))
+    }
+}
+
+/// From (0, 0, 4) towards the origin.
+pub fn front_view() -> View {
+    let view_from_world = View::look_at(Vec3::new(0.0, 0.0, 4.0), Vec3::ZERO, Vec3::Y);
+    View::perspective(0.7, SIZE_PX[0] as f32 / SIZE_PX[1] as f32, 0.01, view_from_world)
+}
+
+/// The same without perspective.
+pub fn parallel_front_view() -> View {
+    let view_from_world = Mat4::from_translation(Vec3::new(0.0, 0.0, -4.0));
+    View::orthographic(1.4, SIZE_PX[0] as f32 / SIZE_PX[1] as f32, 0.0, 10.0, view_from_world)
+}
+
+/// A picture of surfaces and overlays, seen from `view`.
+pub fn draw(renderer: &mut Renderer, view: &View, style: &Style, surfaces: &[&Surface], overlays: &[Overlay]) -> Image {
+    let frame = Frame {
+        view,
+        style,
+        surfaces,
+        overlays,
+    };
+    renderer
+        .draw_to_image(SIZE_PX, Samples::One, &frame)
+        .expect("a small picture can be drawn")
+}
+
+/// The pixel where a point of the world is seen.
+pub fn pixel_at(image: &Image, view: &View, position: [f32; 3]) -> [u8; 4] {
+    let pixel = view
+        .pixel_from_world(position.into(), SIZE_PX)
+        .expect("the point is before the eye");
+    image
+        .pixel(pixel.x as u32, pixel.y as u32)
+        .expect("the point is in the picture")
+}
+
+/// Mean of red, green and blue.
+pub fn brightness(pixel: [u8; 4]) -> f32 {
+    pixel[..3].iter().map(|&channel| f32::from(channel)).sum::<f32>() / 3.0
+}
+
+/// Whether two colours differ by at most `tolerance` in each channel.
+pub fn is_near(a: [u8; 4], b: [u8; 4], tolerance: u8) -> bool {
+    a.iter().zip(b).all(|(&a, b)| a.abs_diff(b) <= tolerance)
+}
