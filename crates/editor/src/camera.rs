@@ -273,6 +273,7 @@ impl Camera {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
 mod tests {
     use glam::{DVec2, DVec3};
     use pliant_mesh::Bounds;

@@ -92,6 +92,7 @@ pub(crate) fn rotation(axis: DVec3, angle_rad: f64) -> DQuat {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
 mod tests {
     use std::f64::consts::PI;
 

@@ -98,7 +98,9 @@ impl EditFile {
         if let Some(found) = value.get("version")
             && found.as_u64() != Some(EDIT_VERSION)
         {
-            return Err(EditError::Version { found: found.to_string() });
+            return Err(EditError::Version {
+                found: found.to_string(),
+            });
         }
         let members = root.object("an object with `version` and `method`", &KNOWN)?;
         members.require("version")?;
@@ -107,15 +109,18 @@ impl EditFile {
             region: read_selector(&members, "region", Selector::All)?,
             fixed: read_selector(&members, "fixed", Selector::None)?,
             handles: match members.get("handles") {
-                Some(handles) => {
-                    handles.elements("a list of handles")?.enumerate().map(|(i, node)| read_handle(i, &node)).collect()
-                }
+                Some(handles) => handles
+                    .elements("a list of handles")?
+                    .enumerate()
+                    .map(|(i, node)| read_handle(i, &node))
+                    .collect(),
                 None => Ok(Vec::new()),
             }?,
             stiffness: match members.get("stiffness") {
-                Some(entries) => {
-                    entries.elements("a list of stiffness entries")?.map(|node| read_stiffness(&node)).collect()
-                }
+                Some(entries) => entries
+                    .elements("a list of stiffness entries")?
+                    .map(|node| read_stiffness(&node))
+                    .collect(),
                 None => Ok(Vec::new()),
             }?,
             loose: match members.get("loose") {
@@ -166,9 +171,10 @@ fn read_selector(members: &Members<'_>, name: &str, default: Selector) -> Result
 }
 
 fn read_handle(index: usize, node: &Node<'_>) -> Result<HandleEntry, EditError> {
-    let members = node.object("a handle: an object with `name`, `select` and `transform`", &[
-        "name", "select", "transform",
-    ])?;
+    let members = node.object(
+        "a handle: an object with `name`, `select` and `transform`",
+        &["name", "select", "transform"],
+    )?;
     Ok(HandleEntry {
         name: match members.get("name") {
             Some(name) => name.string("a name")?.to_owned(),
@@ -188,9 +194,15 @@ fn read_stiffness(node: &Node<'_>) -> Result<StiffnessEntry, EditError> {
     if let Some(values) = members.get("per_vertex") {
         if let Some(second) = members.names().find(|&name| name != "per_vertex") {
             let place = node.place().to_owned();
-            return Err(EditError::Both { place, first: "per_vertex", second: second.to_owned() });
+            return Err(EditError::Both {
+                place,
+                first: "per_vertex",
+                second: second.to_owned(),
+            });
         }
-        return Ok(StiffnessEntry::PerVertex(values.list("a list of numbers", stiffness_value)?));
+        return Ok(StiffnessEntry::PerVertex(
+            values.list("a list of numbers", stiffness_value)?,
+        ));
     }
     Ok(StiffnessEntry::Select {
         select: Selector::read(&members.require("select")?)?,

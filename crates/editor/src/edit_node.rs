@@ -22,7 +22,10 @@ pub(crate) struct Members<'a> {
 
 impl<'a> Node<'a> {
     pub(crate) fn new(value: &'a Value, place: &str) -> Self {
-        Self { value, place: place.to_owned() }
+        Self {
+            value,
+            place: place.to_owned(),
+        }
     }
 
     pub(crate) fn value(&self) -> &'a Value {
@@ -42,7 +45,10 @@ impl<'a> Node<'a> {
                 place: self.place.clone(),
                 remedy: remedy(member, known),
             }),
-            None => Ok(Members { members, place: self.place.clone() }),
+            None => Ok(Members {
+                members,
+                place: self.place.clone(),
+            }),
         }
     }
 
@@ -50,7 +56,10 @@ impl<'a> Node<'a> {
     pub(crate) fn elements(&self, expected: &str) -> Result<impl ExactSizeIterator<Item = Node<'a>>, EditError> {
         let elements = self.value.as_array().ok_or_else(|| self.wrong_kind(expected))?;
         let place = self.place.clone();
-        Ok(elements.iter().enumerate().map(move |(i, value)| Node { value, place: format!("{place}[{i}]") }))
+        Ok(elements.iter().enumerate().map(move |(i, value)| Node {
+            value,
+            place: format!("{place}[{i}]"),
+        }))
     }
 
     /// `N` finite numbers.
@@ -59,7 +68,11 @@ impl<'a> Node<'a> {
         let elements = self.value.as_array().ok_or_else(|| self.wrong_kind(&expected))?;
         if elements.len() != N {
             let found = format!("{} values", elements.len());
-            return Err(EditError::WrongKind { place: self.place.clone(), expected, found });
+            return Err(EditError::WrongKind {
+                place: self.place.clone(),
+                expected,
+                found,
+            });
         }
         let mut numbers = [0.0; N];
         for (number, node) in numbers.iter_mut().zip(self.elements(&expected)?) {
@@ -77,9 +90,15 @@ impl<'a> Node<'a> {
         let elements = self.value.as_array().ok_or_else(|| self.wrong_kind(expected))?;
         let mut list = Vec::with_capacity(elements.len());
         for (i, value) in elements.iter().enumerate() {
-            match read(&Node { value, place: String::new() }) {
+            match read(&Node {
+                value,
+                place: String::new(),
+            }) {
                 Ok(element) => list.push(element),
-                Err(_) => list.push(read(&Node { value, place: format!("{}[{i}]", self.place) })?),
+                Err(_) => list.push(read(&Node {
+                    value,
+                    place: format!("{}[{i}]", self.place),
+                })?),
             }
         }
         Ok(list)
@@ -88,7 +107,11 @@ impl<'a> Node<'a> {
     /// A finite number.
     pub(crate) fn number(&self) -> Result<f64, EditError> {
         let number = self.value.as_f64().ok_or_else(|| self.wrong_kind("a number"))?;
-        if number.is_finite() { Ok(number) } else { Err(self.out_of_range("a finite number")) }
+        if number.is_finite() {
+            Ok(number)
+        } else {
+            Err(self.out_of_range("a finite number"))
+        }
     }
 
     /// A whole number that is not negative.
@@ -107,13 +130,21 @@ impl<'a> Node<'a> {
 
     /// The refusal of a value of the wrong kind.
     pub(crate) fn wrong_kind(&self, expected: &str) -> EditError {
-        EditError::WrongKind { place: self.place.clone(), expected: expected.to_owned(), found: kind(self.value) }
+        EditError::WrongKind {
+            place: self.place.clone(),
+            expected: expected.to_owned(),
+            found: kind(self.value),
+        }
     }
 
     /// The refusal of this value, which lies outside of what is `allowed`.
     pub(crate) fn out_of_range(&self, allowed: impl Display) -> EditError {
         let found = shortened(&self.value.to_string());
-        EditError::OutOfRange { place: self.place.clone(), found, allowed: allowed.to_string() }
+        EditError::OutOfRange {
+            place: self.place.clone(),
+            found,
+            allowed: allowed.to_string(),
+        }
     }
 
     /// The refusal of a name that the format does not have.
@@ -129,13 +160,20 @@ impl<'a> Node<'a> {
 impl<'a> Members<'a> {
     /// The member `name`, if it is there.
     pub(crate) fn get(&self, name: &str) -> Option<Node<'a>> {
-        let place = if self.place == ROOT { name.to_owned() } else { format!("{}.{name}", self.place) };
+        let place = if self.place == ROOT {
+            name.to_owned()
+        } else {
+            format!("{}.{name}", self.place)
+        };
         self.members.get(name).map(|value| Node { value, place })
     }
 
     /// The member `name`, which must be there.
     pub(crate) fn require(&self, name: &'static str) -> Result<Node<'a>, EditError> {
-        self.get(name).ok_or_else(|| EditError::Missing { member: name, place: self.place.clone() })
+        self.get(name).ok_or_else(|| EditError::Missing {
+            member: name,
+            place: self.place.clone(),
+        })
     }
 
     /// The names that are there.
@@ -160,6 +198,10 @@ fn kind(value: &Value) -> String {
 
 /// Keeps a refusal to one readable line, whatever the file holds.
 fn shortened(text: &str) -> String {
-    let clean: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(60).collect();
+    let clean: String = text
+        .chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .take(60)
+        .collect();
     if text.chars().count() > 60 { clean + ".." } else { clean }
 }

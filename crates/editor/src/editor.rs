@@ -213,13 +213,16 @@ impl Editor {
     /// Whether shape and regions are final: nothing is being dragged or painted, and no job runs but those that get
     /// ready for the pointer or the first drag.
     pub fn is_settled(&self) -> bool {
-        let busy = |kind| self.engine.is_busy(kind);
-        self.held.is_empty()
-            && matches!(self.tool, Tool::Idle)
-            && !busy(JobKind::Region)
-            && !busy(JobKind::Bind)
-            && !busy(JobKind::Solve)
-            && !(busy(JobKind::Order) && self.document.is_displaced())
+        let awaited = |kind| match kind {
+            JobKind::Pick => false,
+            JobKind::Order => self.document.is_displaced(),
+            JobKind::Region | JobKind::Bind | JobKind::Solve => true,
+        };
+        let is_idle = matches!(self.tool, Tool::Idle) && self.held.is_empty();
+        is_idle
+            && !JobKind::ALL
+                .into_iter()
+                .any(|kind| awaited(kind) && self.engine.is_busy(kind))
     }
 
     pub(crate) fn picking(&self) -> Option<Picking<'_>> {
@@ -331,7 +334,8 @@ impl Editor {
     }
 
     fn resize(&mut self, size_px: DVec2) {
-        if !(size_px.x >= 1.0 && size_px.y >= 1.0) || !size_px.is_finite() || size_px == self.viewport_px {
+        let is_usable = size_px.is_finite() && size_px.x >= 1.0 && size_px.y >= 1.0;
+        if !is_usable || size_px == self.viewport_px {
             return;
         }
         self.viewport_px = size_px;

@@ -235,12 +235,8 @@ impl Engine {
         };
         let wanted = stamp >= self.model_revision;
         match outcome {
-            JobOutcome::Cancelled => {
-                // Somebody else stopped it: asking again at once would go on for ever.
-                if !running.cancel.is_cancelled() {
-                    self.given_up[kind as usize] = Some(stamp);
-                }
-            }
+            // Somebody else stopped it: asking again at once would go on for ever.
+            JobOutcome::Cancelled if !running.cancel.is_cancelled() => self.given_up[kind as usize] = Some(stamp),
             JobOutcome::Failed(sentence) if wanted && !running.cancel.is_cancelled() => {
                 self.given_up[kind as usize] = Some(stamp);
                 if stamp == self.stamp(kind) {
@@ -302,7 +298,7 @@ impl Engine {
                     cancel,
                 },
                 work,
-            )) = self.queues[kind as usize].next()
+            )) = self.queues[kind as usize].start_next()
             {
                 let (job_progress, job_cancel) = (progress.clone(), cancel.clone());
                 let work = Box::new(move || work(&job_progress, &job_cancel));

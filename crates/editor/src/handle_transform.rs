@@ -27,15 +27,22 @@ pub enum HandleTransform {
 
 impl HandleTransform {
     /// The transform that moves nothing.
-    pub const IDENTITY: Self =
-        Self::Trs { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE, pivot: None };
+    pub const IDENTITY: Self = Self::Trs {
+        translation: DVec3::ZERO,
+        rotation: DQuat::IDENTITY,
+        scale: DVec3::ONE,
+        pivot: None,
+    };
 
     /// Whether every point stays exactly where it is.
     pub fn is_identity(&self) -> bool {
         match *self {
-            Self::Trs { translation, rotation, scale, .. } => {
-                translation == DVec3::ZERO && scale == DVec3::ONE && rotation.xyz() == DVec3::ZERO
-            }
+            Self::Trs {
+                translation,
+                rotation,
+                scale,
+                ..
+            } => translation == DVec3::ZERO && scale == DVec3::ONE && rotation.xyz() == DVec3::ZERO,
             Self::Matrix(matrix) => matrix == DAffine3::IDENTITY,
         }
     }
@@ -53,7 +60,12 @@ impl HandleTransform {
     /// A transform that only translates has no rounding of the pivot in it, and the identity is the exact identity.
     pub fn affine(&self, default_pivot: DVec3) -> DAffine3 {
         match *self {
-            Self::Trs { translation, rotation, scale, .. } => {
+            Self::Trs {
+                translation,
+                rotation,
+                scale,
+                ..
+            } => {
                 let linear = if rotation.xyz() == DVec3::ZERO {
                     DMat3::from_diagonal(scale)
                 } else {
@@ -79,7 +91,12 @@ impl HandleTransform {
         }
         let pivot = self.pivot_or(default_pivot);
         let (rotation, stretch, translation) = match *self {
-            Self::Trs { translation, rotation, scale, .. } => (rotation, DMat3::from_diagonal(scale), translation),
+            Self::Trs {
+                translation,
+                rotation,
+                scale,
+                ..
+            } => (rotation, DMat3::from_diagonal(scale), translation),
             Self::Matrix(matrix) => {
                 let (rotation, stretch) = polar_decomposition(matrix.matrix3);
                 (rotation, stretch, matrix.transform_point3(pivot) - pivot)
@@ -87,17 +104,28 @@ impl HandleTransform {
         };
         let rotation = DQuat::IDENTITY.slerp(rotation, t).normalize();
         let stretch = DMat3::IDENTITY + (stretch - DMat3::IDENTITY) * t;
-        let turned = if rotation.xyz() == DVec3::ZERO { stretch } else { DMat3::from_quat(rotation) * stretch };
+        let turned = if rotation.xyz() == DVec3::ZERO {
+            stretch
+        } else {
+            DMat3::from_quat(rotation) * stretch
+        };
         about(pivot, turned, translation * t)
     }
 
     pub(crate) fn read(node: &Node<'_>) -> Result<Self, EditError> {
         const KNOWN: [&str; 5] = ["translation", "rotation", "scale", "pivot", "matrix"];
-        let members = node.object("an object with `translation`, `rotation`, `scale`, `pivot` or `matrix`", &KNOWN)?;
+        let members = node.object(
+            "an object with `translation`, `rotation`, `scale`, `pivot` or `matrix`",
+            &KNOWN,
+        )?;
         if let Some(matrix) = members.get("matrix") {
             if let Some(second) = members.names().find(|&name| name != "matrix") {
                 let place = node.place().to_owned();
-                return Err(EditError::Both { place, first: "matrix", second: second.to_owned() });
+                return Err(EditError::Both {
+                    place,
+                    first: "matrix",
+                    second: second.to_owned(),
+                });
             }
             return Ok(Self::Matrix(read_matrix(&matrix)?));
         }
@@ -109,7 +137,10 @@ impl HandleTransform {
             Some(node) => read_rotation(&node)?,
             None => DQuat::IDENTITY,
         };
-        let pivot = members.get("pivot").map(|node| node.numbers::<3>().map(DVec3::from_array)).transpose()?;
+        let pivot = members
+            .get("pivot")
+            .map(|node| node.numbers::<3>().map(DVec3::from_array))
+            .transpose()?;
         Ok(Self::Trs {
             translation: vector("translation", DVec3::ZERO)?,
             rotation,
@@ -125,7 +156,12 @@ impl HandleTransform {
                 let columns = glam::DMat4::from(matrix).to_cols_array();
                 json!({ "matrix": columns })
             }
-            Self::Trs { translation, rotation, scale, pivot } => {
+            Self::Trs {
+                translation,
+                rotation,
+                scale,
+                pivot,
+            } => {
                 let mut members = serde_json::Map::new();
                 if translation != DVec3::ZERO {
                     members.insert("translation".to_owned(), json!(translation.to_array()));
@@ -147,8 +183,15 @@ impl HandleTransform {
 
 /// p' = pivot + translation + linear·(p − pivot).
 fn about(pivot: DVec3, linear: DMat3, translation: DVec3) -> DAffine3 {
-    let shift = if linear == DMat3::IDENTITY { translation } else { pivot + translation - linear * pivot };
-    DAffine3 { matrix3: linear, translation: shift }
+    let shift = if linear == DMat3::IDENTITY {
+        translation
+    } else {
+        pivot + translation - linear * pivot
+    };
+    DAffine3 {
+        matrix3: linear,
+        translation: shift,
+    }
 }
 
 fn read_rotation(node: &Node<'_>) -> Result<DQuat, EditError> {
@@ -161,7 +204,11 @@ fn read_rotation(node: &Node<'_>) -> Result<DQuat, EditError> {
     let raw = DQuat::from_xyzw(x / largest, y / largest, z / largest, w / largest);
     // What is normalised already keeps its bits, so that writing and reading an edit changes nothing.
     let direct = DQuat::from_xyzw(x, y, z, w);
-    if (direct.length_squared() - 1.0).abs() <= 4.0 * f64::EPSILON { Ok(direct) } else { Ok(raw.normalize()) }
+    if (direct.length_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
+        Ok(direct)
+    } else {
+        Ok(raw.normalize())
+    }
 }
 
 fn read_matrix(node: &Node<'_>) -> Result<DAffine3, EditError> {
@@ -173,5 +220,7 @@ fn read_matrix(node: &Node<'_>) -> Result<DAffine3, EditError> {
             allowed: "16 numbers, column by column, with 0, 0, 0, 1 as their last row".to_owned(),
         });
     }
-    Ok(DAffine3::from_cols_array(&[m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10], m[12], m[13], m[14]]))
+    Ok(DAffine3::from_cols_array(&[
+        m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10], m[12], m[13], m[14],
+    ]))
 }

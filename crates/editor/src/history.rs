@@ -222,8 +222,13 @@ impl History {
         for change in &mut step.changes {
             swap(change, document);
         }
-        step.shape.swap(Arc::make_mut(&mut document.from_rest).as_mut_slice());
-        document.refresh_from_file();
+        let is_reshaped = !step.shape.indices.is_empty();
+        if is_reshaped {
+            step.shape.swap(Arc::make_mut(&mut document.from_rest).as_mut_slice());
+        }
+        if is_reshaped || step.changes.iter().any(|change| matches!(change, Change::Rest(..))) {
+            document.refresh_from_file();
+        }
         self.shape = Arc::clone(&document.from_rest);
     }
 

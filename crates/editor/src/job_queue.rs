@@ -5,7 +5,7 @@ use pliant_mesh::{Cancel, Progress};
 use crate::Revision;
 
 /// One kind's queue. `W` is what is needed to start the work; the queue starts nothing itself, its owner starts what
-/// [`JobQueue::next`] hands out.
+/// [`JobQueue::start_next`] hands out.
 #[derive(Debug)]
 pub struct JobQueue<W> {
     running: Option<Running>,
@@ -39,7 +39,7 @@ impl<W> JobQueue<W> {
     }
 
     /// The pending work, if nothing runs: it counts as running from now on and must be started.
-    pub fn next(&mut self) -> Option<(Running, W)> {
+    pub fn start_next(&mut self) -> Option<(Running, W)> {
         if self.running.is_some() {
             return None;
         }
@@ -86,6 +86,7 @@ impl<W> JobQueue<W> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
 mod tests {
     use super::JobQueue;
     use crate::Revision;
@@ -94,13 +95,13 @@ mod tests {
     fn one_runs_and_the_newest_waits() {
         let mut queue = JobQueue::default();
         queue.request(Revision(1), "a");
-        assert_eq!(queue.next().unwrap().1, "a");
+        assert_eq!(queue.start_next().unwrap().1, "a");
         queue.request(Revision(2), "b");
         queue.request(Revision(3), "c");
-        assert!(queue.next().is_none(), "one at a time");
+        assert!(queue.start_next().is_none(), "one at a time");
         assert!(queue.finish(Revision(2)).is_none(), "it never ran");
         assert!(queue.finish(Revision(1)).is_some());
-        assert_eq!(queue.next().unwrap().1, "c");
+        assert_eq!(queue.start_next().unwrap().1, "c");
         assert!(queue.wants(Revision(3)) && !queue.wants(Revision(2)));
     }
 
@@ -108,12 +109,12 @@ mod tests {
     fn a_cancelled_job_is_told_and_is_no_longer_busy_but_keeps_its_place_until_it_ends() {
         let mut queue = JobQueue::default();
         queue.request(Revision(1), ());
-        let (running, ()) = queue.next().unwrap();
+        let (running, ()) = queue.start_next().unwrap();
         queue.cancel();
         assert!(running.cancel.is_cancelled() && !queue.is_busy());
         queue.request(Revision(2), ());
-        assert!(queue.next().is_none());
+        assert!(queue.start_next().is_none());
         assert!(queue.finish(Revision(1)).is_some());
-        assert!(queue.next().is_some());
+        assert!(queue.start_next().is_some());
     }
 }

@@ -20,7 +20,10 @@ const OPTIONS: &[(&str, &[MethodOption])] = &[("bilaplacian", &[])];
 
 /// The options of the method called `name`, empty where it has none.
 pub fn method_options(name: &str) -> &'static [MethodOption] {
-    OPTIONS.iter().find(|(method, _)| *method == name).map_or(&[], |(_, options)| options)
+    OPTIONS
+        .iter()
+        .find(|(method, _)| *method == name)
+        .map_or(&[], |(_, options)| options)
 }
 
 /// Reads `{"name": .., <options>}`.
@@ -28,7 +31,10 @@ pub(crate) fn read_method(node: &Node<'_>) -> Result<Method, EditError> {
     let expected = "an object with the method's `name` and options";
     let object = node.value().as_object().ok_or_else(|| node.wrong_kind(expected))?;
     // The name first: it decides which options there are.
-    let name = object.get("name").ok_or_else(|| EditError::Missing { member: "name", place: node.place().to_owned() })?;
+    let name = object.get("name").ok_or_else(|| EditError::Missing {
+        member: "name",
+        place: node.place().to_owned(),
+    })?;
     let name = Node::new(name, &format!("{}.name", node.place()));
     let text = name.string("a method's name")?;
     let method = Method::from_name(text).ok_or_else(|| name.unknown_name(text, Method::NAMES))?;

@@ -8,7 +8,10 @@ use glam::{DMat3, DQuat, DVec3};
 /// and among equal ones that which leaves R the smallest turn. Singular matrices have a rotation too: the directions
 /// that they flatten are turned along.
 pub(crate) fn polar_decomposition(a: DMat3) -> (DQuat, DMat3) {
-    let scale = a.to_cols_array().iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let scale = a
+        .to_cols_array()
+        .iter()
+        .fold(0.0_f64, |largest, x| largest.max(x.abs()));
     if scale == 0.0 || !scale.is_finite() {
         return (DQuat::IDENTITY, a);
     }
@@ -87,7 +90,11 @@ fn singular_values(a: DMat3) -> (DMat3, DVec3, DMat3) {
             // A line: any direction across it, as near as may be to where V has it.
             let wanted = v.col(axis);
             let across = wanted - known[0] * wanted.dot(known[0]);
-            if across.length() > 0.1 { across.normalize() } else { known[0].any_orthonormal_vector() }
+            if across.length() > 0.1 {
+                across.normalize()
+            } else {
+                known[0].any_orthonormal_vector()
+            }
         };
     }
     (u, sigma, v)
@@ -100,8 +107,14 @@ mod tests {
     fn assert_decomposes(a: DMat3) {
         let (rotation, stretch) = polar_decomposition(a);
         let error = DMat3::from_quat(rotation) * stretch - a;
-        let size = a.to_cols_array().iter().fold(1e-300_f64, |largest, x| largest.max(x.abs()));
-        assert!(error.to_cols_array().iter().all(|e| e.abs() < 1e-12 * size), "{a} came back off by {error}");
+        let size = a
+            .to_cols_array()
+            .iter()
+            .fold(1e-300_f64, |largest, x| largest.max(x.abs()));
+        assert!(
+            error.to_cols_array().iter().all(|e| e.abs() < 1e-12 * size),
+            "{a} came back off by {error}"
+        );
         assert!((rotation.length() - 1.0).abs() < 1e-12);
     }
 
@@ -137,7 +150,8 @@ mod tests {
     #[test]
     fn a_flattening_matrix_keeps_its_turn() {
         let turn = DQuat::from_rotation_z(0.8);
-        let (rotation, _) = polar_decomposition(DMat3::from_quat(turn) * DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0)));
+        let (rotation, _) =
+            polar_decomposition(DMat3::from_quat(turn) * DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0)));
         assert!(rotation.angle_between(turn) < 1e-7);
     }
 }

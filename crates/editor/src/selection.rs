@@ -15,7 +15,9 @@ pub struct Selection {
 impl Selection {
     /// The empty set on a surface with `vertex_count` vertices.
     pub fn none(vertex_count: usize) -> Self {
-        Self { selected: vec![false; vertex_count] }
+        Self {
+            selected: vec![false; vertex_count],
+        }
     }
 
     /// Whether the set has this vertex.
@@ -35,7 +37,11 @@ impl Selection {
 
     /// The set's vertices, rising.
     pub fn iter(&self) -> impl Iterator<Item = SurfaceVertex> {
-        self.selected.iter().zip(0..).filter(|&(&selected, _)| selected).map(|(_, vertex)| SurfaceVertex(vertex))
+        self.selected
+            .iter()
+            .zip(0..)
+            .filter(|&(&selected, _)| selected)
+            .map(|(_, vertex)| SurfaceVertex(vertex))
     }
 }
 
@@ -58,7 +64,9 @@ impl Selector {
                 let count = model.drawn.file_vertex_count;
                 let mut named = vec![false; count];
                 for &vertex in vertices {
-                    let slot = named.get_mut(vertex as usize).ok_or_else(|| no_such_vertex(place, vertex, count))?;
+                    let slot = named
+                        .get_mut(vertex as usize)
+                        .ok_or_else(|| no_such_vertex(place, vertex, count))?;
                     *slot = true;
                 }
                 by_file_vertex(model, &named)
@@ -68,7 +76,10 @@ impl Selector {
                 let mut named = vec![false; count];
                 for &[first, last] in ranges {
                     let range = first as usize..=last as usize;
-                    named.get_mut(range).ok_or_else(|| no_such_vertex(place, last, count))?.fill(true);
+                    named
+                        .get_mut(range)
+                        .ok_or_else(|| no_such_vertex(place, last, count))?
+                        .fill(true);
                 }
                 by_file_vertex(model, &named)
             }
@@ -88,18 +99,30 @@ impl Selector {
                 let mut intersection = vec![true; model.surface.positions.len()];
                 for selector in selectors {
                     let part = selector.evaluate_at(model, place)?;
-                    intersection.iter_mut().zip(&part.selected).for_each(|(all, one)| *all &= one);
+                    intersection
+                        .iter_mut()
+                        .zip(&part.selected)
+                        .for_each(|(all, one)| *all &= one);
                 }
                 intersection
             }
-            Self::Not(selector) => selector.evaluate_at(model, place)?.selected.iter().map(|one| !one).collect(),
+            Self::Not(selector) => selector
+                .evaluate_at(model, place)?
+                .selected
+                .iter()
+                .map(|one| !one)
+                .collect(),
         };
         Ok(Selection { selected })
     }
 }
 
 fn no_such_vertex(place: &str, vertex: u32, count: usize) -> EditError {
-    EditError::NoSuchVertex { place: place.to_owned(), vertex: vertex.into(), count }
+    EditError::NoSuchVertex {
+        place: place.to_owned(),
+        vertex: vertex.into(),
+        count,
+    }
 }
 
 /// The surface's vertices any of whose drawn vertices `test` picks.
@@ -144,11 +167,17 @@ fn by_slab(model: &Model, axis: Axis, from: f64, to: f64) -> Vec<bool> {
 
 /// The bounding box of the finite vertices that triangles of the scene use.
 fn bounds_of_used_vertices(model: &Model) -> Option<(DVec3, DVec3)> {
-    let used = model.drawn.triangles.iter().flatten().map(|vertex| model.drawn.positions[vertex.index()]);
-    used.filter(|position| position.is_finite()).fold(None, |bounds, p| match bounds {
-        None => Some((p, p)),
-        Some((min, max)) => Some((p.min(min), p.max(max))),
-    })
+    let used = model
+        .drawn
+        .triangles
+        .iter()
+        .flatten()
+        .map(|vertex| model.drawn.positions[vertex.index()]);
+    used.filter(|position| position.is_finite())
+        .fold(None, |bounds, p| match bounds {
+            None => Some((p, p)),
+            Some((min, max)) => Some((p.min(min), p.max(max))),
+        })
 }
 
 /// The first axis that is as long as the longest, to within 1e-6 of it.
@@ -160,10 +189,16 @@ fn longest_axis(extent: DVec3) -> usize {
 fn by_component(model: &Model, component: u32, place: &str) -> Result<Vec<bool>, EditError> {
     let count = model.topology.components().len();
     if component as usize >= count {
-        return Err(EditError::NoSuchComponent { place: place.to_owned(), component, count });
+        return Err(EditError::NoSuchComponent {
+            place: place.to_owned(),
+            component,
+            count,
+        });
     }
     let vertices = 0..model.surface.positions.len() as u32;
-    Ok(vertices.map(|vertex| model.topology.component(SurfaceVertex(vertex)) == component).collect())
+    Ok(vertices
+        .map(|vertex| model.topology.component(SurfaceVertex(vertex)) == component)
+        .collect())
 }
 
 #[cfg(test)]

@@ -63,10 +63,24 @@ pub enum Axis {
     Longest,
 }
 
-const AXES: [(&str, Axis); 4] = [("x", Axis::X), ("y", Axis::Y), ("z", Axis::Z), ("longest", Axis::Longest)];
+const AXES: [(&str, Axis); 4] = [
+    ("x", Axis::X),
+    ("y", Axis::Y),
+    ("z", Axis::Z),
+    ("longest", Axis::Longest),
+];
 const NAMES: [&str; 2] = ["all", "none"];
-const KINDS: [&str; 9] =
-    ["vertices", "ranges", "slab", "box", "sphere", "component", "union", "intersection", "not"];
+const KINDS: [&str; 9] = [
+    "vertices",
+    "ranges",
+    "slab",
+    "box",
+    "sphere",
+    "component",
+    "union",
+    "intersection",
+    "not",
+];
 
 impl Selector {
     pub(crate) fn read(node: &Node<'_>) -> Result<Self, EditError> {
@@ -83,7 +97,11 @@ impl Selector {
         let (Some(kind), None) = (names.next(), names.next()) else {
             let found = format!("an object with {} members", members.names().count());
             let expected = "a selector with exactly one member".to_owned();
-            return Err(EditError::WrongKind { place: node.place().to_owned(), expected, found });
+            return Err(EditError::WrongKind {
+                place: node.place().to_owned(),
+                expected,
+                found,
+            });
         };
         let Some(inner) = members.get(kind) else {
             return Err(node.wrong_kind(expected));
@@ -113,7 +131,10 @@ impl Selector {
             Self::Vertices(vertices) => json!({ "vertices": vertices }),
             Self::Ranges(ranges) => json!({ "ranges": ranges }),
             Self::Slab { axis, from, to } => {
-                let name = AXES.iter().find(|(_, known)| known == axis).map_or("longest", |(name, _)| name);
+                let name = AXES
+                    .iter()
+                    .find(|(_, known)| known == axis)
+                    .map_or("longest", |(name, _)| name);
                 json!({ "slab": { "axis": name, "from": from, "to": to } })
             }
             Self::Box { min, max } => json!({ "box": { "min": min.to_array(), "max": max.to_array() } }),
@@ -143,7 +164,9 @@ fn vertex_range(node: &Node<'_>) -> Result<[u32; 2], EditError> {
 }
 
 fn read_selectors(node: &Node<'_>) -> Result<Vec<Selector>, EditError> {
-    node.elements("a list of selectors")?.map(|inner| Selector::read(&inner)).collect()
+    node.elements("a list of selectors")?
+        .map(|inner| Selector::read(&inner))
+        .collect()
 }
 
 fn read_slab(node: &Node<'_>) -> Result<Selector, EditError> {
@@ -155,7 +178,9 @@ fn read_slab(node: &Node<'_>) -> Result<Selector, EditError> {
     };
     let (from, to) = (members.require("from")?.number()?, members.require("to")?.number()?);
     if from > to {
-        return Err(members.require("from")?.out_of_range(format!("a fraction that is not greater than `to` ({to})")));
+        return Err(members
+            .require("from")?
+            .out_of_range(format!("a fraction that is not greater than `to` ({to})")));
     }
     Ok(Selector::Slab { axis, from, to })
 }
@@ -165,7 +190,9 @@ fn read_box(node: &Node<'_>) -> Result<Selector, EditError> {
     let min = DVec3::from_array(members.require("min")?.numbers()?);
     let max = DVec3::from_array(members.require("max")?.numbers()?);
     if !min.cmple(max).all() {
-        return Err(members.require("min")?.out_of_range("a corner that is nowhere above `max`"));
+        return Err(members
+            .require("min")?
+            .out_of_range("a corner that is nowhere above `max`"));
     }
     Ok(Selector::Box { min, max })
 }

@@ -42,7 +42,10 @@ impl Setup {
 
     /// Where the handles are at the share `t` of the way, 0 at rest and 1 at their targets.
     pub fn targets(&self, t: f64) -> Vec<DAffine3> {
-        self.handles.iter().map(|handle| handle.transform.at(t, handle.pivot)).collect()
+        self.handles
+            .iter()
+            .map(|handle| handle.transform.at(t, handle.pivot))
+            .collect()
     }
 }
 
@@ -87,7 +90,10 @@ impl EditFile {
                 });
             }
             if count == 0.0 {
-                return Err(EditError::EmptyHandle { handle: entry.name.clone(), index });
+                return Err(EditError::EmptyHandle {
+                    handle: entry.name.clone(),
+                    index,
+                });
             }
             handles.push(HandleSetup {
                 name: entry.name.clone(),
@@ -96,7 +102,13 @@ impl EditFile {
             });
         }
         let stiffness = self.stiffness_on(model)?;
-        Ok(Setup { roles, handles, stiffness, loose: self.loose, method: self.method.clone() })
+        Ok(Setup {
+            roles,
+            handles,
+            stiffness,
+            loose: self.loose,
+            method: self.method.clone(),
+        })
     }
 
     fn stiffness_on(&self, model: &Model) -> Result<Vec<f64>, EditError> {
@@ -138,5 +150,9 @@ fn lowest_file_vertices(model: &Model) -> Vec<u32> {
 
 fn first_file_vertex(model: &Model, vertex: SurfaceVertex) -> u32 {
     let behind = model.surface_of_drawn.iter().zip(&model.drawn.file_vertex);
-    behind.filter(|(surface_vertex, _)| **surface_vertex == Some(vertex)).map(|(_, file)| file.0).min().unwrap_or(0)
+    behind
+        .filter(|(surface_vertex, _)| **surface_vertex == Some(vertex))
+        .map(|(_, file)| file.0)
+        .min()
+        .unwrap_or(0)
 }

@@ -1,0 +1,201 @@
+//! Jobs that come late, twice or never: what they bring, and what is dropped.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
+
+mod rig;
+
+use glam::DVec2;
+use pliant_editor::{Event, GizmoPart, JobKind, JobOutcome, Key, Paint, ToolMode};
+use pliant_mesh::shapes;
+use rig::{CENTRE_PX, Rig};
+
+#[test]
+fn an_early_drag_moves_the_handle_alone_and_catches_up_with_a_late_one() {
+    let mut late = Rig::open(shapes::icosphere(3));
+    late.paint_handle();
+    late.drain();
+    late.move_by('x', ".3");
+    late.drain();
+
+    let mut early = Rig::open(shapes::icosphere(3));
+    early.paint_handle();
+    early.move_by('x', ".3");
+    let document = early.editor.document();
+    assert!(!document.is_settled());
+    for (paint, displacement) in document.paint().iter().zip(document.from_file().iter()) {
+        let expected = if matches!(paint, Paint::Handle(_)) { 0.3 } else { 0.0 };
+        assert!(
+            (displacement.length() - expected).abs() < 1e-12,
+            "the handle moves alone"
+        );
+    }
+    early.drain();
+    assert!(early.drawn() == late.drawn(), "the same shape");
+    assert_eq!(early.fingerprint(), late.fingerprint());
+    early.undo();
+    late.undo();
+    assert_eq!(early.fingerprint(), late.fingerprint(), "and the same way back");
+    assert_eq!(early.largest_displacement(), 0.0);
+    early.redo();
+    assert!(early.drawn() == late_again(&mut late));
+}
+
+fn late_again(late: &mut Rig) -> Vec<[u64; 3]> {
+    late.redo();
+    late.drawn()
+}
+
+#[test]
+fn a_drag_that_was_undone_before_it_settled_settles_when_it_is_redone() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    rig.move_by('z', ".2");
+    rig.drain();
+    let settled = rig.fingerprint();
+
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.move_by('z', ".2");
+    rig.undo();
+    rig.drain();
+    assert_eq!(rig.largest_displacement(), 0.0);
+    rig.redo();
+    rig.drain();
+    assert_eq!(settled, rig.fingerprint());
+    rig.undo();
+    assert_eq!(rig.largest_displacement(), 0.0);
+    rig.redo();
+    assert_eq!(settled, rig.fingerprint(), "the second time without a job");
+}
+
+#[test]
+fn binding_starts_when_a_stroke_ends_and_is_cancelled_by_the_next() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.press(CENTRE_PX);
+    rig.move_to(CENTRE_PX + DVec2::new(20.0, 0.0));
+    rig.run(JobKind::Pick);
+    assert!(
+        rig.jobs.waiting().is_empty(),
+        "not while the stroke lasts: {:?}",
+        rig.jobs.waiting()
+    );
+    rig.release(CENTRE_PX);
+    assert!(rig.run(JobKind::Region));
+    let bind = rig.jobs.take(JobKind::Bind).expect("the stroke has ended");
+    assert!(!bind.cancel.is_cancelled());
+    rig.press(CENTRE_PX + DVec2::new(60.0, 0.0));
+    assert!(bind.cancel.is_cancelled());
+    // However it ends, its result is not taken.
+    rig.editor.handle(Event::JobDone(bind.run()));
+    rig.release(CENTRE_PX + DVec2::new(60.0, 0.0));
+    rig.drain();
+    rig.move_by('x', ".2");
+    rig.drain();
+    assert!(rig.editor.document().is_settled());
+}
+
+#[test]
+fn a_stroke_that_is_aborted_binds_what_was_there_before() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.run(JobKind::Region);
+    rig.press(CENTRE_PX + DVec2::new(60.0, 0.0));
+    rig.key(Key::Escape);
+    rig.drain();
+    rig.move_by('x', ".2");
+    rig.drain();
+    assert!(rig.editor.document().is_settled());
+}
+
+#[test]
+fn stale_shapes_are_dropped() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    rig.move_by('x', ".2");
+    let solve = rig.jobs.take(JobKind::Solve).expect("a drag is solved").run();
+    rig.undo();
+    rig.editor.handle(Event::JobDone(solve));
+    assert_eq!(rig.largest_displacement(), 0.0, "it was made for what is undone");
+    rig.drain();
+    assert_eq!(rig.largest_displacement(), 0.0);
+
+    rig.redo();
+    let solve = rig.jobs.take(JobKind::Solve).expect("it had not settled").run();
+    let before = rig.drawn();
+    rig.run(JobKind::Pick);
+    rig.paint(ToolMode::PaintFixed, &[CENTRE_PX + DVec2::new(-90.0, 40.0)]);
+    assert!(rig.count(Paint::Fixed) > 0);
+    rig.editor.handle(Event::JobDone(solve));
+    assert!(before == rig.drawn(), "a stroke has made the shape the rest shape");
+    rig.drain();
+    assert!(before == rig.drawn());
+}
+
+#[test]
+fn the_newest_target_replaces_the_pending_one_and_the_last_one_wins() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    let from_px = rig.grip(GizmoPart::Arrow(1)).unwrap();
+    rig.press(from_px);
+    for step in 1..=20 {
+        rig.move_to(from_px - DVec2::new(0.0, f64::from(step) * 3.0));
+        assert!(
+            rig.jobs
+                .waiting()
+                .iter()
+                .filter(|kind| **kind == JobKind::Solve)
+                .count()
+                <= 1
+        );
+    }
+    rig.release(from_px - DVec2::new(0.0, 60.0));
+    let mut solves = 0;
+    while rig.run(JobKind::Solve) {
+        solves += 1;
+    }
+    assert_eq!(solves, 2, "the first target and the last");
+    let document = rig.editor.document();
+    let handle = &document.handles()[0];
+    let moved = handle.centre() - handle.pivot;
+    for (paint, displacement) in document.paint().iter().zip(document.from_file().iter()) {
+        if matches!(paint, Paint::Handle(_)) {
+            assert!((*displacement - moved).length() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_failed_job_is_said_once_and_not_tried_again_until_something_changes() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.run(JobKind::Region);
+    let mut done = rig.jobs.take(JobKind::Bind).unwrap().run();
+    done.outcome = JobOutcome::Failed("the plate is broken: mend it".to_owned());
+    rig.editor.handle(Event::JobDone(done));
+    assert_eq!(rig.editor.view().problem, Some("the plate is broken: mend it"));
+    rig.drain();
+    rig.move_by('x', ".2");
+    rig.drain();
+    assert!(!rig.editor.document().is_settled(), "the handle moved alone");
+    rig.paint(ToolMode::PaintFixed, &[CENTRE_PX + DVec2::new(-90.0, 40.0)]);
+    rig.drain();
+    rig.move_by('y', ".1");
+    rig.drain();
+    assert!(rig.editor.document().is_settled());
+}
+
+#[test]
+fn a_click_waits_for_its_answer() {
+    let mut rig = Rig::open_with_jobs_waiting(shapes::icosphere(3));
+    rig.paint_handle();
+    assert_eq!(rig.editor.view().handles.len(), 0);
+    rig.run(JobKind::Pick);
+    assert_eq!(
+        rig.editor.view().handles.len(),
+        1,
+        "the stroke was made when the pointer could be answered"
+    );
+    assert!(rig.editor.view().undo.is_some());
+}

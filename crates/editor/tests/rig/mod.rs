@@ -1,0 +1,275 @@
+//! The whole program without a window, with verbs: open, paint, drag, undo, redo.
+#![allow(dead_code, reason = "each test file uses the verbs it needs")]
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec2, DVec3};
+use pliant_deform::{Ordering, Problem};
+use pliant_editor::{
+    Button, Command, Document, Editor, Event, GizmoPart, Handle, InlineExecutor, JobKind, Key, Modifiers, Paint,
+    Pointer, ToolMode,
+};
+use pliant_mesh::{Cancel, Drawn, Model, Progress, WeldOptions};
+
+pub const VIEWPORT_PX: DVec2 = DVec2::new(800.0, 600.0);
+pub const CENTRE_PX: DVec2 = DVec2::new(400.0, 300.0);
+
+/// An editor and the list of its jobs.
+pub struct Rig {
+    pub editor: Editor,
+    pub jobs: InlineExecutor,
+    pub model: Arc<Model>,
+}
+
+/// Everything of the document that undo must give back, to the bit.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Fingerprint {
+    paint: Vec<Paint>,
+    handles: Vec<Handle>,
+    stiffness: Option<Vec<f64>>,
+    rest: Vec<[u64; 3]>,
+    from_rest: Vec<[u64; 3]>,
+    from_file: Vec<[u64; 3]>,
+    settled: bool,
+    applied: bool,
+}
+
+impl Fingerprint {
+    pub fn of(document: &Document) -> Self {
+        let bits = |vectors: &[DVec3]| vectors.iter().map(|v| v.to_array().map(f64::to_bits)).collect();
+        Self {
+            paint: document.paint().to_vec(),
+            handles: document.handles().to_vec(),
+            stiffness: document.stiffness().map(<[f64]>::to_vec),
+            rest: bits(document.rest()),
+            from_rest: bits(document.from_rest()),
+            from_file: bits(document.from_file()),
+            settled: document.is_settled(),
+            applied: document.is_applied(),
+        }
+    }
+}
+
+pub fn weld(drawn: Drawn) -> Arc<Model> {
+    Arc::new(Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap())
+}
+
+impl Rig {
+    /// A program with this mesh open and every job done.
+    pub fn open(drawn: Drawn) -> Self {
+        let mut rig = Self::open_with_jobs_waiting(drawn);
+        rig.drain();
+        rig
+    }
+
+    /// A program with this mesh open whose jobs have not run.
+    pub fn open_with_jobs_waiting(drawn: Drawn) -> Self {
+        let jobs = InlineExecutor::new();
+        let mut editor = Editor::new(Box::new(jobs.clone()));
+        let model = weld(drawn);
+        editor.handle(Event::Viewport { size_px: VIEWPORT_PX });
+        editor.handle(Event::Opened {
+            model: Arc::clone(&model),
+            name: "a shape".to_owned(),
+            edit: None,
+        });
+        Self { editor, jobs, model }
+    }
+
+    /// Runs jobs until none waits.
+    pub fn drain(&mut self) {
+        for _ in 0..10_000 {
+            let Some(done) = self.jobs.run_next() else { return };
+            self.editor.handle(Event::JobDone(done));
+        }
+        panic!("the jobs never end: {:?} wait", self.jobs.waiting());
+    }
+
+    /// Runs the next job of this kind; false if none waits.
+    pub fn run(&mut self, kind: JobKind) -> bool {
+        let done = self.jobs.run(kind);
+        let ran = done.is_some();
+        if let Some(done) = done {
+            self.editor.handle(Event::JobDone(done));
+        }
+        ran
+    }
+
+    pub fn command(&mut self, command: Command) {
+        self.editor.handle(Event::Command(command));
+    }
+
+    pub fn key(&mut self, key: Key) {
+        self.editor.handle(Event::Key(key, Modifiers::NONE));
+    }
+
+    pub fn type_keys(&mut self, keys: &str) {
+        for character in keys.chars() {
+            self.key(Key::Character(character));
+        }
+    }
+
+    pub fn press(&mut self, position_px: DVec2) {
+        self.editor.handle(Event::PointerMoved(at(position_px)));
+        self.editor
+            .handle(Event::PointerPressed(at(position_px), Button::Primary));
+    }
+
+    pub fn move_to(&mut self, position_px: DVec2) {
+        self.editor.handle(Event::PointerMoved(at(position_px)));
+    }
+
+    pub fn release(&mut self, position_px: DVec2) {
+        self.editor
+            .handle(Event::PointerReleased(at(position_px), Button::Primary));
+    }
+
+    /// Holds the left button along a way over the screen.
+    pub fn swipe(&mut self, way_px: &[DVec2]) {
+        self.press(way_px[0]);
+        for &position_px in &way_px[1..] {
+            self.move_to(position_px);
+        }
+        self.release(way_px[way_px.len() - 1]);
+    }
+
+    /// Paints along a way.
+    pub fn paint(&mut self, mode: ToolMode, way_px: &[DVec2]) {
+        self.command(Command::SetTool(mode));
+        self.swipe(way_px);
+    }
+
+    /// Paints a handle around the middle of the view.
+    pub fn paint_handle(&mut self) {
+        self.paint(ToolMode::PaintHandle, &[CENTRE_PX]);
+    }
+
+    /// Moves the selected handle along an axis by a typed number.
+    pub fn move_by(&mut self, axis: char, length: &str) {
+        self.type_keys("g");
+        self.type_keys(&format!("{axis}{length}"));
+        self.key(Key::Enter);
+    }
+
+    /// Drags a part of the gizmo by some points; false if it is not to be seen.
+    pub fn drag(&mut self, part: GizmoPart, by_px: DVec2) -> bool {
+        let Some(from_px) = self.grip(part) else { return false };
+        self.swipe(&[from_px, from_px + by_px * 0.5, from_px + by_px]);
+        true
+    }
+
+    /// A point of the screen where this part of the gizmo is grabbed.
+    pub fn grip(&self, part: GizmoPart) -> Option<DVec2> {
+        let view = self.editor.view();
+        let shape = view.gizmo.iter().find(|shape| shape.part == part)?;
+        let lines = shape.lines.iter().map(|[a, b]| (*a + *b) * 0.5);
+        let triangles = shape.triangles.iter().map(|[a, b, c]| (*a + *b + *c) / 3.0);
+        lines
+            .chain(triangles)
+            .filter_map(|point| view.camera.project(point, VIEWPORT_PX))
+            .find(|&position_px| {
+                pliant_editor::hit_gizmo(view.gizmo, position_px, view.camera, VIEWPORT_PX) == Some(part)
+            })
+    }
+
+    pub fn undo(&mut self) {
+        self.command(Command::Undo);
+    }
+
+    pub fn redo(&mut self) {
+        self.command(Command::Redo);
+    }
+
+    /// What is drawn, to the bit.
+    pub fn drawn(&self) -> Vec<[u64; 3]> {
+        let mut positions = Vec::new();
+        self.model
+            .drawn_positions(self.editor.view().displacements, &mut positions);
+        positions.iter().map(|p| p.to_array().map(f64::to_bits)).collect()
+    }
+
+    pub fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::of(self.editor.document())
+    }
+
+    /// The displacements from the rest shape that regions, handles and options mean, computed apart from the program.
+    pub fn shape_of_document(&self) -> Vec<DVec3> {
+        let document = self.editor.document();
+        let mut surface = self.model.surface.clone();
+        let mut displacements = vec![DVec3::ZERO; surface.positions.len()];
+        if document.handles().is_empty() {
+            return displacements;
+        }
+        for (position, rest) in surface.positions.iter_mut().zip(document.rest()) {
+            *position += *rest;
+        }
+        let ones = vec![1.0; surface.positions.len()];
+        let (progress, cancel) = (Progress::new(), Cancel::new());
+        let power = document.method().operator_power();
+        let ordering = Ordering::of(&self.model.topology, power, &progress, &cancel).unwrap();
+        let problem = Problem {
+            surface: &surface,
+            topology: &self.model.topology,
+            roles: self.editor.roles(),
+            handle_count: document.handles().len(),
+            stiffness: document.stiffness().unwrap_or(&ones),
+            loose: document.loose(),
+            method: document.method(),
+            revision: 0,
+        };
+        let mut bound = problem.bind(&ordering, &progress, &cancel).unwrap();
+        let targets: Vec<DAffine3> = document.handles().iter().map(Handle::affine).collect();
+        bound.set_targets(&targets).unwrap();
+        while !bound.step(&mut displacements).unwrap().converged {}
+        displacements
+    }
+
+    pub fn count(&self, paint: Paint) -> usize {
+        self.editor.document().paint().iter().filter(|p| **p == paint).count()
+    }
+
+    /// How far the farthest vertex is from where the file has it.
+    pub fn largest_displacement(&self) -> f64 {
+        self.editor
+            .document()
+            .from_file()
+            .iter()
+            .map(|d| d.length())
+            .fold(0.0, f64::max)
+    }
+}
+
+pub fn at(position_px: DVec2) -> Pointer {
+    Pointer {
+        position_px,
+        modifiers: Modifiers::NONE,
+    }
+}
+
+/// A small generator of numbers with a fixed seed.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    pub fn below(&mut self, end: u64) -> u64 {
+        self.next() % end
+    }
+
+    /// Between 0 and 1.
+    pub fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A point near the middle of the view.
+    pub fn position_px(&mut self) -> DVec2 {
+        CENTRE_PX + DVec2::new(self.unit() - 0.5, self.unit() - 0.5) * 420.0
+    }
+}

@@ -1,0 +1,273 @@
+//! A session as an artist has it, and the same edit by way of the edit file.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
+
+mod rig;
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use pliant_deform::Role;
+use pliant_editor::{
+    Command, EditFile, Editor, Event, ExportError, GizmoPart, HandleTransform, InlineExecutor, Key, Modifiers, Paint,
+    ToolMode,
+};
+use pliant_mesh::shapes;
+use rig::{CENTRE_PX, Rig};
+
+#[test]
+fn a_fresh_document_holds_everything_still_and_a_handle_brings_its_region() {
+    let mut rig = Rig::open(shapes::icosphere(4));
+    assert!(rig.editor.roles().iter().all(|role| *role == Role::Fixed));
+    rig.paint_handle();
+    rig.drain();
+    let counts = rig.editor.view().counts;
+    assert!(
+        counts.handle > 3 && counts.free > counts.handle && counts.fixed > counts.free,
+        "{counts:?}"
+    );
+    assert_eq!(
+        counts.handle + counts.free + counts.fixed,
+        rig.model.surface.positions.len()
+    );
+}
+
+#[test]
+fn a_loose_part_follows_and_a_painted_one_does_not() {
+    let mut bit = shapes::icosphere(2);
+    for position in &mut bit.positions {
+        *position = *position * 0.1 + glam::DVec3::new(0.0, 0.0, 1.15);
+    }
+    let mut rig = Rig::open(shapes::together(&[shapes::icosphere(3), bit]));
+    let of_bit = |rig: &Rig| {
+        (0..rig.model.surface.positions.len() as u32)
+            .filter(|&v| rig.model.topology.component(pliant_mesh::SurfaceVertex(v)) == 1)
+            .collect::<Vec<_>>()
+    };
+    rig.command(Command::View(pliant_editor::NamedView::Left));
+    rig.paint_handle();
+    rig.drain();
+    assert!(
+        of_bit(&rig)
+            .iter()
+            .all(|&v| rig.editor.roles()[v as usize] == Role::Free)
+    );
+}
+
+#[test]
+fn dragging_the_gizmo_moves_the_handle_by_what_the_pointer_says() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.command(Command::View(pliant_editor::NamedView::Front));
+    rig.paint_handle();
+    rig.drain();
+    let centre = rig.editor.view().handles[0].centre();
+    let per_px = rig.editor.view().camera.world_per_px(centre, rig::VIEWPORT_PX);
+    assert!(rig.drag(GizmoPart::Arrow(0), DVec2::new(40.0, 13.0)));
+    rig.drain();
+    let way = rig.editor.view().handles[0].centre() - centre;
+    assert!(
+        (way.x - 40.0 * per_px).abs() < 1e-3 && way.y == 0.0 && way.z == 0.0,
+        "{way}"
+    );
+    assert!(rig.editor.view().undo == Some("Move handle 1"));
+    let free_moved = rig
+        .editor
+        .roles()
+        .iter()
+        .zip(rig.editor.document().from_file().iter())
+        .filter(|(role, displacement)| **role == Role::Free && displacement.length() > 1e-6)
+        .count();
+    assert!(free_moved > 10, "the surface follows");
+    for (role, displacement) in rig.editor.roles().iter().zip(rig.editor.document().from_file().iter()) {
+        assert!(*role != Role::Fixed || *displacement == glam::DVec3::ZERO);
+    }
+}
+
+#[test]
+fn typed_numbers_and_constraints_say_exactly_what_happens() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    let transform = |rig: &Rig| rig.editor.view().handles[0].transform;
+    rig.move_by('y', "-.5");
+    let HandleTransform::Trs { translation, .. } = transform(&rig) else {
+        panic!()
+    };
+    assert_eq!(translation, glam::DVec3::new(0.0, -0.5, 0.0));
+    rig.type_keys("rz90");
+    rig.key(Key::Enter);
+    let HandleTransform::Trs { rotation, .. } = transform(&rig) else {
+        panic!()
+    };
+    assert!((rotation * glam::DVec3::X - glam::DVec3::Y).length() < 1e-12);
+    rig.type_keys("s");
+    rig.editor.handle(Event::Key(Key::Character('z'), Modifiers::SHIFT));
+    rig.type_keys("2");
+    rig.key(Key::Enter);
+    let HandleTransform::Trs { scale, .. } = transform(&rig) else {
+        panic!()
+    };
+    assert_eq!(scale, glam::DVec3::new(2.0, 2.0, 1.0));
+    rig.command(Command::ResetHandle);
+    rig.drain();
+    assert_eq!(rig.largest_displacement(), 0.0);
+}
+
+#[test]
+fn turns_add_up_past_a_full_circle() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.command(Command::View(pliant_editor::NamedView::Front));
+    rig.paint_handle();
+    rig.drain();
+    let centre_px = rig
+        .editor
+        .view()
+        .camera
+        .project(rig.editor.view().handles[0].centre(), rig::VIEWPORT_PX)
+        .unwrap();
+    rig.move_to(centre_px + DVec2::new(100.0, 0.0));
+    rig.type_keys("r");
+    for step in 0..=45 {
+        let angle_rad = f64::from(step) * std::f64::consts::PI / 18.0;
+        rig.move_to(centre_px + DVec2::new(angle_rad.cos(), -angle_rad.sin()) * 100.0);
+    }
+    assert!(
+        rig.editor.view().status.contains("450.0°"),
+        "{}",
+        rig.editor.view().status
+    );
+    rig.key(Key::Escape);
+    assert!(!rig.editor.view().handles[0].is_displaced());
+}
+
+#[test]
+fn a_stroke_paints_without_gaps_however_fast() {
+    let mut fast = Rig::open(shapes::grid(200, 200));
+    let mut slow = Rig::open(shapes::grid(200, 200));
+    let (from_px, to_px) = (CENTRE_PX - DVec2::new(150.0, 40.0), CENTRE_PX + DVec2::new(150.0, 40.0));
+    for rig in [&mut fast, &mut slow] {
+        rig.command(Command::View(pliant_editor::NamedView::Front));
+        rig.command(Command::SetBrushRadius(12.0));
+    }
+    fast.paint(ToolMode::PaintFixed, &[from_px, to_px]);
+    let way: Vec<DVec2> = (0..=600)
+        .map(|step| from_px.lerp(to_px, f64::from(step) / 600.0))
+        .collect();
+    slow.paint(ToolMode::PaintFixed, &way);
+    let (fast, slow) = (fast.count(Paint::Fixed), slow.count(Paint::Fixed));
+    assert!(slow > 500 && fast as f64 > 0.985 * slow as f64, "{fast} of {slow}");
+}
+
+#[test]
+fn the_brush_leaves_the_back_alone() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.command(Command::View(pliant_editor::NamedView::Front));
+    rig.command(Command::SetBrushRadius(400.0));
+    rig.paint(ToolMode::PaintFixed, &[CENTRE_PX]);
+    let front = rig.model.surface.positions.iter().zip(rig.editor.document().paint());
+    for (position, paint) in front {
+        assert!(position.z > -0.1 || *paint == Paint::Bare);
+        assert!(position.z < 0.6 || *paint == Paint::Fixed);
+    }
+}
+
+#[test]
+fn the_edit_file_says_what_was_done() {
+    let bar = || shapes::bar(24, 4, 4);
+    let mut rig = Rig::open(bar());
+    rig.paint_handle();
+    rig.command(Command::NewHandle);
+    rig.paint(ToolMode::PaintHandle, &[CENTRE_PX + DVec2::new(120.0, 0.0)]);
+    rig.drain();
+    rig.move_by('y', ".8");
+    rig.type_keys("rx25");
+    rig.key(Key::Enter);
+    rig.drain();
+    assert_eq!(rig.editor.view().handles.len(), 2);
+
+    let text = rig.editor.edit_file().unwrap().to_json();
+    let edit = EditFile::parse(&text).unwrap();
+    let jobs = InlineExecutor::new();
+    let mut editor = Editor::new(Box::new(jobs.clone()));
+    editor.handle(Event::Opened {
+        model: Arc::clone(&rig.model),
+        name: "again".to_owned(),
+        edit: Some(edit),
+    });
+    while let Some(done) = jobs.run_next() {
+        editor.handle(Event::JobDone(done));
+    }
+    assert!(editor.document().is_settled());
+    assert_eq!(editor.roles(), rig.editor.roles());
+    assert_eq!(
+        editor.document().from_file(),
+        rig.editor.document().from_file(),
+        "the same positions, to the bit"
+    );
+    assert!(!editor.view().unsaved && rig.editor.view().unsaved);
+
+    rig.command(Command::Apply);
+    assert_eq!(rig.editor.edit_file(), Err(ExportError::Applied));
+}
+
+#[test]
+fn saving_is_remembered_through_undo_and_redo() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    assert!(!rig.editor.view().unsaved);
+    rig.paint_handle();
+    rig.drain();
+    rig.editor.handle(Event::Saved);
+    assert!(!rig.editor.view().unsaved);
+    rig.undo();
+    assert!(rig.editor.view().unsaved);
+    rig.redo();
+    assert!(!rig.editor.view().unsaved);
+    rig.undo();
+    rig.paint_handle();
+    assert!(rig.editor.view().unsaved, "what was saved can't be reached any more");
+}
+
+#[test]
+fn revisions_grow_only_with_what_they_stand_for() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    let revisions = |rig: &Rig| {
+        let view = rig.editor.view();
+        [view.shape_revision, view.regions_revision, view.camera_revision]
+    };
+    let before = revisions(&rig);
+    rig.move_to(CENTRE_PX + DVec2::new(5.0, 5.0));
+    rig.move_to(CENTRE_PX + DVec2::new(200.0, 5.0));
+    assert_eq!(before, revisions(&rig), "hovering changes none of them");
+    rig.editor.handle(Event::Wheel {
+        pointer: rig::at(CENTRE_PX),
+        lines: 1.0,
+    });
+    let zoomed = revisions(&rig);
+    assert_eq!([before[0], before[1]], [zoomed[0], zoomed[1]]);
+    assert!(zoomed[2] > before[2]);
+    rig.move_by('x', ".1");
+    rig.drain();
+    let moved = revisions(&rig);
+    assert!(moved[0] > zoomed[0] && moved[1] == zoomed[1] && moved[2] == zoomed[2]);
+}
+
+#[test]
+fn nothing_open_nothing_breaks() {
+    let mut editor = Editor::new(Box::new(InlineExecutor::new()));
+    for listed in Command::LISTED {
+        editor.handle(Event::Command(listed.command.clone()));
+    }
+    editor.handle(Event::PointerPressed(
+        rig::at(CENTRE_PX),
+        pliant_editor::Button::Primary,
+    ));
+    editor.handle(Event::PointerMoved(rig::at(DVec2::ZERO)));
+    editor.handle(Event::PointerReleased(
+        rig::at(CENTRE_PX),
+        pliant_editor::Button::Primary,
+    ));
+    editor.handle(Event::Saved);
+    assert_eq!(editor.edit_file(), Err(ExportError::NoFile));
+    assert!(editor.view().model.is_none());
+}
