@@ -1,16 +1,15 @@
 //! The cactus: a ribbed trunk with two arms in a pot, a flower on top; strongly protruding parts to bend.
 
 use super::Solid;
+use super::limb::Limb;
 use super::noise::{fractal, gradient};
-use super::solid::{
-    chain, ellipsoid, mix, round_cone, smooth_difference, smooth_knots, smooth_union, sphere, srgb, step,
-};
+use super::solid::{ellipsoid, mix, round_cone, smooth_difference, smooth_union, sphere, srgb, step};
 use super::vector::{Vec3, v};
 
 /// The cactus's stems.
 pub struct Cactus {
-    trunk: Vec<(Vec3, f64)>,
-    arms: [Vec<(Vec3, f64)>; 2],
+    trunk: Limb,
+    arms: [Limb; 2],
 }
 
 /// Ribs around a stem.
@@ -19,7 +18,7 @@ const RIBS: u32 = 10;
 impl Cactus {
     /// Lays out the stems.
     pub fn new() -> Self {
-        let trunk = smooth_knots(
+        let trunk = Limb::through(
             &[
                 (v(0.0, 0.16, 0.0), 0.095),
                 (v(0.0, 0.40, 0.0), 0.118),
@@ -28,7 +27,7 @@ impl Cactus {
             ],
             5,
         );
-        let right = smooth_knots(
+        let right = Limb::through(
             &[
                 (v(0.06, 0.46, 0.0), 0.055),
                 (v(0.22, 0.47, 0.02), 0.058),
@@ -37,7 +36,7 @@ impl Cactus {
             ],
             5,
         );
-        let left = smooth_knots(
+        let left = Limb::through(
             &[
                 (v(-0.06, 0.60, 0.0), 0.048),
                 (v(-0.19, 0.60, -0.02), 0.050),
@@ -67,13 +66,17 @@ impl Cactus {
 
     fn stems(&self, p: Vec3) -> f64 {
         let crown = step(1.03, 0.97, p.y) * step(0.02, 0.05, v(p.x, 0.0, p.z).length());
-        let mut d = chain(p, &self.trunk) - 0.008 * Self::ribs(p, Vec3::default()) * crown;
+        let mut d = self.trunk.distance(p, f64::INFINITY) - 0.008 * Self::ribs(p, Vec3::default()) * crown;
         for arm in &self.arms {
-            let tip = arm[arm.len() - 1].0;
+            let tip = arm.knots[arm.knots.len() - 1].0;
             let away = v(p.x - tip.x, 0.0, p.z - tip.z).length();
             let upright =
                 step(tip.y - 0.16, tip.y - 0.10, p.y) * step(tip.y + 0.05, tip.y, p.y) * step(0.01, 0.03, away);
-            d = smooth_union(d, chain(p, arm) - 0.005 * Self::ribs(p, tip) * upright, 0.05);
+            d = smooth_union(
+                d,
+                arm.distance(p, f64::INFINITY) - 0.005 * Self::ribs(p, tip) * upright,
+                0.05,
+            );
         }
         d
     }

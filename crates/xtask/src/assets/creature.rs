@@ -4,18 +4,17 @@
 //! eyes are modelled on the side x > 0 and mirrored; skin and tail keep the two sides from being equal.
 
 use super::Solid;
+use super::limb::{Limb, smooth_knots};
 use super::noise::{fractal, gradient, scales, white};
-use super::solid::{
-    chain, ellipsoid, mix, round_cone, smooth_difference, smooth_knots, smooth_union, sphere, srgb, step,
-};
+use super::solid::{chain, ellipsoid, mix, round_cone, smooth_difference, smooth_union, sphere, srgb, step};
 use super::vector::{Vec3, v};
 
 /// The creature's parts that cost something to lay out.
 pub struct Creature {
-    neck: Vec<(Vec3, f64)>,
-    tail: Vec<(Vec3, f64)>,
-    fore_leg: Vec<(Vec3, f64)>,
-    hind_leg: Vec<(Vec3, f64)>,
+    neck: Limb,
+    tail: Limb,
+    fore_leg: Limb,
+    hind_leg: Limb,
     /// Base and tip of each plate of the crest, with the radius at the base.
     crest: Vec<(Vec3, Vec3, f64)>,
 }
@@ -29,7 +28,7 @@ const SCALES: f64 = 27.0;
 impl Creature {
     /// Lays out the creature.
     pub fn new() -> Self {
-        let neck = smooth_knots(
+        let neck = Limb::through(
             &[
                 (v(0.0, 0.42, 0.10), 0.17),
                 (v(0.0, 0.54, 0.27), 0.125),
@@ -39,7 +38,7 @@ impl Creature {
             ],
             6,
         );
-        let tail = smooth_knots(
+        let tail = Limb::through(
             &[
                 (v(0.0, 0.43, -0.20), 0.17),
                 (v(0.0, 0.40, -0.38), 0.118),
@@ -52,7 +51,7 @@ impl Creature {
             ],
             6,
         );
-        let fore_leg = smooth_knots(
+        let fore_leg = Limb::through(
             &[
                 (v(0.10, 0.42, 0.14), 0.100),
                 (v(0.135, 0.26, 0.165), 0.076),
@@ -61,7 +60,7 @@ impl Creature {
             ],
             4,
         );
-        let hind_leg = smooth_knots(
+        let hind_leg = Limb::through(
             &[
                 (v(0.10, 0.42, -0.20), 0.125),
                 (v(0.145, 0.27, -0.17), 0.098),
@@ -94,7 +93,7 @@ impl Creature {
         ]
         .map(|at| (at, 0.0))
         .to_vec();
-        knots.extend(self.tail.iter().skip(5).step_by(6));
+        knots.extend(self.tail.knots.iter().skip(5).step_by(6));
         let axis: Vec<Vec3> = smooth_knots(&knots, 6).into_iter().map(|knot| knot.0).collect();
         for pair in axis.windows(2) {
             for part in 0..6 {
@@ -130,11 +129,9 @@ impl Creature {
     /// Trunk, neck and tail: what the crest stands on.
     fn torso(&self, p: Vec3) -> f64 {
         let trunk = round_cone(p, v(0.0, 0.405, -0.14), 0.205, v(0.0, 0.435, 0.10), 0.185);
-        smooth_union(
-            smooth_union(trunk, chain(p, &self.neck), 0.10),
-            chain(p, &self.tail),
-            0.10,
-        )
+        let width = 0.10;
+        let d = smooth_union(trunk, self.neck.distance(p, trunk + width), width);
+        smooth_union(d, self.tail.distance(p, d + width), width)
     }
 
     fn head(&self, p: Vec3) -> f64 {
@@ -201,10 +198,10 @@ impl Creature {
         let away = |centre: Vec3, radius: f64| (q - centre).length() - radius;
         let mut d = self.torso(p);
         if away(v(0.13, 0.25, 0.15), 0.32) < d {
-            d = smooth_union(d, chain(q, &self.fore_leg), 0.055);
+            d = smooth_union(d, self.fore_leg.distance(q, d + 0.055), 0.055);
         }
         if away(v(0.13, 0.25, -0.19), 0.34) < d {
-            d = smooth_union(d, chain(q, &self.hind_leg), 0.055);
+            d = smooth_union(d, self.hind_leg.distance(q, d + 0.055), 0.055);
         }
         if away(v(0.15, 0.04, 0.18), 0.18) < d || away(v(0.157, 0.04, -0.18), 0.18) < d {
             d = smooth_union(d, self.feet(p), 0.03);

@@ -7,6 +7,7 @@ pub mod cactus;
 pub mod creature;
 pub mod cylinder;
 pub mod glb;
+pub mod limb;
 pub mod mesh;
 pub mod noise;
 pub mod plane;

@@ -50,30 +50,6 @@ pub fn chain(p: Vec3, knots: &[(Vec3, f64)]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// A smooth chain: the Catmull-Rom curve through `knots`, in `pieces` round cones a span.
-pub fn smooth_knots(knots: &[(Vec3, f64)], pieces: usize) -> Vec<(Vec3, f64)> {
-    let at = |i: isize| knots[i.clamp(0, knots.len() as isize - 1) as usize];
-    let mut out = Vec::new();
-    for span in 0..knots.len() as isize - 1 {
-        let (k0, k1, k2, k3) = (at(span - 1), at(span), at(span + 1), at(span + 2));
-        for piece in 0..pieces {
-            let t = piece as f64 / pieces as f64;
-            let (t2, t3) = (t * t, t * t * t);
-            let w = [
-                -t3 + 2.0 * t2 - t,
-                3.0 * t3 - 5.0 * t2 + 2.0,
-                -3.0 * t3 + 4.0 * t2 + t,
-                t3 - t2,
-            ];
-            let centre = (k0.0 * w[0] + k1.0 * w[1] + k2.0 * w[2] + k3.0 * w[3]) * 0.5;
-            let radius = (k0.1 * w[0] + k1.1 * w[1] + k2.1 * w[2] + k3.1 * w[3]) * 0.5;
-            out.push((centre, radius));
-        }
-    }
-    out.push(at(knots.len() as isize - 1));
-    out
-}
-
 /// The union of two solids, their crease filled over a width of about `width`.
 pub fn smooth_union(a: f64, b: f64, width: f64) -> f64 {
     let overlap = (width - (a - b).abs()).max(0.0) / width;
@@ -129,19 +105,5 @@ mod tests {
         assert_eq!(smooth_union(0.1, 0.9, 0.5), 0.1);
         assert!(smooth_union(0.1, 0.2, 0.5) < 0.1);
         assert!(smooth_difference(-0.5, -0.1, 0.2) >= 0.1);
-    }
-
-    #[test]
-    fn smooth_knots_pass_through_the_given_ones() {
-        let knots = [
-            (v(0.0, 0.0, 0.0), 1.0),
-            (v(1.0, 0.0, 0.0), 0.5),
-            (v(1.0, 1.0, 0.0), 0.2),
-        ];
-        let smooth = smooth_knots(&knots, 4);
-        assert_eq!(smooth.len(), 9);
-        for (i, knot) in knots.iter().enumerate() {
-            assert!((smooth[4 * i].0 - knot.0).length() < 1e-12 && (smooth[4 * i].1 - knot.1).abs() < 1e-12);
-        }
     }
 }
