@@ -5,6 +5,7 @@
 //! row with a clock beside them.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
@@ -29,7 +30,7 @@ pub struct Loaded {
     /// The file as stored.
     pub scene: Scene,
     /// Its geometry.
-    pub model: Model,
+    pub model: Arc<Model>,
 }
 
 /// Reads and welds a file.
@@ -37,15 +38,28 @@ pub struct Loaded {
 /// # Errors
 /// A file that can't be read; [`AppError::Interrupted`] soon after `cancel` is raised.
 pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
+    Format::of_name(&path.to_string_lossy())?;
+    watch.begin("reading");
+    load_bytes(files::read(path)?, path, weld, watch)
+}
+
+/// Reads and welds a file's bytes; `path` is where its neighbours stand and what it is called.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_bytes(bytes: Vec<u8>, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
     let name = path.to_string_lossy();
     let format = Format::of_name(&name)?;
     let progress = watch.begin("reading");
-    let bytes = files::read(path)?;
     let opened = pliant_io::read(bytes, format, &name, &Neighbours::of(path), &progress, &watch.cancel);
     let opened = opened.map_err(AppError::Read)?;
     let progress = watch.begin("welding");
     let model = Model::weld(opened.drawn, weld, &progress, &watch.cancel).map_err(|_| AppError::Interrupted)?;
-    Ok(Loaded { path: path.to_owned(), scene: opened.scene, model })
+    Ok(Loaded {
+        path: path.to_owned(),
+        scene: opened.scene,
+        model: Arc::new(model),
+    })
 }
 
 /// Orders a model's equations for a method, once for all regions.
@@ -78,7 +92,12 @@ pub fn bind(
         method: &setup.method,
         revision: 0,
     };
-    problem.bind(ordering, progress, cancel).map_err(|source| AppError::Bind { file: file.to_owned(), source })
+    problem
+        .bind(ordering, progress, cancel)
+        .map_err(|source| AppError::Bind {
+            file: file.to_owned(),
+            source,
+        })
 }
 
 /// Prepares a scene's files for `output`: encoded, written beside their targets and synced, to be committed.
@@ -91,7 +110,10 @@ pub fn stage_save(
     output: &Path,
     staging: &Staging,
 ) -> Result<(Staged, Vec<String>), AppError> {
-    let refuse = |source| AppError::Save { file: output.to_owned(), source };
+    let refuse = |source| AppError::Save {
+        file: output.to_owned(),
+        source,
+    };
     let name = output.file_name().unwrap_or_default().to_string_lossy();
     let save = Save {
         drawn: &loaded.model.drawn,
@@ -138,7 +160,10 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     if model.surface.triangles.is_empty() {
         return Err(AppError::NoTriangles(apply.file.to_owned()));
     }
-    let setup = apply.edit.resolve(model).map_err(|source| AppError::Edit { edit: apply.edit_path.to_owned(), source })?;
+    let setup = apply.edit.resolve(model).map_err(|source| AppError::Edit {
+        edit: apply.edit_path.to_owned(),
+        source,
+    })?;
 
     let solution = if apply.edit.changes_nothing() {
         Solution::at_rest(model, &setup)
@@ -231,10 +256,20 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
     let ordering = order(model, &setup.method, &watch.begin("ordering"), &watch.cancel)?;
     let order_ms = ms_since(start);
     let start = Instant::now();
-    let mut bound = bind(apply.file, model, setup, &ordering, &watch.begin("binding"), &watch.cancel)?;
+    let mut bound = bind(
+        apply.file,
+        model,
+        setup,
+        &ordering,
+        &watch.begin("binding"),
+        &watch.cancel,
+    )?;
     let bind_ms = ms_since(start);
 
-    let refuse = |source| AppError::Solve { file: apply.file.to_owned(), source };
+    let refuse = |source| AppError::Solve {
+        file: apply.file.to_owned(),
+        source,
+    };
     let progress = watch.begin("bending");
     let count = apply.frames.unwrap_or(1);
     let mut displacements = vec![DVec3::ZERO; model.surface.positions.len()];
@@ -261,11 +296,20 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
         solve_ms.push(ms_since(start));
         iterations += u64::from(last.iteration);
 
-        for ((new, rest), d) in surface_positions.iter_mut().zip(&model.surface.positions).zip(&displacements) {
+        for ((new, rest), d) in surface_positions
+            .iter_mut()
+            .zip(&model.surface.positions)
+            .zip(&displacements)
+        {
             *new = *rest + *d;
         }
         let start = Instant::now();
-        vertex_normals(&model.surface.triangles, &model.topology, &surface_positions, &mut normals);
+        vertex_normals(
+            &model.surface.triangles,
+            &model.topology,
+            &surface_positions,
+            &mut normals,
+        );
         normals_ms.push(ms_since(start));
         progress.set(frame as f32 / count as f32);
     }
@@ -278,7 +322,10 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
         frames: FrameTimes::of(&mut solve_ms, &mut normals_ms),
         iterations: iterations as f64 / count.max(1) as f64,
         converged: last.converged,
-        energy: Energy { rest: finite_or(bound.energy_rest(), 0.0), r#final: finite_or(last.energy, f64::MAX) },
+        energy: Energy {
+            rest: finite_or(bound.energy_rest(), 0.0),
+            r#final: finite_or(last.energy, f64::MAX),
+        },
         warnings: bound.warnings().to_vec(),
     })
 }

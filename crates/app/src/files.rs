@@ -24,11 +24,19 @@ pub struct FileError {
 
 impl FileError {
     fn reading(file: &Path, source: io::Error) -> Self {
-        Self { file: file.to_owned(), verb: "read", source }
+        Self {
+            file: file.to_owned(),
+            verb: "read",
+            source,
+        }
     }
 
     fn writing(file: &Path, source: io::Error) -> Self {
-        Self { file: file.to_owned(), verb: "written", source }
+        Self {
+            file: file.to_owned(),
+            verb: "written",
+            source,
+        }
     }
 }
 
@@ -83,7 +91,9 @@ pub struct Neighbours {
 impl Neighbours {
     /// The neighbours of `file`.
     pub fn of(file: &Path) -> Self {
-        Self { folder: folder_of(file).to_owned() }
+        Self {
+            folder: folder_of(file).to_owned(),
+        }
     }
 }
 
@@ -158,9 +168,17 @@ impl Staging {
         folder: &Path,
         files: impl IntoIterator<Item = (&'a str, &'a [u8])>,
     ) -> Result<Staged, FileError> {
-        let mut staged = Staged { files: Vec::new(), folders: Vec::new(), staging: self.clone() };
+        let mut staged = Staged {
+            files: Vec::new(),
+            folders: Vec::new(),
+            staging: self.clone(),
+        };
         for (name, bytes) in files {
-            let name = if folder == Path::new(".") { PathBuf::from(name) } else { folder.join(name) };
+            let name = if folder == Path::new(".") {
+                PathBuf::from(name)
+            } else {
+                folder.join(name)
+            };
             let refuse = |error| FileError::writing(&name, error);
             staged.make_folders(folder, &name).map_err(refuse)?;
             staged.files.push(self.stage_one(&name, bytes).map_err(refuse)?);
@@ -201,7 +219,11 @@ impl Staging {
             temporary.as_file().set_permissions(existing.permissions())?;
         }
         temporary.as_file().sync_all()?;
-        Ok(StagedFile { name: name.to_owned(), target, temporary: temporary.into_temp_path() })
+        Ok(StagedFile {
+            name: name.to_owned(),
+            target,
+            temporary: temporary.into_temp_path(),
+        })
     }
 
     fn temporary_beside(&self, target: &Path) -> io::Result<NamedTempFile> {
@@ -243,8 +265,10 @@ impl Staged {
 
     /// Makes the folders between `folder` and the file `name` in it.
     fn make_folders(&mut self, folder: &Path, name: &Path) -> io::Result<()> {
-        let missing: Vec<&Path> =
-            folder_of(name).ancestors().take_while(|path| *path != folder && !path.exists()).collect();
+        let missing: Vec<&Path> = folder_of(name)
+            .ancestors()
+            .take_while(|path| *path != folder && !path.exists())
+            .collect();
         if !folder.exists() {
             return Err(ErrorKind::NotFound.into());
         }
@@ -310,10 +334,13 @@ fn backup(target: &Path) -> io::Result<Option<TempPath>> {
     if !target.exists() {
         return Ok(None);
     }
-    let name = tempfile::Builder::new().prefix(".pliant-").suffix(".old").make_in(folder_of(target), |path| {
-        // Not every file system has hard links.
-        fs::hard_link(target, path).or_else(|_| fs::copy(target, path).map(|_| ()))
-    })?;
+    let name = tempfile::Builder::new()
+        .prefix(".pliant-")
+        .suffix(".old")
+        .make_in(folder_of(target), |path| {
+            // Not every file system has hard links.
+            fs::hard_link(target, path).or_else(|_| fs::copy(target, path).map(|_| ()))
+        })?;
     Ok(Some(name.into_temp_path()))
 }
 

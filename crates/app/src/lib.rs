@@ -1,12 +1,14 @@
 //! The program: the command line, the window, files, threads and the clock. `pliant` itself is a thin binary over it.
 
 pub mod cli;
+pub mod drawing;
 pub mod engine;
 mod error;
 pub mod files;
 pub mod report;
 mod version;
 pub mod watch;
+pub mod window;
 
 pub use error::AppError;
 pub use version::VERSION;

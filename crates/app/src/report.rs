@@ -114,7 +114,10 @@ mod tests {
     fn quantiles_are_frames_that_were_measured() {
         let mut frames: Vec<f64> = (1..=20).rev().map(f64::from).collect();
         let times = FrameTimes::of(&mut frames, &mut []);
-        assert_eq!((times.count, times.median_ms, times.p95_ms, times.max_ms), (20, 10.0, 19.0, 20.0));
+        assert_eq!(
+            (times.count, times.median_ms, times.p95_ms, times.max_ms),
+            (20, 10.0, 19.0, 20.0)
+        );
         assert_eq!(times.normals_ms, 0.0);
         assert_eq!(FrameTimes::of(&mut [], &mut []), FrameTimes::default());
         assert_eq!(FrameTimes::of(&mut [3.0], &mut [1.0]).p95_ms, 3.0);

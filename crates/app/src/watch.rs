@@ -13,6 +13,14 @@ pub struct Watch {
 }
 
 impl Watch {
+    /// A watch over work that stops when `cancel` is raised.
+    pub fn cancelled_by(cancel: &Cancel) -> Self {
+        Self {
+            cancel: cancel.clone(),
+            stage: Arc::default(),
+        }
+    }
+
     /// Says that `doing` ("reading", "binding") begins; the work tells its progress through what comes back.
     pub fn begin(&self, doing: &'static str) -> Progress {
         let progress = Progress::new();

@@ -11,7 +11,15 @@ use super::{Console, on_threads};
 use crate::{AppError, engine, files};
 
 pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Result<(), AppError> {
-    let ApplyArguments { file, edit: edit_path, output, report, frames, method, threads } = arguments;
+    let ApplyArguments {
+        file,
+        edit: edit_path,
+        output,
+        report,
+        frames,
+        method,
+        threads,
+    } = arguments;
     let output_name = output.to_string_lossy();
     Format::of_name(&output_name).map_err(|error| AppError::Arguments(format!("--output: {error}")))?;
     let method = method.as_deref().map(method_named).transpose()?;
@@ -19,7 +27,9 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         for (other, role) in [(file, "FILE"), (edit_path, "--edit"), (output, "--output")] {
             if same_file(report, other) {
                 let report = report.display();
-                return Err(AppError::Arguments(format!("--report {report} is {role} as well: give it another name")));
+                return Err(AppError::Arguments(format!(
+                    "--report {report} is {role} as well: give it another name"
+                )));
             }
         }
     }
@@ -42,16 +52,25 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
 
 /// Reads an edit's file.
 pub(super) fn read_edit(path: &Path) -> Result<EditFile, AppError> {
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("pliant")) {
+    if path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("pliant"))
+    {
         return Err(AppError::ProjectAsEdit(path.to_owned()));
     }
     let text = files::read_text(path)?;
-    EditFile::parse(&text).map_err(|source| AppError::Edit { edit: path.to_owned(), source })
+    EditFile::parse(&text).map_err(|source| AppError::Edit {
+        edit: path.to_owned(),
+        source,
+    })
 }
 
 fn method_named(name: &str) -> Result<Method, AppError> {
     Method::from_name(name).ok_or_else(|| {
-        AppError::Arguments(format!("--method {name} is not known: use one of {}", Method::NAMES.join(", ")))
+        AppError::Arguments(format!(
+            "--method {name} is not known: use one of {}",
+            Method::NAMES.join(", ")
+        ))
     })
 }
 

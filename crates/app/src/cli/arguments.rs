@@ -139,7 +139,9 @@ impl std::str::FromStr for PictureSize {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let side = |text: &str| text.parse().ok().filter(|side| (1..=16384).contains(side));
-        let sides = text.split_once(['x', 'X']).and_then(|(width, height)| Some((side(width)?, side(height)?)));
+        let sides = text
+            .split_once(['x', 'X'])
+            .and_then(|(width, height)| Some((side(width)?, side(height)?)));
         match sides {
             Some((width, height)) => Ok(Self { width, height }),
             None => Err("a size is WIDTHxHEIGHT, such as 1280x800, each from 1 to 16384".to_owned()),
@@ -173,7 +175,11 @@ fn methods_help() -> String {
 pub(crate) fn one_line(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let mut line = String::new();
-    for part in text.lines().map(str::trim).take_while(|part| !part.starts_with("Usage:")) {
+    for part in text
+        .lines()
+        .map(str::trim)
+        .take_while(|part| !part.starts_with("Usage:"))
+    {
         if part.is_empty() || part.starts_with("For more information") {
             continue;
         }
@@ -209,13 +215,18 @@ mod tests {
     fn a_bare_file_is_for_the_window_and_a_command_is_itself() {
         assert_eq!(parse_words("pliant scan.glb").unwrap().file, Some("scan.glb".into()));
         assert!(parse_words("pliant").unwrap().command.is_none());
-        assert!(matches!(parse_words("pliant info a.ply --json").unwrap().command, Some(Command::Info(_))));
+        assert!(matches!(
+            parse_words("pliant info a.ply --json").unwrap().command,
+            Some(Command::Info(_))
+        ));
     }
 
     #[test]
     fn a_picture_has_the_size_that_was_asked_for() {
         let line = "pliant render a.ply --output a.png --size 64x48 --up z --view three-quarter --shading regions";
-        let Some(Command::Render(render)) = parse_words(line).unwrap().command else { panic!("not a render") };
+        let Some(Command::Render(render)) = parse_words(line).unwrap().command else {
+            panic!("not a render")
+        };
         assert_eq!(render.size, PictureSize { width: 64, height: 48 });
         for size in ["64", "0x48", "ax3", "64x48x2", "99999x2"] {
             assert!(size.parse::<PictureSize>().is_err(), "{size}");
@@ -227,7 +238,10 @@ mod tests {
         for (line, culprit) in [
             ("pliant apply a.ply --output b.ply", "--edit"),
             ("pliant apply a.ply --edit e.json --output b.ply --frames 0", "--frames"),
-            ("pliant apply a.ply --edit e.json --output b.ply --threads none", "--threads"),
+            (
+                "pliant apply a.ply --edit e.json --output b.ply --threads none",
+                "--threads",
+            ),
             ("pliant apply a.ply --edit e.json --output b.ply --frame 3", "--frame"),
             ("pliant render a.ply --output a.png --view behind", "behind"),
             ("pliant a.ply b.ply", "b.ply"),

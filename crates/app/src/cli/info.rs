@@ -16,7 +16,11 @@ const LISTED_COMPONENTS: usize = 12;
 pub(super) fn run(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     let watch = &console.watch;
     let loaded = on_threads(None, || engine::load(&arguments.file, &WeldOptions::default(), watch))??;
-    let text = if arguments.json { format!("{:#}\n", as_json(&loaded)) } else { as_text(&loaded) };
+    let text = if arguments.json {
+        format!("{:#}\n", as_json(&loaded))
+    } else {
+        as_text(&loaded)
+    };
     print(console.out, &text)
 }
 
@@ -59,17 +63,38 @@ fn as_text(loaded: &Loaded) -> String {
     if surface.triangles.is_empty() {
         line("triangles", "none: there is nothing to edit in it".to_owned());
     } else {
-        line("triangles", format!("{} drawn, {} kept", model.drawn.triangles.len(), surface.triangles.len()));
+        line(
+            "triangles",
+            format!(
+                "{} drawn, {} kept",
+                model.drawn.triangles.len(),
+                surface.triangles.len()
+            ),
+        );
     }
     if let Some(bounds) = model.bounds() {
         let (min, max) = (bounds.min, bounds.max);
-        line("bounds", format!("{:.6} {:.6} {:.6} to {:.6} {:.6} {:.6}", min.x, min.y, min.z, max.x, max.y, max.z));
+        line(
+            "bounds",
+            format!(
+                "{:.6} {:.6} {:.6} to {:.6} {:.6} {:.6}",
+                min.x, min.y, min.z, max.x, max.y, max.z
+            ),
+        );
     }
-    let sizes: Vec<usize> = model.topology.components().iter().map(|component| component.vertices.len()).collect();
+    let sizes: Vec<usize> = model
+        .topology
+        .components()
+        .iter()
+        .map(|component| component.vertices.len())
+        .collect();
     if !sizes.is_empty() {
         let listed: Vec<String> = sizes.iter().take(LISTED_COMPONENTS).map(usize::to_string).collect();
         let more = if sizes.len() > LISTED_COMPONENTS { ", .." } else { "" };
-        line("components", format!("{} (vertices: {}{more})", sizes.len(), listed.join(", ")));
+        line(
+            "components",
+            format!("{} (vertices: {}{more})", sizes.len(), listed.join(", ")),
+        );
     }
     for sentence in model.findings.sentences() {
         line("found", sentence);
@@ -84,7 +109,9 @@ fn as_text(loaded: &Loaded) -> String {
 fn as_json(loaded: &Loaded) -> Value {
     let (model, findings) = (&loaded.model, &loaded.model.findings);
     let appearance = loaded.scene.appearance();
-    let bounds = model.bounds().map(|bounds| json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() }));
+    let bounds = model
+        .bounds()
+        .map(|bounds| json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() }));
     let components: Vec<Value> = model
         .topology
         .components()

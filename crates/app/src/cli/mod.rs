@@ -37,7 +37,12 @@ pub fn main() -> ExitCode {
     let stderr = io::stderr();
     let progress = stderr.is_terminal().then(|| progress_line::show(watch.clone()));
     let mut err = progress_line::ErasingWriter::new(progress);
-    let mut console = Console { out: &mut io::stdout().lock(), err: &mut err, watch, staging };
+    let mut console = Console {
+        out: &mut io::stdout().lock(),
+        err: &mut err,
+        watch,
+        staging,
+    };
     ExitCode::from(run(std::env::args_os().collect(), &mut console))
 }
 
@@ -49,7 +54,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Info(arguments)) => info::run(&arguments, console),
             Some(Command::Apply(arguments)) => apply::run(&arguments, console),
             Some(Command::Render(arguments)) => render::run(&arguments, console),
-            None => open_window(arguments.file),
+            None => crate::window::run(arguments.file),
         },
         Err(help) if !help.use_stderr() => print(console.out, &help.render().to_string()),
         Err(error) => Err(AppError::Arguments(arguments::one_line(&error))),
@@ -66,17 +71,12 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
     error.status()
 }
 
-fn open_window(file: Option<std::path::PathBuf>) -> Result<(), AppError> {
-    let _ = file;
-    Err(AppError::Unsupported("this version has no window yet: use `pliant info` and `pliant apply`".to_owned()))
-}
-
 /// Prints a text. Whoever closed the pipe has read enough.
 fn print(out: &mut dyn Write, text: &str) -> Result<(), AppError> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(AppError::System(format!("standard output can't be written: {error}; check where it goes")))
-        }
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(AppError::System(format!(
+            "standard output can't be written: {error}; check where it goes"
+        ))),
         _ => Ok(()),
     }
 }
@@ -88,7 +88,9 @@ fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) 
         builder = builder.num_threads(threads);
     }
     let pool = builder.build().map_err(|error| {
-        AppError::System(format!("the threads can't be started ({error}): give a smaller --threads"))
+        AppError::System(format!(
+            "the threads can't be started ({error}): give a smaller --threads"
+        ))
     })?;
     Ok(pool.install(work))
 }

@@ -20,7 +20,10 @@ pub(super) struct ProgressLine {
 /// Shows what `watch` says ten times a second, from a quarter of a second on: shorter work needs no line.
 pub(super) fn show(watch: Watch) -> ProgressLine {
     let (done, shown) = (Arc::new(AtomicBool::new(false)), Arc::new(Mutex::new(false)));
-    let line = ProgressLine { done: done.clone(), shown: shown.clone() };
+    let line = ProgressLine {
+        done: done.clone(),
+        shown: shown.clone(),
+    };
     std::thread::spawn(move || {
         std::thread::sleep(Duration::from_millis(250));
         loop {

@@ -1,0 +1,156 @@
+//! Normals of a moving shape that respect the file's own: smooth where it is smooth, hard where it is hard.
+//!
+//! Drawn vertices that share a surface vertex and a stored normal form one group, over whose triangles the geometric
+//! normal is averaged by area. The stored normal is then turned by the smallest rotation that takes the geometric
+//! normal at rest to the present one: at rest the file's normals are shown bit by bit, and no first drag makes the
+//! shading jump.
+
+use std::collections::HashMap;
+
+use glam::{DVec3, Quat, Vec3};
+use pliant_mesh::Model;
+use rayon::prelude::*;
+
+/// Which drawn vertices share a normal, and which triangles it comes from.
+#[derive(Debug)]
+pub struct NormalGroups {
+    /// The group of each drawn vertex.
+    group_of_drawn: Vec<u32>,
+    /// Triangles of group `g`: `faces[offsets[g]..offsets[g + 1]]`, ascending, so that sums are in one order.
+    offsets: Vec<u32>,
+    faces: Vec<u32>,
+    /// Per group, geometric normals of the file's shape and the stored ones; `None` where the file stores none.
+    rest: Option<RestNormals>,
+}
+
+#[derive(Debug)]
+struct RestNormals {
+    geometric: Vec<Vec3>,
+    stored: Vec<Vec3>,
+}
+
+impl NormalGroups {
+    /// Groups the model's drawn vertices; `stored` has one unit normal a drawn vertex, in world space.
+    pub fn of(model: &Model, stored: Option<Vec<[f32; 3]>>) -> Self {
+        let (group_of_drawn, stored_of_group) = group_vertices(model, stored.as_deref());
+        let group_count = stored_of_group.len();
+        let mut offsets = vec![0_u32; group_count + 1];
+        let corner_groups =
+            |corners: &[pliant_mesh::DrawnVertex; 3]| corners.map(|v| group_of_drawn[v.index()] as usize);
+        for corners in &model.drawn.triangles {
+            for group in corner_groups(corners) {
+                offsets[group + 1] += 1;
+            }
+        }
+        for group in 0..group_count {
+            offsets[group + 1] += offsets[group];
+        }
+        let mut next = offsets.clone();
+        let mut faces = vec![0_u32; 3 * model.drawn.triangles.len()];
+        for (face, corners) in model.drawn.triangles.iter().enumerate() {
+            for group in corner_groups(corners) {
+                faces[next[group] as usize] = face as u32;
+                next[group] += 1;
+            }
+        }
+        let mut groups = Self {
+            group_of_drawn,
+            offsets,
+            faces,
+            rest: None,
+        };
+        if stored.is_some() {
+            let geometric = groups.geometric(&model.drawn.positions, model);
+            groups.rest = Some(RestNormals {
+                geometric,
+                stored: stored_of_group,
+            });
+        }
+        groups
+    }
+
+    /// One unit normal a drawn vertex, of the shape in which the drawn vertices stand at `positions`.
+    pub fn at(&self, positions: &[DVec3], model: &Model) -> Vec<[f32; 3]> {
+        let mut normals = self.geometric(positions, model);
+        if let Some(rest) = &self.rest {
+            normals
+                .par_iter_mut()
+                .zip(&rest.geometric)
+                .zip(&rest.stored)
+                .for_each(|((normal, &from), &stored)| {
+                    // A vertex that the file gives no normal shows the geometric one.
+                    if stored != Vec3::ZERO {
+                        *normal = if *normal == from {
+                            stored
+                        } else {
+                            carry(stored, from, *normal)
+                        };
+                    }
+                });
+        }
+        self.group_of_drawn
+            .par_iter()
+            .map(|&group| normals[group as usize].to_array())
+            .collect()
+    }
+
+    /// Area-weighted geometric normals per group; the z axis where a group's triangles have no area.
+    fn geometric(&self, positions: &[DVec3], model: &Model) -> Vec<Vec3> {
+        // f32 begins here: a doubled area vector only tells a direction for shading.
+        let doubled_areas: Vec<Vec3> = model
+            .drawn
+            .triangles
+            .par_iter()
+            .map(|corners| {
+                let [a, b, c] = corners.map(|vertex| positions[vertex.index()]);
+                (b - a).cross(c - a).as_vec3()
+            })
+            .collect();
+        let scale = doubled_areas
+            .par_iter()
+            .map(|area| area.abs().max_element())
+            .reduce(|| 0.0, f32::max);
+        let scale = if scale.is_normal() { scale.recip() } else { 1.0 };
+        (0..self.offsets.len() - 1)
+            .into_par_iter()
+            .map(|group| {
+                let faces = &self.faces[self.offsets[group] as usize..self.offsets[group + 1] as usize];
+                let sum: Vec3 = faces.iter().map(|&face| doubled_areas[face as usize] * scale).sum();
+                sum.try_normalize().unwrap_or(Vec3::Z)
+            })
+            .collect()
+    }
+}
+
+/// `stored`, turned by the smallest rotation from one geometric normal to another.
+fn carry(stored: Vec3, from: Vec3, to: Vec3) -> Vec3 {
+    Quat::from_rotation_arc(from, to)
+        .mul_vec3(stored)
+        .try_normalize()
+        .unwrap_or(to)
+}
+
+/// The group of each drawn vertex and each group's stored normal (zero where the file has none).
+fn group_vertices(model: &Model, stored: Option<&[[f32; 3]]>) -> (Vec<u32>, Vec<Vec3>) {
+    let vertex_count = model.drawn.positions.len();
+    let mut group_of_drawn = Vec::with_capacity(vertex_count);
+    let mut stored_of_group = Vec::new();
+    let mut group_of_key: HashMap<(u32, [u32; 3]), u32> = HashMap::with_capacity(vertex_count);
+    for drawn in 0..vertex_count {
+        let normal = stored
+            .and_then(|normals| normals.get(drawn).copied())
+            .unwrap_or_default();
+        let mut new_group = || {
+            stored_of_group.push(Vec3::from(normal));
+            stored_of_group.len() as u32 - 1
+        };
+        let group = match model.surface_of_drawn[drawn] {
+            Some(surface) => *group_of_key
+                .entry((surface.0, normal.map(f32::to_bits)))
+                .or_insert_with(new_group),
+            None => new_group(),
+        };
+        group_of_drawn.push(group);
+    }
+    (group_of_drawn, stored_of_group)
+}

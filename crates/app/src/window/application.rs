@@ -1,0 +1,528 @@
+//! The application: what happens in one frame of the window, from messages and input to the editor, and back to the
+//! screen.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
+
+use eframe::egui::{self, CentralPanel, Panel, Sense};
+use glam::{DVec2, DVec3};
+use pliant_editor::{Command, Cursor, Editor, Event, JobQueue, Revision};
+
+use super::dialog::{self, Answer, Question, Then};
+use super::input::{Attention, Input};
+use super::message::{Message, Opened, Posed, Purpose, Written};
+use super::panels;
+use super::session::{KeepOriginal, Session, Source};
+use super::status;
+use super::theme;
+use super::top_bar::{self, FileCommand};
+use super::viewport::{Smoothness, Viewport};
+use super::workers::{Stage, Workers};
+use crate::AppError;
+
+/// How long the view must rest before it is drawn with smooth borders on a software device.
+const REST: Duration = Duration::from_millis(300);
+
+/// The window's state beside the editor's: files, threads, the GPU, questions and notes.
+pub struct Application {
+    editor: Editor,
+    viewport: Viewport,
+    workers: Workers,
+    messages: Receiver<Message>,
+    session: Session,
+    poses: JobQueue<Arc<Vec<DVec3>>>,
+    next_pose: u64,
+    input: Input,
+    question: Option<Question>,
+    /// What to do once the save that was asked for first has ended.
+    after_saving: Option<Then>,
+    notes: Notes,
+    last_change: Instant,
+    closing: bool,
+    longest_frame: Duration,
+    view_rect: egui::Rect,
+}
+
+/// What the person is told beside the status line.
+#[derive(Debug, Default)]
+pub struct Notes {
+    /// The newest thing that went well or wrong with a file, in a sentence.
+    pub headline: Option<Note>,
+    /// What is to be known about the open file, a sentence each.
+    pub about_file: Vec<String>,
+}
+
+/// A sentence for the person.
+#[derive(Clone, Debug)]
+pub enum Note {
+    /// Something was done.
+    Done(String),
+    /// Something could not be done.
+    Failed(String),
+}
+
+impl Application {
+    /// The application in eframe's context, opening `source`.
+    ///
+    /// # Errors
+    /// Where there is no graphics device, or it can't run our pipelines.
+    pub fn new(context: &eframe::CreationContext<'_>, source: Source) -> Result<Self, AppError> {
+        theme::apply(&context.egui_ctx);
+        let Some(state) = context.wgpu_render_state.clone() else {
+            return Err(AppError::System(
+                "the window has no graphics device: install a Vulkan driver".to_owned(),
+            ));
+        };
+        let viewport = Viewport::new(state).map_err(|error| AppError::System(error.to_string()))?;
+        let (sender, messages) = channel();
+        let workers = Workers::new(context.egui_ctx.clone(), sender);
+        let mut session = Session::default();
+        session.load(source, &workers);
+        Ok(Self {
+            editor: Editor::new(Box::new(workers.clone())),
+            viewport,
+            workers,
+            messages,
+            session,
+            poses: JobQueue::default(),
+            next_pose: 0,
+            input: Input::default(),
+            question: None,
+            after_saving: None,
+            notes: Notes::default(),
+            last_change: Instant::now(),
+            closing: false,
+            longest_frame: Duration::ZERO,
+            view_rect: egui::Rect::ZERO,
+        })
+    }
+
+    /// The editor, to look at.
+    pub fn editor(&self) -> &Editor {
+        &self.editor
+    }
+
+    /// The path that the open file was read from or saved to.
+    pub fn path(&self) -> Option<&Path> {
+        self.session.open.as_ref()?.path.as_deref()
+    }
+
+    /// Whether nothing is under way: no job, no file being read or written, and the picture shows the present shape.
+    pub fn is_settled(&self) -> bool {
+        let view = self.editor.view();
+        let shown = self
+            .viewport
+            .displacements()
+            .is_some_and(|shown| Arc::ptr_eq(shown, view.displacements));
+        view.settled && shown && self.session.doing().is_none()
+    }
+
+    /// The shape in the GPU's buffers, per surface vertex, from the file's.
+    pub fn shown_displacements(&self) -> Option<&Arc<Vec<DVec3>>> {
+        self.viewport.displacements()
+    }
+
+    /// Where the 3D view stands in the window, in points.
+    pub fn view_rect(&self) -> egui::Rect {
+        self.view_rect
+    }
+
+    /// How often the 3D view was drawn.
+    pub fn drawings(&self) -> u64 {
+        self.viewport.drawings()
+    }
+
+    /// The newest sentence about a file that was saved or could not be opened or saved.
+    pub fn headline(&self) -> Option<&str> {
+        match self.notes.headline.as_ref()? {
+            Note::Done(sentence) | Note::Failed(sentence) => Some(sentence),
+        }
+    }
+
+    /// The longest that a frame has kept the window's thread busy, the drawing itself apart, since the last call.
+    pub fn take_longest_frame(&mut self) -> Duration {
+        std::mem::take(&mut self.longest_frame)
+    }
+
+    /// Opens a file without asking whether unsaved work may be lost.
+    pub fn open(&mut self, path: PathBuf) {
+        self.session.load(Source::File(path), &self.workers);
+    }
+
+    /// Saves under `path`, without asking whether a source may be written over.
+    pub fn save_to(&mut self, path: PathBuf, keep_original: KeepOriginal) {
+        let displacements = Arc::clone(self.editor.view().displacements);
+        self.session.save(path, &displacements, keep_original, &self.workers);
+    }
+
+    fn take_messages(&mut self) {
+        while let Ok(message) = self.messages.try_recv() {
+            match message {
+                Message::Job(done, posed) => {
+                    self.editor.handle(Event::JobDone(done));
+                    // A stale result's pose is not shown: the editor kept another shape.
+                    if let Some(posed) =
+                        posed.filter(|posed| Arc::ptr_eq(&posed.displacements, self.editor.view().displacements))
+                    {
+                        self.show_pose(posed);
+                    }
+                }
+                Message::Posed(stamp, result) => {
+                    self.poses.finish(stamp);
+                    match result {
+                        Ok(posed) if self.belongs_to_open_file(&posed) => self.show_pose(posed),
+                        Ok(_) => {}
+                        Err(sentence) => self.fail(sentence),
+                    }
+                }
+                Message::Opened(stamp, result) => match self.session.loaded(stamp, result, &self.workers) {
+                    Some(Ok(opened)) => self.adopt(*opened),
+                    Some(Err(sentence)) => self.fail(sentence),
+                    None => {}
+                },
+                Message::Written(stamp, result) => self.written(stamp, result),
+                Message::Chosen(purpose, path) => self.chosen(purpose, path),
+            }
+        }
+    }
+
+    fn belongs_to_open_file(&self, posed: &Posed) -> bool {
+        posed.displacements.len() == self.editor.view().displacements.len()
+    }
+
+    fn adopt(&mut self, opened: Opened) {
+        self.session.adopt(&opened);
+        let Opened {
+            loaded,
+            drawing,
+            rest,
+            edit,
+            notes,
+            ..
+        } = opened;
+        let name = self
+            .session
+            .open
+            .as_ref()
+            .map(super::session::OpenFile::name)
+            .unwrap_or_default();
+        self.workers.set_stage(Stage {
+            loaded: Arc::clone(&loaded),
+            drawing: Arc::clone(&drawing),
+        });
+        self.poses.cancel();
+        if let Err(error) = self.viewport.show(drawing, rest) {
+            self.fail(error.to_string());
+        }
+        self.notes = Notes {
+            headline: None,
+            about_file: notes,
+        };
+        self.editor.handle(Event::Opened {
+            model: Arc::clone(&loaded.model),
+            name,
+            edit,
+        });
+    }
+
+    fn written(&mut self, stamp: Revision, result: Result<Written, String>) {
+        self.session.written(stamp, &result, &self.workers);
+        match result {
+            Ok(written) => {
+                if written.is_model {
+                    self.editor.handle(Event::Saved);
+                }
+                let mut sentence = format!("Saved {}.", written.path.display());
+                for warning in &written.warnings {
+                    sentence.push(' ');
+                    sentence.push_str(warning);
+                }
+                self.notes.headline = Some(Note::Done(sentence));
+                if let Some(then) = self.after_saving.take() {
+                    self.go_on(then);
+                }
+            }
+            Err(sentence) => {
+                self.after_saving = None;
+                self.fail(sentence);
+            }
+        }
+    }
+
+    fn fail(&mut self, sentence: String) {
+        self.notes.headline = Some(Note::Failed(sentence));
+    }
+
+    fn show_pose(&mut self, posed: Posed) {
+        if let Err(error) = self.viewport.pose(posed) {
+            self.fail(error.to_string());
+        }
+    }
+
+    /// Asks for the pose of the present shape if it is not the one that is shown (after undo, or while a handle moves
+    /// before its binding is ready).
+    fn request_pose(&mut self) {
+        let wanted = self.editor.view().displacements;
+        let shown = self.viewport.displacements();
+        if shown.is_some_and(|shown| !Arc::ptr_eq(shown, wanted)) && !self.poses.is_busy() {
+            let wanted = Arc::clone(wanted);
+            self.next_pose += 1;
+            self.poses.request(Revision(self.next_pose), wanted);
+        }
+        let (Some((running, displacements)), Some(open)) = (self.poses.start_next(), &self.session.open) else {
+            return;
+        };
+        let stage = Stage {
+            loaded: Arc::clone(&open.loaded),
+            drawing: Arc::clone(&open.drawing),
+        };
+        let stamp = running.stamp;
+        self.workers.spawn(
+            "posing",
+            move || Message::Posed(stamp, Ok(stage.pose(displacements))),
+            move |sentence| Message::Posed(stamp, Err(sentence)),
+        );
+    }
+
+    fn chosen(&mut self, purpose: Purpose, path: Option<PathBuf>) {
+        match (purpose, path) {
+            (Purpose::Open, Some(path)) => self.open(path),
+            (Purpose::SaveAs, Some(path)) => {
+                let over_source = self.path() == Some(path.as_path()) && !self.may_write_over();
+                self.save_to(
+                    path,
+                    if over_source {
+                        KeepOriginal::Yes
+                    } else {
+                        KeepOriginal::No
+                    },
+                );
+            }
+            (Purpose::ExportEdit, Some(path)) => match self.editor.edit_file() {
+                Ok(edit) => self.session.export(path, edit, &self.workers),
+                Err(error) => self.fail(error.to_string()),
+            },
+            // Cancelled, or the system has no dialog: then a path can be typed.
+            (purpose, None) => self.question = Some(Question::Path(purpose, self.suggested_path(purpose))),
+        }
+    }
+
+    fn suggested_path(&self, purpose: Purpose) -> String {
+        match (purpose, self.path()) {
+            (Purpose::SaveAs, Some(path)) => path.display().to_string(),
+            (Purpose::SaveAs, None) => "edited.glb".to_owned(),
+            (Purpose::ExportEdit, Some(path)) => path.with_extension("edit.json").display().to_string(),
+            (Purpose::ExportEdit, None) => "edit.json".to_owned(),
+            (Purpose::Open, _) => String::new(),
+        }
+    }
+
+    fn may_write_over(&self) -> bool {
+        self.session.open.as_ref().is_some_and(|open| open.may_write_over)
+    }
+
+    fn file_command(&mut self, context: &egui::Context, command: FileCommand) {
+        match command {
+            FileCommand::Open => self.unless_unsaved(context, Then::Open(None)),
+            FileCommand::OpenPath(path) => self.unless_unsaved(context, Then::Open(Some(path))),
+            FileCommand::Save => self.save(),
+            FileCommand::SaveAs => dialog::choose(Purpose::SaveAs, self.path(), &self.workers),
+            FileCommand::ExportEdit => dialog::choose(Purpose::ExportEdit, self.path(), &self.workers),
+            FileCommand::Quit => self.unless_unsaved(context, Then::Close),
+        }
+    }
+
+    fn save(&mut self) {
+        match self.path().map(Path::to_owned) {
+            Some(path) if self.may_write_over() => self.save_to(path, KeepOriginal::No),
+            Some(path) => self.question = Some(Question::WriteOver(path)),
+            None => dialog::choose(Purpose::SaveAs, None, &self.workers),
+        }
+    }
+
+    fn unless_unsaved(&mut self, context: &egui::Context, then: Then) {
+        if self.editor.view().unsaved {
+            self.question = Some(Question::Discard(then));
+        } else {
+            self.go_on(then);
+        }
+        context.request_repaint();
+    }
+
+    fn go_on(&mut self, then: Then) {
+        match then {
+            Then::Open(Some(path)) => self.open(path),
+            Then::Open(None) => dialog::choose(Purpose::Open, self.path(), &self.workers),
+            Then::Close => self.closing = true,
+        }
+    }
+
+    fn answer(&mut self, answer: Answer) {
+        let question = self.question.take();
+        match answer {
+            Answer::WriteOver(path) => self.save_to(path, KeepOriginal::Yes),
+            Answer::SaveAs => dialog::choose(Purpose::SaveAs, self.path(), &self.workers),
+            Answer::Save => {
+                if let Some(Question::Discard(then)) = question {
+                    self.after_saving = Some(then);
+                }
+                self.save();
+            }
+            Answer::Path(purpose, path) => self.chosen(purpose, Some(path)),
+            Answer::Discard(then) => self.go_on(then),
+            Answer::Cancel => self.after_saving = None,
+        }
+    }
+
+    fn file_shortcuts(&mut self, context: &egui::Context) {
+        if self.question.is_some() {
+            return;
+        }
+        for command in FileCommand::WITH_SHORTCUTS {
+            let Some(shortcut) = command.shortcut() else { continue };
+            if context.input_mut(|input| input.consume_shortcut(&shortcut)) {
+                self.file_command(context, command.clone());
+            }
+        }
+        let dropped = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
+        if let Some(path) = dropped {
+            self.file_command(context, FileCommand::OpenPath(path));
+        }
+    }
+
+    /// The 3D view: input first, then the picture.
+    fn view(&mut self, ui: &mut egui::Ui) -> Result<(), pliant_render::RenderError> {
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        if rect.width() < 1.0 || rect.height() < 1.0 {
+            return Ok(());
+        }
+        self.view_rect = rect;
+        let size_px = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
+        if self.editor.view().viewport_px != size_px {
+            self.editor.handle(Event::Viewport { size_px });
+        }
+        if response.is_pointer_button_down_on() {
+            ui.memory_mut(|memory| {
+                if let Some(focused) = memory.focused() {
+                    memory.surrender_focus(focused);
+                }
+            });
+        }
+        let attention = Attention {
+            rect,
+            pointer: ui.input(|input| input.pointer.latest_pos()).unwrap_or(rect.center()),
+            pointer_over: response.contains_pointer() && self.question.is_none(),
+            keys: self.question.is_none() && !ui.ctx().egui_wants_keyboard_input(),
+        };
+        let events = self.input.events(ui.ctx(), attention);
+        if !events.is_empty() {
+            self.last_change = Instant::now();
+        }
+        for event in events {
+            self.editor.handle(event);
+        }
+        self.request_pose();
+        ui.ctx().set_cursor_icon(match self.editor.view().cursor {
+            _ if !response.contains_pointer() => egui::CursorIcon::Default,
+            Cursor::Arrow => egui::CursorIcon::Default,
+            Cursor::Brush => egui::CursorIcon::Crosshair,
+            Cursor::Grab => egui::CursorIcon::Grab,
+            Cursor::Grabbing => egui::CursorIcon::Grabbing,
+            Cursor::Move => egui::CursorIcon::Move,
+        });
+        let resting = self.last_change.elapsed() >= REST && self.editor.view().settled;
+        let smooth = if resting {
+            Smoothness::Resting
+        } else {
+            Smoothness::Moving
+        };
+        if self.viewport.paint(ui, rect, &self.editor, smooth)? {
+            ui.ctx().request_repaint_after(
+                REST.saturating_sub(self.last_change.elapsed())
+                    .max(Duration::from_millis(10)),
+            );
+        }
+        Ok(())
+    }
+}
+
+impl eframe::App for Application {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        let start = Instant::now();
+        let context = ui.ctx().clone();
+        self.take_messages();
+        self.file_shortcuts(&context);
+
+        let mut commands: Vec<Command> = Vec::new();
+        let mut file_command = None;
+        let title = self
+            .session
+            .open
+            .as_ref()
+            .map(super::session::OpenFile::name)
+            .unwrap_or_default();
+        Panel::top("top").show(ui, |ui| {
+            file_command = top_bar::show(ui, &self.editor, &title, &mut commands)
+        });
+        let device = self.viewport.software_device();
+        let busy = self.session.doing();
+        let stop = Panel::bottom("status")
+            .show(ui, |ui| {
+                status::show(
+                    ui,
+                    &self.editor,
+                    busy,
+                    &mut self.notes.headline,
+                    device.as_deref(),
+                    &mut commands,
+                )
+            })
+            .inner;
+        if stop {
+            self.session.cancel_load();
+        }
+        Panel::right("panel")
+            .default_size(250.0)
+            .show(ui, |ui| panels::show(ui, &self.editor, &self.notes, &mut commands));
+        let painted = CentralPanel::no_frame().show(ui, |ui| self.view(ui)).inner;
+        if let Err(error) = painted {
+            self.fail(error.to_string());
+        }
+
+        for command in commands {
+            self.last_change = Instant::now();
+            self.editor.handle(Event::Command(command));
+            context.request_repaint();
+        }
+        if let Some(command) = file_command {
+            self.file_command(&context, command);
+        }
+        if let Some(answer) = self
+            .question
+            .as_mut()
+            .and_then(|question| dialog::ask(&context, question))
+        {
+            self.answer(answer);
+            context.request_repaint();
+        }
+        self.close_or_stay(&context);
+        if self.session.doing().is_some() || !self.editor.view().jobs.is_empty() {
+            context.request_repaint_after(Duration::from_millis(100));
+        }
+        self.longest_frame = self.longest_frame.max(start.elapsed());
+    }
+}
+
+impl Application {
+    /// Lets the window close unless there is unsaved work that nobody agreed to lose.
+    fn close_or_stay(&mut self, context: &egui::Context) {
+        if self.closing {
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        } else if context.input(|input| input.viewport().close_requested()) && self.editor.view().unsaved {
+            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.question = Some(Question::Discard(Then::Close));
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! A button for a command: its name, tooltip and shortcut come from the editor's list.
+
+use eframe::egui::{self, Button};
+use pliant_editor::{Command, Editor};
+
+/// A button for a listed command, disabled when it can't be done now; true when it is clicked.
+pub fn command_button(ui: &mut egui::Ui, editor: &Editor, command: &Command) -> bool {
+    let Some(listed) = command.listed() else { return false };
+    let mut button = Button::new(listed.name);
+    if let Some(shortcut) = listed.shortcuts.first() {
+        button = button.shortcut_text(shortcut.label());
+    }
+    ui.add_enabled(editor.is_enabled(command), button)
+        .on_hover_text(listed.tooltip)
+        .clicked()
+}
+
+/// The same as a choice that is marked while it holds.
+pub fn command_choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, chosen: bool) -> bool {
+    let Some(listed) = command.listed() else { return false };
+    let tooltip = match listed.shortcuts.first() {
+        Some(shortcut) => format!("{} ({})", listed.tooltip, shortcut.label()),
+        None => listed.tooltip.to_owned(),
+    };
+    let button = Button::selectable(chosen, listed.name);
+    ui.add_enabled(editor.is_enabled(command), button)
+        .on_hover_text(tooltip)
+        .clicked()
+}

@@ -1,0 +1,179 @@
+//! Questions to the person: the system's file dialogs, and our own one before a source is written over.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{self, Id, Modal, RichText};
+
+use super::message::{Message, Purpose};
+use super::session::{file_name, original_name};
+use super::workers::Workers;
+
+/// The kinds of file that open, by extension.
+const MODELS: [&str; 6] = ["glb", "gltf", "obj", "ply", "stl", "off"];
+
+/// Asks for a path by the system's dialog, which is made here, on the main thread, and awaited elsewhere. Where the
+/// system has no dialog its answer is "none"; a typed path and drag and drop remain.
+pub fn choose(purpose: Purpose, near: Option<&Path>, workers: &Workers) {
+    let mut dialog = rfd::AsyncFileDialog::new();
+    if let Some(folder) = near.and_then(Path::parent).filter(|folder| folder.is_dir()) {
+        dialog = dialog.set_directory(folder);
+    }
+    if let Some(name) = near.map(file_name).filter(|_| purpose == Purpose::SaveAs) {
+        dialog = dialog.set_file_name(name);
+    }
+    let answered =
+        move |file: Option<rfd::FileHandle>| Message::Chosen(purpose, file.map(|file| file.path().to_owned()));
+    let none = move |_| Message::Chosen(purpose, None);
+    match purpose {
+        Purpose::Open => {
+            let answer = dialog
+                .set_title("Open a model")
+                .add_filter("Models", &MODELS)
+                .pick_file();
+            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
+        }
+        Purpose::SaveAs => {
+            let answer = dialog
+                .set_title("Save the model as")
+                .add_filter("Models", &MODELS)
+                .save_file();
+            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
+        }
+        Purpose::ExportEdit => {
+            let answer = dialog
+                .set_title("Export the edit as")
+                .set_file_name("edit.json")
+                .save_file();
+            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
+        }
+    }
+}
+
+/// A question that waits for an answer; the window behind it does nothing meanwhile.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Question {
+    /// Whether the file that was opened may be written over.
+    WriteOver(PathBuf),
+    /// A path to type, where the system has no dialog.
+    Path(Purpose, String),
+    /// Whether unsaved work may be lost.
+    Discard(Then),
+}
+
+/// What was asked for when unsaved work stood in the way.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Then {
+    /// Opening this file, or asking which.
+    Open(Option<PathBuf>),
+    /// Closing the window.
+    Close,
+}
+
+/// What the person answered.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Answer {
+    /// Write over the file and keep the original beside it.
+    WriteOver(PathBuf),
+    /// Save under another name instead.
+    SaveAs,
+    /// Save first.
+    Save,
+    /// This path.
+    Path(Purpose, PathBuf),
+    /// Go on and lose the unsaved work.
+    Discard(Then),
+    /// Nothing after all.
+    Cancel,
+}
+
+/// Shows a question; `Some` once it is answered.
+pub fn ask(context: &egui::Context, question: &mut Question) -> Option<Answer> {
+    let mut answer = None;
+    let response = Modal::new(Id::unique("question")).show(context, |ui| {
+        ui.set_max_width(420.0);
+        match question {
+            Question::WriteOver(path) => write_over(ui, path, &mut answer),
+            Question::Path(purpose, typed) => path(ui, *purpose, typed, &mut answer),
+            Question::Discard(then) => discard(ui, then, &mut answer),
+        }
+    });
+    if answer.is_none() && response.should_close() {
+        answer = Some(Answer::Cancel);
+    }
+    answer
+}
+
+fn write_over(ui: &mut egui::Ui, path: &Path, answer: &mut Option<Answer>) {
+    ui.heading(format!("Save over {}?", file_name(path)));
+    let kept = original_name(path);
+    let sentence = if kept.exists() {
+        format!("The original is kept already, as {}.", file_name(&kept))
+    } else {
+        format!("The file as it is now is kept beside it as {}.", file_name(&kept))
+    };
+    ui.label(sentence);
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if ui.button(RichText::new("Save").strong()).clicked() {
+            *answer = Some(Answer::WriteOver(path.to_owned()));
+        }
+        if ui.button("Save as…").clicked() {
+            *answer = Some(Answer::SaveAs);
+        }
+        if ui.button("Cancel").clicked() {
+            *answer = Some(Answer::Cancel);
+        }
+    });
+}
+
+fn path(ui: &mut egui::Ui, purpose: Purpose, typed: &mut String, answer: &mut Option<Answer>) {
+    let (heading, hint) = match purpose {
+        Purpose::Open => (
+            "Open a model",
+            "The path of a .glb, .gltf, .obj, .ply, .stl or .off file:",
+        ),
+        Purpose::SaveAs => (
+            "Save the model as",
+            "The path to save under; its extension chooses the format:",
+        ),
+        Purpose::ExportEdit => ("Export the edit", "The path of the .json file:"),
+    };
+    ui.heading(heading);
+    ui.label(hint);
+    let field = ui.add(egui::TextEdit::singleline(typed).desired_width(f32::INFINITY));
+    field.request_focus();
+    let entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        let named = !typed.trim().is_empty();
+        let clicked = ui
+            .add_enabled(named, egui::Button::new(RichText::new("OK").strong()))
+            .clicked();
+        if named && (clicked || entered) {
+            *answer = Some(Answer::Path(purpose, PathBuf::from(typed.trim())));
+        }
+        if ui.button("Cancel").clicked() {
+            *answer = Some(Answer::Cancel);
+        }
+    });
+}
+
+fn discard(ui: &mut egui::Ui, then: &Then, answer: &mut Option<Answer>) {
+    ui.heading("There is unsaved work");
+    ui.label(match then {
+        Then::Open(_) => "Opening another file closes this one.",
+        Then::Close => "Closing the window ends it.",
+    });
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if ui.button(RichText::new("Save first").strong()).clicked() {
+            *answer = Some(Answer::Save);
+        }
+        if ui.button("Don't save").clicked() {
+            *answer = Some(Answer::Discard(then.clone()));
+        }
+        if ui.button("Cancel").clicked() {
+            *answer = Some(Answer::Cancel);
+        }
+    });
+}

@@ -1,0 +1,69 @@
+//! What the window's helpers on other threads tell it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_editor::{EditFile, JobDone, Revision};
+
+use crate::drawing::{Drawing, Pose};
+use crate::engine::Loaded;
+
+/// Something that ended elsewhere; the window takes all that wait at the start of each frame.
+pub enum Message {
+    /// One of the editor's jobs ended; a solved shape comes with its pose.
+    Job(JobDone, Option<Posed>),
+    /// A shape was made ready for the renderer.
+    Posed(Revision, Result<Posed, String>),
+    /// A file was opened, or why it was not.
+    Opened(Revision, Result<Box<Opened>, String>),
+    /// A file was written, or why it was not.
+    Written(Revision, Result<Written, String>),
+    /// A person chose a path in a dialog; `None` if they chose none.
+    Chosen(Purpose, Option<PathBuf>),
+}
+
+/// A shape with its pose.
+pub struct Posed {
+    /// The shape, as the editor shares it; compared by its address.
+    pub displacements: Arc<Vec<DVec3>>,
+    /// The same for the renderer.
+    pub pose: Pose,
+}
+
+/// An opened file, ready to be shown and edited.
+pub struct Opened {
+    /// Where it stands; the built-in sample stands nowhere.
+    pub path: Option<PathBuf>,
+    /// The file as stored and its vertex sets.
+    pub loaded: Arc<Loaded>,
+    /// What the renderer takes of it.
+    pub drawing: Arc<Drawing>,
+    /// Its own shape.
+    pub rest: Posed,
+    /// Regions and handles to begin with.
+    pub edit: Option<EditFile>,
+    /// What a person should know about the file, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// A file that was written.
+pub struct Written {
+    /// Where.
+    pub path: PathBuf,
+    /// Whether it is the model (and not an edit): then there is no unsaved work now.
+    pub is_model: bool,
+    /// What the file could not hold, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// What a path is chosen for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Purpose {
+    /// To open a model.
+    Open,
+    /// To save the model under.
+    SaveAs,
+    /// To write the edit file to.
+    ExportEdit,
+}

@@ -1,0 +1,70 @@
+//! The window: eframe around the editor. Panels show what the editor says and send it events; files, dialogs, threads
+//! and the clock are here; egui meets the renderer in `viewport.rs` alone.
+
+mod application;
+mod command_button;
+mod dialog;
+mod input;
+mod message;
+mod panels;
+mod session;
+mod status;
+mod theme;
+mod top_bar;
+mod viewport;
+mod workers;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use eframe::egui::{ViewportBuilder, vec2};
+use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+
+pub use application::Application;
+pub use session::{KeepOriginal, Source, original_name};
+
+use crate::error::AppError;
+
+/// Opens the window on a file, or on the built-in sample, and returns when it is closed.
+///
+/// # Errors
+/// Where no window or no graphics device can be had.
+pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
+    let source = file.map_or(Source::Sample, Source::File);
+    let options = eframe::NativeOptions {
+        viewport: ViewportBuilder::default()
+            .with_title("Pliant")
+            .with_app_id("pliant")
+            .with_inner_size(vec2(1280.0, 800.0))
+            .with_min_inner_size(vec2(640.0, 400.0))
+            .with_drag_and_drop(true),
+        renderer: eframe::Renderer::Wgpu,
+        wgpu_options: WgpuConfiguration {
+            wgpu_setup: setup(),
+            ..WgpuConfiguration::default()
+        },
+        ..eframe::NativeOptions::default()
+    };
+    eframe::run_native(
+        "Pliant",
+        options,
+        Box::new(move |context| Ok(Box::new(Application::new(context, source)?))),
+    )
+    .map_err(|error| AppError::System(sentence(&error)))
+}
+
+/// A device with the adapter's own limits: large scans need large buffers.
+fn setup() -> WgpuSetup {
+    let mut setup = WgpuSetupCreateNew::without_display_handle();
+    setup.power_preference = wgpu::PowerPreference::HighPerformance;
+    setup.device_descriptor = Arc::new(pliant_render::device_descriptor);
+    WgpuSetup::CreateNew(setup)
+}
+
+fn sentence(error: &eframe::Error) -> String {
+    let reason = error.to_string().replace(['\n', '\r'], " ");
+    format!(
+        "no window can be opened ({reason}): start it in a desktop session with a Vulkan, Metal or DirectX 12 driver, \
+         or use `pliant apply`, which needs neither"
+    )
+}

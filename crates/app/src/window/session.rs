@@ -1,0 +1,298 @@
+//! The open file: loading it, saving it, and what a person is asked before a source is written over.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_editor::{EditFile, JobQueue, Revision};
+use pliant_mesh::WeldOptions;
+
+use super::message::{Message, Opened, Posed, Written};
+use super::workers::Workers;
+use crate::AppError;
+use crate::drawing::Drawing;
+use crate::engine::{self, Loaded};
+use crate::files::{self, Staging};
+use crate::watch::Watch;
+
+/// The sample that is shown when no file is named.
+const SAMPLE: &[u8] = include_bytes!("../../../../assets/creature.glb");
+/// Its name.
+const SAMPLE_NAME: &str = "creature.glb";
+
+/// The open file and the jobs that read and write it.
+#[derive(Default)]
+pub struct Session {
+    /// What is open.
+    pub open: Option<OpenFile>,
+    next: u64,
+    loading: JobQueue<Source>,
+    /// What the load that runs is doing.
+    watch: Watch,
+    saving: JobQueue<SaveRequest>,
+}
+
+/// What is open.
+pub struct OpenFile {
+    /// Where it was read from, or saved to since; the built-in sample stands nowhere.
+    pub path: Option<PathBuf>,
+    /// The file as stored when it was opened, and its vertex sets: what every save patches.
+    pub loaded: Arc<Loaded>,
+    /// What the renderer takes of it.
+    pub drawing: Arc<Drawing>,
+    /// Whether a person agreed to write over `path`, or it was written by us under a name of its own.
+    pub may_write_over: bool,
+}
+
+impl OpenFile {
+    /// The name to show.
+    pub fn name(&self) -> String {
+        file_name(self.path.as_deref().unwrap_or(&self.loaded.path))
+    }
+}
+
+/// Where a model comes from.
+#[derive(Clone, Debug)]
+pub enum Source {
+    /// The built-in sample.
+    Sample,
+    /// A file.
+    File(PathBuf),
+}
+
+/// What is to be written.
+struct SaveRequest {
+    path: PathBuf,
+    what: What,
+}
+
+enum What {
+    Model {
+        loaded: Arc<Loaded>,
+        displacements: Arc<Vec<DVec3>>,
+        keep_original: KeepOriginal,
+    },
+    Edit(Box<EditFile>),
+}
+
+impl Session {
+    /// Opens a file, off the window's thread. A load that is under way is given up.
+    pub fn load(&mut self, source: Source, workers: &Workers) {
+        self.loading.cancel();
+        let stamp = self.stamp();
+        self.loading.request(stamp, source);
+        self.start_loading(workers);
+    }
+
+    /// Gives up the load that is under way.
+    pub fn cancel_load(&mut self) {
+        self.loading.cancel();
+    }
+
+    /// Takes a load's result. `None` if nobody wants it any more.
+    pub fn loaded(
+        &mut self,
+        stamp: Revision,
+        result: Result<Box<Opened>, String>,
+        workers: &Workers,
+    ) -> Option<Result<Box<Opened>, String>> {
+        let wanted = self.loading.running().is_some_and(|running| running.stamp == stamp);
+        self.loading.finish(stamp);
+        self.start_loading(workers);
+        wanted.then_some(result)
+    }
+
+    /// Makes an opened file the open one.
+    pub fn adopt(&mut self, opened: &Opened) {
+        self.open = Some(OpenFile {
+            path: opened.path.clone(),
+            loaded: Arc::clone(&opened.loaded),
+            drawing: Arc::clone(&opened.drawing),
+            may_write_over: false,
+        });
+    }
+
+    /// Writes the model, off the window's thread. With `keep_original` the file that is replaced is kept beside it
+    /// first, as [`original_name`] says.
+    pub fn save(
+        &mut self,
+        path: PathBuf,
+        displacements: &Arc<Vec<DVec3>>,
+        keep_original: KeepOriginal,
+        workers: &Workers,
+    ) {
+        let Some(open) = &self.open else { return };
+        let (loaded, displacements) = (Arc::clone(&open.loaded), Arc::clone(displacements));
+        let what = What::Model {
+            loaded,
+            displacements,
+            keep_original,
+        };
+        self.write(SaveRequest { path, what }, workers);
+    }
+
+    /// Writes an edit file, off the window's thread.
+    pub fn export(&mut self, path: PathBuf, edit: EditFile, workers: &Workers) {
+        self.write(
+            SaveRequest {
+                path,
+                what: What::Edit(Box::new(edit)),
+            },
+            workers,
+        );
+    }
+
+    /// Takes a save's end.
+    pub fn written(&mut self, stamp: Revision, result: &Result<Written, String>, workers: &Workers) {
+        self.saving.finish(stamp);
+        if let (Some(open), Ok(written)) = (&mut self.open, result)
+            && written.is_model
+        {
+            open.path = Some(written.path.clone());
+            open.may_write_over = true;
+        }
+        self.start_saving(workers);
+    }
+
+    /// What runs, with its progress (0 to 1).
+    pub fn doing(&self) -> Option<(&'static str, f32)> {
+        let loading = self
+            .loading
+            .running()
+            .map(|_| self.watch.now().unwrap_or(("opening the file", 0.0)));
+        loading.or_else(|| self.saving.running().map(|running| ("saving", running.progress.get())))
+    }
+
+    fn stamp(&mut self) -> Revision {
+        self.next += 1;
+        Revision(self.next)
+    }
+
+    fn write(&mut self, request: SaveRequest, workers: &Workers) {
+        let stamp = self.stamp();
+        self.saving.request(stamp, request);
+        self.start_saving(workers);
+    }
+
+    fn start_loading(&mut self, workers: &Workers) {
+        let Some((running, source)) = self.loading.start_next() else {
+            return;
+        };
+        let stamp = running.stamp;
+        let watch = Watch::cancelled_by(&running.cancel);
+        self.watch = watch.clone();
+        workers.spawn(
+            "opening",
+            move || Message::Opened(stamp, open(&source, &watch).map_err(|error| error.to_string())),
+            move |sentence| Message::Opened(stamp, Err(sentence)),
+        );
+    }
+
+    fn start_saving(&mut self, workers: &Workers) {
+        let Some((running, request)) = self.saving.start_next() else {
+            return;
+        };
+        let stamp = running.stamp;
+        workers.spawn(
+            "saving",
+            move || Message::Written(stamp, write(request).map_err(|error| error.to_string())),
+            move |sentence| Message::Written(stamp, Err(sentence)),
+        );
+    }
+}
+
+/// Whether the file that a save replaces is kept.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum KeepOriginal {
+    /// Under [`original_name`], unless such a file exists already: that one is older and stays.
+    Yes,
+    /// It is one of ours.
+    No,
+}
+
+/// `NAME.original.EXT` beside `NAME.EXT`.
+pub fn original_name(path: &Path) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(".original");
+    if let Some(extension) = path.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
+}
+
+/// A path's last part, for a person.
+pub fn file_name(path: &Path) -> String {
+    path.file_name()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy()
+        .into_owned()
+}
+
+fn open(source: &Source, watch: &Watch) -> Result<Box<Opened>, AppError> {
+    let weld = WeldOptions::default();
+    let (loaded, path) = match source {
+        Source::Sample => (
+            engine::load_bytes(SAMPLE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?,
+            None,
+        ),
+        Source::File(path) => (engine::load(path, &weld, watch)?, Some(path.clone())),
+    };
+    let progress = watch.begin("getting the picture ready");
+    let mut notes: Vec<String> = loaded.scene.notes().to_vec();
+    notes.extend(loaded.model.findings.sentences());
+    let (drawing, image_notes) = Drawing::new(&loaded.model, loaded.scene.appearance());
+    notes.extend(image_notes);
+    progress.set(0.7);
+    let displacements = Arc::new(vec![DVec3::ZERO; loaded.model.surface.positions.len()]);
+    let pose = drawing.pose(&loaded.model, &displacements);
+    Ok(Box::new(Opened {
+        path,
+        loaded: Arc::new(loaded),
+        drawing: Arc::new(drawing),
+        rest: Posed { displacements, pose },
+        edit: None,
+        notes,
+    }))
+}
+
+fn write(request: SaveRequest) -> Result<Written, AppError> {
+    let SaveRequest { path, what } = request;
+    let staging = Staging::default();
+    let folder = files::folder_of(&path);
+    match what {
+        What::Edit(edit) => {
+            let text = edit.to_json();
+            staging
+                .stage(folder, [(&*file_name(&path), text.as_bytes())])?
+                .commit()?;
+            Ok(Written {
+                path,
+                is_model: false,
+                warnings: Vec::new(),
+            })
+        }
+        What::Model {
+            loaded,
+            displacements,
+            keep_original,
+        } => {
+            let mut positions = Vec::new();
+            loaded.model.drawn_positions(&displacements, &mut positions);
+            let (staged, warnings) = engine::stage_save(&loaded, &positions, &path, &staging)?;
+            let original = original_name(&path);
+            if keep_original == KeepOriginal::Yes && !original.exists() {
+                let bytes = files::read(&path)?;
+                Staging::default()
+                    .stage(folder, [(&*file_name(&original), &*bytes)])?
+                    .commit()?;
+            }
+            staged.commit()?;
+            Ok(Written {
+                path,
+                is_model: true,
+                warnings,
+            })
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! The line below the view: what the program is doing, what one can do next, and what went wrong.
+
+use eframe::egui::{self, Color32, ProgressBar, RichText};
+use pliant_editor::{Command, Editor};
+
+use super::application::Note;
+
+/// What went wrong.
+const FAILED: Color32 = Color32::from_rgb(255, 138, 122);
+/// What went well.
+const DONE: Color32 = Color32::from_rgb(150, 210, 140);
+
+/// Shows the line. True if the person asks to stop opening a file.
+pub fn show(
+    ui: &mut egui::Ui,
+    editor: &Editor,
+    file_work: Option<(&'static str, f32)>,
+    headline: &mut Option<Note>,
+    software_device: Option<&str>,
+    commands: &mut Vec<Command>,
+) -> bool {
+    let view = editor.view();
+    let mut stop_opening = false;
+    if let Some(problem) = view.problem {
+        ui.add(egui::Label::new(RichText::new(problem).color(FAILED)).wrap());
+    }
+    if let Some(note) = headline.clone() {
+        ui.horizontal(|ui| {
+            if ui.small_button("✕").on_hover_text("Dismiss").clicked() {
+                *headline = None;
+            }
+            let (sentence, colour) = match note {
+                Note::Done(sentence) => (sentence, DONE),
+                Note::Failed(sentence) => (sentence, FAILED),
+            };
+            ui.add(egui::Label::new(RichText::new(sentence).color(colour)).wrap());
+        });
+    }
+    ui.horizontal(|ui| {
+        if let Some((doing, share)) = file_work {
+            progress(ui, doing, share);
+            stop_opening = ui.small_button("Stop").clicked();
+        }
+        for (kind, share) in &view.jobs {
+            // What takes no time to notice is not worth a bar.
+            if *share > 0.0 {
+                progress(ui, kind.doing(), *share);
+            }
+        }
+        ui.label(&view.status);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if let Some(name) = software_device {
+                ui.label(RichText::new("software drawing").weak())
+                    .on_hover_text(format!(
+                        "No graphics card was found; {name} draws on the processor, slowly."
+                    ));
+            }
+            if view.model.is_some() {
+                let counts = view.counts;
+                ui.label(
+                    RichText::new(format!(
+                        "{} handle · {} free · {} fixed",
+                        thousands(counts.handle),
+                        thousands(counts.free),
+                        thousands(counts.fixed)
+                    ))
+                    .weak(),
+                );
+            }
+            if !view.jobs.is_empty() && ui.small_button("Stop").clicked() {
+                commands.push(Command::CancelJobs);
+            }
+        });
+    });
+    stop_opening
+}
+
+fn progress(ui: &mut egui::Ui, doing: &str, share: f32) {
+    ui.add(ProgressBar::new(share).desired_width(110.0).desired_height(14.0))
+        .on_hover_text(doing);
+    ui.label(RichText::new(format!("{doing}…")).weak());
+}
+
+/// A count with its thousands apart: 48 485.
+pub fn thousands(count: usize) -> String {
+    let digits = count.to_string();
+    let mut spaced = String::with_capacity(digits.len() + digits.len() / 3);
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            spaced.push('\u{202f}');
+        }
+        spaced.push(digit);
+    }
+    spaced
+}

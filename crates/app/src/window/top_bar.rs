@@ -1,0 +1,173 @@
+//! The bar above the view: menus, the tools, the gizmo's modes and the shading.
+
+use std::path::PathBuf;
+
+use eframe::egui::{self, Key, KeyboardShortcut, MenuBar, Modifiers, RichText};
+use pliant_editor::{Command, Editor, NamedView, Shading, ToolMode, UpAxis};
+
+use super::command_button::{command_button, command_choice};
+
+/// What is done with files; the window's own, since the editor knows no paths.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum FileCommand {
+    /// Open a file, by dialog.
+    Open,
+    /// Open this file.
+    OpenPath(PathBuf),
+    /// Save.
+    Save,
+    /// Save under another name.
+    SaveAs,
+    /// Write the regions, handles and transforms as an edit for the command line.
+    ExportEdit,
+    /// Close the window.
+    Quit,
+}
+
+impl FileCommand {
+    /// The ones that have a key.
+    pub const WITH_SHORTCUTS: [Self; 5] = [Self::SaveAs, Self::Open, Self::Save, Self::ExportEdit, Self::Quit];
+
+    /// The key.
+    pub fn shortcut(&self) -> Option<KeyboardShortcut> {
+        let command = |key| Some(KeyboardShortcut::new(Modifiers::COMMAND, key));
+        match self {
+            Self::Open => command(Key::O),
+            Self::Save => command(Key::S),
+            Self::SaveAs => Some(KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::S)),
+            Self::Quit => command(Key::Q),
+            Self::ExportEdit => command(Key::E),
+            Self::OpenPath(_) => None,
+        }
+    }
+
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Open | Self::OpenPath(_) => "Open…",
+            Self::Save => "Save",
+            Self::SaveAs => "Save as…",
+            Self::ExportEdit => "Export edit…",
+            Self::Quit => "Quit",
+        }
+    }
+}
+
+/// Shows the bar. Commands for the editor are added to `commands`; one for files is returned.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, file_name: &str, commands: &mut Vec<Command>) -> Option<FileCommand> {
+    let mut chosen = None;
+    MenuBar::new().ui(ui, |ui| {
+        ui.menu_button("File", |ui| chosen = file_menu(ui, editor));
+        ui.menu_button("Edit", |ui| edit_menu(ui, editor, commands));
+        ui.menu_button("View", |ui| view_menu(ui, editor, commands));
+        let unsaved = if editor.view().unsaved { " •" } else { "" };
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.label(RichText::new(format!("{file_name}{unsaved}")).weak());
+        });
+    });
+    ui.separator();
+    ui.horizontal_wrapped(|ui| tools(ui, editor, commands));
+    ui.add_space(2.0);
+    chosen
+}
+
+fn file_menu(ui: &mut egui::Ui, editor: &Editor) -> Option<FileCommand> {
+    let mut chosen = None;
+    let is_open = editor.view().model.is_some();
+    for command in [
+        FileCommand::Open,
+        FileCommand::Save,
+        FileCommand::SaveAs,
+        FileCommand::ExportEdit,
+        FileCommand::Quit,
+    ] {
+        let always = matches!(command, FileCommand::Open | FileCommand::Quit);
+        let mut button = egui::Button::new(command.name());
+        if let Some(shortcut) = command.shortcut() {
+            button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+        }
+        if ui.add_enabled(always || is_open, button).clicked() {
+            chosen = Some(command);
+            ui.close();
+        }
+    }
+    chosen
+}
+
+fn edit_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
+    let groups: [&[Command]; 3] = [
+        &[Command::Undo, Command::Redo],
+        &[
+            Command::NewHandle,
+            Command::NextHandle,
+            Command::Deselect,
+            Command::DeleteHandle,
+            Command::ResetHandle,
+        ],
+        &[Command::Apply, Command::ResetShape, Command::ClearRegions],
+    ];
+    for (number, group) in groups.into_iter().enumerate() {
+        if number > 0 {
+            ui.separator();
+        }
+        for command in group {
+            if command_button(ui, editor, command) {
+                commands.push(command.clone());
+                ui.close();
+            }
+        }
+    }
+}
+
+fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
+    for command in [Command::FrameAll, Command::FrameSelected] {
+        if command_button(ui, editor, &command) {
+            commands.push(command);
+            ui.close();
+        }
+    }
+    ui.separator();
+    for (name, view) in NamedView::NAMES {
+        if ui
+            .button(format!("From {name}").replace("From three-quarter", "Three-quarter"))
+            .clicked()
+        {
+            commands.push(Command::View(view));
+            ui.close();
+        }
+    }
+    ui.separator();
+    let up = editor.view().camera.up;
+    for (name, axis) in [("Y is up", UpAxis::Y), ("Z is up", UpAxis::Z)] {
+        if ui.radio(up == axis, name).clicked() {
+            commands.push(Command::SetUp(axis));
+        }
+    }
+}
+
+fn tools(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
+    let view = editor.view();
+    let mut choice = |ui: &mut egui::Ui, command: Command, chosen: bool| {
+        if command_choice(ui, editor, &command, chosen) {
+            commands.push(command);
+        }
+    };
+    for tool in [
+        ToolMode::PaintHandle,
+        ToolMode::PaintFree,
+        ToolMode::PaintFixed,
+        ToolMode::Erase,
+        ToolMode::Select,
+    ] {
+        choice(ui, Command::SetTool(tool), view.tool == tool);
+    }
+    ui.separator();
+    choice(ui, Command::Move, false);
+    choice(ui, Command::Turn, false);
+    choice(ui, Command::Scale, false);
+    ui.separator();
+    for shading in [Shading::Clay, Shading::Material] {
+        choice(ui, Command::SetShading(shading), view.shading == shading);
+    }
+    choice(ui, Command::ToggleRegions, view.regions);
+    choice(ui, Command::ToggleWireframe, view.wireframe);
+}

@@ -1,0 +1,124 @@
+//! Where the editor's jobs and the window's own work run: a thread a piece of work, results as messages.
+//!
+//! The editor never has more than one job of a kind running, so a handful of threads live at a time; starting one
+//! costs some tens of microseconds, and no job waits behind another kind's.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use eframe::egui;
+use glam::DVec3;
+use pliant_editor::{Executor, Job, JobDone, JobOutcome};
+
+use super::message::{Message, Posed};
+use crate::drawing::Drawing;
+use crate::engine::Loaded;
+
+/// Starts work off the window's thread and wakes the window when it ends. Cloning shares the channel.
+#[derive(Clone)]
+pub struct Workers {
+    context: egui::Context,
+    sender: Sender<Message>,
+    stage: Arc<Mutex<Option<Stage>>>,
+}
+
+/// What poses are made of.
+#[derive(Clone)]
+pub struct Stage {
+    /// The open file.
+    pub loaded: Arc<Loaded>,
+    /// What the renderer takes of it.
+    pub drawing: Arc<Drawing>,
+}
+
+impl Stage {
+    /// A shape, made ready for the renderer.
+    pub fn pose(&self, displacements: Arc<Vec<DVec3>>) -> Posed {
+        let pose = self.drawing.pose(&self.loaded.model, &displacements);
+        Posed { displacements, pose }
+    }
+}
+
+impl Workers {
+    /// Work's results go to `sender`, and `context` is woken.
+    pub fn new(context: egui::Context, sender: Sender<Message>) -> Self {
+        Self {
+            context,
+            sender,
+            stage: Arc::default(),
+        }
+    }
+
+    /// Shapes that are solved from now on are posed for this file, still on the job's thread: a step less between
+    /// the pointer and the picture.
+    pub fn set_stage(&self, stage: Stage) {
+        *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = Some(stage);
+    }
+
+    /// Does `work` on a thread of its own and sends its message. If it panics or no thread can be had, `failed` makes
+    /// the message of a sentence instead.
+    pub fn spawn(
+        &self,
+        name: &str,
+        work: impl FnOnce() -> Message + Send + 'static,
+        failed: impl Fn(String) -> Message + Send + Clone + 'static,
+    ) {
+        let workers = self.clone();
+        let failed_to_start = failed.clone();
+        let body = move || {
+            let message = catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| failed(panic_sentence(&*panic)));
+            workers.send(message);
+        };
+        if let Err(error) = std::thread::Builder::new().name(name.to_owned()).spawn(body) {
+            self.send(failed_to_start(format!(
+                "the system gives no thread for it ({error}): close other programs"
+            )));
+        }
+    }
+
+    /// Sends a message to the window and wakes it.
+    pub fn send(&self, message: Message) {
+        // A window that is gone wants no messages.
+        if self.sender.send(message).is_ok() {
+            self.context.request_repaint();
+        }
+    }
+}
+
+impl Executor for Workers {
+    fn start(&mut self, job: Job) {
+        let (kind, stamp) = (job.kind, job.stamp);
+        let stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        self.spawn(
+            kind.doing(),
+            move || {
+                let done = job.run();
+                let posed = match (&done.outcome, stage) {
+                    (JobOutcome::Solved(solved), Some(stage)) => Some(stage.pose(Arc::clone(&solved.from_file))),
+                    _ => None,
+                };
+                Message::Job(done, posed)
+            },
+            move |sentence| {
+                Message::Job(
+                    JobDone {
+                        kind,
+                        stamp,
+                        outcome: JobOutcome::Failed(sentence),
+                    },
+                    None,
+                )
+            },
+        );
+    }
+}
+
+fn panic_sentence(panic: &(dyn std::any::Any + Send)) -> String {
+    let words = panic
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    let words = words.unwrap_or("no reason given");
+    format!("an inner fault stopped it ({words}): the document is as it was; please report this")
+}
