@@ -4,7 +4,7 @@
 mod rig;
 
 use glam::DVec2;
-use pliant_editor::{Event, GizmoPart, JobKind, JobOutcome, Key, Paint, ToolMode};
+use pliant_editor::{Command, Event, GizmoPart, JobKind, JobOutcome, Key, Paint, ToolMode};
 use pliant_mesh::shapes;
 use rig::{CENTRE_PX, Rig};
 
@@ -130,6 +130,56 @@ fn stale_shapes_are_dropped() {
     assert!(before == rig.drawn(), "a stroke has made the shape the rest shape");
     rig.drain();
     assert!(before == rig.drawn());
+}
+
+#[test]
+fn a_shape_that_was_asked_for_by_an_aborted_drag_is_dropped() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    rig.move_by('x', ".2");
+    let first = rig.jobs.take(JobKind::Solve).expect("a drag is solved");
+    rig.type_keys("gy.4");
+    rig.editor.handle(Event::JobDone(first.run()));
+    let second = rig
+        .jobs
+        .take(JobKind::Solve)
+        .expect("the newest target was pending")
+        .run();
+    rig.key(Key::Escape);
+    let before = rig.drawn();
+    rig.editor.handle(Event::JobDone(second));
+    assert!(before == rig.drawn(), "nobody wants that shape any more");
+    rig.drain();
+    assert!(
+        rig.shape_of_document() == rig.editor.document().from_rest(),
+        "what was committed settles"
+    );
+}
+
+#[test]
+fn a_shape_that_comes_during_a_stroke_waits_for_its_end() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    rig.move_by('x', ".2");
+    let solve = rig.jobs.take(JobKind::Solve).expect("a drag is solved").run();
+    while rig.run(JobKind::Pick) {}
+    rig.command(Command::SetTool(ToolMode::Erase));
+    let bare_px = CENTRE_PX + DVec2::new(-90.0, 40.0);
+    rig.press(bare_px);
+    let before = rig.drawn();
+    rig.editor.handle(Event::JobDone(solve));
+    assert!(before == rig.drawn(), "the surface lies still under the brush");
+    rig.release(bare_px);
+    assert_eq!(
+        rig.editor.view().undo,
+        Some("Move handle 1"),
+        "the stroke has changed nothing"
+    );
+    rig.drain();
+    assert!(rig.shape_of_document() == rig.editor.document().from_rest());
+    assert!(before != rig.drawn());
 }
 
 #[test]
