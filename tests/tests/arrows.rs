@@ -1,0 +1,278 @@
+//! The arrows between the crates are those of `crates/README.md`, and what its "Invariant:" lines call absent is
+//! absent. Metadata tells what a crate is linked with; a scan of the sources tells what it uses of the standard library.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use cargo_metadata::{DependencyKind, Metadata, MetadataCommand};
+
+/// Who may name whom; `tests` and `xtask` are exempt.
+const ARROWS: &[(&str, &[&str])] = &[
+    ("pliant-mesh", &[]),
+    ("pliant-io", &["pliant-mesh"]),
+    ("pliant-deform", &["pliant-mesh"]),
+    ("pliant-render", &[]),
+    ("pliant-editor", &["pliant-deform", "pliant-mesh"]),
+    (
+        "pliant-app",
+        &[
+            "pliant-deform",
+            "pliant-editor",
+            "pliant-io",
+            "pliant-mesh",
+            "pliant-render",
+        ],
+    ),
+];
+
+/// What a crate must not be linked with, not even through others (names begin with these).
+const NEVER_LINKED: &[(&str, &[&str])] = &[
+    ("pliant-mesh", &["wgpu", "naga", "egui", "eframe", "winit", "serde"]),
+    ("pliant-deform", &["wgpu", "naga", "egui", "eframe", "winit", "serde"]),
+    ("pliant-io", &["wgpu", "naga", "egui", "eframe", "winit", "faer"]),
+    ("pliant-render", &["egui", "eframe", "winit", "faer", "obvhs", "gltf"]),
+    ("pliant-editor", &["wgpu", "naga", "egui", "eframe", "winit", "gltf"]),
+];
+
+/// What a crate must not ask for by itself.
+const NEVER_NAMED: &[(&str, &[&str])] = &[
+    ("pliant-mesh", &["log", "tracing"]),
+    ("pliant-deform", &["log", "tracing"]),
+];
+
+/// Words that a crate's sources must not hold outside comments and unit tests.
+const NEVER_WRITTEN: &[(&str, &[&str])] = &[
+    (
+        "mesh",
+        &[
+            "std::time",
+            "std::thread",
+            "std::fs",
+            "std::path",
+            "std::env",
+            "std::net",
+            "std::process",
+        ],
+    ),
+    (
+        "deform",
+        &[
+            "std::time",
+            "std::thread",
+            "std::fs",
+            "std::path",
+            "std::env",
+            "std::net",
+            "std::process",
+        ],
+    ),
+    (
+        "io",
+        &[
+            "std::time",
+            "std::thread",
+            "std::fs",
+            "std::path",
+            "std::env",
+            "std::net",
+            "std::process",
+        ],
+    ),
+    (
+        "render",
+        &["std::time::Instant", "std::fs", "std::net", "std::process", "egui"],
+    ),
+    (
+        "editor",
+        &[
+            "std::time",
+            "std::thread",
+            "std::fs",
+            "std::env",
+            "std::net",
+            "std::process",
+        ],
+    ),
+];
+
+/// Words that would be a global, in the two crates that have none.
+const GLOBALS: &[&str] = &["static ", "pub static ", "pub(crate) static ", "thread_local!"];
+
+fn workspace() -> Metadata {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let about = std::process::Command::new(rustc)
+        .arg("-vV")
+        .output()
+        .expect("rustc runs")
+        .stdout;
+    let about = String::from_utf8(about).unwrap();
+    let host = about
+        .lines()
+        .find_map(|line| line.strip_prefix("host: "))
+        .expect("rustc names its host");
+    // What this host builds lies in the registry already; other systems' crates may not.
+    MetadataCommand::new()
+        .manifest_path(Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.toml"))
+        .other_options(["--locked", "--offline", "--filter-platform", host].map(str::to_owned))
+        .exec()
+        .expect("cargo metadata runs")
+}
+
+fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../crates")
+        .join(name)
+        .join("src")
+}
+
+/// The crates that `name` asks for by itself, outside its tests.
+fn asked_for(metadata: &Metadata, name: &str) -> BTreeSet<String> {
+    let package = metadata
+        .packages
+        .iter()
+        .find(|p| p.name.as_str() == name)
+        .unwrap_or_else(|| panic!("no crate {name}"));
+    package
+        .dependencies
+        .iter()
+        .filter(|d| d.kind != DependencyKind::Development)
+        .map(|d| d.name.clone())
+        .collect()
+}
+
+/// All crates that `name` is linked with: normal dependencies, theirs, and so on.
+fn linked_with(metadata: &Metadata, name: &str) -> BTreeSet<String> {
+    let names: BTreeMap<_, _> = metadata
+        .packages
+        .iter()
+        .map(|p| (p.id.clone(), p.name.to_string()))
+        .collect();
+    let nodes: BTreeMap<_, _> = metadata
+        .resolve
+        .as_ref()
+        .expect("resolved")
+        .nodes
+        .iter()
+        .map(|node| (node.id.clone(), node))
+        .collect();
+    let start = metadata
+        .packages
+        .iter()
+        .find(|p| p.name.as_str() == name)
+        .unwrap()
+        .id
+        .clone();
+    let (mut queue, mut seen) = (vec![start.clone()], BTreeSet::from([start]));
+    while let Some(id) = queue.pop() {
+        for dependency in &nodes[&id].deps {
+            let is_normal = dependency
+                .dep_kinds
+                .iter()
+                .any(|kind| kind.kind == DependencyKind::Normal);
+            if is_normal && seen.insert(dependency.pkg.clone()) {
+                queue.push(dependency.pkg.clone());
+            }
+        }
+    }
+    seen.iter()
+        .map(|id| names[id].clone())
+        .filter(|found| found != name)
+        .collect()
+}
+
+/// Path, line number and text of every line of code under `folder`, without comments and unit tests.
+fn code(folder: &Path) -> Vec<(String, usize, String)> {
+    let mut lines = Vec::new();
+    let mut entries: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    entries.sort();
+    for path in entries {
+        if path.is_dir() {
+            lines.extend(code(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let tested = text.split("#[cfg(test)]").next().unwrap_or_default();
+            for (i, line) in tested.lines().enumerate() {
+                let line = line.split("//").next().unwrap_or_default();
+                lines.push((path.display().to_string(), i + 1, line.trim().to_owned()));
+            }
+        }
+    }
+    lines
+}
+
+#[test]
+fn crates_name_each_other_along_the_arrows_and_nowhere_else() {
+    let metadata = workspace();
+    let ours: BTreeSet<String> = metadata
+        .workspace_packages()
+        .iter()
+        .map(|package| package.name.to_string())
+        .filter(|name| name != "xtask" && name != "pliant-tests")
+        .collect();
+    assert_eq!(
+        ours,
+        ARROWS.iter().map(|(name, _)| (*name).to_owned()).collect(),
+        "every crate has its arrows"
+    );
+    for (name, arrows) in ARROWS {
+        let named: BTreeSet<String> = asked_for(&metadata, name).intersection(&ours).cloned().collect();
+        assert_eq!(
+            named,
+            arrows.iter().map(|arrow| (*arrow).to_owned()).collect(),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn xtask_needs_nothing_so_that_it_builds_in_seconds() {
+    assert_eq!(asked_for(&workspace(), "xtask"), BTreeSet::new());
+}
+
+#[test]
+fn crates_are_not_linked_with_what_they_must_not_know() {
+    let metadata = workspace();
+    for (name, words) in NEVER_LINKED {
+        let linked = linked_with(&metadata, name);
+        assert!(linked.len() > 3, "{name} is linked with {linked:?}");
+        for word in *words {
+            let found = linked.iter().find(|found| found.starts_with(word));
+            assert_eq!(found, None, "{name} is linked with {word}");
+        }
+    }
+    for (name, words) in NEVER_NAMED {
+        let named = asked_for(&metadata, name);
+        assert!(
+            words.iter().all(|word| !named.contains(*word)),
+            "{name} names one of {words:?}"
+        );
+    }
+}
+
+#[test]
+fn sources_do_not_use_what_their_crate_must_not_know() {
+    for (name, words) in NEVER_WRITTEN {
+        let lines = code(&folder(name));
+        assert!(lines.len() > 20, "{name} has sources");
+        for (path, number, line) in lines {
+            let found = words.iter().find(|word| line.contains(**word));
+            assert_eq!(found, None, "{path}:{number}: {line}");
+        }
+    }
+}
+
+#[test]
+fn mesh_and_deform_have_no_globals() {
+    for name in ["mesh", "deform"] {
+        for (path, number, line) in code(&folder(name)) {
+            assert!(
+                GLOBALS.iter().all(|word| !line.starts_with(word)),
+                "{path}:{number}: {line}"
+            );
+        }
+    }
+}
