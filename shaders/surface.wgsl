@@ -42,7 +42,7 @@ fn lit_material(in: SurfaceFragment, is_front: bool, base: vec3f) -> vec3f {
     let n = seen_normal(in.normal_view, to_eye, is_front);
     let lamps = light(n, to_eye);
     let fresnel = 0.04 + 0.25 * lamps.grazing * lamps.grazing * lamps.grazing;
-    let colour = 1.35 * base * lamps.diffuse + (2.2 * fresnel) * lamps.specular;
+    let colour = 1.22 * base * lamps.diffuse + (2.2 * fresnel) * lamps.specular;
     return rolled_off(colour) * select(material.back_share, 1.0, is_front);
 }
 
