@@ -7,7 +7,7 @@ use rayon::prelude::*;
 pub struct Finding {
     /// How many there are.
     pub count: usize,
-    /// The first few of them, at most [`Findings::EXAMPLES`].
+    /// The first few of them or of their vertices, at most [`Findings::EXAMPLES`].
     pub examples: Vec<u32>,
 }
 
@@ -46,6 +46,18 @@ impl Finding {
         Self {
             count: found.len(),
             examples: found[..found.len().min(Findings::EXAMPLES)].to_vec(),
+        }
+    }
+
+    /// One thing at each of `vertices`; the examples are the lowest of them, each once.
+    pub(crate) fn at_vertices(vertices: impl Iterator<Item = u32>) -> Self {
+        let mut vertices: Vec<u32> = vertices.collect();
+        let count = vertices.len();
+        vertices.sort_unstable();
+        vertices.dedup();
+        Self {
+            count,
+            ..Self::of(&vertices)
         }
     }
 

@@ -5,7 +5,8 @@ use rayon::prelude::*;
 
 use crate::weld::{Welded, weld};
 use crate::{
-    Bounds, Cancel, Cancelled, Drawn, FileVertex, Findings, Progress, Surface, SurfaceVertex, Topology, bounding_box,
+    Bounds, Cancel, Cancelled, Drawn, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex, Topology,
+    bounding_box,
 };
 
 /// How equal positions are joined.
@@ -98,20 +99,22 @@ impl Model {
 
 /// Tells the topology's findings in file vertices.
 fn report_topology(topology: &Topology, first_file_vertex: &[FileVertex], findings: &mut Findings) {
-    let file_vertex = |v: u32| first_file_vertex[v as usize].0;
-    let [edges, vertices, misoriented] = topology.oddities().map(|finding| finding.clone().renamed(file_vertex));
+    let file_vertex = |v: &SurfaceVertex| first_file_vertex[v.index()].0;
+    let [edges, vertices, misoriented] = topology
+        .oddities()
+        .map(|found| Finding::at_vertices(found.iter().map(file_vertex)));
     findings.non_manifold_edges = edges;
     findings.non_manifold_vertices = vertices;
     findings.misoriented_edges = misoriented;
-    for [v, _] in topology.boundary_edge_list() {
-        findings.boundary_edges.push(file_vertex(v.0));
-    }
-    for rim in topology.boundary_loops() {
-        findings.boundary_loops.push(file_vertex(rim[0].0));
-    }
-    for component in topology.components() {
-        findings.components.push(component.first_file_vertex.0);
-    }
+    findings.boundary_edges = Finding::at_vertices(topology.boundary_edge_list().iter().map(|[v, _]| file_vertex(v)));
+    let rims = topology.boundary_loops();
+    findings.boundary_loops = Finding::at_vertices(rims.iter().filter_map(|rim| rim.iter().map(file_vertex).min()));
+    let firsts: Vec<u32> = topology
+        .components()
+        .iter()
+        .map(|component| component.first_file_vertex.0)
+        .collect();
+    findings.components = Finding::of(&firsts);
 }
 
 /// The surface vertices behind each file vertex.

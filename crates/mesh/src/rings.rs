@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::{Finding, SurfaceVertex};
+use crate::SurfaceVertex;
 
 /// Vertices a piece of the parallel walk.
 const PIECE: usize = 8192;
@@ -23,12 +23,12 @@ pub(crate) struct Rings {
     pub(crate) fan_kinds: Vec<FanKind>,
     /// Edges with one triangle, directed against it: with the hole on the left.
     pub(crate) boundary: Vec<[SurfaceVertex; 2]>,
-    /// Edges with more than two triangles; the examples are their lower surface vertices.
-    pub(crate) non_manifold_edges: Finding,
-    /// Edges along which both triangles run the same way; the examples are their lower surface vertices.
-    pub(crate) misoriented_edges: Finding,
+    /// The lower vertex of each edge with more than two triangles.
+    pub(crate) non_manifold_edges: Vec<SurfaceVertex>,
+    /// The lower vertex of each edge along which both triangles run the same way.
+    pub(crate) misoriented_edges: Vec<SurfaceVertex>,
     /// Vertices whose triangles form more than one fan.
-    pub(crate) non_manifold_vertices: Finding,
+    pub(crate) non_manifold_vertices: Vec<SurfaceVertex>,
 }
 
 /// How the triangles around a vertex hang together.
@@ -102,9 +102,10 @@ pub(crate) fn rings(vertex_count: usize, triangles: &[[SurfaceVertex; 3]], faces
         all.fans.extend_from_slice(&piece.fans);
         all.fan_kinds.extend_from_slice(&piece.fan_kinds);
         all.boundary.extend_from_slice(&piece.boundary);
-        all.non_manifold_edges.extend(&piece.non_manifold_edges);
-        all.misoriented_edges.extend(&piece.misoriented_edges);
-        all.non_manifold_vertices.extend(&piece.non_manifold_vertices);
+        all.non_manifold_edges.extend_from_slice(&piece.non_manifold_edges);
+        all.misoriented_edges.extend_from_slice(&piece.misoriented_edges);
+        all.non_manifold_vertices
+            .extend_from_slice(&piece.non_manifold_vertices);
     }
     all
 }
@@ -164,16 +165,16 @@ impl Walk {
             }
             if v < neighbour {
                 if count > 2 {
-                    rings.non_manifold_edges.push(v.0);
+                    rings.non_manifold_edges.push(v);
                 } else if count == 2 && inward != 1 {
-                    rings.misoriented_edges.push(v.0);
+                    rings.misoriented_edges.push(v);
                 }
             }
             first = last;
         }
         rings.degrees.push((rings.neighbours.len() - ring_start) as u32);
         if fans > 1 {
-            rings.non_manifold_vertices.push(v.0);
+            rings.non_manifold_vertices.push(v);
         }
         if is_regular && fans == 1 {
             self.order_fan(ring_start, rings);

@@ -3,7 +3,7 @@
 use crate::boundary::trace_loops;
 use crate::components::{Component, components};
 use crate::rings::{FaceRows, FanKind, face_rows, rings};
-use crate::{FileVertex, Finding, Surface, SurfaceVertex};
+use crate::{FileVertex, Surface, SurfaceVertex};
 
 /// The connectivity of a [`Surface`].
 ///
@@ -21,9 +21,9 @@ pub struct Topology {
     boundary: Vec<[SurfaceVertex; 2]>,
     component_of_vertex: Vec<u32>,
     components: Vec<Component>,
-    non_manifold_edges: Finding,
-    non_manifold_vertices: Finding,
-    misoriented_edges: Finding,
+    non_manifold_edges: Vec<SurfaceVertex>,
+    non_manifold_vertices: Vec<SurfaceVertex>,
+    misoriented_edges: Vec<SurfaceVertex>,
 }
 
 impl Topology {
@@ -151,17 +151,17 @@ impl Topology {
 
     /// How many edges have more than two triangles.
     pub fn non_manifold_edges(&self) -> usize {
-        self.non_manifold_edges.count
+        self.non_manifold_edges.len()
     }
 
     /// How many vertices' triangles form more than one fan (triangles that share an edge are in one fan).
     pub fn non_manifold_vertices(&self) -> usize {
-        self.non_manifold_vertices.count
+        self.non_manifold_vertices.len()
     }
 
     /// How many edges lie between two triangles that disagree about which side is outside.
     pub fn misoriented_edges(&self) -> usize {
-        self.misoriented_edges.count
+        self.misoriented_edges.len()
     }
 
     /// Whether no edge has one triangle only.
@@ -182,9 +182,9 @@ impl Topology {
         trace_loops(&self.boundary)
     }
 
-    /// The findings about edges and vertices, their examples surface vertices: non-manifold edges, non-manifold
-    /// vertices, misoriented edges.
-    pub(crate) fn oddities(&self) -> [&Finding; 3] {
+    /// The vertices (of edges: the lower ones) where something is odd: non-manifold edges, non-manifold vertices,
+    /// misoriented edges.
+    pub(crate) fn oddities(&self) -> [&[SurfaceVertex]; 3] {
         [
             &self.non_manifold_edges,
             &self.non_manifold_vertices,
