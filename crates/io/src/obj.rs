@@ -19,6 +19,7 @@ use crate::appearance::Group;
 use crate::colour::{byte, linear_of_srgb};
 use crate::moved::Moved;
 use crate::new_mesh::Polygons;
+use crate::save::OutputFile;
 use crate::scene::{Source, Summary};
 use crate::text::line_of;
 use crate::{Appearance, ReadError, SaveError};
@@ -198,6 +199,11 @@ impl Stored {
 
     pub(crate) fn polygons(&self) -> Option<Polygons> {
         self.polygons.clone()
+    }
+
+    /// The libraries and textures that a copy in another folder needs beside it, and warnings.
+    pub(crate) fn neighbours(&self) -> (Vec<OutputFile>, Vec<String>) {
+        materials::neighbours(&self.materials)
     }
 
     /// The file with the moved vertices' numbers changed, and warnings.

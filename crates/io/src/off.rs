@@ -8,13 +8,13 @@ mod write;
 
 use std::sync::Arc;
 
-use pliant_mesh::{Drawn, DrawnVertex, FileVertex};
+use pliant_mesh::{Drawn, FileVertex};
 
 use crate::appearance::{Group, Material};
 use crate::colour::{byte, linear_of_srgb};
 use crate::moved::Moved;
 use crate::new_mesh::Polygons;
-use crate::polygon::triangulate;
+use crate::polygon::{cut_faces, left_out_note};
 use crate::scene::{Source, Summary};
 use crate::{Appearance, ReadError, SaveError};
 use records::Records;
@@ -40,29 +40,8 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
     let positions = std::mem::take(&mut records.positions);
     let corners = std::mem::take(&mut records.corners);
     let face_ends = std::mem::take(&mut records.face_ends);
-    let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2 * face_ends.len()));
-    let mut start = 0;
-    for &end in &face_ends {
-        let face = &corners[start..end as usize];
-        triangulate(
-            face.len(),
-            |k| positions[face[k] as usize],
-            |triangle| triangles.push(triangle.map(|k| DrawnVertex(face[k]))),
-        );
-        start = end as usize;
-    }
-    let polygons = (triangles.len() != face_ends.len()).then(|| Polygons {
-        offsets: [0].into_iter().chain(face_ends.iter().copied()).collect(),
-        corners: corners.iter().copied().map(DrawnVertex).collect(),
-    });
-    let mut notes = Vec::new();
-    if records.left_out > 0 {
-        let faces = if records.left_out == 1 { "face" } else { "faces" };
-        notes.push(format!(
-            "{} {faces} with fewer than three corners left out of the surface; the file keeps them.",
-            records.left_out
-        ));
-    }
+    let (triangles, polygons) = cut_faces(&positions, corners, &face_ends, source.cancel)?;
+    let notes = left_out_note(records.left_out).into_iter().collect();
     let count = positions.len();
     let drawn = Drawn {
         positions,

@@ -12,13 +12,13 @@ mod write;
 
 use std::sync::Arc;
 
-use pliant_mesh::{Drawn, DrawnVertex, FileVertex};
+use pliant_mesh::{Drawn, FileVertex};
 
 use crate::appearance::{Group, Material};
 use crate::colour::{byte, linear_of_srgb};
 use crate::moved::Moved;
 use crate::new_mesh::Polygons;
-use crate::polygon::triangulate;
+use crate::polygon::{cut_faces, left_out_note};
 use crate::scene::{Source, Summary};
 use crate::{Appearance, Format, ReadError, SaveError};
 use header::Header;
@@ -58,31 +58,8 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
         face_ends,
         left_out,
     } = records::read(source, &header)?;
-    let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2 * face_ends.len()));
-    let mut start = 0;
-    for (face, &end) in face_ends.iter().enumerate() {
-        if face.is_multiple_of(1 << 16) {
-            source.cancel.check()?;
-        }
-        let face = &corners[start..end as usize];
-        triangulate(
-            face.len(),
-            |k| positions[face[k] as usize],
-            |triangle| triangles.push(triangle.map(|k| DrawnVertex(face[k]))),
-        );
-        start = end as usize;
-    }
-    let polygons = (triangles.len() != face_ends.len()).then(|| Polygons {
-        offsets: [0].into_iter().chain(face_ends.iter().copied()).collect(),
-        corners: corners.iter().copied().map(DrawnVertex).collect(),
-    });
-    let mut notes = Vec::new();
-    if left_out > 0 {
-        let faces = if left_out == 1 { "face" } else { "faces" };
-        notes.push(format!(
-            "{left_out} {faces} with fewer than three corners left out of the surface; the file keeps them."
-        ));
-    }
+    let (triangles, polygons) = cut_faces(&positions, corners, &face_ends, source.cancel)?;
+    let notes = left_out_note(left_out).into_iter().collect();
     let count = positions.len();
     let drawn = Drawn {
         positions,

@@ -5,9 +5,48 @@
 //! polygons beyond [`MOST_EARS`] corners, and those whose corners aren't finite, become a fan.
 
 use glam::{DVec2, DVec3};
+use pliant_mesh::{Cancel, Cancelled, DrawnVertex};
+
+use crate::new_mesh::Polygons;
 
 /// The most corners that are cut by ears.
-const MOST_EARS: usize = 1024;
+const MOST_EARS: usize = 256;
+
+/// Cuts all faces of a file whose vertices are drawn as they are numbered: `corners` of all faces, one after the other,
+/// which end at `face_ends`. Gives the triangles, and the faces themselves where one isn't a triangle.
+pub(crate) fn cut_faces(
+    positions: &[DVec3],
+    corners: Vec<u32>,
+    face_ends: &[u32],
+    cancel: &Cancel,
+) -> Result<(Vec<[DrawnVertex; 3]>, Option<Polygons>), Cancelled> {
+    let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2 * face_ends.len()));
+    let mut start = 0;
+    for (face, &end) in face_ends.iter().enumerate() {
+        if face.is_multiple_of(1 << 12) {
+            cancel.check()?;
+        }
+        let face = &corners[start..end as usize];
+        triangulate(
+            face.len(),
+            |k| positions[face[k] as usize],
+            |triangle| triangles.push(triangle.map(|k| DrawnVertex(face[k]))),
+        );
+        start = end as usize;
+    }
+    let polygons = (triangles.len() != face_ends.len()).then(|| Polygons {
+        offsets: [0].into_iter().chain(face_ends.iter().copied()).collect(),
+        corners: corners.into_iter().map(DrawnVertex).collect(),
+    });
+    Ok((triangles, polygons))
+}
+
+/// A sentence about faces that draw nothing, where there are any.
+pub(crate) fn left_out_note(count: usize) -> Option<String> {
+    let faces = if count == 1 { "face" } else { "faces" };
+    (count > 0)
+        .then(|| format!("{count} {faces} with fewer than three corners left out of the surface; the file keeps them."))
+}
 
 /// Calls `emit` with the three corners (numbers within the polygon) of each triangle that `corners` is cut into:
 /// n − 2 of them, wound as the polygon is; none for fewer than three corners.

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::moved::Moved;
 use crate::new_mesh::{NewMesh, Polygons};
-use crate::save::{OutputFile, Save, Saved};
+use crate::save::{OutputFile, Placement, Save, Saved};
 use crate::{Appearance, Format, ReadError, SaveError, gltf, new_glb, obj, off, ply, stl};
 
 /// Gives the bytes of a file's neighbours.
@@ -184,6 +184,14 @@ impl Scene {
         };
         match (&self.stored, save.format) {
             (Stored::Gltf(stored), Format::Glb | Format::Gltf) => stored.save(save, &moved),
+            (Stored::Obj(stored), Format::Obj) if save.placement == Placement::OtherFolder => {
+                let unchanged = moved.is_nothing().then(|| (self.bytes.to_vec(), Vec::new()));
+                let mut saved = own(unchanged.map_or_else(|| stored.write(&moved), Ok)?);
+                let (files, warnings) = stored.neighbours();
+                saved.files.extend(files);
+                saved.warnings.extend(warnings);
+                Ok(saved)
+            }
             (_, format) if format == self.format && moved.is_nothing() => Ok(own((self.bytes.to_vec(), Vec::new()))),
             (Stored::Obj(stored), Format::Obj) => stored.write(&moved).map(own),
             (Stored::Ply(stored), Format::Ply) => stored.write(&moved).map(own),

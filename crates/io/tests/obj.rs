@@ -4,7 +4,7 @@
 mod text;
 
 use glam::{DQuat, DVec3};
-use pliant_io::{AlphaMode, Format};
+use pliant_io::{AlphaMode, Format, Placement, Save};
 use text::{changed_lines, folder, moved, open, open_in, refusal, save, save_as, try_open};
 
 /// Every form that a line may take: comments, both line ends, continuations, w, colours, groups, a negative index.
@@ -264,6 +264,83 @@ fn materials_and_textures_come_through_the_resolver() {
     assert!(opened.scene.notes().is_empty(), "{:?}", opened.scene.notes());
     let plain = try_open(text, Format::Obj).unwrap();
     assert!(plain.scene.notes()[0].contains("my stuff.mtl"));
+}
+
+#[test]
+fn a_copy_in_another_folder_brings_its_materials_along() {
+    let text = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
+    let library = "newmtl red\nmap_Kd art/skin.png\nbump rough.png\n";
+    let files = folder(&[("a.mtl", library), ("art/skin.png", "png")]);
+    let opened = open_in(text, Format::Obj, &files).unwrap();
+    let save = |placement| {
+        let save = Save {
+            drawn: &opened.drawn,
+            positions: &opened.drawn.positions,
+            format: Format::Obj,
+            name: "b.obj",
+            placement,
+        };
+        opened.scene.save(&save).unwrap()
+    };
+    let saved = save(Placement::OtherFolder);
+    let names: Vec<&str> = saved.files.iter().map(|file| file.name.as_str()).collect();
+    assert_eq!(names, ["b.obj", "a.mtl", "art/skin.png"]);
+    assert_eq!(
+        (saved.files[0].bytes.as_slice(), saved.files[1].bytes.as_slice()),
+        (text.as_slice(), library.as_bytes())
+    );
+    assert!(saved.warnings[0].contains("copy them by hand"));
+    assert_eq!(save(Placement::SameFolder).files.len(), 1);
+}
+
+#[test]
+fn a_new_file_carries_materials_and_looks_that_read_back() {
+    let text = b"mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0.25\nvn 0 0 1\no part one\nusemtl red\nf 1/1/1 2/2/1 3/1/1\nusemtl b\nf 2/1/1 4/2/1 3/1/1\n";
+    let mut files = folder(&[("a.mtl", "newmtl red\nKd 1 0 0\nmap_Kd skin.png\nnewmtl b\nd 0.5\n")]);
+    files.0.insert("skin.png".to_owned(), b"\x89PNG\r\n\x1a\n".to_vec());
+    let opened = open_in(text, Format::Obj, &files).unwrap();
+    // By way of a GLB: an OBJ is written anew only from another kind.
+    let (before, drawn) = (opened.scene.appearance(), &opened.drawn);
+    let glb = save_as(&opened, &drawn.positions, Format::Glb);
+    let from_glb = open(&glb.files[0].bytes, Format::Glb);
+    let saved = save_as(&from_glb, &from_glb.drawn.positions, Format::Obj);
+    let names: Vec<&str> = saved.files.iter().map(|file| file.name.as_str()).collect();
+    assert_eq!(names[..2], ["out.obj", "out.mtl"]);
+    let mut again = folder(&[]);
+    saved.files[1..]
+        .iter()
+        .for_each(|file| drop(again.0.insert(file.name.clone(), file.bytes.clone())));
+    let again = open_in(&saved.files[0].bytes, Format::Obj, &again).unwrap();
+    let after = again.scene.appearance();
+    assert!(again.scene.notes().is_empty(), "{:?}", again.scene.notes());
+    let corners = |opened: &pliant_io::Opened| -> Vec<DVec3> {
+        opened
+            .drawn
+            .triangles
+            .iter()
+            .flatten()
+            .map(|corner| opened.drawn.positions[corner.index()])
+            .collect()
+    };
+    assert_eq!(corners(&again), corners(&opened));
+    let uvs = |opened: &pliant_io::Opened, look: &pliant_io::Appearance| -> Vec<[f32; 2]> {
+        opened
+            .drawn
+            .triangles
+            .iter()
+            .flatten()
+            .map(|corner| look.uvs.as_ref().unwrap()[corner.index()])
+            .collect()
+    };
+    assert_eq!(uvs(&again, &after), uvs(&opened, &before));
+    assert_eq!(after.images.len(), 1);
+    let look = |look: &pliant_io::Appearance| -> Vec<(String, Option<usize>, bool)> {
+        let materials = look.groups.iter().map(|group| &look.materials[group.material]);
+        materials
+            .map(|m| (m.name.clone(), m.base_colour_image, m.alpha == AlphaMode::Blend))
+            .collect()
+    };
+    assert_eq!(look(&after), look(&before));
 }
 
 #[test]

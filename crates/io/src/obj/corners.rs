@@ -109,7 +109,7 @@ fn cut_faces(statements: &Statements, out: &mut Corners, cancel: &Cancel) -> Res
     let mut start = 0;
     let mut runs = statements.runs.iter().peekable();
     for (face, &end) in statements.face_ends.iter().enumerate() {
-        if face.is_multiple_of(1 << 16) {
+        if face.is_multiple_of(1 << 12) {
             cancel.check()?;
         }
         while runs.next_if(|run| run.first_face == face).is_some() {

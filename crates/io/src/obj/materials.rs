@@ -6,6 +6,7 @@ use std::collections::HashMap;
 
 use crate::appearance::{AlphaMode, Image, Material, Wrap};
 use crate::colour::linear_of_srgb;
+use crate::save::OutputFile;
 use crate::scene::Source;
 use crate::text::excerpt;
 
@@ -15,6 +16,12 @@ pub(super) struct Materials {
     pub(super) materials: Vec<Material>,
     pub(super) images: Vec<Image>,
     pub(super) notes: Vec<String>,
+    /// The libraries as read, by their paths.
+    pub(super) libraries: Vec<(String, Vec<u8>)>,
+    /// The path that each image was read at.
+    pub(super) image_paths: Vec<String>,
+    /// Whether a library names maps other than the base colour's, which aren't read.
+    pub(super) has_other_maps: bool,
 }
 
 /// Looks `names` up in the libraries (the rests of the `mtllib` lines; each may name several files).
@@ -30,10 +37,12 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
         asked.push(library);
         match read_library(source, library) {
             Ok(files) => {
-                for (folder, text) in files {
-                    for material in parse(&text) {
-                        known.entry(material.name.clone()).or_insert((material, folder.clone()));
+                for (path, text) in files {
+                    for material in parse(&text, &mut out.has_other_maps) {
+                        let folder = folder_of(&path).to_owned();
+                        known.entry(material.name.clone()).or_insert((material, folder));
                     }
+                    out.libraries.push((path, text));
                 }
             }
             Err(reason) => out.notes.push(format!(
@@ -74,10 +83,10 @@ pub(super) fn plain(name: &str) -> Material {
 /// More libraries than any file has; beyond this many names, the file only asks for work.
 const MOST_LIBRARIES: usize = 256;
 
-/// The bytes of a library, with its folder: the whole rest of the line as one name, or else each word as one.
+/// The bytes of a library, with its path: the whole rest of the line as one name, or else each word as one.
 fn read_library(source: &Source<'_>, library: &[u8]) -> Result<Vec<(String, Vec<u8>)>, String> {
     let whole = as_uri(&String::from_utf8_lossy(library));
-    let read = |uri: &str| source.resolver.read(uri).map(|text| (folder_of(uri).to_owned(), text));
+    let read = |uri: &str| source.resolver.read(uri).map(|text| (uri.to_owned(), text));
     match read(&whole) {
         Ok(file) => Ok(vec![file]),
         Err(reason) => {
@@ -94,7 +103,7 @@ fn read_library(source: &Source<'_>, library: &[u8]) -> Result<Vec<(String, Vec<
 ///
 /// `tobj` gives up (or panics, at a `Kd` with fewer than three numbers) on a line that it doesn't expect, so it gets
 /// only the lines that matter here and that it can read.
-fn parse(text: &[u8]) -> Vec<tobj::Material> {
+fn parse(text: &[u8], has_other_maps: &mut bool) -> Vec<tobj::Material> {
     let text = String::from_utf8_lossy(text);
     let mut kept = String::new();
     let mut is_named = false;
@@ -116,7 +125,11 @@ fn parse(text: &[u8]) -> Vec<tobj::Material> {
             }
             Some("d") => words.next().is_some_and(|word| word.parse::<f32>().is_ok()),
             Some("Tr" | "map_Kd") => words.next().is_some(),
-            _ => false,
+            Some(other) => {
+                *has_other_maps |= is_other_map(other);
+                false
+            }
+            None => false,
         };
         if is_wanted && is_named {
             kept.push_str(line);
@@ -126,6 +139,11 @@ fn parse(text: &[u8]) -> Vec<tobj::Material> {
     tobj::load_mtl_buf(&mut kept.as_bytes())
         .map(|(materials, _)| materials)
         .unwrap_or_default()
+}
+
+/// Whether a keyword names an image that isn't drawn.
+fn is_other_map(keyword: &str) -> bool {
+    keyword.starts_with("map_") || matches!(keyword, "bump" | "disp" | "decal" | "refl" | "norm")
 }
 
 /// Takes over what is drawn of a stored material.
@@ -198,17 +216,18 @@ fn join(folder: &str, file: &str) -> String {
 /// Reads an image where it is said to be, or by its bare name beside the file (paths of another computer).
 fn read_image(source: &Source<'_>, uri: &str, out: &mut Materials) -> Option<usize> {
     let bare = uri.rsplit('/').next().unwrap_or(uri);
-    let read = source.resolver.read(uri);
-    let read = match read {
-        Err(reason) if bare != uri => source.resolver.read(bare).map_err(|_| reason),
-        read => read,
+    let read = |path: &str| source.resolver.read(path).map(|encoded| (path.to_owned(), encoded));
+    let found = match read(uri) {
+        Err(reason) if bare != uri => read(bare).map_err(|_| reason),
+        found => found,
     };
-    match read {
-        Ok(encoded) => {
+    match found {
+        Ok((path, encoded)) => {
             out.images.push(Image {
                 name: bare.to_owned(),
                 encoded: encoded.into(),
             });
+            out.image_paths.push(path);
             Some(out.images.len() - 1)
         }
         Err(reason) => {
@@ -221,6 +240,42 @@ fn read_image(source: &Source<'_>, uri: &str, out: &mut Materials) -> Option<usi
     }
 }
 
+/// The libraries and textures that an OBJ file in another folder needs beside it, and what stays behind.
+pub(super) fn neighbours(materials: &Materials) -> (Vec<OutputFile>, Vec<String>) {
+    let (mut files, mut warnings): (Vec<OutputFile>, Vec<String>) = (Vec::new(), Vec::new());
+    let libraries = materials.libraries.iter().map(|(path, bytes)| (path, bytes.as_slice()));
+    let images = materials.image_paths.iter().zip(&materials.images);
+    let images = images.map(|(path, image)| (path, image.encoded.as_ref()));
+    for (path, bytes) in libraries.chain(images) {
+        if files.iter().any(|file| file.name == *path) {
+            continue;
+        }
+        if is_inside(path) {
+            files.push(OutputFile {
+                name: path.clone(),
+                bytes: bytes.to_vec(),
+            });
+        } else {
+            let path = excerpt(path.as_bytes());
+            warnings.push(format!(
+                "{path} lies outside the file's own folder and was not copied: copy it by hand."
+            ));
+        }
+    }
+    if materials.has_other_maps {
+        let warning = "Maps other than the base colour's stay in the old folder: copy them by hand.";
+        warnings.push(warning.to_owned());
+    }
+    (files, warnings)
+}
+
+/// Whether a path stays within the folder that it starts from, on every system.
+fn is_inside(path: &str) -> bool {
+    !path.is_empty()
+        && !path.contains([':', '\\', '\0'])
+        && path.split('/').all(|part| !matches!(part, "" | "." | ".."))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -228,7 +283,9 @@ mod tests {
     #[test]
     fn a_library_with_broken_lines_gives_what_it_can() {
         let text = b"Kd 1 1 1\nnewmtl\nnewmtl a b\r\nKd 1\nKd 0.5 0.25 1\nd x\nmap_Kd\nillum q\nmap_Kd -s 1 1 1 -clamp on my tex.png\nnewmtl c\nTr 0.25\n\xff\xfe";
-        let materials = parse(text);
+        let mut has_other_maps = false;
+        let materials = parse(text, &mut has_other_maps);
+        assert!(!has_other_maps);
         assert_eq!(
             materials
                 .iter()
@@ -242,6 +299,16 @@ mod tests {
         let mut material = plain("c");
         dress(&mut material, &materials[1]);
         assert_eq!(material.base_colour[3], 0.75);
+    }
+
+    #[test]
+    fn paths_that_leave_the_folder_are_never_written() {
+        for path in ["a.mtl", "textures/skin one.png"] {
+            assert!(is_inside(path), "{path}");
+        }
+        for path in ["", "/etc/x", "../a.mtl", "a/../../b", "C:/a.png", "a//b", "./a", "a\\b"] {
+            assert!(!is_inside(path), "{path}");
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! Only what draws or moves is kept (`v`, `vt`, `vn`, `f`, `usemtl`, `mtllib`, `o`, `g`); everything else is passed
 //! over and stays in the bytes. Indices are resolved to numbers from 0; a corner may name a `v` line that comes later.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use crate::scene::Source;
@@ -15,6 +16,9 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// Stands where no corner has named a drawn vertex yet; also the limit of every count.
 pub(super) const UNUSED: u32 = NONE - 1;
+
+/// The most characters of an object's name that are shown; the file keeps it all.
+const LONGEST_NAME: usize = 120;
 
 /// One corner of a face: numbers of `v`, `vt` and `vn` lines from 0, the latter two possibly [`NONE`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -107,6 +111,7 @@ struct Reader<'a> {
     object: String,
     group: String,
     material: Option<usize>,
+    material_numbers: HashMap<String, usize>,
     run_is_open: bool,
 }
 
@@ -120,6 +125,7 @@ impl<'a> Reader<'a> {
             object: String::new(),
             group: String::new(),
             material: None,
+            material_numbers: HashMap::new(),
             run_is_open: false,
         }
     }
@@ -144,12 +150,12 @@ impl<'a> Reader<'a> {
                 Ok(())
             }
             b"o" => {
-                self.object = self.rest();
+                self.object = self.name();
                 self.run_is_open = false;
                 Ok(())
             }
             b"g" => {
-                self.group = self.rest();
+                self.group = self.name();
                 self.run_is_open = false;
                 Ok(())
             }
@@ -166,6 +172,11 @@ impl<'a> Reader<'a> {
 
     fn rest(&mut self) -> String {
         String::from_utf8_lossy(self.cursor.rest_of_line().trim_ascii()).into_owned()
+    }
+
+    /// A name that every run of its faces gets a copy of, so it is cut to a length that a person would read.
+    fn name(&mut self) -> String {
+        self.rest().chars().take(LONGEST_NAME).collect()
     }
 
     fn real(&mut self) -> Option<f64> {
@@ -187,12 +198,12 @@ impl<'a> Reader<'a> {
         found.positions.push(DVec3::new(x, y, z));
         found.position_at.push(at);
         self.cursor.skip_blanks_continued();
-        if !self.cursor.is_at_line_end() {
-            if let (Some(r), Some(g), Some(b)) = (self.real(), self.real(), self.real()) {
-                let found = &mut self.found;
-                found.colours.resize(found.positions.len() - 1, [1.0; 3]);
-                found.colours.push([r as f32, g as f32, b as f32]);
-            }
+        if !self.cursor.is_at_line_end()
+            && let (Some(r), Some(g), Some(b)) = (self.real(), self.real(), self.real())
+        {
+            let found = &mut self.found;
+            found.colours.resize(found.positions.len() - 1, [1.0; 3]);
+            found.colours.push([r as f32, g as f32, b as f32]);
         }
         Ok(())
     }
@@ -216,12 +227,12 @@ impl<'a> Reader<'a> {
     }
 
     fn use_material(&mut self, name: String) {
-        // Files switch between a few materials; the newest is the likeliest to come again.
-        let known = self.found.material_names.iter().rposition(|known| *known == name);
-        self.material = Some(known.unwrap_or(self.found.material_names.len()));
-        if known.is_none() {
+        let fresh = self.found.material_names.len();
+        let number = *self.material_numbers.entry(name.clone()).or_insert(fresh);
+        if number == fresh {
             self.found.material_names.push(name);
         }
+        self.material = Some(number);
         self.run_is_open = false;
     }
 
@@ -269,10 +280,9 @@ impl<'a> Reader<'a> {
             normal: NONE,
         };
         let Some(position) = named.and_then(|index| resolve(index, self.found.positions.len())) else {
-            let what = excerpt(self.cursor.word());
             let reason = match named {
-                None => format!("'{what}' is no corner of a face: correct it, as in 'f 1/2/3 4/5/6 7/8/9'"),
-                Some(_) => format!("the face names the vertex {what}, which doesn't exist: correct the number"),
+                Some(index) => format!("the face names the vertex {index}, which doesn't exist: correct the number"),
+                None => no_corner(self.cursor.word()),
             };
             return Err(self.broken(at, reason));
         };
@@ -297,9 +307,7 @@ impl<'a> Reader<'a> {
             }
         }
         if !matches!(self.cursor.peek(), None | Some(b' ' | b'\t'..=b'\r' | b'#' | b'\\')) {
-            let what = excerpt(&self.source.bytes[at..]);
-            let what = what.split_whitespace().next().unwrap_or_default();
-            let reason = format!("'{what}' is no corner of a face: correct it, as in 'f 1/2/3 4/5/6 7/8/9'");
+            let reason = no_corner(Cursor::new(self.source.bytes, at).word());
             return Err(self.broken(at, reason));
         }
         Ok(corner)
@@ -339,6 +347,13 @@ impl<'a> Reader<'a> {
     fn broken(&self, at: usize, reason: impl Into<String>) -> ReadError {
         malformed_at(self.source, Format::Obj, at, &reason.into())
     }
+}
+
+fn no_corner(word: &[u8]) -> String {
+    format!(
+        "'{}' is no corner of a face: correct it, as in 'f 1/2/3 4/5/6 7/8/9'",
+        excerpt(word)
+    )
 }
 
 /// Counts one more, keeping the place of the first.
