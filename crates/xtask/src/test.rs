@@ -11,9 +11,6 @@ use crate::requirement::{PICTURES, TESTS, WINDOW};
 use crate::system;
 use crate::verdict::Verdict;
 
-/// Set for the tests when everything they could need is there: then a test that would skip fails instead.
-const COMPLETE: &str = "PLIANT_TEST_COMPLETE";
-
 /// Formatting, clippy and every test; with `filters` only the tests that they name.
 ///
 /// # Errors
@@ -32,14 +29,10 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
         check::clippy(&mut verdict);
     }
     let mut tests = process::cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
-    if !filters.is_empty() {
-        tests.arg("--").args(filters);
-    }
+    // Output of tests that pass is asked for, since it says what they skip.
+    tests.args(["--", "--show-output"]).args(filters);
     let display = match &prepared {
-        Prepared::Complete => {
-            tests.env(COMPLETE, "1");
-            Some(Display::start()?)
-        }
+        Prepared::Complete => Some(Display::start()?),
         Prepared::Without(_) => Display::start().ok(),
     };
     surround(&mut tests, display.as_ref());

@@ -1,5 +1,6 @@
 //! What tests said, counted: the sum over every `test result:` line and over our own steps.
 
+use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
 use std::time::Instant;
@@ -14,6 +15,16 @@ pub struct Verdict {
     filtered: usize,
     failures: Vec<String>,
     steps: Vec<String>,
+    skipped: BTreeSet<String>,
+    /// Between a test binary's "successes:" and what follows: output of tests that passed.
+    in_successes: bool,
+}
+
+/// What a line is worth to the person who waits.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Worth {
+    Showing,
+    Nothing,
 }
 
 impl Verdict {
@@ -61,9 +72,10 @@ impl Verdict {
             let mut lines = BufReader::new(pipe);
             let mut line = Vec::new();
             while lines.read_until(b'\n', &mut line).map_err(cannot)? > 0 {
-                let mut out = std::io::stdout().lock();
-                out.write_all(&line).and_then(|()| out.flush()).map_err(cannot)?;
-                self.count(String::from_utf8_lossy(&line).trim_end());
+                if self.count(String::from_utf8_lossy(&line).trim_end()) == Worth::Showing {
+                    let mut out = std::io::stdout().lock();
+                    out.write_all(&line).and_then(|()| out.flush()).map_err(cannot)?;
+                }
                 line.clear();
             }
         }
@@ -75,8 +87,19 @@ impl Verdict {
         }
     }
 
-    /// Takes in one line of cargo's.
-    fn count(&mut self, line: &str) {
+    /// Takes in one line of cargo's. What passing tests print is not shown; of it, what they skip is kept.
+    fn count(&mut self, line: &str) -> Worth {
+        if line == "successes:" {
+            self.in_successes = true;
+        } else if line == "failures:" || line.starts_with("test result: ") {
+            self.in_successes = false;
+        }
+        if line.starts_with("skipped: ") {
+            self.skipped.insert(line.to_owned());
+        }
+        if self.in_successes {
+            return Worth::Nothing;
+        }
         if let Some(name) = line
             .strip_prefix("test ")
             .and_then(|rest| rest.strip_suffix(" ... FAILED"))
@@ -87,7 +110,7 @@ impl Verdict {
             .strip_prefix("test result: ")
             .and_then(|rest| rest.split_once(". "))
         else {
-            return;
+            return Worth::Showing;
         };
         for part in counts.split("; ") {
             let Some((Ok(number), what)) = part.split_once(' ').map(|(n, what)| (n.parse::<usize>(), what)) else {
@@ -100,6 +123,7 @@ impl Verdict {
                 _ => {}
             }
         }
+        Worth::Showing
     }
 
     /// Prints the sum, in cargo's own form, as the last lines.
@@ -119,6 +143,10 @@ impl Verdict {
         let mut text = String::new();
         for step in &self.steps {
             text += step;
+            text += "\n";
+        }
+        for skipped in &self.skipped {
+            text += skipped;
             text += "\n";
         }
         if !self.failures.is_empty() {
@@ -149,13 +177,27 @@ mod tests {
             "running 3 tests",
             "test one::two ... ok",
             "test one::three ... FAILED",
+            "",
+            "successes:",
+            "",
+            "---- one::two stdout ----",
+            "skipped: there is no moon",
+            "test result in a test's own words ... FAILED",
+            "",
+            "successes:",
+            "    one::two",
+            "",
+            "failures:",
             "test result: FAILED. 2 passed; 1 failed; 4 ignored; 0 measured; 5 filtered out; finished in 0.1s",
             "test result: ok. 7 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.1s",
         ] {
             verdict.count(line);
         }
         let summary = verdict.summary(2.0);
-        assert!(summary.contains("\nfailures:\n    one::three\n"), "{summary}");
+        assert!(
+            summary.starts_with("skipped: there is no moon\n\nfailures:\n    one::three\n"),
+            "{summary}"
+        );
         let last =
             "test result: FAILED. 9 passed; 1 failed; 4 ignored; 0 measured; 5 filtered out; finished in 2.00s\n";
         assert!(summary.ends_with(last), "{summary}");
