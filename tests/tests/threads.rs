@@ -1,0 +1,56 @@
+//! The same input gives the same bytes whatever the number of threads.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::Path;
+
+use pliant_tests::{Folder, bend, datum, extension};
+use serde_json::json;
+
+#[track_caller]
+fn assert_same_on_every_number_of_threads(file: &Path) {
+    let folder = Folder::new();
+    let edit = bend(&json!({ "translation": [0, 0.2, 0.1], "rotation": [0, 0.1, 0.3, 0.9] }));
+    let written: Vec<Vec<u8>> = ["1", "2", "3", "7"]
+        .map(|threads| {
+            let out = folder.at(&format!("out.{}", extension(file)));
+            folder
+                .apply(file, &edit, &out, &["--threads", threads, "--frames", "3"])
+                .done();
+            fs::read(out).unwrap()
+        })
+        .into();
+    assert!(
+        written.iter().all(|bytes| *bytes == written[0]),
+        "{} differs",
+        file.display()
+    );
+}
+
+#[test]
+fn shapes_of_every_class_come_out_the_same() {
+    let folder = Folder::new();
+    for (name, drawn) in pliant_mesh::shapes::classes() {
+        // Slabs on the broken ones may hold nothing; what matters here is what is written where something is.
+        let edit = bend(&json!({ "translation": [0, 0, 1] }));
+        let file = folder.write_mesh(&format!("{}.off", name.replace(' ', "-")), &drawn);
+        if folder.apply(&file, &edit, &folder.at("out.off"), &[]).status == 0 {
+            assert_same_on_every_number_of_threads(&file);
+        }
+    }
+}
+
+#[test]
+fn real_files_come_out_the_same() {
+    for name in [
+        "scans/armadillo.obj",
+        "gltf/DamagedHelmet.glb",
+        "scans/horse.ply",
+        "scans/unit_sphere.stl",
+    ] {
+        if let Some(file) = datum(name) {
+            assert_same_on_every_number_of_threads(&file);
+        }
+    }
+}
