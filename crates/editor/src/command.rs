@@ -288,7 +288,7 @@ impl Command {
         listed(
             Command::FrameSelected,
             "Frame selected",
-            "Shows the selected handle.",
+            "Shows the selected handle, or the whole surface where none is selected.",
             &[character('.')],
         ),
         listed(

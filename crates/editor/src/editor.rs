@@ -4,11 +4,12 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use pliant_deform::Role;
 use pliant_mesh::{Bounds, Model, bounding_box};
 
 use crate::brush::Brush;
-use crate::document::{Document, Handle, HandleId, Paint};
-use crate::engine::{Activity, Arrival, Engine, Finality, moved_alone};
+use crate::document::{Document, HandleId};
+use crate::engine::{Arrival, Engine, Finality, moved_alone};
 use crate::history::{HISTORY_BYTES, History};
 use crate::overlay::Overlay;
 use crate::picking::{Pick, Picking};
@@ -18,7 +19,6 @@ use crate::{
     BRUSH_RADIUS_PX, Button, Camera, Command, Cursor, EditFile, Event, Executor, GizmoMode, HandleTransform, JobDone,
     JobKind, Key, Modifiers, Pointer, Revision, SceneView, Shading,
 };
-use pliant_deform::Role;
 
 /// The program without a window.
 pub struct Editor {
@@ -27,13 +27,13 @@ pub struct Editor {
     pub(crate) history: History,
     pub(crate) file_name: String,
     /// What the present revisions belong to.
-    known: Document,
-    known_roles: Arc<Vec<Role>>,
-    known_camera: Camera,
+    pub(crate) known: Document,
+    pub(crate) known_roles: Arc<Vec<Role>>,
+    pub(crate) known_camera: Camera,
     /// Whether paint has changed during the stroke that goes on.
     pub(crate) repainted: bool,
-    regions_revision: u64,
-    camera_revision: u64,
+    pub(crate) regions_revision: u64,
+    pub(crate) camera_revision: u64,
     pub(crate) camera: Camera,
     pub(crate) viewport_px: DVec2,
     /// Whether nobody has moved the camera since everything was framed.
@@ -53,7 +53,7 @@ pub struct Editor {
     pub(crate) overlay: Overlay,
     /// Events that wait until rays can be answered from what is drawn.
     held: VecDeque<Event>,
-    shape_counter: u64,
+    pub(crate) shape_counter: u64,
 }
 
 impl Editor {
@@ -100,12 +100,12 @@ impl Editor {
         } else {
             self.dispatch(event);
         }
-        self.settle();
+        self.conclude();
         if !self.held.is_empty() && (picked || self.engine.is_picking_current() || !self.engine.is_busy(JobKind::Pick))
         {
             for event in std::mem::take(&mut self.held) {
                 self.dispatch(event);
-                self.settle();
+                self.conclude();
             }
         }
         self.refresh_overlay();
@@ -141,43 +141,6 @@ impl Editor {
             unsaved: self.history.is_unsaved(),
             settled: self.is_settled(),
         }
-    }
-
-    /// The colour of each surface vertex by what it does, sRGB with alpha, replacing `out`: handles in their own
-    /// colours, the free region blue, what is held still grey, and darker where that was painted.
-    ///
-    /// To be fetched again when [`SceneView::regions_revision`] has grown.
-    pub fn region_colours(&self, out: &mut Vec<[u8; 4]>) {
-        const FREE: [u8; 4] = [96, 150, 222, 255];
-        const STILL: [u8; 4] = [178, 178, 178, 255];
-        const FIXED: [u8; 4] = [112, 112, 116, 255];
-        let largest = self
-            .document
-            .handles
-            .iter()
-            .map(|handle| usize::from(handle.id.0) + 1)
-            .max()
-            .unwrap_or(0);
-        let mut of_handle = vec![STILL; largest];
-        for handle in &self.document.handles {
-            of_handle[usize::from(handle.id.0)] = handle.colour;
-        }
-        out.clear();
-        out.extend(
-            self.document
-                .paint
-                .iter()
-                .enumerate()
-                .map(|(vertex, paint)| match *paint {
-                    Paint::Fixed => FIXED,
-                    Paint::Free => FREE,
-                    Paint::Handle(HandleId(id)) => of_handle.get(usize::from(id)).copied().unwrap_or(STILL),
-                    Paint::Bare => match self.engine.region.roles.get(vertex) {
-                        Some(Role::Free) => FREE,
-                        _ => STILL,
-                    },
-                }),
-        );
     }
 
     /// The document.
@@ -310,6 +273,8 @@ impl Editor {
                 let tool = std::mem::take(&mut self.tool);
                 self.tool = tool.released(self, pointer, button);
             }
+            // A transform measures the pointer's way with the camera that it began with.
+            Event::Wheel { .. } | Event::Pinch { .. } if matches!(self.tool, Tool::Transform(_)) => {}
             Event::Wheel { pointer, lines } => {
                 let anchor = self.anchor(pointer.position_px);
                 self.camera.zoom_lines(lines, anchor);
@@ -439,66 +404,6 @@ impl Editor {
         }
     }
 
-    /// Draws the conclusions from what an event changed: revisions grow, and jobs are asked for.
-    fn settle(&mut self) {
-        let activity = self.tool.activity();
-        self.rest_if_undisplaced();
-        let (known, document) = (&self.known, &self.document);
-        let repainted = std::mem::take(&mut self.repainted)
-            || (activity != Activity::Painting && !Arc::ptr_eq(&known.paint, &document.paint));
-        let recoloured = known.handles.len() != document.handles.len()
-            || known
-                .handles
-                .iter()
-                .zip(&document.handles)
-                .any(|(a, b)| (a.id, a.colour) != (b.id, b.colour));
-        let moved = !same(&known.handles, &document.handles, |a, b| a.affine() == b.affine());
-        let reshaped = !Arc::ptr_eq(&known.from_file, &document.from_file);
-        // While a stroke goes on the problem changes with every event; it counts once, at the end.
-        let problem_changed = activity != Activity::Painting && is_other_problem(known, document);
-        let unsettled_anew = known.settled && !document.settled;
-        if problem_changed {
-            self.engine.problem_changed();
-            self.known = self.document.clone();
-        } else if activity == Activity::Painting {
-            // What the problem is known to be stays.
-            self.known.from_file = Arc::clone(&self.document.from_file);
-        } else {
-            if moved || unsettled_anew {
-                self.engine.targets_changed();
-            }
-            self.known = self.document.clone();
-        }
-        if reshaped {
-            self.engine.shape_changed();
-            self.shape_counter += 1;
-        }
-        if self.selected.is_some_and(|id| self.document.handle(id).is_none()) {
-            self.selected = self.document.handles.last().map(|handle| handle.id);
-        }
-        self.engine.pump(&self.document, activity);
-        if repainted || recoloured || !Arc::ptr_eq(&self.known_roles, &self.engine.region.roles) {
-            self.known_roles = Arc::clone(&self.engine.region.roles);
-            self.regions_revision += 1;
-        }
-        if self.known_camera != self.camera {
-            self.known_camera = self.camera;
-            self.camera_revision += 1;
-        }
-    }
-
-    /// Handles that all rest need no solve: the rest shape is known.
-    fn rest_if_undisplaced(&mut self) {
-        if self.document.settled || self.document.handles.iter().any(Handle::is_displaced) {
-            return;
-        }
-        self.engine.drop_solves();
-        let zero = vec![DVec3::ZERO; self.document.from_rest.len()];
-        self.document.from_rest = Arc::new(zero);
-        self.document.refresh_from_file();
-        self.document.settled = true;
-    }
-
     /// The point that zooming keeps in place: on the surface under the pointer, or at the target's depth.
     pub(crate) fn anchor(&self, position_px: DVec2) -> DVec3 {
         match self.pick(position_px) {
@@ -540,24 +445,4 @@ impl std::fmt::Debug for Editor {
             .field("mode", &self.mode)
             .finish_non_exhaustive()
     }
-}
-
-/// Whether region and factorisation of one document are no good for the other.
-fn is_other_problem(a: &Document, b: &Document) -> bool {
-    let same_stiffness = match (&a.stiffness, &b.stiffness) {
-        (None, None) => true,
-        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-        _ => false,
-    };
-    !Arc::ptr_eq(&a.paint, &b.paint)
-        || !Arc::ptr_eq(&a.rest, &b.rest)
-        || a.applied != b.applied
-        || !same_stiffness
-        || a.method != b.method
-        || a.loose != b.loose
-        || !same(&a.handles, &b.handles, |a, b| (a.id, a.reach) == (b.id, b.reach))
-}
-
-fn same(a: &[Handle], b: &[Handle], equal: impl Fn(&Handle, &Handle) -> bool) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| equal(a, b))
 }

@@ -23,12 +23,9 @@ impl Editor {
         match command {
             Command::Undo => self.history.undo_name().is_some(),
             Command::Redo => self.history.redo_name().is_some(),
-            Command::DeleteHandle
-            | Command::Deselect
-            | Command::FrameSelected
-            | Command::Move
-            | Command::Turn
-            | Command::Scale => selected.is_some(),
+            Command::DeleteHandle | Command::Deselect | Command::Move | Command::Turn | Command::Scale => {
+                selected.is_some()
+            }
             Command::ResetHandle => selected.is_some_and(Handle::is_displaced),
             Command::NextHandle => !self.document.handles.is_empty(),
             Command::SelectHandle(id)
@@ -47,7 +44,8 @@ impl Editor {
             | Command::SetMethod(_)
             | Command::SetLoose(_)
             | Command::SetStiffness(_)
-            | Command::FrameAll => open,
+            | Command::FrameAll
+            | Command::FrameSelected => open,
             Command::SetTool(_)
             | Command::SetBrushRadius(_)
             | Command::GrowBrush
@@ -83,6 +81,8 @@ impl Editor {
             Command::Redo => {
                 self.engine.drop_solves();
                 self.history.redo(&mut self.document);
+                // A handle that has come back is most likely what one wants to go on with.
+                self.selected = self.selected.or(self.document.handles.last().map(|handle| handle.id));
             }
             Command::SetTool(mode) => {
                 self.abort_tool();

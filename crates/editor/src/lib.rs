@@ -6,7 +6,9 @@
 
 mod brush;
 mod camera;
+mod colours;
 mod command;
+mod consequences;
 mod constraint;
 mod document;
 mod edit_error;

@@ -3,11 +3,12 @@
 //! A handle sets free what lies within its reach along the rest surface and carries no paint. A component that carries
 //! no paint and that no handle reaches is left to the method as a loose part. Everything else is held still.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::{Loose, Role};
-use pliant_mesh::{Cancel, Cancelled, DistanceSearch, Model, Surface, SurfaceVertex};
+use pliant_mesh::{Cancel, Cancelled, DistanceSearch, Model, Surface, SurfaceVertex, Topology, face_area};
 
 use crate::document::{HandleId, Paint};
 use crate::{Counts, Reach};
@@ -79,7 +80,7 @@ impl Region {
                 continue;
             }
             cancel.check()?;
-            let limit = reach_length(*reach, surface, members);
+            let limit = reach_length(*reach, surface, topology, members);
             let seeds: Vec<(SurfaceVertex, f64)> = members.iter().map(|&vertex| (vertex, 0.0)).collect();
             if limit > 0.0 {
                 for &(vertex, _) in search.within(surface, topology, &seeds, limit) {
@@ -133,21 +134,24 @@ pub(crate) fn displaced(surface: &Surface, displacements: &[DVec3]) -> Surface {
 }
 
 /// A reach in world units.
-fn reach_length(reach: Reach, surface: &Surface, members: &[SurfaceVertex]) -> f64 {
+fn reach_length(reach: Reach, surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
     match reach {
         Reach::Length(length) => length,
-        Reach::Radii(radii) => radii * handle_radius(surface, members),
+        Reach::Radii(radii) => radii * handle_radius(surface, topology, members),
     }
 }
 
-/// A handle's radius: that of the disc whose points are as far from their centre in the mean square.
-pub(crate) fn handle_radius(surface: &Surface, members: &[SurfaceVertex]) -> f64 {
-    let centre = centroid(&surface.positions, members.iter().copied());
-    let squares: f64 = members
+/// A handle's radius: that of the disc with its area.
+///
+/// Farthest distances or moments would do as well for one round patch, but a handle of two patches far apart would
+/// then reach across everything between them.
+fn handle_radius(surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
+    let area_of = |&face: &u32| face_area(surface.triangles[face as usize].map(|v| surface.positions[v.index()]));
+    let area: f64 = members
         .iter()
-        .map(|vertex| surface.positions[vertex.index()].distance_squared(centre))
+        .map(|&vertex| topology.faces(vertex).iter().map(area_of).sum::<f64>() / 3.0)
         .sum();
-    (2.0 * squares / members.len().max(1) as f64).sqrt()
+    (area / PI).sqrt()
 }
 
 /// The mean position of some vertices; the origin for none.
@@ -158,4 +162,79 @@ pub(crate) fn centroid(positions: &[DVec3], vertices: impl Iterator<Item = Surfa
         count += 1.0;
     }
     if count > 0.0 { sum / count } else { DVec3::ZERO }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
+mod tests {
+    use std::sync::Arc;
+
+    use pliant_deform::{Loose, Role};
+    use pliant_mesh::{Cancel, Model, Progress, WeldOptions, shapes};
+
+    use super::{Region, RegionInput};
+    use crate::Reach;
+    use crate::document::{HandleId, Paint};
+
+    /// A sheet over the unit square whose vertices within `radius` of its middle are a handle.
+    fn sheet_with_disc(radius: f64, reach: Reach) -> RegionInput {
+        let drawn = shapes::grid(60, 60);
+        let model = Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap();
+        let middle = glam::DVec3::new(0.5, 0.5, 0.0);
+        let is_inside = |p: &glam::DVec3| p.distance(middle) <= radius;
+        let paint = |p| {
+            if is_inside(p) {
+                Paint::Handle(HandleId(7))
+            } else {
+                Paint::Bare
+            }
+        };
+        RegionInput {
+            paint: Arc::new(model.surface.positions.iter().map(paint).collect()),
+            model: Arc::new(model),
+            handles: vec![(HandleId(3), reach), (HandleId(7), reach)],
+            rest: None,
+            loose: Loose::Follow,
+        }
+    }
+
+    #[test]
+    fn a_disc_reaches_three_of_its_radii_beyond_its_rim() {
+        let radius = 0.08;
+        let input = sheet_with_disc(radius, Reach::default());
+        let region = Region::measure(&input, &Cancel::new()).unwrap();
+        assert_eq!(*region.handles, [HandleId(7)], "a handle without vertices is none");
+        for (position, role) in input.model.surface.positions.iter().zip(region.roles.iter()) {
+            let from_middle = position.distance(glam::DVec3::new(0.5, 0.5, 0.0));
+            let expected = match from_middle / radius {
+                ..=1.0 => Some(Role::Handle(0)),
+                1.2..3.6 => Some(Role::Free),
+                4.4.. => Some(Role::Fixed),
+                _ => None,
+            };
+            assert!(
+                expected.is_none_or(|expected| expected == *role),
+                "{role:?} at {from_middle}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_reach_of_nothing_frees_nothing_and_paint_wins_over_reach() {
+        let input = sheet_with_disc(0.1, Reach::Length(0.0));
+        assert_eq!(Region::measure(&input, &Cancel::new()).unwrap().counts.free, 0);
+        let mut input = sheet_with_disc(0.1, Reach::Length(10.0));
+        for (paint, position) in Arc::make_mut(&mut input.paint)
+            .iter_mut()
+            .zip(&input.model.surface.positions)
+        {
+            if position.x < 0.2 {
+                *paint = Paint::Fixed;
+            }
+        }
+        let region = Region::measure(&input, &Cancel::new()).unwrap();
+        for (position, role) in input.model.surface.positions.iter().zip(region.roles.iter()) {
+            assert_eq!(position.x < 0.2, *role == Role::Fixed);
+        }
+    }
 }

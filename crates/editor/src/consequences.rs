@@ -1,0 +1,94 @@
+//! What follows from an event: which revisions grow, and which jobs are asked for.
+//!
+//! No event says what it makes stale. The editor compares the document with the one that the present revisions belong
+//! to; the long vectors are shared, so that a comparison of pointers tells whether they changed.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::document::{Document, Handle};
+use crate::editor::Editor;
+use crate::engine::Activity;
+
+impl Editor {
+    /// Draws the conclusions from what an event changed: revisions grow, and jobs are asked for.
+    pub(crate) fn conclude(&mut self) {
+        let activity = self.tool.activity();
+        self.rest_if_undisplaced();
+        let (known, document) = (&self.known, &self.document);
+        let repainted = std::mem::take(&mut self.repainted)
+            || (activity != Activity::Painting && !Arc::ptr_eq(&known.paint, &document.paint));
+        let recoloured = known.handles.len() != document.handles.len()
+            || known
+                .handles
+                .iter()
+                .zip(&document.handles)
+                .any(|(a, b)| (a.id, a.colour) != (b.id, b.colour));
+        let moved = !same(&known.handles, &document.handles, |a, b| a.affine() == b.affine());
+        let reshaped = !Arc::ptr_eq(&known.from_file, &document.from_file);
+        // While a stroke goes on the problem changes with every event; it counts once, at the end.
+        let problem_changed = activity != Activity::Painting && is_other_problem(known, document);
+        let unsettled_anew = known.settled && !document.settled;
+        if problem_changed {
+            self.engine.problem_changed();
+            self.known = self.document.clone();
+        } else if activity == Activity::Painting {
+            // What the problem is known to be stays.
+            self.known.from_file = Arc::clone(&self.document.from_file);
+        } else {
+            if moved || unsettled_anew {
+                self.engine.targets_changed();
+            }
+            self.known = self.document.clone();
+        }
+        if reshaped {
+            self.engine.shape_changed();
+            self.shape_counter += 1;
+        }
+        if self.selected.is_some_and(|id| self.document.handle(id).is_none()) {
+            self.selected = self.document.handles.last().map(|handle| handle.id);
+        }
+        self.engine.pump(&self.document, activity);
+        if repainted || recoloured || !Arc::ptr_eq(&self.known_roles, &self.engine.region.roles) {
+            self.known_roles = Arc::clone(&self.engine.region.roles);
+            self.regions_revision += 1;
+        }
+        if self.known_camera != self.camera {
+            self.known_camera = self.camera;
+            self.camera_revision += 1;
+        }
+    }
+
+    /// Handles that all rest need no solve: the rest shape is known.
+    fn rest_if_undisplaced(&mut self) {
+        if self.document.settled || self.document.handles.iter().any(Handle::is_displaced) {
+            return;
+        }
+        self.engine.drop_solves();
+        let zero = vec![DVec3::ZERO; self.document.from_rest.len()];
+        self.document.from_rest = Arc::new(zero);
+        self.document.refresh_from_file();
+        self.document.settled = true;
+    }
+}
+
+/// Whether region and factorisation of one document are no good for the other.
+fn is_other_problem(a: &Document, b: &Document) -> bool {
+    let same_stiffness = match (&a.stiffness, &b.stiffness) {
+        (None, None) => true,
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        _ => false,
+    };
+    !Arc::ptr_eq(&a.paint, &b.paint)
+        || !Arc::ptr_eq(&a.rest, &b.rest)
+        || a.applied != b.applied
+        || !same_stiffness
+        || a.method != b.method
+        || a.loose != b.loose
+        || !same(&a.handles, &b.handles, |a, b| (a.id, a.reach) == (b.id, b.reach))
+}
+
+fn same(a: &[Handle], b: &[Handle], equal: impl Fn(&Handle, &Handle) -> bool) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| equal(a, b))
+}

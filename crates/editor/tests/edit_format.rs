@@ -1,0 +1,125 @@
+//! The edit format: what is written is what was read, and transforms go their way from rest to target.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use pliant_editor::{EditFile, HandleTransform, Selector, StiffnessEntry};
+
+const FULL: &str = r#"{
+  "version": 1,
+  "method": { "name": "bilaplacian" },
+  "region": { "not": { "component": 2 } },
+  "fixed": { "union": [{ "slab": { "axis": "longest", "from": 0.0, "to": 0.05 } }, { "ranges": [[3, 9], [12, 12]] }] },
+  "handles": [
+    { "name": "head", "select": { "intersection": ["all", { "box": { "min": [0, 1, 2], "max": [3, 4, 5] } }] },
+      "transform": { "translation": [0.1, 0.2, 0.3], "rotation": [0, 0, 1, 1], "scale": [1, 2, 3], "pivot": [0, 1, 0] } },
+    { "select": { "vertices": [7, 1] },
+      "transform": { "matrix": [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 2, 0, 5, 6, 7, 1] } },
+    { "select": { "sphere": { "center": [0, 0.5, 0], "radius": 0.2 } } }
+  ],
+  "stiffness": [{ "select": "all", "value": 10.0 }, { "per_vertex": [0.001, 1000, 1] }],
+  "loose": "rest"
+}"#;
+
+#[test]
+fn reading_what_was_written_gives_an_equal_edit_with_equal_text() {
+    let edit = EditFile::parse(FULL).unwrap();
+    let text = edit.to_json();
+    let again = EditFile::parse(&text).unwrap();
+    assert_eq!(edit, again);
+    assert_eq!(text, again.to_json());
+}
+
+#[test]
+fn what_an_edit_does_not_say_has_its_default() {
+    let edit = EditFile::parse(r#"{"version": 1, "method": {"name": "bilaplacian"}}"#).unwrap();
+    assert_eq!(edit, EditFile::default());
+    assert_eq!((edit.region, edit.fixed), (Selector::All, Selector::None));
+    let full = EditFile::parse(FULL).unwrap();
+    let names: Vec<&str> = full.handles.iter().map(|handle| &*handle.name).collect();
+    assert_eq!(names, ["head", "handle 2", "handle 3"]);
+    assert_eq!(full.handles[2].transform, HandleTransform::IDENTITY);
+    assert_eq!(full.stiffness[1], StiffnessEntry::PerVertex(vec![0.001, 1000.0, 1.0]));
+}
+
+fn transforms() -> Vec<HandleTransform> {
+    EditFile::parse(FULL)
+        .unwrap()
+        .handles
+        .iter()
+        .map(|handle| handle.transform)
+        .collect()
+}
+
+#[test]
+fn a_transform_goes_from_rest_to_its_target_and_turns_about_its_pivot() {
+    let default_pivot = DVec3::new(1.0, 2.0, 3.0);
+    for transform in transforms() {
+        assert_eq!(transform.at(0.0, default_pivot), DAffine3::IDENTITY);
+        assert_eq!(transform.at(1.0, default_pivot), transform.affine(default_pivot));
+        // Near its ends the way is near its ends: nothing jumps.
+        for (t, end) in [(1e-9, 0.0), (1.0 - 1e-9, 1.0)] {
+            assert!(
+                transform
+                    .at(t, default_pivot)
+                    .abs_diff_eq(transform.at(end, default_pivot), 1e-7),
+                "{transform:?}"
+            );
+        }
+        // The pivot goes straight.
+        let pivot = transform.pivot_or(default_pivot);
+        let whole = transform.affine(default_pivot).transform_point3(pivot) - pivot;
+        let half = transform.at(0.5, default_pivot).transform_point3(pivot) - pivot;
+        assert!(half.abs_diff_eq(whole * 0.5, 1e-12), "{transform:?}");
+    }
+}
+
+#[test]
+fn half_a_turn_is_half_the_angle_and_half_the_scale() {
+    let transforms = transforms();
+    let half = transforms[0].at(0.5, DVec3::ZERO);
+    let wanted = DMat3::from_quat(DQuat::from_rotation_z(std::f64::consts::FRAC_PI_4))
+        * DMat3::from_diagonal(DVec3::new(1.0, 1.5, 2.0));
+    assert!(half.matrix3.abs_diff_eq(wanted, 1e-12));
+    let half = transforms[1].at(0.5, DVec3::ZERO);
+    let wanted = DMat3::from_quat(DQuat::from_rotation_z(std::f64::consts::FRAC_PI_4))
+        * DMat3::from_diagonal(DVec3::new(1.0, 1.0, 1.5));
+    assert!(half.matrix3.abs_diff_eq(wanted, 1e-12));
+}
+
+#[test]
+fn a_mere_translation_far_from_the_origin_is_exact() {
+    let text = r#"{"version": 1, "method": {"name": "bilaplacian"}, "handles":
+        [{"select": "all", "transform": {"translation": [0.1, 0, 0], "pivot": [1e9, 3e9, 7e8]}}]}"#;
+    let transform = EditFile::parse(text).unwrap().handles[0].transform;
+    assert_eq!(
+        transform.affine(DVec3::ZERO),
+        DAffine3::from_translation(DVec3::new(0.1, 0.0, 0.0))
+    );
+    assert!(!transform.is_identity());
+}
+
+#[test]
+fn only_what_moves_nothing_is_the_identity() {
+    let is_identity = |transform: &str| {
+        let text = format!(
+            r#"{{"version": 1, "method": {{"name": "bilaplacian"}}, "handles": [{{"select": "all", "transform": {transform}}}]}}"#
+        );
+        EditFile::parse(&text).unwrap().changes_nothing()
+    };
+    for transform in [
+        "{}",
+        r#"{"pivot": [1, 2, 3]}"#,
+        r#"{"rotation": [0, 0, 0, -3]}"#,
+        r#"{"scale": [1, 1, 1]}"#,
+    ] {
+        assert!(is_identity(transform), "{transform}");
+    }
+    for transform in [
+        r#"{"translation": [0, 1e-300, 0]}"#,
+        r#"{"rotation": [0, 0, 1e-9, 1]}"#,
+        r#"{"scale": [1, 1, -1]}"#,
+    ] {
+        assert!(!is_identity(transform), "{transform}");
+    }
+}
