@@ -9,7 +9,7 @@ impl Editor {
     /// The colour of each surface vertex by what it does, sRGB with alpha, replacing `out`: handles in their own
     /// colours, the free region blue, what is held still grey, and darker where that was painted.
     ///
-    /// To be fetched again when [`SceneView::regions_revision`] has grown.
+    /// To be fetched again when [`SceneView::regions_revision`](crate::SceneView::regions_revision) has grown.
     pub fn region_colours(&self, out: &mut Vec<[u8; 4]>) {
         const FREE: [u8; 4] = [96, 150, 222, 255];
         const STILL: [u8; 4] = [178, 178, 178, 255];
