@@ -11,6 +11,7 @@ use pliant_mesh::{Cancel, Drawn, Progress};
 use serde::Serialize;
 
 use crate::moved::Moved;
+use crate::new_faces::{lost, lost_where};
 use crate::new_mesh::{NewMesh, Polygons};
 use crate::save::{OutputFile, Placement, Save, Saved};
 use crate::{Appearance, Format, ReadError, SaveError, gltf, new_glb, obj, off, ply, stl};
@@ -199,16 +200,29 @@ impl Scene {
             (Stored::Off(stored), Format::Off) => stored.write(&moved).map(own),
             (_, format) => {
                 let mesh = NewMesh::of(&moved, self.appearance(), save.name, self.polygons());
-                match format {
+                let mut saved = match format {
                     Format::Glb => new_glb::write_new(&mesh),
                     Format::Gltf => new_glb::write_new_gltf(&mesh),
                     Format::Obj => obj::write_new(&mesh),
                     Format::Ply => ply::write_new(&mesh),
                     Format::Stl => stl::write_new(&mesh),
                     Format::Off => off::write_new(&mesh),
-                }
+                }?;
+                saved.warnings.extend(self.motion_lost(format));
+                Ok(saved)
             }
         }
+    }
+
+    /// A warning about what moves a scene, which no kind but glTF holds.
+    fn motion_lost(&self, format: Format) -> Option<String> {
+        let summary = self.summary();
+        let motion = [
+            ("skins", lost_where(summary.skins > 0)),
+            ("animations", lost_where(summary.animations > 0)),
+            ("morph targets", lost_where(summary.morph_targets > 0)),
+        ];
+        lost(&format.to_string(), &motion)
     }
 
     /// The file's own polygons over drawn vertices, where it has any that are not triangles.

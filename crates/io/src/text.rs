@@ -163,6 +163,17 @@ impl<'a> Cursor<'a> {
         Some(if negative { -value } else { value })
     }
 
+    /// A whole number that is a word of its own: white space, a comment or the file's end follows.
+    pub(crate) fn whole(&mut self) -> Option<i64> {
+        let mut ahead = self.clone();
+        let number = ahead.integer()?;
+        if !matches!(ahead.peek(), None | Some(b' ' | b'\t'..=b'\r' | b'#')) {
+            return None;
+        }
+        *self = ahead;
+        Some(number)
+    }
+
     /// A real number, correctly rounded, that ends at white space, a comment or a backslash. `nan` and `inf` are
     /// numbers in all their spellings.
     #[inline]

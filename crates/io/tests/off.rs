@@ -66,6 +66,7 @@ fn what_cannot_be_read_is_refused_in_one_line() {
         ("nOFF\n3\n1 0 0\n0 0 0", "three dimensions"),
         ("hello", "'hello'"),
         ("", "vertices"),
+        ("OFF\n3 1.0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "faces is missing"),
         ("OFF\n1000000000 0 0\n0 0 0\n", "cut short"),
         ("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "line 6"),
         ("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", "line 6"),

@@ -224,3 +224,35 @@ fn text_finer_than_its_type_keeps_its_fineness() {
     let positions = moved(&opened, |file| file == 0, |p| p + DVec3::splat(0.125));
     assert_eq!(open(&save(&opened, &positions), Format::Ply).drawn.positions, positions);
 }
+
+#[test]
+fn a_new_file_holds_colours_and_polygons_and_as_many_digits_as_the_place_needs() {
+    let off = "COFF\n4 1 0\n0 0 0 255 0 0\n1 0 0 0 128 0\n1 1 0 0 0 255\n0 1 0 9 99 199\n4 0 1 2 3\n";
+    let opened = open(off.as_bytes(), Format::Off);
+    let near = save_as(&opened, &opened.drawn.positions, Format::Ply);
+    assert!(near.warnings.is_empty(), "{:?}", near.warnings);
+    let text = String::from_utf8_lossy(&near.files[0].bytes).into_owned();
+    assert!(
+        text.contains("element face 1\n") && text.contains("property float x"),
+        "{text}"
+    );
+    let again = open(&near.files[0].bytes, Format::Ply);
+    assert_eq!(again.drawn.positions, opened.drawn.positions);
+    assert_eq!(again.drawn.triangles, opened.drawn.triangles);
+    // Dark colours have few steps in linear bytes, so each is kept to within a few.
+    let colours = |opened: &pliant_io::Opened| opened.scene.appearance().colours.unwrap().concat();
+    let apart = colours(&opened)
+        .into_iter()
+        .zip(colours(&again))
+        .map(|(a, b)| a.abs_diff(b))
+        .max();
+    assert!(apart.unwrap() <= 1, "{apart:?}");
+    let far: Vec<DVec3> = opened
+        .drawn
+        .positions
+        .iter()
+        .map(|&p| p + DVec3::new(4.5e6, 0.0, 0.001))
+        .collect();
+    let saved = save_as(&opened, &far, Format::Ply);
+    assert_eq!(open(&saved.files[0].bytes, Format::Ply).drawn.positions, far);
+}

@@ -5,7 +5,7 @@ mod text;
 
 use glam::DVec3;
 use pliant_io::Format;
-use text::{changed_bytes, changed_lines, moved, open, refusal, save};
+use text::{changed_bytes, changed_lines, moved, open, refusal, save, save_as};
 
 const ASCII: &str = "solid a thing facet\r\n  facet normal 0 0 1\r\n    outer loop\r\n      vertex 0 0 0\r\n      vertex 1.50 0 0\r\n\
       vertex 0 1 0\r\n    endloop\r\n  endfacet\r\n  FACET NORMAL nan 0 0 OUTER LOOP VERTEX 5 5 5 VERTEX 6 5 5\r\nVERTEX 5 6 5 ENDLOOP ENDFACET\r\n\
@@ -104,4 +104,25 @@ fn broken_ascii_is_refused_by_its_line() {
             .triangles
             .is_empty()
     );
+}
+
+#[test]
+fn a_new_file_says_what_it_leaves_out() {
+    let off = "COFF\n4 1 0\n0 0 0 255 0 0\n1 0 0 0 128 0\n1 1 0 0 0 255\n0 1 0 9 99 199\n4 0 1 2 3\n";
+    let opened = open(off.as_bytes(), Format::Off);
+    let saved = save_as(&opened, &opened.drawn.positions, Format::Stl);
+    let expected = "STL output leaves out the colours: save as .glb to keep them.";
+    assert_eq!(saved.warnings[0], expected);
+    assert!(saved.warnings[1].contains("polygons were cut"));
+    let again = open(&saved.files[0].bytes, Format::Stl);
+    let corners = opened
+        .drawn
+        .triangles
+        .iter()
+        .flatten()
+        .map(|corner| opened.drawn.positions[corner.index()]);
+    assert_eq!(again.drawn.positions, corners.collect::<Vec<_>>());
+    let far = moved(&opened, |_| true, |p| p + DVec3::X * 4.5e6);
+    let warnings = save_as(&opened, &far, Format::Stl).warnings;
+    assert!(warnings[2].contains("32-bit numbers"), "{warnings:?}");
 }

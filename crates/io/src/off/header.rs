@@ -76,14 +76,13 @@ pub(super) fn parse<'a>(source: &Source<'a>) -> Result<(Header, Cursor<'a>), Rea
     let mut count = |what: &str| {
         cursor.skip_space_and_comments();
         let at = cursor.at();
-        let count = cursor.integer().and_then(|count| usize::try_from(count).ok());
+        let count = cursor.whole().and_then(|count| usize::try_from(count).ok());
         count.ok_or_else(|| fail(at, &format!("the number of {what} is missing: correct the file's head")))
     };
     header.vertices = count("vertices")?;
     header.faces = count("faces")?;
-    // The number of edges, which nobody needs and some leave out.
-    cursor.skip_blanks();
-    cursor.integer();
+    // The number of edges, which nobody needs and some leave out, ends the line.
+    cursor.next_line();
     // Three digits with separators a vertex, one a face; the last needs no separator behind it.
     let least = header
         .vertices

@@ -114,7 +114,7 @@ fn read_face(
 ) -> Result<(), ReadError> {
     cursor.skip_space_and_comments();
     let at = cursor.at();
-    let count = cursor.integer().and_then(|count| u64::try_from(count).ok());
+    let count = cursor.whole().and_then(|count| u64::try_from(count).ok());
     let count = count.ok_or_else(|| no_number(source, cursor, "face", face))?;
     // A digit and a separator each.
     if count.saturating_mul(2) > cursor.left() as u64 {
@@ -125,9 +125,7 @@ fn read_face(
     for _ in 0..count {
         cursor.skip_space_and_comments();
         let at = cursor.at();
-        let corner = cursor
-            .integer()
-            .ok_or_else(|| no_number(source, cursor, "face", face))?;
+        let corner = cursor.whole().ok_or_else(|| no_number(source, cursor, "face", face))?;
         match u32::try_from(corner) {
             Ok(corner) if (corner as usize) < records.positions.len() => records.corners.push(corner),
             _ => {

@@ -44,11 +44,13 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
             ("texture coordinates", lost_where(look.uvs.is_some())),
             ("materials", lost_where(has_materials(look))),
             ("textures", lost_where(!look.images.is_empty())),
-            ("polygons", lost_where(mesh.polygons.is_some())),
         ],
     )
     .into_iter()
     .collect();
+    if mesh.polygons.is_some() {
+        warnings.push("STL holds triangles only, so polygons were cut: save as .obj to keep them.".to_owned());
+    }
     if let Some(rounding) = coarse_in_f32(mesh.positions) {
         warnings.push(format!(
             "STL holds 32-bit numbers, which round positions this far from the origin by up to {rounding:.1e}: save as .obj to keep them."
