@@ -130,14 +130,11 @@ fn turning(mean: DMat3) -> Option<DMat3> {
 /// Numbers the groups of moved twins. Sorting by a hash instead of filling a table keeps it parallel, and the result
 /// does not depend on the hash beyond the groups' numbers.
 fn group(drawn: &Drawn, positions: &[DVec3], normals: &[DVec3]) -> (Vec<u32>, usize) {
+    // Adding zero makes 0 of -0, which exporters mix across a seam.
+    let bits = |x: f64| (x + 0.0).to_bits();
     let key = |v: usize| {
-        let [a, b, c] = drawn.positions[v].to_array().map(f64::to_bits);
-        let [d, e, f] = normals
-            .get(v)
-            .copied()
-            .unwrap_or(DVec3::ZERO)
-            .to_array()
-            .map(f64::to_bits);
+        let [a, b, c] = drawn.positions[v].to_array().map(bits);
+        let [d, e, f] = normals.get(v).copied().unwrap_or(DVec3::ZERO).to_array().map(bits);
         [a, b, c, d, e, f]
     };
     let mut moved: Vec<(u64, u32)> = (0..positions.len())
