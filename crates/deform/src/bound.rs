@@ -126,7 +126,7 @@ impl Bound {
     pub fn step(&mut self, displacements: &mut [DVec3]) -> Result<Step, SolveError> {
         self.frame(displacements, |plate, motions, displacements| {
             plate.bases().evaluate(motions, displacements);
-            plate.energy(motions)
+            Ok(plate.energy(motions))
         })
     }
 
@@ -136,8 +136,8 @@ impl Bound {
     /// As [`Bound::step`].
     pub fn step_by_back_substitution(&mut self, displacements: &mut [DVec3]) -> Result<Step, SolveError> {
         self.frame(displacements, |plate, _, displacements| {
-            plate.back_substitute(displacements);
-            plate.energy_of(displacements)
+            plate.back_substitute(displacements)?;
+            Ok(plate.energy_of(displacements))
         })
     }
 
@@ -145,7 +145,7 @@ impl Bound {
     fn frame(
         &mut self,
         displacements: &mut [DVec3],
-        solve: impl FnOnce(&Plate, &[Motion], &mut [DVec3]) -> f64,
+        solve: impl FnOnce(&Plate, &[Motion], &mut [DVec3]) -> Result<f64, SolveError>,
     ) -> Result<Step, SolveError> {
         displacements.fill(DVec3::ZERO);
         if displacements.len() != self.vertex_count {
@@ -169,7 +169,7 @@ impl Bound {
                 displacements[vertex as usize] = motion.displace(coordinates);
             }
         }
-        step.energy = solve(plate, &self.motions, displacements);
+        step.energy = solve(plate, &self.motions, displacements).inspect_err(|_| displacements.fill(DVec3::ZERO))?;
         carry(&self.followers, displacements);
         gate(displacements)?;
         Ok(step)

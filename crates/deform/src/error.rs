@@ -121,6 +121,12 @@ pub enum SolveError {
         /// The surface's vertices.
         expected: usize,
     },
+    /// The solution did not settle.
+    #[error("the surface was solved only to {error:.1e} of its motion: fix more vertices or repair its triangles")]
+    Inaccurate {
+        /// An estimate of what is wrong, relative to the largest displacement.
+        error: f64,
+    },
     /// A displacement came out as no number.
     #[error("the displacement of surface vertex {vertex} is not finite: move the handles less far")]
     NotFinite {

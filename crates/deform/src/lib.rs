@@ -23,6 +23,7 @@ mod partition;
 mod plate;
 mod problem;
 mod reach;
+mod refine;
 mod rigid_fit;
 mod shell;
 mod triangular;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
 use crate::shell::{Shell, ShellError};
-use crate::{BindError, HandleBases, Laplacian, Ordering, Problem};
+use crate::{BindError, HandleBases, Laplacian, Ordering, Problem, SolveError};
 
 /// The bound bi-Laplacian.
 #[derive(Debug)]
@@ -20,8 +20,8 @@ pub(crate) struct Plate {
     energy_blocks: Vec<[[f64; 4]; 4]>,
 }
 
-/// How far off a handle's solution may be, relative to its largest value.
-const BASES_TOLERANCE: f64 = 1e-7;
+/// How far off a solution may be, relative to its largest value.
+const TOLERANCE: f64 = 1e-7;
 
 impl Plate {
     /// Assembles, factors, checks, and solves for the bases of `handles`.
@@ -43,9 +43,9 @@ impl Plate {
         let laplacian = Laplacian::with_rows(problem.surface, problem.topology, problem.stiffness, &rows);
         cancel.check()?;
         progress.set(0.2);
-        let shell = Shell::factor(laplacian, &order, cancel).map_err(refuse)?;
+        let mut shell = Shell::new(laplacian, &order, cancel).map_err(refuse)?;
         progress.set(0.7);
-        shell.check().map_err(refuse)?;
+        shell.check(cancel).map_err(refuse)?;
         cancel.check()?;
         progress.set(0.75);
         let prescribed: Vec<Vec<(u32, [f64; 4])>> = handles
@@ -71,7 +71,7 @@ impl Plate {
             .map(|own| solve_handle(&shell, own, &prescribed, &solved_locals, cancel))
             .collect::<Result<_, _>>()?;
         for column in &columns {
-            if column.error.is_nan() || column.error > BASES_TOLERANCE {
+            if column.error.is_nan() || column.error > TOLERANCE {
                 let vertex = column.worst_vertex;
                 return Err(BindError::Inaccurate {
                     component: component_of(vertex),
@@ -126,7 +126,7 @@ impl Plate {
 
     /// How many numbers the factor stores.
     pub fn factor_len(&self) -> usize {
-        self.shell.stored()
+        self.shell.factor().stored()
     }
 
     /// The energy of a frame, from the motions alone: no pass over the surface.
@@ -167,15 +167,24 @@ impl Plate {
     }
 
     /// Solves for the solved vertices' displacements from whatever the other vertices' are.
-    pub fn back_substitute(&self, displacements: &mut [DVec3]) {
+    ///
+    /// # Errors
+    /// Where the solution stays too far from the operator's.
+    pub fn back_substitute(&self, displacements: &mut [DVec3]) -> Result<(), SolveError> {
         let vertices = self.shell.laplacian.vertices();
         let mut d: Vec<[f64; 3]> = vertices
             .iter()
             .map(|&vertex| displacements[vertex as usize].to_array())
             .collect();
-        self.shell.solve(&mut d);
+        let error = self.shell.solve(&mut d, &Cancel::new()).error;
         for &local in self.shell.columns() {
             displacements[vertices[local as usize] as usize] = DVec3::from_array(d[local as usize]);
+        }
+        // What is not finite is the gate's to say.
+        if error.is_finite() && error > TOLERANCE {
+            Err(SolveError::Inaccurate { error })
+        } else {
+            Ok(())
         }
     }
 
@@ -210,7 +219,8 @@ fn solve_handle(
     for &(local, coordinates) in own {
         d[local as usize] = coordinates;
     }
-    let error = shell.solve(&mut d);
+    let error = shell.solve(&mut d, cancel).error;
+    cancel.check()?;
     let bent = shell.laplacian.per_area(&d);
     let energy = |handle: &Vec<(u32, [f64; 4])>| {
         let mut block = [[0.0; 4]; 4];

@@ -1,9 +1,7 @@
 //! The bound thin plate: A_ff d_f = −A_fc d_c with A = L M⁻¹ L, factored, refined and checked.
 //!
-//! A factorisation that succeeds proves nothing: condition numbers reach 1e15 on real scans. Every solve is therefore
-//! refined with the residual of the *operator*, formed by differences along edges, which is exact on constants where
-//! the assembled matrix is not; that takes translations from 1e-5 to below 1e-10. And every bind solves for the
-//! constant 1, whose solution is known, and refuses where it is missed.
+//! A factorisation that succeeds proves nothing: condition numbers reach 1e15 on real scans. So every solve is refined
+//! (see `refine`), and every bind solves for the constant 1, whose solution is known, and refuses where it is missed.
 
 use pliant_mesh::Cancel;
 use rayon::prelude::*;
@@ -11,6 +9,7 @@ use rayon::prelude::*;
 use crate::assembly::{CONSTRAINED, assemble_plate};
 use crate::cholesky::{Factor, FactorError};
 use crate::operators::CHUNK;
+use crate::refine::{Outcome, solve};
 use crate::{BindError, Laplacian};
 
 /// The factored plate over the local vertices of its Laplacian.
@@ -21,6 +20,8 @@ pub(crate) struct Shell {
     columns: Vec<u32>,
     scale: Vec<f64>,
     factor: Factor,
+    /// [`Outcome::contraction`] of the check.
+    contraction: f64,
     /// What was added to the scaled matrix' unit diagonal to factor it; 0 where nothing had to be.
     pub shift: f64,
 }
@@ -38,19 +39,13 @@ pub(crate) enum ShellError {
 /// effect out again; the check of the constant says whether it did.
 const SHIFTS: [f64; 4] = [0.0, 1e-13, 1e-11, 1e-9];
 
-/// Steps of a solve, the first one included: two where the factor is good, more until the correction is negligible.
-const STEPS: std::ops::RangeInclusive<usize> = 2..=12;
-
-/// Refinement ends where the next correction would be below this share of the solution.
-const NEGLIGIBLE: f64 = 1e-11;
-
 /// By how much the constant may be missed.
-const TOLERANCE: f64 = 1e-8;
+const TOLERANCE: f64 = 1e-7;
 
 impl Shell {
     /// Factors the plate in which the surface vertices `order` are solved for, eliminated in that order; `laplacian`
     /// has full rows for them and their neighbours.
-    pub fn factor(laplacian: Laplacian, order: &[u32], cancel: &Cancel) -> Result<Self, ShellError> {
+    pub fn new(laplacian: Laplacian, order: &[u32], cancel: &Cancel) -> Result<Self, ShellError> {
         let columns: Vec<u32> = order
             .iter()
             .filter_map(|&vertex| laplacian.local(vertex))
@@ -72,6 +67,7 @@ impl Shell {
                         columns,
                         scale,
                         factor,
+                        contraction: 0.0,
                         shift,
                     });
                 }
@@ -93,57 +89,18 @@ impl Shell {
         &self.columns
     }
 
-    /// How many numbers the factor stores.
-    pub fn stored(&self) -> usize {
-        self.factor.stored()
+    /// The factor of S A S, or nearly so.
+    pub fn factor(&self) -> &Factor {
+        &self.factor
     }
 
-    /// Fills in the solved vertices of `d`, K functions on the local vertices, from its constrained ones.
-    ///
-    /// Returns an estimate of the error that is left, relative to the largest value.
-    pub fn solve<const K: usize>(&self, d: &mut [[f64; K]]) -> f64 {
-        for &local in &self.columns {
-            d[local as usize] = [0.0; K];
-        }
-        let mut last = f64::INFINITY;
-        for step in 1..=*STEPS.end() {
-            let mut x = self.scaled_residual(d);
-            self.factor.solve(&mut x);
-            let (mut correction, mut size, mut finite) = (0.0_f64, 0.0_f64, true);
-            for (column, &local) in self.columns.iter().enumerate() {
-                let target = &mut d[local as usize];
-                for k in 0..K {
-                    let change = x[column][k] * self.scale[column];
-                    target[k] += change;
-                    finite &= target[k].is_finite();
-                    correction = correction.max(change.abs());
-                    size = size.max(target[k].abs());
-                }
-            }
-            if !finite {
-                return f64::INFINITY;
-            }
-            if correction == 0.0 {
-                return 0.0;
-            }
-            // Corrections fall by the same factor each time, so this is what the next one would be.
-            let relative = correction / size;
-            let remaining = if step == 1 {
-                relative
-            } else {
-                relative * (relative / last).min(1.0)
-            };
-            let falls = step == 1 || relative < 0.5 * last;
-            last = relative;
-            if step >= *STEPS.start() && (!falls || remaining < NEGLIGIBLE) || step == *STEPS.end() {
-                return remaining;
-            }
-        }
-        last
+    /// S: the scale of each column.
+    pub fn scale(&self) -> &[f64] {
+        &self.scale
     }
 
     /// −S A d on the solved vertices, by differences along edges.
-    fn scaled_residual<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
+    pub fn scaled_residual<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
         let bent = self.laplacian.per_area(d);
         self.columns
             .par_iter()
@@ -153,10 +110,16 @@ impl Shell {
             .collect()
     }
 
-    /// Solves for the constant 1 and compares.
-    pub fn check(&self) -> Result<(), ShellError> {
+    /// Fills in the solved vertices of `d` from its constrained ones, as well as the check found it to take.
+    pub fn solve<const K: usize>(&self, d: &mut [[f64; K]], cancel: &Cancel) -> Outcome {
+        solve(self, d, self.contraction, cancel)
+    }
+
+    /// Solves for the constant 1, compares, and keeps how fast refinement was.
+    pub fn check(&mut self, cancel: &Cancel) -> Result<(), ShellError> {
         let mut ones = vec![[1.0]; self.laplacian.vertices().len()];
-        self.solve(&mut ones);
+        self.contraction = solve(self, &mut ones, 0.0, cancel).contraction;
+        cancel.check().map_err(|_| ShellError::Cancelled)?;
         let mut worst = (0.0, 0);
         for &local in &self.columns {
             let error = (ones[local as usize][0] - 1.0).abs();

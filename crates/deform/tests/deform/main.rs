@@ -6,3 +6,4 @@ mod laws;
 mod operators;
 mod plate;
 mod rig;
+mod robust;
