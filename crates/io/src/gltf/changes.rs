@@ -1,5 +1,7 @@
 //! The new numbers of moved vertices, in each node's own space.
 
+use std::collections::BTreeMap;
+
 use glam::{DMat3, DVec3, Vec3, Vec4};
 use pliant_mesh::DrawnVertex;
 use rayon::prelude::*;
@@ -172,26 +174,45 @@ fn xyz([x, y, z, _]: [f32; 4]) -> DVec3 {
     Vec3::new(x, y, z).as_dvec3()
 }
 
-/// Whether two changes of one accessor come to the same but for the rounding of different nodes' transforms.
-pub(super) fn comes_to_the_same(document: &Document, accessor: usize, a: &Change, b: &Change) -> bool {
-    if a == b {
-        return true;
+/// What accessors hold before the edit, decoded once, to tell changes that come to the same apart from others.
+#[derive(Default)]
+pub(super) struct Rest(BTreeMap<usize, (Vec<[f32; 4]>, f32)>);
+
+impl Rest {
+    /// Whether two changes of one accessor come to the same but for the rounding of different nodes' transforms.
+    pub fn comes_to_the_same(&mut self, document: &Document, accessor: usize, a: &Change, b: &Change) -> bool {
+        if a == b {
+            return true;
+        }
+        let (stored, tolerance) = self.0.entry(accessor).or_insert_with(|| {
+            let stored = Layout::of(document, accessor).map_or_else(|_| Vec::new(), |layout| layout.floats(document));
+            let finite = stored.as_flattened().iter().filter(|x| x.is_finite());
+            let size = finite.fold(0.0_f32, |most, x| most.max(x.abs()));
+            (stored, 4.0 * f32::EPSILON * size)
+        });
+        let tolerance = *tolerance;
+        let is_near = |a: [f32; 4], b: [f32; 4]| {
+            a.iter()
+                .zip(b)
+                .all(|(x, y)| x.to_bits() == y.to_bits() || (x - y).abs() <= tolerance)
+        };
+        // Both ascend: each step takes the next element of either or both, the other side's being the stored one.
+        let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
+        loop {
+            let next = |side: Option<&&(u32, [f32; 4])>| side.map_or(u32::MAX, |(element, _)| *element);
+            let element = next(a.peek()).min(next(b.peek()));
+            let Some(&stored) = stored.get(element as usize) else {
+                return a.peek().is_none() && b.peek().is_none();
+            };
+            let new_a = a
+                .next_if(|(other, _)| *other == element)
+                .map_or(stored, |(_, new)| *new);
+            let new_b = b
+                .next_if(|(other, _)| *other == element)
+                .map_or(stored, |(_, new)| *new);
+            if !is_near(new_a, new_b) {
+                return false;
+            }
+        }
     }
-    let Ok(layout) = Layout::of(document, accessor) else {
-        return false;
-    };
-    let stored = layout.floats::<4>(document);
-    let size = stored
-        .iter()
-        .flatten()
-        .filter(|x| x.is_finite())
-        .fold(0.0_f32, |most, x| most.max(x.abs()));
-    let tolerance = 4.0 * f32::EPSILON * size;
-    let [a, b] = [a, b].map(|change| {
-        let mut whole = stored.clone();
-        change.iter().for_each(|&(element, new)| whole[element as usize] = new);
-        whole
-    });
-    let is_near = |(x, y): (&f32, &f32)| x.to_bits() == y.to_bits() || (x - y).abs() <= tolerance;
-    a.as_flattened().iter().zip(b.as_flattened()).all(is_near)
 }

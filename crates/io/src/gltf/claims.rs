@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::changes::{Change, PartChange, Semantic, comes_to_the_same};
+use super::changes::{Change, PartChange, Rest, Semantic};
 use super::document::Document;
 use super::geometry::Pieces;
 use super::json::At;
@@ -64,20 +64,18 @@ pub(super) fn copies(
         })
         .collect();
     let mut clones = Vec::new();
+    let mut rest = Rest::default();
     for (mesh, uses) in uses(meshes, pieces) {
-        let is_same = |a: &[Option<usize>], b: &[Option<usize>]| {
-            meshes[mesh]
-                .iter()
-                .zip(a.iter().zip(b))
-                .all(|(primitive, parts)| match parts {
-                    (Some(a), Some(b)) => Semantic::ALL.into_iter().all(|semantic| {
-                        let [a, b] = [a, b].map(|&part| changes[part].of(semantic));
-                        semantic
-                            .accessor(primitive)
-                            .is_none_or(|accessor| comes_to_the_same(document, accessor, a, b))
-                    }),
-                    (a, b) => a == b,
-                })
+        let mut is_same = |a: &[Option<usize>], b: &[Option<usize>]| {
+            let mut primitives = meshes[mesh].iter().zip(a.iter().zip(b));
+            primitives.all(|(primitive, parts)| match parts {
+                (Some(a), Some(b)) => Semantic::ALL.into_iter().all(|semantic| {
+                    let [a, b] = [a, b].map(|&part| changes[part].of(semantic));
+                    let accessor = semantic.accessor(primitive);
+                    accessor.is_none_or(|accessor| rest.comes_to_the_same(document, accessor, a, b))
+                }),
+                (a, b) => a == b,
+            })
         };
         let mut classes: Vec<(Vec<Option<usize>>, Vec<usize>)> = Vec::new();
         for (node, parts) in uses {
@@ -104,9 +102,12 @@ pub(super) fn copies(
     copies
 }
 
+/// A node that shows a mesh, and the part of each primitive.
+type Use = (usize, Vec<Option<usize>>);
+
 /// By mesh: the nodes that show it, in the order of drawing, with the part of each primitive.
-fn uses(meshes: &[Vec<Primitive>], pieces: &Pieces) -> BTreeMap<usize, Vec<(usize, Vec<Option<usize>>)>> {
-    let mut uses: BTreeMap<usize, Vec<(usize, Vec<Option<usize>>)>> = BTreeMap::new();
+fn uses(meshes: &[Vec<Primitive>], pieces: &Pieces) -> BTreeMap<usize, Vec<Use>> {
+    let mut uses: BTreeMap<usize, Vec<Use>> = BTreeMap::new();
     for piece in &pieces.pieces {
         let part = &pieces.parts[piece.part];
         let of_mesh = uses.entry(part.mesh).or_default();

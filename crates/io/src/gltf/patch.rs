@@ -129,7 +129,10 @@ impl Patch<'_> {
                     .any(|theirs| places[accessor].iter().any(|ours| ours.overlaps(theirs)))
                 && !wants_the_same(other)
         });
-        if is_shared {
+        let laps_itself = places[accessor]
+            .iter()
+            .any(|place| place.count > 1 && place.stride < place.size);
+        if is_shared || laps_itself {
             return None;
         }
         let entries = layout.sparse_elements(document);

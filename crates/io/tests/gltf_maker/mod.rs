@@ -138,8 +138,12 @@ impl Shape {
         self.positions.push(position);
         self.normals.push(normal);
         self.tangents.push(
-            side.extend(if self.positions.len() % 2 == 0 { 1.0 } else { -1.0 })
-                .to_array(),
+            side.extend(if self.positions.len().is_multiple_of(2) {
+                1.0
+            } else {
+                -1.0
+            })
+            .to_array(),
         );
         self.uvs.push([position[0], position[1]]);
     }
