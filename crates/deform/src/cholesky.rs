@@ -1,6 +1,11 @@
 //! The sparse Cholesky factor: faer's supernodal L Lᵀ in the order that the matrix already has.
 //!
 //! Symbolic and numeric parts are two steps, since the pattern outlives the values. Sequential inside (`Par::Seq`).
+//!
+//! Measured on horse.ply and once subdivided (45,797 and 183,208 free vertices, one core of a busy machine, processor
+//! time): factoring took 114 and 840 ms supernodal, 720 and 12,300 ms simplicial; solving for three right-hand sides 18
+//! and 98 ms supernodal, 12 and 74 ms simplicial. A frame solves nothing, so the factorisation decides. Other
+//! relaxations of the supernodes than faer's changed fill (6.4 to 6.8 million numbers) and times by under a tenth.
 
 use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -111,4 +116,75 @@ fn analyse(plate: &PlateMatrix) -> Option<supernodal::SymbolicSupernodalCholesky
         SymbolicSupernodalParams::default(),
     )
     .ok()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::Factor;
+    use crate::Laplacian;
+    use crate::assembly::{CONSTRAINED, PlateMatrix, assemble_plate};
+    use pliant_mesh::shapes;
+
+    fn plate() -> PlateMatrix {
+        let model = shapes::model(shapes::torus(14, 9));
+        let count = model.surface.positions.len();
+        let laplacian = Laplacian::of(&model.surface, &model.topology, &vec![1.0; count]);
+        let columns: Vec<u32> = (0..count as u32).filter(|v| v % 9 != 0).collect();
+        let mut column_of = vec![CONSTRAINED; count];
+        for (column, &vertex) in columns.iter().enumerate() {
+            column_of[vertex as usize] = column as u32;
+        }
+        assemble_plate(&laplacian, &columns, &column_of)
+    }
+
+    fn product<const K: usize>(plate: &PlateMatrix, x: &[[f64; K]]) -> Vec<[f64; K]> {
+        let mut y = vec![[0.0; K]; x.len()];
+        for column in 0..x.len() {
+            for entry in plate.lower_offsets[column] as usize..plate.lower_offsets[column + 1] as usize {
+                let (row, value) = (plate.lower_rows[entry] as usize, plate.lower_values[entry]);
+                for k in 0..K {
+                    y[row][k] += value * x[column][k];
+                    if row != column {
+                        y[column][k] += value * x[row][k];
+                    }
+                }
+            }
+        }
+        y
+    }
+
+    fn solving_undoes_multiplying<const K: usize>() {
+        let plate = plate();
+        let factor = Factor::of(&plate, 0.0).unwrap();
+        let x: Vec<[f64; K]> = (0..plate.scale.len())
+            .map(|i| std::array::from_fn(|k| ((i * 7 + k * 3) % 11) as f64 - 5.0))
+            .collect();
+        let mut y = product(&plate, &x);
+        factor.solve(&mut y);
+        for (x, y) in x.iter().zip(&y) {
+            for k in 0..K {
+                assert!((x[k] - y[k]).abs() < 1e-7, "{K}: {} {}", x[k], y[k]);
+            }
+        }
+    }
+
+    #[test]
+    fn solving_undoes_multiplying_for_any_number_of_right_hand_sides() {
+        solving_undoes_multiplying::<1>();
+        solving_undoes_multiplying::<3>();
+        solving_undoes_multiplying::<4>();
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_positive_definite_is_refused_with_its_column() {
+        let mut plate = plate();
+        let diagonal = plate.lower_offsets[5] as usize;
+        plate.lower_values[diagonal] = -1.0;
+        let refused = Factor::of(&plate, 0.0).err();
+        assert!(
+            matches!(refused, Some(super::FactorError::Pivot(column)) if column >= 5),
+            "{refused:?}"
+        );
+    }
 }

@@ -5,7 +5,7 @@
 //! current pool is the caller's, and every result is the same bit for bit whatever its size.
 //!
 //! Binding goes [`Problem`] → `partition` (who is solved for) → [`Laplacian`] → `assembly` → `cholesky` in the
-//! restricted `ordering` → `shell` (refine, check) → `plate` ([`HandleBases`], energies) → [`Bound`]. A frame is
+//! restricted `ordering` → `shell` (check; `refine`) → `plate` ([`HandleBases`], energies) → [`Bound`]. A frame is
 //! [`HandleBases`] and `follow`.
 
 mod assembly;

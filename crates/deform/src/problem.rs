@@ -58,7 +58,8 @@ impl Problem<'_> {
     ///
     /// # Errors
     /// [`BindError`] names what is wrong with the problem, or where the system could not be solved;
-    /// [`BindError::Cancelled`] soon after `cancel` is raised.
+    /// [`BindError::Cancelled`] once `cancel` is raised, which is looked at between the steps; the longest is one numeric
+    /// factorisation.
     pub fn bind(&self, ordering: &Ordering, progress: &Progress, cancel: &Cancel) -> Result<Bound, BindError> {
         Bound::bind(self, ordering, progress, cancel)
     }

@@ -4,6 +4,7 @@
 mod components;
 mod laws;
 mod operators;
+mod ordering;
 mod plate;
 mod rig;
 mod robust;

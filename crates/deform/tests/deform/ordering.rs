@@ -1,0 +1,37 @@
+//! Laws of the elimination order.
+
+use pliant_deform::Ordering;
+use pliant_mesh::{Cancel, Progress, shapes};
+
+use crate::rig::Scene;
+
+#[test]
+fn a_restricted_order_is_the_solved_vertices_each_once() {
+    for (name, drawn) in shapes::classes() {
+        let scene = Scene::new(drawn);
+        let topology = &scene.model.topology;
+        for power in 1..=3 {
+            let progress = Progress::new();
+            let ordering = Ordering::of(topology, power, &progress, &Cancel::new()).unwrap();
+            assert_eq!(
+                (ordering.power(), ordering.vertex_count(), progress.get()),
+                (power, scene.roles.len(), 1.0)
+            );
+            for stride in [1, 2, 5] {
+                let solved: Vec<u32> = (0..scene.roles.len() as u32).step_by(stride).collect();
+                let mut order = ordering.restricted(topology, &solved);
+                order.sort_unstable();
+                assert_eq!(order, solved, "{name} {power} {stride}");
+            }
+        }
+    }
+}
+
+#[test]
+fn it_keeps_the_factor_sparse() {
+    let scene = Scene::new(shapes::icosphere(5)).with_ends(true);
+    let bound = scene.bind();
+    // A band of two rings across the sphere would fill some 500 numbers a row.
+    let per_row = bound.factor_len() / bound.solved_count();
+    assert!(per_row < 200, "{per_row}");
+}
