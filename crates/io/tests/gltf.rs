@@ -280,6 +280,9 @@ fn what_can_not_be_read_is_one_sentence() {
         ("meshopt", |maker| {
             maker.root["bufferViews"][0]["extensions"] = json!({ "EXT_meshopt_compression": {} })
         }),
+        ("buffers are not a list of objects", |maker| {
+            maker.root["buffers"] = json!([true])
+        }),
         ("asset.version", |maker| maker.root["asset"] = json!({})),
         ("names gone.bin", |maker| {
             maker.root["buffers"][0]["uri"] = "gone.bin".into()

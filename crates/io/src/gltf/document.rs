@@ -91,17 +91,14 @@ impl Document {
         {
             return Err("its JSON has no asset.version, so it is not glTF".to_owned().into());
         }
-        let section = |key: &str| -> Vec<At> {
-            json.member(json.root(), key)
-                .map_or_else(Vec::new, |at| json.elements(at).collect())
-        };
-        let [accessors_at, views_at, meshes_at] = ["accessors", "bufferViews", "meshes"].map(section);
-        let [nodes_at, buffers_at, images_at] = ["nodes", "buffers", "images"].map(section);
+        let section = |key: &str| objects(&json, key);
+        let (accessors_at, views_at, meshes_at) = (section("accessors")?, section("bufferViews")?, section("meshes")?);
+        let (nodes_at, buffers_at, images_at) = (section("nodes")?, section("buffers")?, section("images")?);
         let accessors = typed(&json, &accessors_at, "accessor")?;
         let views = typed(&json, &views_at, "buffer view")?;
-        let materials = typed(&json, &section("materials"), "material")?;
-        let textures = typed(&json, &section("textures"), "texture")?;
-        let samplers = typed(&json, &section("samplers"), "sampler")?;
+        let materials = typed(&json, &section("materials")?, "material")?;
+        let textures = typed(&json, &section("textures")?, "texture")?;
+        let samplers = typed(&json, &section("samplers")?, "sampler")?;
         let mut document = Self {
             file,
             container,
@@ -261,6 +258,20 @@ impl Document {
             self.images.push(image);
         }
         Ok(())
+    }
+}
+
+/// Where a section's objects stand; in words what is wrong where it is no list of objects.
+fn objects(json: &Json, section: &str) -> Result<Vec<At>, String> {
+    let Some(list) = json.member(json.root(), section) else {
+        return Ok(Vec::new());
+    };
+    let objects: Vec<At> = json.elements(list).collect();
+    let is_sound = json.raw(list).starts_with(b"[") && objects.iter().all(|&at| json.raw(at).starts_with(b"{"));
+    if is_sound {
+        Ok(objects)
+    } else {
+        Err(format!("its {section} are not a list of objects"))
     }
 }
 
