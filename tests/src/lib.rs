@@ -206,6 +206,11 @@ pub fn datum(name: &str) -> Option<PathBuf> {
     path.exists().then_some(path)
 }
 
+/// The folder of the samples that ship with the program.
+pub fn assets() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets")
+}
+
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries {
