@@ -278,6 +278,9 @@ fn welded_twins_go_together_whichever_of_them_is_named() {
     }
 }
 
+/// Whether a selector is to select the file's vertex of this number.
+type Test = Box<dyn Fn(usize) -> bool>;
+
 /// The selectors as they meet the file: each one moves what it says and, the region being empty, nothing else.
 #[test]
 fn selectors_select_what_they_say() {
@@ -289,7 +292,7 @@ fn selectors_select_what_they_say() {
         shapes::moved(&shapes::grid(2, 2), DAffine3::from_translation(DVec3::Z)),
     ]);
     let center = p[8];
-    let cases: Vec<(Value, Box<dyn Fn(usize) -> bool>)> = vec![
+    let cases: Vec<(Value, Test)> = vec![
         (json!("all"), Box::new(|_| true)),
         (json!({ "vertices": [3, 5] }), Box::new(|v| v == 3 || v == 5)),
         (

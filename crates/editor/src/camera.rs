@@ -70,6 +70,9 @@ const ORBIT_RAD_PER_PX: f64 = 0.007;
 /// How much closer one notch of the wheel comes.
 const ZOOM_PER_LINE: f64 = 1.15;
 
+/// How much larger than what is framed the picture is.
+const FRAME_MARGIN: f64 = 1.08;
+
 /// An eye that circles a target.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Camera {
@@ -247,18 +250,29 @@ impl Camera {
         self.zoom(ZOOM_PER_LINE.powf(lines.clamp(-20.0, 20.0)), anchor);
     }
 
-    /// Looks at the whole of `bounds` from the present side; nothing happens to what has no size and no place.
+    /// Looks at the whole of `bounds` from the present side, as close as its eight corners allow, with a margin;
+    /// nothing happens to what has no size and no place.
     pub fn frame(&mut self, bounds: &Bounds, viewport_px: DVec2) {
         let diagonal = bounds.diagonal();
         if !diagonal.is_finite() {
             return;
         }
-        let radius = if diagonal > 0.0 { 0.5 * diagonal } else { self.scale };
-        let aspect = viewport_px.x / viewport_px.y;
-        let half_height = 0.5 * self.fov_y_rad;
-        let half_angle = half_height.min((half_height.tan() * aspect).atan());
         self.target = bounds.centre();
-        self.distance = 1.05 * radius / half_angle.sin();
+        let half = if diagonal > 0.0 {
+            0.5 * bounds.extent()
+        } else {
+            DVec3::splat(0.5 * self.scale)
+        };
+        let slope_y = (0.5 * self.fov_y_rad).tan() / FRAME_MARGIN;
+        let slope_x = slope_y * viewport_px.x / viewport_px.y;
+        let view_from_world = self.axes().transpose();
+        let nearest = (0..8).map(|corner| {
+            let sign = |bit: u32| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };
+            let seen = view_from_world * (half * DVec3::new(sign(0), sign(1), sign(2)));
+            // The corner lies `distance − seen.z` before the eye, which must see it within the slopes.
+            seen.z + (seen.x.abs() / slope_x).max(seen.y.abs() / slope_y)
+        });
+        self.distance = nearest.fold(0.0, f64::max).max(1e-3 * diagonal.max(self.scale));
     }
 
     /// Looks from a named side.
@@ -356,6 +370,7 @@ mod tests {
         for mut camera in cameras() {
             for viewport_px in [VIEWPORT_PX, DVec2::new(300.0, 900.0)] {
                 camera.frame(&bounds, viewport_px);
+                let mut fills: f64 = 0.0;
                 for corner in 0..8 {
                     let pick = |bit: u32, low: f64, high: f64| if corner >> bit & 1 == 0 { low } else { high };
                     let world = DVec3::new(
@@ -365,7 +380,9 @@ mod tests {
                     );
                     let pixel = camera.project(world, viewport_px).unwrap();
                     assert!(pixel.cmpge(DVec2::ZERO).all() && pixel.cmple(viewport_px).all());
+                    fills = fills.max((2.0 * pixel / viewport_px - 1.0).abs().max_element());
                 }
+                assert!(fills > 0.9, "a corner comes near the border: {fills}");
             }
         }
     }

@@ -511,7 +511,8 @@ impl eframe::App for Application {
         if self.session.doing().is_some() || !self.editor.view().jobs.is_empty() {
             context.request_repaint_after(Duration::from_millis(100));
         }
-        self.longest_frame = self.longest_frame.max(start.elapsed());
+        let busy = start.elapsed().saturating_sub(self.viewport.take_drawing_time());
+        self.longest_frame = self.longest_frame.max(busy);
     }
 }
 

@@ -26,7 +26,7 @@ pub fn show(
     }
     if let Some(note) = headline.clone() {
         ui.horizontal(|ui| {
-            if ui.small_button("✕").on_hover_text("Dismiss").clicked() {
+            if ui.small_button("×").on_hover_text("Dismiss").clicked() {
                 *headline = None;
             }
             let (sentence, colour) = match note {
@@ -54,18 +54,6 @@ pub fn show(
                     .on_hover_text(format!(
                         "No graphics card was found; {name} draws on the processor, slowly."
                     ));
-            }
-            if view.model.is_some() {
-                let counts = view.counts;
-                ui.label(
-                    RichText::new(format!(
-                        "{} handle · {} free · {} fixed",
-                        thousands(counts.handle),
-                        thousands(counts.free),
-                        thousands(counts.fixed)
-                    ))
-                    .weak(),
-                );
             }
             if !view.jobs.is_empty() && ui.small_button("Stop").clicked() {
                 commands.push(Command::CancelJobs);

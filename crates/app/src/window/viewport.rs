@@ -5,6 +5,7 @@
 //! when it has come to rest.
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use eframe::egui::{self, TextureId};
 use eframe::egui_wgpu::RenderState;
@@ -27,6 +28,7 @@ pub struct Viewport {
     surface: Option<Shown>,
     drawn: Option<DrawnKey>,
     drawings: u64,
+    drawing_time: Duration,
 }
 
 /// The surface in GPU buffers and what it shows.
@@ -65,6 +67,7 @@ impl Viewport {
             surface: None,
             drawn: None,
             drawings: 0,
+            drawing_time: Duration::ZERO,
         })
     }
 
@@ -76,6 +79,12 @@ impl Viewport {
     /// How often a picture was drawn.
     pub fn drawings(&self) -> u64 {
         self.drawings
+    }
+
+    /// How long drawing has kept the window's thread busy since the last call: on a software device it is the
+    /// processor that draws.
+    pub fn take_drawing_time(&mut self) -> Duration {
+        std::mem::take(&mut self.drawing_time)
     }
 
     /// Shows another file.
@@ -199,7 +208,10 @@ impl Viewport {
             surfaces: &surfaces,
             overlays: &overlays,
         };
-        self.renderer.draw(&self.target, &frame)
+        let start = Instant::now();
+        let drawn = self.renderer.draw(&self.target, &frame);
+        self.drawing_time += start.elapsed();
+        drawn
     }
 
     /// Tells egui about a new texture.

@@ -1,0 +1,233 @@
+//! The real window under a virtual display, driven by real pointer and key events: paint, drag, save, and find the
+//! shape that the command line makes of the exported edit.
+//!
+//! Skipped by name where Xvfb, xdotool or a graphics device is missing.
+
+#![cfg(target_os = "linux")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stderr,
+    reason = "tests fail by panicking and say what they skip"
+)]
+
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use pliant_app::engine::{self, Loaded};
+use pliant_app::watch::Watch;
+use pliant_mesh::WeldOptions;
+
+const PLIANT: &str = env!("CARGO_BIN_EXE_pliant");
+const SIZE: (i32, i32) = (1280, 800);
+/// Software drawing of a frame takes about a tenth of a second: act like a slow hand.
+const PAUSE: Duration = Duration::from_millis(250);
+
+/// A process that ends with its owner.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A display, a window manager where there is one, and the program's window on it.
+struct Desktop {
+    display: String,
+    window: String,
+    _program: Running,
+    _manager: Option<Running>,
+    _server: Running,
+}
+
+impl Desktop {
+    fn open(file: &Path) -> Option<Self> {
+        let (server, display) = display()?;
+        let start = |program: &str, arguments: &[&Path]| {
+            let mut command = Command::new(program);
+            command
+                .args(arguments)
+                .env("DISPLAY", &display)
+                .env_remove("WAYLAND_DISPLAY");
+            command
+                .stdin(Stdio::null())
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .spawn()
+                .ok()
+                .map(Running)
+        };
+        let manager = start("openbox", &[]);
+        sleep(PAUSE);
+        let program = start(PLIANT, &[file]).expect("the program was just built");
+        let mut desktop = Self {
+            display,
+            window: String::new(),
+            _program: program,
+            _manager: manager,
+            _server: server,
+        };
+        desktop.window = desktop.wait_for_window();
+        desktop.xdotool(&["windowmove", &desktop.window, "0", "0"]);
+        desktop.xdotool(&["windowsize", &desktop.window, &SIZE.0.to_string(), &SIZE.1.to_string()]);
+        desktop.xdotool(&["windowfocus", &desktop.window]);
+        Some(desktop)
+    }
+
+    fn wait_for_window(&self) -> String {
+        let start = Instant::now();
+        loop {
+            let found = self.xdotool(&["search", "--onlyvisible", "--name", "^Pliant"]);
+            if let Some(window) = found.lines().next() {
+                return window.to_owned();
+            }
+            assert!(start.elapsed() < Duration::from_secs(60), "no window came up");
+            sleep(PAUSE);
+        }
+    }
+
+    fn xdotool(&self, arguments: &[&str]) -> String {
+        let output = Command::new("xdotool")
+            .args(arguments)
+            .env("DISPLAY", &self.display)
+            .output()
+            .unwrap();
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    }
+
+    fn move_to(&self, x: i32, y: i32) {
+        self.xdotool(&["mousemove", "--window", &self.window, &x.to_string(), &y.to_string()]);
+    }
+
+    /// Presses the left button at one point, goes to the other in steps, and lets go.
+    fn drag(&self, from: (i32, i32), to: (i32, i32)) {
+        self.move_to(from.0, from.1);
+        sleep(PAUSE);
+        self.xdotool(&["mousedown", "1"]);
+        sleep(PAUSE);
+        for step in 1..=5 {
+            self.move_to(from.0 + (to.0 - from.0) * step / 5, from.1 + (to.1 - from.1) * step / 5);
+            sleep(Duration::from_millis(120));
+        }
+        self.xdotool(&["mouseup", "1"]);
+        sleep(PAUSE);
+    }
+
+    fn key(&self, key: &str) {
+        self.xdotool(&["key", key]);
+        sleep(PAUSE);
+    }
+
+    /// Types a path into the question that comes up where the system has no file dialog, and waits for the file.
+    fn answer_with(&self, key: &str, path: &Path) {
+        let start = Instant::now();
+        self.key(key);
+        sleep(4 * PAUSE);
+        self.key("ctrl+a");
+        self.xdotool(&["type", "--delay", "20", &path.to_string_lossy()]);
+        sleep(PAUSE);
+        self.key("Return");
+        while !path.exists() {
+            assert!(
+                start.elapsed() < Duration::from_secs(60),
+                "{} was not written",
+                path.display()
+            );
+            sleep(PAUSE);
+        }
+    }
+}
+
+/// A virtual display of its own; `None`, said by name, where a tool or a device is missing.
+fn display() -> Option<(Running, String)> {
+    if Command::new("xdotool").arg("version").output().is_err() {
+        eprintln!("skipped: the real window (no xdotool)");
+        return None;
+    }
+    if let Err(error) = pliant_render::Headless::new() {
+        eprintln!("skipped: the real window ({error})");
+        return None;
+    }
+    let server = Command::new("Xvfb")
+        .args(["-displayfd", "1", "-screen", "0", "1400x900x24", "-nolisten", "tcp"])
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn();
+    let Ok(mut server) = server else {
+        eprintln!("skipped: the real window (no Xvfb)");
+        return None;
+    };
+    let mut number = String::new();
+    BufReader::new(server.stdout.take().unwrap())
+        .read_line(&mut number)
+        .unwrap();
+    Some((Running(server), format!(":{}", number.trim())))
+}
+
+fn load(path: &Path) -> Loaded {
+    engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap()
+}
+
+#[test]
+fn pointer_and_keys_make_the_shape_that_the_engine_says() {
+    let sample = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("../../assets/bar.glb")
+        .canonicalize()
+        .unwrap();
+    let Some(desktop) = Desktop::open(&sample) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    sleep(8 * PAUSE);
+
+    // The view's middle is the bar's, wherever the panels end: the 3D view takes the window less the panel.
+    let (middle_x, middle_y) = ((SIZE.0 - 270) / 2, SIZE.1 / 2 + 20);
+    desktop.drag((middle_x - 6, middle_y), (middle_x + 6, middle_y + 4));
+    sleep(4 * PAUSE);
+    desktop.key("g");
+    for step in 1..=6 {
+        desktop.move_to(middle_x + 6 + 10 * step, middle_y - 12 * step);
+        sleep(Duration::from_millis(120));
+    }
+    desktop.xdotool(&["click", "1"]);
+    sleep(8 * PAUSE);
+
+    let (saved, edit, applied) = (
+        folder.path().join("saved.glb"),
+        folder.path().join("edit.json"),
+        folder.path().join("applied.glb"),
+    );
+    desktop.answer_with("ctrl+shift+s", &saved);
+    desktop.answer_with("ctrl+e", &edit);
+    sleep(PAUSE);
+
+    let status = Command::new(PLIANT)
+        .args([
+            "apply".as_ref(),
+            sample.as_os_str(),
+            "--edit".as_ref(),
+            edit.as_os_str(),
+            "--output".as_ref(),
+            applied.as_os_str(),
+        ])
+        .status()
+        .unwrap();
+    assert!(status.success());
+    let (rest, saved, applied) = (load(&sample), load(&saved), load(&applied));
+    let positions = |loaded: &Loaded| loaded.model.drawn.positions.clone();
+    let size = rest.model.bounds().unwrap().diagonal();
+    let farthest = |a: &Loaded, b: &Loaded| {
+        positions(a)
+            .iter()
+            .zip(positions(b))
+            .map(|(a, b)| a.distance(b))
+            .fold(0.0, f64::max)
+    };
+    assert!(farthest(&rest, &saved) > 0.01 * size, "the drag bent nothing");
+    let apart = farthest(&saved, &applied);
+    assert!(apart <= 1e-6 * size, "the window's shape is {apart} from the engine's");
+}

@@ -1,0 +1,292 @@
+//! The whole application without a window: a session from opening to saving, by pointer and keys, on a software
+//! device. Skipped by name where no graphics device exists at all.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stderr,
+    reason = "tests fail by panicking and say what they skip"
+)]
+
+use std::time::{Duration, Instant};
+
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
+use egui_kittest::Harness;
+use glam::{DVec2, DVec3};
+use pliant_app::window::{Application, KeepOriginal, Source};
+use pliant_tests::{Folder, assets, open, run};
+
+/// Drives the application as a person would.
+struct Session {
+    harness: Harness<'static, Application>,
+}
+
+impl Session {
+    /// The application with the sample open; `None` without a graphics device.
+    fn begin() -> Option<Self> {
+        if let Err(error) = pliant_render::Headless::new() {
+            eprintln!("skipped: the window's session ({error})");
+            return None;
+        }
+        let harness = Harness::builder()
+            .with_size(vec2(1000.0, 700.0))
+            .with_max_steps(64)
+            .wgpu()
+            .build_eframe(|context| Application::new(context, Source::Sample).expect("the device was just there"));
+        let mut session = Self { harness };
+        session.settle();
+        Some(session)
+    }
+
+    /// Lets frames pass until nothing is under way.
+    #[track_caller]
+    fn settle(&mut self) {
+        let start = Instant::now();
+        self.harness.step();
+        while !self.harness.state().is_settled() {
+            assert!(
+                start.elapsed() < Duration::from_secs(120),
+                "still busy: {}",
+                self.status()
+            );
+            std::thread::sleep(Duration::from_millis(5));
+            self.harness.step();
+        }
+        self.harness.step();
+    }
+
+    fn status(&self) -> String {
+        self.harness.state().editor().view().status
+    }
+
+    /// The point of the window where the view shows the middle of what `choose` picks among the vertices.
+    fn point_of(&self, choose: impl Fn(&[DVec3]) -> DVec3) -> Pos2 {
+        let application = self.harness.state();
+        let view = application.editor().view();
+        let positions: Vec<DVec3> = view
+            .model
+            .unwrap()
+            .surface
+            .positions
+            .iter()
+            .zip(view.displacements.iter())
+            .map(|(&p, &d)| p + d)
+            .collect();
+        let seen = view
+            .camera
+            .project(choose(&positions), view.viewport_px)
+            .expect("it is before the eye");
+        let corner = application.view_rect().min;
+        pos2(corner.x + seen.x as f32, corner.y + seen.y as f32)
+    }
+
+    fn pointer(&mut self, position: Pos2, pressed: Option<bool>) {
+        self.harness.event(Event::PointerMoved(position));
+        if let Some(pressed) = pressed {
+            let modifiers = Modifiers::NONE;
+            self.harness.event(Event::PointerButton {
+                pos: position,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers,
+            });
+        }
+        self.harness.step();
+    }
+
+    fn stroke(&mut self, from: Pos2, to: Pos2) {
+        self.pointer(from, None);
+        self.pointer(from, Some(true));
+        for step in 1..=4 {
+            self.pointer(from + (to - from) * (step as f32 / 4.0), None);
+        }
+        self.pointer(to, Some(false));
+        self.settle();
+    }
+
+    fn key(&mut self, key: Key, modifiers: Modifiers) {
+        self.harness.key_press_modifiers(modifiers, key);
+        self.harness.step();
+        self.settle_if_idle();
+    }
+
+    /// A modal transform is under way after G, R, S: only a confirmed one settles.
+    fn settle_if_idle(&mut self) {
+        self.harness.step();
+    }
+
+    fn shape(&self) -> Vec<DVec3> {
+        self.harness.state().editor().view().displacements.to_vec()
+    }
+}
+
+fn moved(shape: &[DVec3]) -> usize {
+    shape
+        .iter()
+        .filter(|displacement| **displacement != DVec3::ZERO)
+        .count()
+}
+
+#[test]
+fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
+    let Some(mut session) = Session::begin() else { return };
+    let count = session.shape().len();
+    assert!(count > 10_000, "the sample is a scan's size");
+    assert_eq!(session.harness.state().editor().document().handles().len(), 0);
+
+    // Paint a handle on the highest part: its region comes along, and nothing moves.
+    let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
+    let from = top + vec2(0.0, 6.0);
+    session.stroke(from, from + vec2(0.0, 10.0));
+    let view = session.harness.state().editor().view();
+    assert_eq!(
+        view.handles.len(),
+        1,
+        "the stroke at {from:?} made a handle; {}",
+        view.status
+    );
+    assert!(
+        view.counts.handle > 0 && view.counts.free > view.counts.handle && view.counts.fixed > 0,
+        "{:?}",
+        view.counts
+    );
+    assert_eq!(moved(&session.shape()), 0);
+
+    // Drag it by G, X, a number, Enter.
+    for key in [Key::G, Key::X] {
+        session.key(key, Modifiers::NONE);
+    }
+    for key in [Key::Num0, Key::Period, Key::Num2] {
+        session.key(key, Modifiers::NONE);
+    }
+    session.key(Key::Enter, Modifiers::NONE);
+    session.settle();
+    let typed = session.shape();
+    let handle = session.harness.state().editor().document().handles()[0].clone();
+    assert!(
+        (handle.affine().translation - DVec3::new(0.2, 0.0, 0.0)).length() < 1e-12,
+        "{:?}",
+        handle.transform
+    );
+    let view_counts = session.harness.state().editor().view().counts;
+    assert!(moved(&typed) > view_counts.handle, "the surface follows the handle");
+    assert!(
+        moved(&typed) <= view_counts.handle + view_counts.free,
+        "what is held still stays"
+    );
+
+    // And by the pointer, with G and a click.
+    session.key(Key::G, Modifiers::NONE);
+    let start = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
+    session.pointer(start, None);
+    for step in 1..=5 {
+        session.pointer(start + vec2(8.0 * step as f32, -4.0 * step as f32), None);
+    }
+    session.pointer(start + vec2(40.0, -20.0), Some(true));
+    session.pointer(start + vec2(40.0, -20.0), Some(false));
+    session.settle();
+    let dragged = session.shape();
+    assert_ne!(dragged, typed);
+
+    // The picture shows the editor's shape.
+    let shown = session.harness.state().shown_displacements().unwrap().to_vec();
+    assert_eq!(shown, dragged);
+
+    // Undo and redo come back to the bit.
+    session.key(Key::Z, Modifiers::COMMAND);
+    session.settle();
+    assert_eq!(session.shape(), typed);
+    session.key(Key::Z, Modifiers::COMMAND);
+    session.settle();
+    assert_eq!(moved(&session.shape()), 0);
+    for _ in 0..2 {
+        session.key(Key::Z, Modifiers::COMMAND | Modifiers::SHIFT);
+        session.settle();
+    }
+    assert_eq!(session.shape(), dragged);
+
+    // Save, and compare with the command line's answer to the same edit.
+    let folder = Folder::new();
+    let saved = folder.path().join("saved.glb");
+    session.harness.state_mut().save_to(saved.clone(), KeepOriginal::No);
+    session.settle();
+    assert!(!session.harness.state().editor().view().unsaved);
+    let edit = folder.path().join("edit.json");
+    std::fs::write(&edit, session.harness.state().editor().edit_file().unwrap().to_json()).unwrap();
+    let applied = folder.path().join("applied.glb");
+    let sample = assets().join("creature.glb");
+    run([sample.as_os_str(), edit.as_os_str(), applied.as_os_str()]
+        .into_iter()
+        .enumerate()
+        .flat_map(|(i, path)| [["apply", "--edit", "--output"][i].into(), path.to_owned()]))
+    .done();
+    let (saved_file, applied_file) = (open(&saved), open(&applied));
+    let size = saved_file.model.bounds().unwrap().diagonal();
+    for (a, b) in saved_file
+        .model
+        .drawn
+        .positions
+        .iter()
+        .zip(&applied_file.model.drawn.positions)
+    {
+        assert!(
+            a.distance(*b) <= 1e-6 * size,
+            "{a} in the window, {b} on the command line"
+        );
+    }
+
+    // Reopen: the file is what was on the screen.
+    let before: Vec<DVec3> = {
+        let editor = session.harness.state().editor();
+        let mut positions = Vec::new();
+        editor.view().model.unwrap().drawn_positions(&dragged, &mut positions);
+        positions
+    };
+    session.harness.state_mut().open(saved);
+    session.settle();
+    let view = session.harness.state().editor().view();
+    let reopened = &view.model.unwrap().drawn.positions;
+    assert_eq!(reopened.len(), before.len());
+    for (a, b) in reopened.iter().zip(&before) {
+        assert!(a.distance(*b) <= 1e-6 * size);
+    }
+    assert_eq!(moved(&session.shape()), 0, "the saved shape is the new rest shape");
+}
+
+#[test]
+fn nothing_is_drawn_or_solved_while_nothing_happens() {
+    let Some(mut session) = Session::begin() else { return };
+    let revisions = |session: &Session| {
+        let view = session.harness.state().editor().view();
+        (view.shape_revision, view.regions_revision, view.camera_revision)
+    };
+    let before = revisions(&session);
+    let drawings = session.harness.state().drawings();
+    std::thread::sleep(Duration::from_millis(400));
+    // The one smoother picture of a resting view is drawn, and then no more.
+    session.harness.run_steps(3);
+    let rested = session.harness.state().drawings();
+    assert!(rested <= drawings + 1);
+    session.harness.run_steps(10);
+    assert_eq!(session.harness.state().drawings(), rested);
+    assert_eq!(revisions(&session), before);
+}
+
+#[test]
+fn a_file_that_is_no_model_is_said_and_what_was_open_stays() {
+    let Some(mut session) = Session::begin() else { return };
+    let folder = Folder::new();
+    let broken = folder.path().join("broken.glb");
+    std::fs::write(&broken, b"no model at all").unwrap();
+    session.harness.state_mut().open(broken);
+    session.settle();
+    assert!(
+        session
+            .harness
+            .state()
+            .headline()
+            .is_some_and(|sentence| sentence.contains("broken.glb"))
+    );
+    let size = DVec2::new(f64::from(session.harness.state().view_rect().width()), 0.0);
+    assert!(size.x > 100.0 && session.harness.state().editor().view().model.is_some());
+}
