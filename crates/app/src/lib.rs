@@ -6,6 +6,7 @@ pub mod engine;
 mod error;
 pub mod files;
 pub mod report;
+mod staging;
 mod version;
 pub mod watch;
 pub mod window;

@@ -1,0 +1,244 @@
+//! Saving several files at once, so that either all of them are there in the end or none was touched.
+//!
+//! It goes in two steps. [`Staging::stage`] writes every file's bytes under a temporary name beside its target and
+//! syncs them: whatever can fail for want of space or rights fails here. [`Staged::commit`] then renames them into
+//! place, one after the other, and puts back what it replaced should a rename fail after all.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use tempfile::{NamedTempFile, TempPath};
+
+use crate::files::{FileError, folder_of};
+
+/// The temporary files of a save that is under way, so that an interrupt can take them away. Cloning shares them.
+#[derive(Clone, Debug, Default)]
+pub struct Staging(Arc<Mutex<State>>);
+
+#[derive(Debug, Default)]
+struct State {
+    temporary: Vec<PathBuf>,
+    committed: bool,
+}
+
+/// Files that are written and synced under temporary names; dropping them takes them away again.
+#[derive(Debug)]
+pub struct Staged {
+    files: Vec<StagedFile>,
+    /// Folders that were made for them, outer ones first.
+    folders: Vec<PathBuf>,
+    staging: Staging,
+}
+
+#[derive(Debug)]
+struct StagedFile {
+    /// The path as the person gave it, for messages.
+    name: PathBuf,
+    /// The path that is replaced: a link's target rather than the link.
+    target: PathBuf,
+    temporary: TempPath,
+}
+
+impl Staging {
+    /// Writes and syncs `files` beside their targets, under temporary names. The targets are relative to `folder`,
+    /// which must be there; folders inside of it are made where they lack.
+    ///
+    /// # Errors
+    /// Where a file can't be written; nothing is left behind then.
+    pub fn stage<'a>(
+        &self,
+        folder: &Path,
+        files: impl IntoIterator<Item = (&'a str, &'a [u8])>,
+    ) -> Result<Staged, FileError> {
+        let mut staged = Staged {
+            files: Vec::new(),
+            folders: Vec::new(),
+            staging: self.clone(),
+        };
+        for (name, bytes) in files {
+            let name = if folder == Path::new(".") {
+                PathBuf::from(name)
+            } else {
+                folder.join(name)
+            };
+            let refuse = |error| FileError::writing(&name, error);
+            staged.make_folders(folder, &name).map_err(refuse)?;
+            staged.files.push(self.stage_one(&name, bytes).map_err(refuse)?);
+        }
+        Ok(staged)
+    }
+
+    /// Takes away what is staged and not committed, and keeps anything from being staged or committed for as long as
+    /// the guard lives. `None` when a commit is done already and its files are to stay.
+    pub fn discard(&self) -> Option<Discarded<'_>> {
+        let mut state = self.lock();
+        if state.committed {
+            return None;
+        }
+        for path in state.temporary.drain(..) {
+            // What can't be removed was removed already.
+            let _ = fs::remove_file(path);
+        }
+        Some(Discarded { _state: state })
+    }
+
+    fn stage_one(&self, name: &Path, bytes: &[u8]) -> io::Result<StagedFile> {
+        // Replacing a link would leave the file that it names as it was.
+        let target = fs::canonicalize(name).unwrap_or_else(|_| name.to_owned());
+        let existing = fs::metadata(&target).ok();
+        if let Some(existing) = &existing {
+            if existing.is_dir() {
+                return Err(ErrorKind::IsADirectory.into());
+            }
+            // Renaming would replace it all the same; whoever took the right to write meant it.
+            if existing.permissions().readonly() {
+                return Err(ErrorKind::PermissionDenied.into());
+            }
+        }
+        let mut temporary = self.temporary_beside(&target)?;
+        temporary.write_all(bytes)?;
+        if let Some(existing) = &existing {
+            temporary.as_file().set_permissions(existing.permissions())?;
+        }
+        temporary.as_file().sync_all()?;
+        Ok(StagedFile {
+            name: name.to_owned(),
+            target,
+            temporary: temporary.into_temp_path(),
+        })
+    }
+
+    fn temporary_beside(&self, target: &Path) -> io::Result<NamedTempFile> {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".pliant-").suffix(".tmp");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // As any new file: everybody, less what the umask takes. tempfile's own default is the owner alone.
+            builder.permissions(fs::Permissions::from_mode(0o666));
+        }
+        let mut state = self.lock();
+        let temporary = builder.tempfile_in(folder_of(target))?;
+        state.temporary.push(temporary.path().to_owned());
+        Ok(temporary)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Nothing is staged or committed for as long as this lives.
+#[derive(Debug)]
+pub struct Discarded<'a> {
+    _state: MutexGuard<'a, State>,
+}
+
+impl Staged {
+    /// Adds the files of `other`, to be committed after these.
+    pub fn and(mut self, mut other: Self) -> Self {
+        self.files.append(&mut other.files);
+        self.folders.append(&mut other.folders);
+        self
+    }
+
+    /// Makes the folders between `folder` and the file `name` in it.
+    fn make_folders(&mut self, folder: &Path, name: &Path) -> io::Result<()> {
+        let missing: Vec<&Path> = folder_of(name)
+            .ancestors()
+            .take_while(|path| *path != folder && !path.exists())
+            .collect();
+        if !folder.exists() {
+            return Err(ErrorKind::NotFound.into());
+        }
+        for path in missing.into_iter().rev().filter(|path| !path.as_os_str().is_empty()) {
+            fs::create_dir(path)?;
+            self.folders.push(path.to_owned());
+        }
+        Ok(())
+    }
+
+    /// Renames every file into place, in order, and syncs the folders.
+    ///
+    /// # Errors
+    /// Where a rename fails. The files that were replaced before it are put back.
+    pub fn commit(mut self) -> Result<(), FileError> {
+        let staging = self.staging.clone();
+        let mut state = staging.lock();
+        let mut replaced: Vec<(PathBuf, Option<TempPath>)> = Vec::new();
+        let mut folders: Vec<PathBuf> = Vec::new();
+        let files = std::mem::take(&mut self.files);
+        let last = files.len().saturating_sub(1);
+        for (i, file) in files.into_iter().enumerate() {
+            // The last rename is the one that no other can fail after: it needs no way back.
+            let backup = if i == last { Ok(None) } else { backup(&file.target) };
+            let renamed = backup.and_then(|backup| {
+                file.temporary.persist(&file.target).map_err(|error| error.error)?;
+                Ok(backup)
+            });
+            match renamed {
+                Ok(backup) => {
+                    let folder = folder_of(&file.target).to_owned();
+                    if !folders.contains(&folder) {
+                        folders.push(folder);
+                    }
+                    replaced.push((file.target, backup));
+                }
+                Err(error) => {
+                    put_back(replaced);
+                    return Err(FileError::writing(&file.name, error));
+                }
+            }
+        }
+        folders.iter().for_each(|folder| sync_folder(folder));
+        self.folders.clear();
+        state.temporary.clear();
+        state.committed = true;
+        Ok(())
+    }
+}
+
+impl Drop for Staged {
+    fn drop(&mut self) {
+        self.files.clear();
+        for folder in self.folders.drain(..).rev() {
+            // One that somebody has put something into stays.
+            let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
+/// A second name for the file at `target`, if there is one.
+fn backup(target: &Path) -> io::Result<Option<TempPath>> {
+    if !target.exists() {
+        return Ok(None);
+    }
+    let name = tempfile::Builder::new()
+        .prefix(".pliant-")
+        .suffix(".old")
+        .make_in(folder_of(target), |path| {
+            // Not every file system has hard links.
+            fs::hard_link(target, path).or_else(|_| fs::copy(target, path).map(|_| ()))
+        })?;
+    Ok(Some(name.into_temp_path()))
+}
+
+fn put_back(replaced: Vec<(PathBuf, Option<TempPath>)>) {
+    for (target, backup) in replaced.into_iter().rev() {
+        // The error that led here is the one to tell; a second one has no better remedy.
+        let _ = match backup {
+            Some(backup) => backup.persist(&target).map_err(|error| error.error),
+            None => fs::remove_file(&target),
+        };
+    }
+}
+
+/// Makes a rename last through a power cut. Not every system can open a folder for that, and the files are whole
+/// either way.
+fn sync_folder(folder: &Path) {
+    if let Ok(folder) = File::open(folder) {
+        let _ = folder.sync_all();
+    }
+}
