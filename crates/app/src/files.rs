@@ -123,4 +123,3 @@ pub fn folder_of(path: &Path) -> &Path {
         _ => Path::new("."),
     }
 }
-
