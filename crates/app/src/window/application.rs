@@ -14,7 +14,7 @@ use super::dialog::{self, Answer, Question, Then};
 use super::input::{Attention, Input};
 use super::message::{Message, Opened, Posed, Purpose, Written};
 use super::panels;
-use super::session::{KeepOriginal, Session, Source};
+use super::session::{KeepOriginal, OpenFile, Session, Source};
 use super::status;
 use super::theme;
 use super::top_bar::{self, FileCommand};
@@ -79,7 +79,7 @@ impl Application {
         let (sender, messages) = channel();
         let workers = Workers::new(context.egui_ctx.clone(), sender);
         let mut session = Session::default();
-        session.load(source, &workers);
+        session.load(source, &viewport.gpu(), &workers);
         Ok(Self {
             editor: Editor::new(Box::new(workers.clone())),
             viewport,
@@ -146,9 +146,21 @@ impl Application {
         std::mem::take(&mut self.longest_frame)
     }
 
+    /// How long drawing has kept the window's thread busy so far.
+    pub fn drawing_time(&self) -> Duration {
+        self.viewport.drawing_time()
+    }
+
+    /// Gives the editor a command, as a menu would.
+    pub fn command(&mut self, command: Command) {
+        self.last_change = Instant::now();
+        self.editor.handle(Event::Command(command));
+    }
+
     /// Opens a file without asking whether unsaved work may be lost.
     pub fn open(&mut self, path: PathBuf) {
-        self.session.load(Source::File(path), &self.workers);
+        self.session
+            .load(Source::File(path), &self.viewport.gpu(), &self.workers);
     }
 
     /// Saves under `path`, without asking whether a source may be written over.
@@ -197,25 +209,19 @@ impl Application {
         let Opened {
             loaded,
             drawing,
-            rest,
+            surface,
+            displacements,
             edit,
             notes,
             ..
         } = opened;
-        let name = self
-            .session
-            .open
-            .as_ref()
-            .map(super::session::OpenFile::name)
-            .unwrap_or_default();
+        let name = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
         self.workers.set_stage(Stage {
             loaded: Arc::clone(&loaded),
             drawing: Arc::clone(&drawing),
         });
         self.poses.cancel();
-        if let Err(error) = self.viewport.show(drawing, rest) {
-            self.fail(error.to_string());
-        }
+        self.viewport.show(drawing, surface, displacements);
         self.notes = Notes {
             headline: None,
             about_file: notes,
@@ -450,23 +456,18 @@ impl Application {
 
 impl eframe::App for Application {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        let start = Instant::now();
+        let (start, drawn_before) = (Instant::now(), self.viewport.drawing_time());
         let context = ui.ctx().clone();
         self.take_messages();
         self.file_shortcuts(&context);
 
         let mut commands: Vec<Command> = Vec::new();
         let mut file_command = None;
-        let title = self
-            .session
-            .open
-            .as_ref()
-            .map(super::session::OpenFile::name)
-            .unwrap_or_default();
+        let title = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
         Panel::top("top").show(ui, |ui| {
             file_command = top_bar::show(ui, &self.editor, &title, &mut commands)
         });
-        let device = self.viewport.software_device();
+        let device = self.viewport.software_device().map(str::to_owned);
         let busy = self.session.doing();
         let stop = Panel::bottom("status")
             .show(ui, |ui| {
@@ -492,8 +493,7 @@ impl eframe::App for Application {
         }
 
         for command in commands {
-            self.last_change = Instant::now();
-            self.editor.handle(Event::Command(command));
+            self.command(command);
             context.request_repaint();
         }
         if let Some(command) = file_command {
@@ -511,7 +511,9 @@ impl eframe::App for Application {
         if self.session.doing().is_some() || !self.editor.view().jobs.is_empty() {
             context.request_repaint_after(Duration::from_millis(100));
         }
-        let busy = start.elapsed().saturating_sub(self.viewport.take_drawing_time());
+        let busy = start
+            .elapsed()
+            .saturating_sub(self.viewport.drawing_time() - drawn_before);
         self.longest_frame = self.longest_frame.max(busy);
     }
 }

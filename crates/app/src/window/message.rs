@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_editor::{EditFile, JobDone, Revision};
+use pliant_render::Surface;
 
 use crate::drawing::{Drawing, Pose};
 use crate::engine::Loaded;
@@ -39,8 +40,10 @@ pub struct Opened {
     pub loaded: Arc<Loaded>,
     /// What the renderer takes of it.
     pub drawing: Arc<Drawing>,
-    /// Its own shape.
-    pub rest: Posed,
+    /// Its surface in GPU buffers, in its own shape.
+    pub surface: Surface,
+    /// Its own shape: no vertex displaced.
+    pub displacements: Arc<Vec<DVec3>>,
     /// Regions and handles to begin with.
     pub edit: Option<EditFile>,
     /// What a person should know about the file, a sentence each.

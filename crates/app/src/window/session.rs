@@ -1,5 +1,6 @@
 //! The open file: loading it, saving it, and what a person is asked before a source is written over.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -7,7 +8,8 @@ use glam::DVec3;
 use pliant_editor::{EditFile, JobQueue, Revision};
 use pliant_mesh::WeldOptions;
 
-use super::message::{Message, Opened, Posed, Written};
+use super::message::{Message, Opened, Written};
+use super::viewport::Gpu;
 use super::workers::Workers;
 use crate::AppError;
 use crate::drawing::Drawing;
@@ -26,7 +28,7 @@ pub struct Session {
     /// What is open.
     pub open: Option<OpenFile>,
     next: u64,
-    loading: JobQueue<Source>,
+    loading: JobQueue<(Source, Gpu)>,
     /// What the load that runs is doing.
     watch: Watch,
     saving: JobQueue<SaveRequest>,
@@ -77,10 +79,10 @@ enum What {
 
 impl Session {
     /// Opens a file, off the window's thread. A load that is under way is given up.
-    pub fn load(&mut self, source: Source, workers: &Workers) {
+    pub fn load(&mut self, source: Source, gpu: &Gpu, workers: &Workers) {
         self.loading.cancel();
         let stamp = self.stamp();
-        self.loading.request(stamp, source);
+        self.loading.request(stamp, (source, gpu.clone()));
         self.start_loading(workers);
     }
 
@@ -175,7 +177,7 @@ impl Session {
     }
 
     fn start_loading(&mut self, workers: &Workers) {
-        let Some((running, source)) = self.loading.start_next() else {
+        let Some((running, (source, gpu))) = self.loading.start_next() else {
             return;
         };
         let stamp = running.stamp;
@@ -183,7 +185,7 @@ impl Session {
         self.watch = watch.clone();
         workers.spawn(
             "opening",
-            move || Message::Opened(stamp, open(&source, &watch).map_err(|error| error.to_string())),
+            move || Message::Opened(stamp, open(&source, &gpu, &watch).map_err(|error| error.to_string())),
             move |sentence| Message::Opened(stamp, Err(sentence)),
         );
     }
@@ -210,15 +212,21 @@ pub enum KeepOriginal {
     No,
 }
 
-/// `NAME.original.EXT` beside `NAME.EXT`.
+/// `NAME.original.EXT` beside `NAME.EXT`. A `.gltf`'s buffers are saved over along with it, so that its original is
+/// kept packed, as `NAME.original.glb`.
 pub fn original_name(path: &Path) -> PathBuf {
     let mut name = path.file_stem().unwrap_or_default().to_owned();
     name.push(".original");
     if let Some(extension) = path.extension() {
         name.push(".");
-        name.push(extension);
+        name.push(if is_gltf(path) { OsStr::new("glb") } else { extension });
     }
     path.with_file_name(name)
+}
+
+fn is_gltf(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("gltf"))
 }
 
 /// A path's last part, for a person.
@@ -229,7 +237,7 @@ pub fn file_name(path: &Path) -> String {
         .into_owned()
 }
 
-fn open(source: &Source, watch: &Watch) -> Result<Box<Opened>, AppError> {
+fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Opened>, AppError> {
     let weld = WeldOptions::default();
     let (loaded, path) = match source {
         Source::Sample => (
@@ -246,11 +254,16 @@ fn open(source: &Source, watch: &Watch) -> Result<Box<Opened>, AppError> {
     progress.set(0.7);
     let displacements = Arc::new(vec![DVec3::ZERO; loaded.model.surface.positions.len()]);
     let pose = drawing.pose(&loaded.model, &displacements);
+    progress.set(0.8);
+    let surface = gpu
+        .upload(&drawing, &pose)
+        .map_err(|error| AppError::System(error.to_string()))?;
     Ok(Box::new(Opened {
         path,
         loaded: Arc::new(loaded),
         drawing: Arc::new(drawing),
-        rest: Posed { displacements, pose },
+        surface,
+        displacements,
         edit: None,
         notes,
     }))
@@ -282,10 +295,7 @@ fn write(request: SaveRequest) -> Result<Written, AppError> {
             let (staged, warnings) = engine::stage_save(&loaded, &positions, &path, &staging)?;
             let original = original_name(&path);
             if keep_original == KeepOriginal::Yes && !original.exists() {
-                let bytes = files::read(&path)?;
-                Staging::default()
-                    .stage(folder, [(&*file_name(&original), &*bytes)])?
-                    .commit()?;
+                keep(&loaded, &path, &original)?;
             }
             staged.commit()?;
             Ok(Written {
@@ -295,4 +305,20 @@ fn write(request: SaveRequest) -> Result<Written, AppError> {
             })
         }
     }
+}
+
+/// Keeps what stands at `path` under the name `original`.
+fn keep(loaded: &Loaded, path: &Path, original: &Path) -> Result<(), AppError> {
+    let staging = Staging::default();
+    if is_gltf(path) {
+        engine::stage_save(loaded, &loaded.model.drawn.positions, original, &staging)?
+            .0
+            .commit()?;
+    } else {
+        let bytes = files::read(path)?;
+        staging
+            .stage(files::folder_of(path), [(&*file_name(original), &*bytes)])?
+            .commit()?;
+    }
+    Ok(())
 }

@@ -4,7 +4,7 @@
 //! On a device that is the processor itself a changing view is drawn with one sample a pixel, and once more with four
 //! when it has come to rest.
 
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, TextureId};
@@ -14,7 +14,7 @@ use pliant_editor::{Editor, SceneView};
 use pliant_render::{Frame, RenderError, Renderer, Samples, Style, Surface, Target, Wireframe};
 
 use super::message::Posed;
-use crate::drawing::{self, Drawing};
+use crate::drawing::{self, Drawing, Pose};
 
 /// Surfaces above this many triangles are not drawn a second time for smooth borders on a software device.
 const SOFT_SMOOTH_TRIANGLES: usize = 300_000;
@@ -22,13 +22,33 @@ const SOFT_SMOOTH_TRIANGLES: usize = 300_000;
 /// The view's GPU side.
 pub struct Viewport {
     state: RenderState,
-    renderer: Renderer,
+    gpu: Gpu,
+    software: Option<String>,
     target: Target,
     texture: Option<TextureId>,
     surface: Option<Shown>,
     drawn: Option<DrawnKey>,
     drawings: u64,
     drawing_time: Duration,
+}
+
+/// The device, shared with the threads that upload files. Drawing needs it alone, and rather skips a frame than wait.
+#[derive(Clone)]
+pub struct Gpu(Arc<RwLock<Renderer>>);
+
+impl Gpu {
+    /// Uploads a file's surface.
+    ///
+    /// # Errors
+    /// As [`Surface::new`].
+    pub fn upload(&self, drawing: &Drawing, pose: &Pose) -> Result<Surface, RenderError> {
+        drawing.upload(&self.read(), pose)
+    }
+
+    fn read(&self) -> RwLockReadGuard<'_, Renderer> {
+        // A panic elsewhere leaves the device as it is.
+        self.0.read().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// The surface in GPU buffers and what it shows.
@@ -59,9 +79,11 @@ impl Viewport {
     /// As [`Renderer::new`].
     pub fn new(state: RenderState) -> Result<Self, RenderError> {
         let renderer = Renderer::new(&state.device, &state.queue)?;
+        let software = renderer.is_software().then(|| renderer.device_name());
         Ok(Self {
             state,
-            renderer,
+            gpu: Gpu(Arc::new(RwLock::new(renderer))),
+            software,
             target: Target::new(),
             texture: None,
             surface: None,
@@ -72,8 +94,13 @@ impl Viewport {
     }
 
     /// The device's name if it is the processor itself.
-    pub fn software_device(&self) -> Option<String> {
-        self.renderer.is_software().then(|| self.renderer.device_name())
+    pub fn software_device(&self) -> Option<&str> {
+        self.software.as_deref()
+    }
+
+    /// What uploads files' surfaces, from any thread.
+    pub fn gpu(&self) -> Gpu {
+        self.gpu.clone()
     }
 
     /// How often a picture was drawn.
@@ -81,26 +108,21 @@ impl Viewport {
         self.drawings
     }
 
-    /// How long drawing has kept the window's thread busy since the last call: on a software device it is the
-    /// processor that draws.
-    pub fn take_drawing_time(&mut self) -> Duration {
-        std::mem::take(&mut self.drawing_time)
+    /// How long drawing has kept the window's thread busy so far: on a software device it is the processor that
+    /// draws.
+    pub fn drawing_time(&self) -> Duration {
+        self.drawing_time
     }
 
     /// Shows another file.
-    ///
-    /// # Errors
-    /// As [`Surface::new`]; the old surface is gone then.
-    pub fn show(&mut self, drawing: Arc<Drawing>, posed: Posed) -> Result<(), RenderError> {
-        self.surface = None;
-        let surface = drawing.upload(&self.renderer, &posed.pose)?;
+    pub fn show(&mut self, drawing: Arc<Drawing>, surface: Surface, displacements: Arc<Vec<DVec3>>) {
+        self.drawn = None;
         self.surface = Some(Shown {
             surface,
             drawing,
-            displacements: posed.displacements,
+            displacements,
             regions_revision: None,
         });
-        Ok(())
     }
 
     /// Moves the surface to a pose of the file that is shown.
@@ -109,8 +131,9 @@ impl Viewport {
     /// As [`Surface::update_positions`].
     pub fn pose(&mut self, posed: Posed) -> Result<(), RenderError> {
         let Some(shown) = &mut self.surface else { return Ok(()) };
-        shown.surface.update_positions(&self.renderer, &posed.pose.positions)?;
-        shown.surface.update_normals(&self.renderer, &posed.pose.normals)?;
+        let renderer = self.gpu.read();
+        shown.surface.update_positions(&renderer, &posed.pose.positions)?;
+        shown.surface.update_normals(&renderer, &posed.pose.normals)?;
         shown.displacements = posed.displacements;
         Ok(())
     }
@@ -135,7 +158,7 @@ impl Viewport {
         let view = editor.view();
         let pixels_per_point = ui.ctx().pixels_per_point();
         let size_px = pixels(rect.size() * pixels_per_point);
-        let software = self.renderer.is_software();
+        let software = self.software.is_some();
         let triangles = self.surface.as_ref().map_or(0, |shown| shown.surface.triangle_count());
         let samples = match smooth {
             Smoothness::Moving if software => Samples::One,
@@ -152,9 +175,12 @@ impl Viewport {
         if self.drawn.as_ref() == Some(&finer) {
             key = finer;
         } else if self.drawn.as_ref() != Some(&key) {
-            self.draw(&view, &key)?;
-            self.drawn = Some(key.clone());
-            self.drawings += 1;
+            if self.draw(&view, &key)? {
+                self.drawn = Some(key.clone());
+                self.drawings += 1;
+            } else {
+                ui.ctx().request_repaint();
+            }
         }
         if let Some(texture) = self.texture {
             let whole = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
@@ -189,13 +215,18 @@ impl Viewport {
         let mut colours = Vec::new();
         editor.region_colours(&mut colours);
         let colours = drawing::drawn_colours(model, &colours);
-        shown.surface.update_regions(&self.renderer, &colours)?;
+        shown.surface.update_regions(&self.gpu.read(), &colours)?;
         shown.regions_revision = Some(view.regions_revision);
         Ok(())
     }
 
-    fn draw(&mut self, view: &SceneView<'_>, key: &DrawnKey) -> Result<(), RenderError> {
-        if self.target.resize(&self.renderer, key.size_px, key.samples)? {
+    /// Draws; false if a file is just being uploaded, which this thread does not wait for.
+    fn draw(&mut self, view: &SceneView<'_>, key: &DrawnKey) -> Result<bool, RenderError> {
+        let gpu = self.gpu.clone();
+        let Ok(mut renderer) = gpu.0.try_write() else {
+            return Ok(false);
+        };
+        if self.target.resize(&renderer, key.size_px, key.samples)? {
             self.register();
         }
         let centre = self.surface.as_ref().map_or(DVec3::ZERO, |shown| shown.drawing.centre);
@@ -209,9 +240,9 @@ impl Viewport {
             overlays: &overlays,
         };
         let start = Instant::now();
-        let drawn = self.renderer.draw(&self.target, &frame);
+        let drawn = renderer.draw(&self.target, &frame);
         self.drawing_time += start.elapsed();
-        drawn
+        drawn.map(|()| true)
     }
 
     /// Tells egui about a new texture.

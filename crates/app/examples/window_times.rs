@@ -1,0 +1,153 @@
+//! How long the window's thread is kept busy, and how long a drag takes from the pointer to the GPU's buffers.
+//!
+//! `cargo run --release -p pliant-app --example window_times -- FILE [REACH]`: opens FILE in the whole application without a
+//! display, paints a handle on its highest part, drags it for 60 pointer moves and prints a table. Drawing itself is
+//! left out: on a software device it is the processor that draws.
+
+#![allow(
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a measurement fails by panicking and prints its table"
+)]
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
+use egui_kittest::Harness;
+use pliant_app::window::{Application, Source};
+use pliant_editor::{Command, Reach};
+
+struct Session {
+    harness: Harness<'static, Application>,
+}
+
+impl Session {
+    fn settle(&mut self) {
+        self.harness.step();
+        while !self.harness.state().is_settled() {
+            std::thread::sleep(Duration::from_millis(1));
+            self.harness.step();
+        }
+    }
+
+    fn move_to(&mut self, position: Pos2) {
+        self.harness.event(Event::PointerMoved(position));
+    }
+
+    fn press(&mut self, position: Pos2, pressed: bool) {
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        self.harness.event(Event::PointerButton {
+            pos: position,
+            button,
+            pressed,
+            modifiers,
+        });
+        self.harness.step();
+    }
+
+    fn longest(&mut self, what: &str) {
+        let longest = self.harness.state_mut().take_longest_frame();
+        println!("{what:<34} longest frame {:>7.1} ms", ms(longest));
+    }
+}
+
+fn ms(duration: Duration) -> f64 {
+    duration.as_secs_f64() * 1e3
+}
+
+fn main() {
+    let file = std::env::args_os().nth(1).expect("give a file");
+    let harness = Harness::builder()
+        .with_size(vec2(1280.0, 800.0))
+        .with_max_steps(64)
+        .wgpu()
+        .build_eframe(|context| Application::new(context, Source::File(file.into())).expect("a graphics device"));
+    let mut session = Session { harness };
+    session.settle();
+    session.longest("opening");
+
+    let (top, vertex_count, size) = {
+        let application = session.harness.state();
+        let view = application.editor().view();
+        let positions = &view.model.expect("the file opened").surface.positions;
+        let highest = positions
+            .iter()
+            .max_by(|a, b| a.y.total_cmp(&b.y))
+            .expect("the file has vertices");
+        let seen = view.camera.project(*highest, view.viewport_px).expect("it is framed");
+        let corner = application.view_rect().min;
+        let size = view
+            .model
+            .and_then(|model| model.bounds())
+            .expect("it has vertices")
+            .diagonal();
+        (
+            pos2(corner.x + seen.x as f32, corner.y + seen.y as f32 + 8.0),
+            positions.len(),
+            size,
+        )
+    };
+    session.move_to(top);
+    session.harness.step();
+    session.press(top, true);
+    for step in 1..=8 {
+        session.move_to(top + vec2(0.0, 2.0 * step as f32));
+        session.harness.step();
+    }
+    session.press(top + vec2(0.0, 16.0), false);
+    session.longest("painting a handle");
+    let start = Instant::now();
+    session.settle();
+    println!(
+        "{:<34} {:>21.1} ms",
+        "measuring the region and binding",
+        ms(start.elapsed())
+    );
+    session.longest("while it binds");
+
+    // As much of the surface as the second argument says (a share of the diagonal) comes along.
+    if let Some(reach) = std::env::args().nth(2).and_then(|share| share.parse::<f64>().ok()) {
+        let application = session.harness.state_mut();
+        let handle = application
+            .editor()
+            .document()
+            .handles()
+            .first()
+            .expect("the stroke made a handle")
+            .id;
+        application.command(Command::SetReach(handle, Reach::Length(reach * size)));
+        session.settle();
+        session.longest("widening the region");
+    }
+    session.harness.key_press(Key::G);
+    session.harness.step();
+    let mut latencies = Vec::new();
+    for step in 1..=60 {
+        let before = session.harness.state().shown_displacements().map(Arc::as_ptr);
+        let drawn_before = session.harness.state().drawing_time();
+        let start = Instant::now();
+        session.move_to(top + vec2(1.5 * step as f32, -1.0 * step as f32));
+        session.harness.step();
+        while session.harness.state().shown_displacements().map(Arc::as_ptr) == before {
+            assert!(start.elapsed() < Duration::from_secs(20), "the surface does not follow");
+            session.harness.step();
+        }
+        let drawing = session.harness.state().drawing_time() - drawn_before;
+        latencies.push(start.elapsed().saturating_sub(drawing));
+    }
+    session.longest("dragging");
+    session.harness.key_press(Key::Enter);
+    session.settle();
+    session.harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    session.settle();
+    session.longest("committing and undoing");
+    latencies.sort();
+    let counts = session.harness.state().editor().view().counts;
+    println!(
+        "{vertex_count} vertices, {} free: pointer to GPU buffers median {:.1} ms, 95% {:.1} ms",
+        counts.free,
+        ms(latencies[30]),
+        ms(latencies[57])
+    );
+}
