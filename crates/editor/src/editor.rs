@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pliant_deform::Role;
-use pliant_mesh::{Bounds, Model, bounding_box};
+use pliant_mesh::Model;
 
 use crate::brush::Brush;
 use crate::document::{Document, HandleId};
@@ -230,24 +230,14 @@ impl Editor {
         }
     }
 
-    /// The bounding box of what is drawn.
-    pub(crate) fn bounds(&self) -> Option<Bounds> {
-        let model = self.engine.model.as_ref()?;
-        let positions: Vec<DVec3> = model
-            .surface
-            .positions
-            .iter()
-            .zip(self.document.from_file.iter())
-            .map(|(&p, &d)| p + d)
-            .collect();
-        bounding_box(&positions)
-    }
-
     pub(crate) fn frame_all(&mut self) {
-        if let Some(bounds) = self.bounds() {
-            self.camera.frame(&bounds, self.viewport_px);
-            self.is_framed = true;
-        }
+        let Some(model) = self.engine.model.as_ref() else {
+            return;
+        };
+        let rest = model.surface.positions.iter();
+        let positions: Vec<DVec3> = rest.zip(self.document.from_file.iter()).map(|(&p, &d)| p + d).collect();
+        self.camera.frame(&positions, self.viewport_px);
+        self.is_framed = true;
     }
 
     fn dispatch(&mut self, event: Event) {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pliant_mesh::{SurfaceVertex, bounding_box};
+use pliant_mesh::SurfaceVertex;
 
 use crate::command::{Command, Reach};
 use crate::constraint::Constraint;
@@ -278,12 +278,10 @@ impl Editor {
             .filter(|&vertex| self.document.paint[vertex] == Paint::Handle(id))
             .map(|vertex| model.surface.positions[vertex] + self.document.from_file[vertex])
             .collect();
-        if let Some(mut bounds) = bounding_box(&members) {
+        if !members.is_empty() {
+            self.camera.frame(&members, self.viewport_px);
             // Its region shows what bends: as much room again on every side.
-            let room = bounds.extent();
-            bounds.min -= room;
-            bounds.max += room;
-            self.camera.frame(&bounds, self.viewport_px);
+            self.camera.distance *= 3.0;
             self.is_framed = false;
         }
     }

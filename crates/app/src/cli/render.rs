@@ -88,7 +88,8 @@ fn picture(arguments: &RenderArguments, shading: Shading, watch: &Watch) -> Resu
     };
     camera.look_from(view(arguments.view));
     // The rest shape is framed, whatever the edit does, so that before and after compare.
-    camera.frame(&bounds, size_px);
+    camera.frame(&loaded.model.surface.positions, size_px);
+    camera.distance *= ROOM_FOR_THE_EDIT;
     let eye = drawing::view(&camera, size_px, drawing.centre);
     let style = Style {
         shading,
@@ -107,6 +108,9 @@ fn picture(arguments: &RenderArguments, shading: Shading, watch: &Watch) -> Resu
     progress.set(0.9);
     png(image)
 }
+
+/// How much farther the eye stands than the rest shape alone wants, since the bent one is to be seen whole, too.
+const ROOM_FOR_THE_EDIT: f64 = 1.2;
 
 /// What is drawn, per surface vertex.
 struct Shape {
