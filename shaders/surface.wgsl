@@ -34,7 +34,8 @@ fn fs_clay(in: SurfaceFragment, @builtin(front_facing) is_front: bool) -> @locat
 }
 
 fn material_base(in: SurfaceFragment) -> vec4f {
-    return material.base_colour * in.colour * textureSample(base_colour_texture, base_colour_sampler, in.uv);
+    let base = material.base_colour * in.colour * textureSample(base_colour_texture, base_colour_sampler, in.uv);
+    return vec4f(mix(base.rgb, in.region.rgb, in.region.a), base.a);
 }
 
 fn lit_material(in: SurfaceFragment, is_front: bool, base: vec3f) -> vec3f {

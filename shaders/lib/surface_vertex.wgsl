@@ -28,7 +28,7 @@ struct SurfaceFragment {
     @location(2) uv: vec2f,
     // The file's vertex colour, linear.
     @location(3) colour: vec4f,
-    // Linear, in alpha how much of the clay it replaces.
+    // Linear, in alpha how much of the surface's own colour it replaces.
     @location(4) region: vec4f,
 }
 

@@ -12,7 +12,7 @@ impl Editor {
     /// To be fetched again when [`SceneView::regions_revision`](crate::SceneView::regions_revision) has grown.
     pub fn region_colours(&self, out: &mut Vec<[u8; 4]>) {
         const FREE: [u8; 4] = [96, 150, 222, 255];
-        const STILL: [u8; 4] = [178, 178, 178, 255];
+        const STILL: [u8; 4] = [178, 178, 178, 96];
         const FIXED: [u8; 4] = [112, 112, 116, 255];
         let largest = self
             .document

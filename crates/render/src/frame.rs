@@ -20,6 +20,8 @@ pub struct Frame<'a> {
 pub struct Style {
     /// What the surface is made of.
     pub shading: Shading,
+    /// How much of it the surface's region colours replace (see [`Surface::update_regions`]): 0 none, 1 all.
+    pub region_share: f32,
     /// Whether edges are drawn over it.
     pub wireframe: Wireframe,
     /// What is behind it.
@@ -34,8 +36,6 @@ pub enum Shading {
     Clay,
     /// The file's own: base colours, textures and vertex colours.
     Material,
-    /// Clay tinted by the surface's region colours (see [`Surface::update_regions`]).
-    Regions,
 }
 
 /// Edges over the surface.

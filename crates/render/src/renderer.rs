@@ -211,11 +211,7 @@ fn frame_uniform(frame: &Frame<'_>, size_px: [u32; 2]) -> FrameUniform {
         background_top: top,
         background_bottom: bottom,
         size_px: size_px.map(|side| side as f32),
-        region_share: if frame.style.shading == Shading::Regions {
-            1.0
-        } else {
-            0.0
-        },
+        region_share: frame.style.region_share.clamp(0.0, 1.0),
         scale_px: view.clip_from_world.row(1).truncate().length() * 0.5 * size_px[1] as f32,
     }
 }

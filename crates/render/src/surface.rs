@@ -129,7 +129,7 @@ impl Surface {
         self.update(renderer, "normals", NORMALS, normals)
     }
 
-    /// Sets the region colours that [`crate::Shading::Regions`] shows: sRGB, and in the fourth byte how much of
+    /// Sets the region colours that [`crate::Style::region_share`] shows: sRGB, and in the fourth byte how much of
     /// the clay they replace (0 none, 255 all).
     ///
     /// # Errors

@@ -113,7 +113,10 @@ fn region_colours_show_in_regions_only_and_change_in_place() {
     let plain = draw(
         &mut headless.renderer,
         &view,
-        &style(Shading::Regions),
+        &Style {
+            region_share: 1.0,
+            ..style(Shading::Clay)
+        },
         &[&surface],
         &[],
     );
@@ -124,7 +127,10 @@ fn region_colours_show_in_regions_only_and_change_in_place() {
     let gold = draw(
         &mut headless.renderer,
         &view,
-        &style(Shading::Regions),
+        &Style {
+            region_share: 1.0,
+            ..style(Shading::Clay)
+        },
         &[&surface],
         &[],
     );
@@ -136,7 +142,10 @@ fn region_colours_show_in_regions_only_and_change_in_place() {
     let free = draw(
         &mut headless.renderer,
         &view,
-        &style(Shading::Regions),
+        &Style {
+            region_share: 1.0,
+            ..style(Shading::Clay)
+        },
         &[&surface],
         &[],
     );

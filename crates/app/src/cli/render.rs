@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use pliant_editor::{Camera, Editor, Event, InlineExecutor, JobKind, NamedView, UpAxis};
 use pliant_mesh::WeldOptions;
-use pliant_render::{Frame, Headless, Image, Samples, Shading, Style, Wireframe};
+use pliant_render::{Frame, Headless, Image, Samples, Shading, Style};
 
 use super::apply::read_edit;
 use super::arguments::{self, PictureSize, RenderArguments, Up, View};
@@ -27,9 +27,9 @@ pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Res
             "--output {output} is no .png: pictures are written as PNG"
         )));
     }
-    let shading = shading(arguments.shading)?;
+    let style = style(arguments.shading)?;
     let watch = &console.watch;
-    let png = on_threads(None, || picture(arguments, shading, watch))??;
+    let png = on_threads(None, || picture(arguments, &style, watch))??;
     if watch.cancel.is_cancelled() {
         return Err(AppError::Interrupted);
     }
@@ -41,22 +41,27 @@ pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Res
     Ok(())
 }
 
-fn shading(shading: arguments::Shading) -> Result<Shading, AppError> {
+fn style(shading: arguments::Shading) -> Result<Style, AppError> {
     let missing = |name| {
         Err(AppError::Unsupported(format!(
             "--shading {name} is not drawn yet: use clay, material or regions"
         )))
     };
-    match shading {
-        arguments::Shading::Clay => Ok(Shading::Clay),
-        arguments::Shading::Material => Ok(Shading::Material),
-        arguments::Shading::Regions => Ok(Shading::Regions),
-        arguments::Shading::Stiffness => missing("stiffness"),
-        arguments::Shading::Distortion => missing("distortion"),
-    }
+    let (shading, region_share) = match shading {
+        arguments::Shading::Clay => (Shading::Clay, 0.0),
+        arguments::Shading::Material => (Shading::Material, 0.0),
+        arguments::Shading::Regions => (Shading::Clay, 1.0),
+        arguments::Shading::Stiffness => return missing("stiffness"),
+        arguments::Shading::Distortion => return missing("distortion"),
+    };
+    Ok(Style {
+        shading,
+        region_share,
+        ..Style::default()
+    })
 }
 
-fn picture(arguments: &RenderArguments, shading: Shading, watch: &Watch) -> Result<Vec<u8>, AppError> {
+fn picture(arguments: &RenderArguments, style: &Style, watch: &Watch) -> Result<Vec<u8>, AppError> {
     let loaded = engine::load(&arguments.file, &WeldOptions::default(), watch)?;
     let Some(bounds) = loaded
         .model
@@ -91,14 +96,9 @@ fn picture(arguments: &RenderArguments, shading: Shading, watch: &Watch) -> Resu
     camera.frame(&loaded.model.surface.positions, size_px);
     camera.distance *= ROOM_FOR_THE_EDIT;
     let eye = drawing::view(&camera, size_px, drawing.centre);
-    let style = Style {
-        shading,
-        wireframe: Wireframe::Off,
-        ..Style::default()
-    };
     let frame = Frame {
         view: &eye,
-        style: &style,
+        style,
         surfaces: &[&surface],
         overlays: &[],
     };

@@ -15,7 +15,7 @@ use pliant_mesh::{Model, bounding_box};
 use pliant_render::{AlphaMode, ColourSpace, Material, MaterialGroup, RenderError, Renderer, Surface, SurfaceData};
 
 pub use pose::Pose;
-pub use stage::{overlays, shading, view};
+pub use stage::{overlays, style, view};
 
 use normals::NormalGroups;
 use textures::Textures;

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3};
 use pliant_editor::{Camera, SceneView};
-use pliant_render::{Overlay, OverlayLine, OverlayTriangle, Shading, View};
+use pliant_render::{Overlay, OverlayLine, OverlayTriangle, Shading, Style, View, Wireframe};
 
 /// How much of a mark's alpha is left where the surface hides it.
 const HIDDEN_SHARE: f32 = 0.35;
@@ -21,12 +21,18 @@ pub fn view(camera: &Camera, viewport_px: DVec2, centre: DVec3) -> View {
     View::new(camera.clip_from_view(viewport_px).as_mat4(), view_from_world.as_mat4())
 }
 
-/// The renderer's shading for the editor's choice.
-pub fn shading(shading: pliant_editor::Shading, regions: bool) -> Shading {
-    match (shading, regions) {
-        (pliant_editor::Shading::Material, _) => Shading::Material,
-        (pliant_editor::Shading::Clay, true) => Shading::Regions,
-        (pliant_editor::Shading::Clay, false) => Shading::Clay,
+/// The renderer's style for what the editor wants shown.
+pub fn style(view: &SceneView<'_>) -> Style {
+    let (shading, region_share) = match view.shading {
+        pliant_editor::Shading::Clay => (Shading::Clay, 1.0),
+        // The file's colours stay to be seen under the paint.
+        pliant_editor::Shading::Material => (Shading::Material, 0.45),
+    };
+    Style {
+        shading,
+        region_share: if view.regions { region_share } else { 0.0 },
+        wireframe: if view.wireframe { Wireframe::On } else { Wireframe::Off },
+        ..Style::default()
     }
 }
 

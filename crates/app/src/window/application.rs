@@ -10,14 +10,14 @@ use eframe::egui::{self, CentralPanel, Panel, Sense};
 use glam::{DVec2, DVec3};
 use pliant_editor::{Command, Cursor, Editor, Event, JobQueue, Revision};
 
-use super::dialog::{self, Answer, Question, Then};
+use super::dialog::{self, Question, Then};
 use super::input::{Attention, Input};
-use super::message::{Message, Opened, Posed, Purpose, Written};
+use super::message::{Message, Opened, Posed};
 use super::panels;
 use super::session::{KeepOriginal, OpenFile, Session, Source};
 use super::status;
 use super::theme;
-use super::top_bar::{self, FileCommand};
+use super::top_bar;
 use super::viewport::{Smoothness, Viewport};
 use super::workers::{Stage, Workers};
 use crate::AppError;
@@ -27,20 +27,20 @@ const REST: Duration = Duration::from_millis(300);
 
 /// The window's state beside the editor's: files, threads, the GPU, questions and notes.
 pub struct Application {
-    editor: Editor,
-    viewport: Viewport,
-    workers: Workers,
+    pub(super) editor: Editor,
+    pub(super) viewport: Viewport,
+    pub(super) workers: Workers,
     messages: Receiver<Message>,
-    session: Session,
+    pub(super) session: Session,
     poses: JobQueue<Arc<Vec<DVec3>>>,
     next_pose: u64,
     input: Input,
-    question: Option<Question>,
+    pub(super) question: Option<Question>,
     /// What to do once the save that was asked for first has ended.
-    after_saving: Option<Then>,
-    notes: Notes,
+    pub(super) after_saving: Option<Then>,
+    pub(super) notes: Notes,
     last_change: Instant,
-    closing: bool,
+    pub(super) closing: bool,
     longest_frame: Duration,
     view_rect: egui::Rect,
 }
@@ -233,31 +233,7 @@ impl Application {
         });
     }
 
-    fn written(&mut self, stamp: Revision, result: Result<Written, String>) {
-        self.session.written(stamp, &result, &self.workers);
-        match result {
-            Ok(written) => {
-                if written.is_model {
-                    self.editor.handle(Event::Saved);
-                }
-                let mut sentence = format!("Saved {}.", written.path.display());
-                for warning in &written.warnings {
-                    sentence.push(' ');
-                    sentence.push_str(warning);
-                }
-                self.notes.headline = Some(Note::Done(sentence));
-                if let Some(then) = self.after_saving.take() {
-                    self.go_on(then);
-                }
-            }
-            Err(sentence) => {
-                self.after_saving = None;
-                self.fail(sentence);
-            }
-        }
-    }
-
-    fn fail(&mut self, sentence: String) {
+    pub(super) fn fail(&mut self, sentence: String) {
         self.notes.headline = Some(Note::Failed(sentence));
     }
 
@@ -290,112 +266,6 @@ impl Application {
             move || Message::Posed(stamp, Ok(stage.pose(displacements))),
             move |sentence| Message::Posed(stamp, Err(sentence)),
         );
-    }
-
-    fn chosen(&mut self, purpose: Purpose, path: Option<PathBuf>) {
-        match (purpose, path) {
-            (Purpose::Open, Some(path)) => self.open(path),
-            (Purpose::SaveAs, Some(path)) => {
-                let over_source = self.path() == Some(path.as_path()) && !self.may_write_over();
-                self.save_to(
-                    path,
-                    if over_source {
-                        KeepOriginal::Yes
-                    } else {
-                        KeepOriginal::No
-                    },
-                );
-            }
-            (Purpose::ExportEdit, Some(path)) => match self.editor.edit_file() {
-                Ok(edit) => self.session.export(path, edit, &self.workers),
-                Err(error) => self.fail(error.to_string()),
-            },
-            // Cancelled, or the system has no dialog: then a path can be typed.
-            (purpose, None) => self.question = Some(Question::Path(purpose, self.suggested_path(purpose))),
-        }
-    }
-
-    fn suggested_path(&self, purpose: Purpose) -> String {
-        match (purpose, self.path()) {
-            (Purpose::SaveAs, Some(path)) => path.display().to_string(),
-            (Purpose::SaveAs, None) => "edited.glb".to_owned(),
-            (Purpose::ExportEdit, Some(path)) => path.with_extension("edit.json").display().to_string(),
-            (Purpose::ExportEdit, None) => "edit.json".to_owned(),
-            (Purpose::Open, _) => String::new(),
-        }
-    }
-
-    fn may_write_over(&self) -> bool {
-        self.session.open.as_ref().is_some_and(|open| open.may_write_over)
-    }
-
-    fn file_command(&mut self, context: &egui::Context, command: FileCommand) {
-        match command {
-            FileCommand::Open => self.unless_unsaved(context, Then::Open(None)),
-            FileCommand::OpenPath(path) => self.unless_unsaved(context, Then::Open(Some(path))),
-            FileCommand::Save => self.save(),
-            FileCommand::SaveAs => dialog::choose(Purpose::SaveAs, self.path(), &self.workers),
-            FileCommand::ExportEdit => dialog::choose(Purpose::ExportEdit, self.path(), &self.workers),
-            FileCommand::Quit => self.unless_unsaved(context, Then::Close),
-        }
-    }
-
-    fn save(&mut self) {
-        match self.path().map(Path::to_owned) {
-            Some(path) if self.may_write_over() => self.save_to(path, KeepOriginal::No),
-            Some(path) => self.question = Some(Question::WriteOver(path)),
-            None => dialog::choose(Purpose::SaveAs, None, &self.workers),
-        }
-    }
-
-    fn unless_unsaved(&mut self, context: &egui::Context, then: Then) {
-        if self.editor.view().unsaved {
-            self.question = Some(Question::Discard(then));
-        } else {
-            self.go_on(then);
-        }
-        context.request_repaint();
-    }
-
-    fn go_on(&mut self, then: Then) {
-        match then {
-            Then::Open(Some(path)) => self.open(path),
-            Then::Open(None) => dialog::choose(Purpose::Open, self.path(), &self.workers),
-            Then::Close => self.closing = true,
-        }
-    }
-
-    fn answer(&mut self, answer: Answer) {
-        let question = self.question.take();
-        match answer {
-            Answer::WriteOver(path) => self.save_to(path, KeepOriginal::Yes),
-            Answer::SaveAs => dialog::choose(Purpose::SaveAs, self.path(), &self.workers),
-            Answer::Save => {
-                if let Some(Question::Discard(then)) = question {
-                    self.after_saving = Some(then);
-                }
-                self.save();
-            }
-            Answer::Path(purpose, path) => self.chosen(purpose, Some(path)),
-            Answer::Discard(then) => self.go_on(then),
-            Answer::Cancel => self.after_saving = None,
-        }
-    }
-
-    fn file_shortcuts(&mut self, context: &egui::Context) {
-        if self.question.is_some() {
-            return;
-        }
-        for command in FileCommand::WITH_SHORTCUTS {
-            let Some(shortcut) = command.shortcut() else { continue };
-            if context.input_mut(|input| input.consume_shortcut(&shortcut)) {
-                self.file_command(context, command.clone());
-            }
-        }
-        let dropped = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
-        if let Some(path) = dropped {
-            self.file_command(context, FileCommand::OpenPath(path));
-        }
     }
 
     /// The 3D view: input first, then the picture.
@@ -515,17 +385,5 @@ impl eframe::App for Application {
             .elapsed()
             .saturating_sub(self.viewport.drawing_time() - drawn_before);
         self.longest_frame = self.longest_frame.max(busy);
-    }
-}
-
-impl Application {
-    /// Lets the window close unless there is unsaved work that nobody agreed to lose.
-    fn close_or_stay(&mut self, context: &egui::Context) {
-        if self.closing {
-            context.send_viewport_cmd(egui::ViewportCommand::Close);
-        } else if context.input(|input| input.viewport().close_requested()) && self.editor.view().unsaved {
-            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            self.question = Some(Question::Discard(Then::Close));
-        }
     }
 }

@@ -4,6 +4,7 @@
 mod application;
 mod command_button;
 mod dialog;
+mod file_actions;
 mod input;
 mod message;
 mod panels;

@@ -11,7 +11,7 @@ use eframe::egui::{self, TextureId};
 use eframe::egui_wgpu::RenderState;
 use glam::DVec3;
 use pliant_editor::{Editor, SceneView};
-use pliant_render::{Frame, RenderError, Renderer, Samples, Style, Surface, Target, Wireframe};
+use pliant_render::{Frame, RenderError, Renderer, Samples, Style, Surface, Target};
 
 use super::message::Posed;
 use crate::drawing::{self, Drawing, Pose};
@@ -199,7 +199,7 @@ impl Viewport {
             regions: self.surface.as_ref().and_then(|shown| shown.regions_revision),
             overlay: view.overlay_revision,
             camera: view.camera_revision,
-            style: style(view),
+            style: drawing::style(view),
             size_px,
             samples,
         }
@@ -269,14 +269,6 @@ pub enum Smoothness {
     Moving,
     /// Nothing has moved for a while: beauty first.
     Resting,
-}
-
-fn style(view: &SceneView<'_>) -> Style {
-    Style {
-        shading: drawing::shading(view.shading, view.regions),
-        wireframe: if view.wireframe { Wireframe::On } else { Wireframe::Off },
-        ..Style::default()
-    }
 }
 
 fn pixels(size: egui::Vec2) -> [u32; 2] {

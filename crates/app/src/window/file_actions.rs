@@ -1,0 +1,154 @@
+//! What the window does with files: the menu's commands, the questions they raise, and what comes of them.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui;
+use pliant_editor::{Event, Revision};
+
+use super::application::{Application, Note};
+use super::dialog::{self, Answer, Question, Then};
+use super::message::{Purpose, Written};
+use super::session::KeepOriginal;
+use super::top_bar::FileCommand;
+
+impl Application {
+    pub(super) fn file_shortcuts(&mut self, context: &egui::Context) {
+        if self.question.is_some() {
+            return;
+        }
+        for command in FileCommand::WITH_SHORTCUTS {
+            let Some(shortcut) = command.shortcut() else { continue };
+            if context.input_mut(|input| input.consume_shortcut(&shortcut)) {
+                self.file_command(context, command.clone());
+            }
+        }
+        let dropped = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
+        if let Some(path) = dropped {
+            self.file_command(context, FileCommand::OpenPath(path));
+        }
+    }
+
+    pub(super) fn chosen(&mut self, purpose: Purpose, path: Option<PathBuf>) {
+        match (purpose, path) {
+            (Purpose::Open, Some(path)) => self.open(path),
+            (Purpose::SaveAs, Some(path)) => {
+                let over_source = self.path() == Some(path.as_path()) && !self.may_write_over();
+                self.save_to(
+                    path,
+                    if over_source {
+                        KeepOriginal::Yes
+                    } else {
+                        KeepOriginal::No
+                    },
+                );
+            }
+            (Purpose::ExportEdit, Some(path)) => match self.editor.edit_file() {
+                Ok(edit) => self.session.export(path, edit, &self.workers),
+                Err(error) => self.fail(error.to_string()),
+            },
+            // Cancelled, or the system has no dialog: then a path can be typed.
+            (purpose, None) => self.question = Some(Question::Path(purpose, self.suggested_path(purpose))),
+        }
+    }
+
+    fn suggested_path(&self, purpose: Purpose) -> String {
+        match (purpose, self.path()) {
+            (Purpose::SaveAs, Some(path)) => path.display().to_string(),
+            (Purpose::SaveAs, None) => "edited.glb".to_owned(),
+            (Purpose::ExportEdit, Some(path)) => path.with_extension("edit.json").display().to_string(),
+            (Purpose::ExportEdit, None) => "edit.json".to_owned(),
+            (Purpose::Open, _) => String::new(),
+        }
+    }
+
+    fn may_write_over(&self) -> bool {
+        self.session.open.as_ref().is_some_and(|open| open.may_write_over)
+    }
+
+    pub(super) fn file_command(&mut self, context: &egui::Context, command: FileCommand) {
+        match command {
+            FileCommand::Open => self.unless_unsaved(context, Then::Open(None)),
+            FileCommand::OpenPath(path) => self.unless_unsaved(context, Then::Open(Some(path))),
+            FileCommand::Save => self.save(),
+            FileCommand::SaveAs => dialog::choose(Purpose::SaveAs, self.path(), &self.workers),
+            FileCommand::ExportEdit => dialog::choose(Purpose::ExportEdit, self.path(), &self.workers),
+            FileCommand::Quit => self.unless_unsaved(context, Then::Close),
+        }
+    }
+
+    fn save(&mut self) {
+        match self.path().map(Path::to_owned) {
+            Some(path) if self.may_write_over() => self.save_to(path, KeepOriginal::No),
+            Some(path) => self.question = Some(Question::WriteOver(path)),
+            None => dialog::choose(Purpose::SaveAs, None, &self.workers),
+        }
+    }
+
+    fn unless_unsaved(&mut self, context: &egui::Context, then: Then) {
+        if self.editor.view().unsaved {
+            self.question = Some(Question::Discard(then));
+        } else {
+            self.go_on(then);
+        }
+        context.request_repaint();
+    }
+
+    fn go_on(&mut self, then: Then) {
+        match then {
+            Then::Open(Some(path)) => self.open(path),
+            Then::Open(None) => dialog::choose(Purpose::Open, self.path(), &self.workers),
+            Then::Close => self.closing = true,
+        }
+    }
+
+    pub(super) fn answer(&mut self, answer: Answer) {
+        let question = self.question.take();
+        match answer {
+            Answer::WriteOver(path) => self.save_to(path, KeepOriginal::Yes),
+            Answer::SaveAs => dialog::choose(Purpose::SaveAs, self.path(), &self.workers),
+            Answer::Save => {
+                if let Some(Question::Discard(then)) = question {
+                    self.after_saving = Some(then);
+                }
+                self.save();
+            }
+            Answer::Path(purpose, path) => self.chosen(purpose, Some(path)),
+            Answer::Discard(then) => self.go_on(then),
+            Answer::Cancel => self.after_saving = None,
+        }
+    }
+
+    pub(super) fn written(&mut self, stamp: Revision, result: Result<Written, String>) {
+        self.session.written(stamp, &result, &self.workers);
+        match result {
+            Ok(written) => {
+                if written.is_model {
+                    self.editor.handle(Event::Saved);
+                }
+                let mut sentence = format!("Saved {}.", written.path.display());
+                for warning in &written.warnings {
+                    sentence.push(' ');
+                    sentence.push_str(warning);
+                }
+                self.notes.headline = Some(Note::Done(sentence));
+                if let Some(then) = self.after_saving.take() {
+                    self.go_on(then);
+                }
+            }
+            Err(sentence) => {
+                self.after_saving = None;
+                self.fail(sentence);
+            }
+        }
+    }
+
+    /// Lets the window close unless there is unsaved work that nobody agreed to lose.
+    pub(super) fn close_or_stay(&mut self, context: &egui::Context) {
+        if self.closing {
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        } else if context.input(|input| input.viewport().close_requested()) && self.editor.view().unsaved {
+            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.question = Some(Question::Discard(Then::Close));
+        }
+    }
+}
