@@ -1,7 +1,9 @@
 //! What each vertex does, as it follows from paint and handles: the region of influence around each handle.
 //!
 //! A handle sets free what lies within its reach along the rest surface and carries no paint. A component that carries
-//! no paint and that no handle reaches is left to the method as a loose part. Everything else is held still.
+//! no paint and lies wholly within a handle's reach through space (an eye, a button, a strap's buckle) is left to the
+//! method as a loose part; one that extends beyond it is held still, as everything else is: nobody who moves a visor
+//! means the whole helmet.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -75,6 +77,8 @@ impl Region {
         let mut roles = vec![Role::Fixed; input.paint.len()];
         let mut handles = Vec::new();
         let mut search = DistanceSearch::default();
+        // Per component: whether some handle's ball holds all of it.
+        let (mut follows, mut within) = (vec![false; held.len()], vec![true; held.len()]);
         for ((id, reach), members) in input.handles.iter().zip(&members) {
             if members.is_empty() {
                 continue;
@@ -87,12 +91,20 @@ impl Region {
                     roles[vertex.index()] = Role::Free;
                 }
             }
+            let ball = Ball::around(members, limit, surface);
+            ball.clear_what_extends_beyond(surface, topology, &mut within);
+            follows
+                .iter_mut()
+                .zip(&within)
+                .for_each(|(follows, within)| *follows |= within);
+            within.fill(true);
             handles.push(*id);
         }
-        let follow = !handles.is_empty() && input.loose == Loose::Follow;
+        let follow = input.loose == Loose::Follow;
         let mut counts = Counts::default();
         for (vertex, paint) in input.paint.iter().enumerate() {
-            let loose = || follow && !held[topology.component(SurfaceVertex(vertex as u32)) as usize];
+            let component = topology.component(SurfaceVertex(vertex as u32)) as usize;
+            let loose = || follow && follows[component] && !held[component];
             let role = match *paint {
                 Paint::Fixed => Role::Fixed,
                 Paint::Free => Role::Free,
@@ -116,6 +128,36 @@ impl Region {
             counts,
             rest_surface,
         })
+    }
+}
+
+/// What a handle reaches through space.
+struct Ball {
+    centre: DVec3,
+    radius: f64,
+}
+
+impl Ball {
+    /// As far from the farthest of a handle's vertices as its reach.
+    fn around(members: &[SurfaceVertex], reach: f64, surface: &Surface) -> Self {
+        let centre = centroid(&surface.positions, members.iter().copied());
+        let extent = members
+            .iter()
+            .map(|vertex| surface.positions[vertex.index()].distance(centre))
+            .fold(0.0, f64::max);
+        Self {
+            centre,
+            radius: extent + reach,
+        }
+    }
+
+    /// Clears the flag of each component with a vertex outside.
+    fn clear_what_extends_beyond(&self, surface: &Surface, topology: &Topology, within: &mut [bool]) {
+        for (vertex, position) in surface.positions.iter().enumerate() {
+            if position.distance_squared(self.centre) > self.radius * self.radius {
+                within[topology.component(SurfaceVertex(vertex as u32)) as usize] = false;
+            }
+        }
     }
 }
 

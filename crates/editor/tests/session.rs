@@ -32,30 +32,56 @@ fn a_fresh_document_holds_everything_still_and_a_handle_brings_its_region() {
 }
 
 #[test]
-fn a_loose_part_follows_and_a_painted_one_does_not() {
-    let mut bit = shapes::icosphere(2);
-    for position in &mut bit.positions {
-        *position = *position * 0.1 + glam::DVec3::new(0.0, 0.0, 1.15);
-    }
-    let mut rig = Rig::open(shapes::together(&[shapes::icosphere(3), bit]));
-    let of_bit = |rig: &Rig| {
-        (0..rig.model.surface.positions.len() as u32)
-            .filter(|&v| rig.model.topology.component(pliant_mesh::SurfaceVertex(v)) == 1)
-            .collect::<Vec<_>>()
+fn a_loose_part_within_reach_follows_and_what_extends_beyond_is_held() {
+    let bit = |radius: f64, centre: glam::DVec3| {
+        let mut bit = shapes::icosphere(2);
+        bit.positions
+            .iter_mut()
+            .for_each(|position| *position = *position * radius + centre);
+        bit
+    };
+    // A wart beside the handle, a moon behind, and a ring's worth of another body that only begins near the handle.
+    let wart = bit(0.02, glam::DVec3::new(-1.02, 0.0, 0.2));
+    let moon = bit(0.1, glam::DVec3::new(1.2, 0.0, 0.0));
+    let body = bit(0.6, glam::DVec3::new(-0.6, 1.4, 0.0));
+    let mut rig = Rig::open(shapes::together(&[shapes::icosphere(4), wart, moon, body]));
+    let roles_near = |rig: &Rig, place: glam::DVec3, radius: f64| {
+        let positions = rig.model.surface.positions.iter();
+        let roles = positions
+            .zip(rig.editor.roles())
+            .filter(|(position, _)| position.distance(place) < radius);
+        roles.map(|(_, role)| *role).collect::<Vec<_>>()
     };
     rig.command(Command::View(pliant_editor::NamedView::Left));
-    rig.paint_handle();
+    rig.command(Command::FrameAll);
+    let middle = rig
+        .editor
+        .view()
+        .camera
+        .project(glam::DVec3::NEG_X, rig::VIEWPORT_PX)
+        .unwrap();
+    rig.paint(pliant_editor::ToolMode::PaintHandle, &[middle]);
     rig.drain();
+    let wart = roles_near(&rig, glam::DVec3::new(-1.02, 0.0, 0.2), 0.021);
     assert!(
-        of_bit(&rig)
+        wart.iter().filter(|role| **role == Role::Free).count() >= 162,
+        "{wart:?}"
+    );
+    assert!(
+        roles_near(&rig, glam::DVec3::new(1.2, 0.0, 0.0), 0.11)
             .iter()
-            .all(|&v| rig.editor.roles()[v as usize] == Role::Free)
+            .all(|role| *role == Role::Fixed)
+    );
+    assert!(
+        roles_near(&rig, glam::DVec3::new(-0.6, 1.8, 0.0), 0.25)
+            .iter()
+            .all(|role| *role == Role::Fixed)
     );
 }
 
 #[test]
 fn dragging_the_gizmo_moves_the_handle_by_what_the_pointer_says() {
-    let mut rig = Rig::open(shapes::icosphere(3));
+    let mut rig = Rig::open(shapes::icosphere(4));
     rig.command(Command::View(pliant_editor::NamedView::Front));
     rig.paint_handle();
     rig.drain();

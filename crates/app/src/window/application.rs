@@ -13,6 +13,7 @@ use pliant_editor::{Command, Cursor, Editor, Event, JobQueue, Revision};
 use super::dialog::{self, Question, Then};
 use super::input::{Attention, Input};
 use super::message::{Message, Opened, Posed};
+use super::notes::{Note, Notes};
 use super::panels;
 use super::session::{KeepOriginal, OpenFile, Session, Source};
 use super::status;
@@ -43,24 +44,6 @@ pub struct Application {
     pub(super) closing: bool,
     longest_frame: Duration,
     view_rect: egui::Rect,
-}
-
-/// What the person is told beside the status line.
-#[derive(Debug, Default)]
-pub struct Notes {
-    /// The newest thing that went well or wrong with a file, in a sentence.
-    pub headline: Option<Note>,
-    /// What is to be known about the open file, a sentence each.
-    pub about_file: Vec<String>,
-}
-
-/// A sentence for the person.
-#[derive(Clone, Debug)]
-pub enum Note {
-    /// Something was done.
-    Done(String),
-    /// Something could not be done.
-    Failed(String),
 }
 
 impl Application {

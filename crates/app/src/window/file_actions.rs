@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use eframe::egui;
 use pliant_editor::{Event, Revision};
 
-use super::application::{Application, Note};
+use super::application::Application;
 use super::dialog::{self, Answer, Question, Then};
 use super::message::{Purpose, Written};
+use super::notes::Note;
 use super::session::KeepOriginal;
 use super::top_bar::FileCommand;
 

@@ -7,6 +7,7 @@ mod dialog;
 mod file_actions;
 mod input;
 mod message;
+mod notes;
 mod panels;
 mod session;
 mod status;

@@ -4,8 +4,8 @@ use eframe::egui::{self, Color32, DragValue, RichText, ScrollArea, Slider};
 use pliant_deform::Loose;
 use pliant_editor::{Command, Editor, Handle, HandleTransform, Reach};
 
-use super::application::Notes;
 use super::command_button::command_button;
+use super::notes::Notes;
 use super::status::thousands;
 
 /// Shows the panel; commands for the editor are added to `commands`.

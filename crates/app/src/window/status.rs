@@ -3,7 +3,7 @@
 use eframe::egui::{self, Color32, ProgressBar, RichText};
 use pliant_editor::{Command, Editor};
 
-use super::application::Note;
+use super::notes::Note;
 
 /// What went wrong.
 const FAILED: Color32 = Color32::from_rgb(255, 138, 122);
