@@ -27,11 +27,21 @@ pub use session::{KeepOriginal, Source, original_name};
 
 use crate::error::AppError;
 
+/// What tells where a window can be opened, on systems with X11 or Wayland.
+const DISPLAYS: [&str; 3] = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"];
+
 /// Opens the window on a file, or on the built-in sample, and returns when it is closed.
 ///
 /// # Errors
 /// Where no window or no graphics device can be had.
 pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
+    if cfg!(all(unix, not(target_os = "macos"))) && DISPLAYS.iter().all(|name| std::env::var_os(name).is_none()) {
+        return Err(AppError::System(format!(
+            "there is no display to open a window on (none of {} is set): start it in a desktop session, or use \
+             `pliant apply` and `pliant render`, which need none",
+            DISPLAYS.join(", ")
+        )));
+    }
     let source = file.map_or(Source::Sample, Source::File);
     let options = eframe::NativeOptions {
         viewport: ViewportBuilder::default()
