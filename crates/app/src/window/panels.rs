@@ -1,7 +1,7 @@
 //! The panel beside the view: handles, brush, how the surface bends, and what is to be known about the file.
 
-use eframe::egui::{self, Color32, DragValue, RichText, ScrollArea, Slider};
-use pliant_deform::Loose;
+use eframe::egui::{self, Color32, ComboBox, DragValue, RichText, ScrollArea, Slider};
+use pliant_deform::{Loose, Method};
 use pliant_editor::{Command, Editor, Handle, HandleTransform, Reach};
 
 use super::command_button::command_button;
@@ -124,8 +124,22 @@ fn brush(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
 fn bending(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
     ui.heading("Bending");
     let document = editor.document();
-    ui.label(format!("Method: {}", document.method().name()))
-        .on_hover_text("Bends the surface like a thin plate between what is held and the handles.");
+    ComboBox::from_label("method")
+        .selected_text(document.method().name())
+        .show_ui(ui, |ui| {
+            for &name in Method::NAMES {
+                let chosen = document.method().name() == name;
+                if ui
+                    .selectable_label(chosen, name)
+                    .on_hover_text(when_to_use(name))
+                    .clicked()
+                    && !chosen
+                    && let Some(method) = Method::from_name(name)
+                {
+                    commands.push(Command::SetMethod(method));
+                }
+            }
+        });
     ui.horizontal(|ui| {
         ui.label("Loose parts");
         for (name, loose, hover) in [
@@ -152,6 +166,15 @@ fn bending(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
             }
         }
     });
+}
+
+/// A sentence on when a method is the one to take.
+fn when_to_use(method: &str) -> &'static str {
+    match method {
+        "bilaplacian" => "Bends like a thin plate, at once: for small turns and smooth bulges.",
+        "arap" => "Keeps every neighbourhood as rigid as it can, step by step: for large turns and long drags.",
+        _ => "",
+    }
 }
 
 fn about_file(ui: &mut egui::Ui, editor: &Editor, notes: &Notes) {
