@@ -127,7 +127,7 @@ fn main() {
         let before = session.harness.state().shown_displacements().map(Arc::as_ptr);
         let drawn_before = session.harness.state().drawing_time();
         let start = Instant::now();
-        session.move_to(top + vec2(1.5 * step as f32, -1.0 * step as f32));
+        session.move_to(top + vec2(1.5 * step as f32, -(step as f32)));
         session.harness.step();
         while session.harness.state().shown_displacements().map(Arc::as_ptr) == before {
             assert!(start.elapsed() < Duration::from_secs(20), "the surface does not follow");
