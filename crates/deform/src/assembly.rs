@@ -1,6 +1,6 @@
-//! The thin plate's matrix A = L M⁻¹ L on the solved vertices, straight into compressed columns.
+//! The linear shell's matrix A on the solved vertices, straight into compressed columns.
 //!
-//! Column by column, each from its vertex's two-ring, with no triplets and nothing sorted: columns are computed apart
+//! Column by column, each from its vertex's n-ring, with no triplets and nothing sorted: columns are computed apart
 //! and stand in the order in which they are eliminated, so neither the order nor the number of threads shows. The
 //! matrix is scaled symmetrically to a unit diagonal, which takes the units and most of the spread of triangle sizes
 //! out of it.
@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use crate::Laplacian;
 use crate::operators::CHUNK;
+use crate::shell_operator::ShellOperator;
 
 /// The scaled matrix S A S: the pattern above its diagonal and the values on and below it.
 #[derive(Debug)]
@@ -30,32 +31,21 @@ pub(crate) struct PlateMatrix {
 /// No column: a constrained vertex.
 pub(crate) const CONSTRAINED: u32 = u32::MAX;
 
-/// Assembles the plate over the local vertices `columns`, in that order; `column_of` is the inverse table, with
+/// Assembles the shell over the local vertices `columns`, in that order; `column_of` is the inverse table, with
 /// [`CONSTRAINED`] where a local vertex has no column.
-pub(crate) fn assemble_plate(laplacian: &Laplacian, columns: &[u32], column_of: &[u32]) -> PlateMatrix {
-    let scale: Vec<f64> = columns
-        .par_iter()
-        .with_min_len(CHUNK)
-        .map(|&vertex| {
-            let square: f64 = laplacian_row(laplacian, vertex)
-                .map(|(k, weight)| laplacian.inverse_areas()[k as usize] * weight * weight)
-                .sum();
-            // A vertex without any weight has an empty row: leave it to the factorisation to say so.
-            if square > 0.0 { square.sqrt().recip() } else { 1.0 }
-        })
-        .collect();
+pub(crate) fn assemble_shell(operator: &ShellOperator, columns: &[u32], column_of: &[u32]) -> PlateMatrix {
     let chunks: Vec<Chunk> = (0..columns.len().div_ceil(CHUNK))
         .into_par_iter()
         .map_init(
-            || vec![0; column_of.len()],
-            |slots, chunk| {
+            || Expansion::new(column_of.len()),
+            |expansion, chunk| {
                 let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(columns.len());
-                assemble_chunk(laplacian, columns, column_of, &scale, range, slots)
+                assemble_chunk(operator, columns, column_of, range, expansion)
             },
         )
         .collect();
     let mut plate = PlateMatrix {
-        scale,
+        scale: Vec::with_capacity(columns.len()),
         upper_offsets: vec![0],
         upper_rows: Vec::with_capacity(chunks.iter().map(|chunk| chunk.upper_rows.len()).sum()),
         lower_offsets: vec![0],
@@ -64,7 +54,14 @@ pub(crate) fn assemble_plate(laplacian: &Laplacian, columns: &[u32], column_of: 
     };
     let (mut upper_end, mut lower_end) = (0, 0);
     for chunk in chunks {
+        let mut first = 0;
         for (upper, lower) in chunk.counts {
+            // A vertex without any weight has an empty row: leave it to the factorisation to say so.
+            let diagonal = chunk.lower_values[first];
+            first += lower as usize;
+            plate
+                .scale
+                .push(if diagonal > 0.0 { diagonal.sqrt().recip() } else { 1.0 });
             upper_end += upper;
             lower_end += lower;
             plate.upper_offsets.push(upper_end);
@@ -74,7 +71,30 @@ pub(crate) fn assemble_plate(laplacian: &Laplacian, columns: &[u32], column_of: 
         plate.lower_rows.extend(chunk.lower_rows);
         plate.lower_values.extend(chunk.lower_values);
     }
+    plate.scale_values();
     plate
+}
+
+impl PlateMatrix {
+    fn scale_values(&mut self) {
+        let scale = &self.scale;
+        let mut columns = Vec::with_capacity(scale.len());
+        let mut rest = self.lower_values.as_mut_slice();
+        for bounds in self.lower_offsets.windows(2) {
+            let (column, tail) = rest.split_at_mut((bounds[1] - bounds[0]) as usize);
+            columns.push((&self.lower_rows[bounds[0] as usize..bounds[1] as usize], column));
+            rest = tail;
+        }
+        columns
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .enumerate()
+            .for_each(|(column, (rows, values))| {
+                for (&row, value) in rows.iter().zip(values) {
+                    *value *= scale[column] * scale[row as usize];
+                }
+            });
+    }
 }
 
 #[derive(Default)]
@@ -86,44 +106,25 @@ struct Chunk {
     lower_values: Vec<f64>,
 }
 
-/// `slots` is all zero before and after, one a local vertex.
 fn assemble_chunk(
-    laplacian: &Laplacian,
+    operator: &ShellOperator,
     columns: &[u32],
     column_of: &[u32],
-    scale: &[f64],
     range: std::ops::Range<usize>,
-    slots: &mut [u32],
+    expansion: &mut Expansion,
 ) -> Chunk {
     let mut chunk = Chunk::default();
-    // The column's entries as they are met; `slots` holds one more than a local vertex's place among them.
-    let mut entries: Vec<(u32, f64)> = Vec::with_capacity(64);
+    let solved = |vertex: u32| column_of[vertex as usize] != CONSTRAINED;
     for column in range {
-        let vertex = columns[column];
-        for (middle, weight) in laplacian_row(laplacian, vertex) {
-            let weight = weight * laplacian.inverse_areas()[middle as usize];
-            for (far, far_weight) in laplacian_row(laplacian, middle) {
-                if column_of[far as usize] == CONSTRAINED {
-                    continue;
-                }
-                let slot = &mut slots[far as usize];
-                if *slot == 0 {
-                    entries.push((far, 0.0));
-                    *slot = entries.len() as u32;
-                }
-                entries[*slot as usize - 1].1 += weight * far_weight;
-            }
-        }
         let before = (chunk.upper_rows.len(), chunk.lower_rows.len());
-        // The diagonal is met first: the column's own vertex is its first middle and that one's first neighbour.
-        for (far, value) in entries.drain(..) {
-            slots[far as usize] = 0;
+        // The diagonal is met first: each walk starts at the column's own vertex.
+        for &(far, value) in expansion.column(operator, columns[column], solved) {
             let row = column_of[far as usize];
             if (row as usize) < column {
                 chunk.upper_rows.push(row);
             } else {
                 chunk.lower_rows.push(row);
-                chunk.lower_values.push(value * scale[column] * scale[row as usize]);
+                chunk.lower_values.push(value);
             }
         }
         chunk.counts.push((
@@ -134,55 +135,160 @@ fn assemble_chunk(
     chunk
 }
 
-/// The entries of L's row, the diagonal first.
-fn laplacian_row(laplacian: &Laplacian, vertex: u32) -> impl Iterator<Item = (u32, f64)> + '_ {
+/// Room for one column's entries as they are met.
+struct Expansion {
+    /// One more than a local vertex's place among `entries`, 0 where it has none.
+    slots: Vec<u32>,
+    entries: Vec<(u32, f64)>,
+    inner: Vec<(u32, f64)>,
+}
+
+impl Expansion {
+    fn new(vertex_count: usize) -> Self {
+        Self {
+            slots: vec![0; vertex_count],
+            entries: Vec::with_capacity(64),
+            inner: Vec::with_capacity(64),
+        }
+    }
+
+    /// The entries of A's column on the vertices that are solved for, the diagonal first.
+    fn column(&mut self, operator: &ShellOperator, vertex: u32, solved: impl Fn(u32) -> bool) -> &[(u32, f64)] {
+        let laplacian = &operator.laplacian;
+        self.entries.clear();
+        if operator.power == 1 {
+            let factor = operator.stretching + operator.bending;
+            self.add(laplacian, vertex, factor, &solved);
+            self.close();
+            return &self.entries;
+        }
+        // M⁻¹ P, then at order 3 M⁻¹ P M⁻¹ P, of the column's unit vector, with P = −L; nothing is left out yet.
+        self.add(laplacian, vertex, operator.bending, |_| true);
+        for _ in 2..operator.power {
+            self.step(laplacian, |_| true);
+        }
+        self.close();
+        std::mem::swap(&mut self.entries, &mut self.inner);
+        self.entries.clear();
+        if operator.stretching > 0.0 {
+            self.add(laplacian, vertex, operator.stretching, &solved);
+        }
+        self.spread(laplacian, &solved);
+        self.close();
+        &self.entries
+    }
+
+    /// entries ← P M⁻¹ entries.
+    fn step(&mut self, laplacian: &Laplacian, keep: impl Fn(u32) -> bool) {
+        self.close();
+        std::mem::swap(&mut self.entries, &mut self.inner);
+        self.entries.clear();
+        self.spread(laplacian, keep);
+    }
+
+    /// entries += P M⁻¹ inner.
+    fn spread(&mut self, laplacian: &Laplacian, keep: impl Fn(u32) -> bool) {
+        for place in 0..self.inner.len() {
+            let (middle, value) = self.inner[place];
+            self.add(
+                laplacian,
+                middle,
+                value * laplacian.inverse_areas()[middle as usize],
+                &keep,
+            );
+        }
+    }
+
+    /// entries += factor · P's column of `vertex`.
+    fn add(&mut self, laplacian: &Laplacian, vertex: u32, factor: f64, keep: impl Fn(u32) -> bool) {
+        for (far, weight) in stiffness_row(laplacian, vertex) {
+            if !keep(far) {
+                continue;
+            }
+            let slot = &mut self.slots[far as usize];
+            if *slot == 0 {
+                self.entries.push((far, 0.0));
+                *slot = self.entries.len() as u32;
+            }
+            self.entries[*slot as usize - 1].1 += factor * weight;
+        }
+    }
+
+    /// Forgets which vertices were met.
+    fn close(&mut self) {
+        for &(vertex, _) in &self.entries {
+            self.slots[vertex as usize] = 0;
+        }
+    }
+}
+
+/// The entries of −L's row, the diagonal first.
+fn stiffness_row(laplacian: &Laplacian, vertex: u32) -> impl Iterator<Item = (u32, f64)> + '_ {
     let (neighbours, weights) = (
         laplacian.neighbours(vertex as usize),
         laplacian.weights(vertex as usize),
     );
-    let diagonal = -weights.iter().sum::<f64>();
-    std::iter::once((vertex, diagonal)).chain(neighbours.iter().copied().zip(weights.iter().copied()))
+    let diagonal = weights.iter().sum::<f64>();
+    let others = neighbours.iter().zip(weights).map(|(&other, &weight)| (other, -weight));
+    std::iter::once((vertex, diagonal)).chain(others)
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
-    use super::{CONSTRAINED, assemble_plate};
-    use crate::Laplacian;
-    use pliant_mesh::{Cancel, Model, Progress, WeldOptions, shapes};
+    use super::{CONSTRAINED, assemble_shell};
+    use crate::shell_operator::ShellOperator;
+    use crate::{Bilaplacian, Laplacian, ShellOrder};
+    use pliant_mesh::shapes;
 
-    #[test]
-    fn the_matrix_is_the_operator_column_by_column() {
-        let drawn = shapes::torus(9, 7);
-        let model = Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap();
+    fn matches_its_operator(options: &Bilaplacian) {
+        let model = shapes::model(shapes::torus(9, 7));
         let count = model.surface.positions.len();
         let stiffness: Vec<f64> = (0..count).map(|i| 1.0 + (i % 5) as f64).collect();
         let laplacian = Laplacian::of(&model.surface, &model.topology, &stiffness);
+        let operator = ShellOperator::new(laplacian, options, 3.0);
         let columns: Vec<u32> = (0..count as u32).rev().filter(|v| v % 7 != 0).collect();
         let mut column_of = vec![CONSTRAINED; count];
         for (column, &vertex) in columns.iter().enumerate() {
             column_of[vertex as usize] = column as u32;
         }
-        let plate = assemble_plate(&laplacian, &columns, &column_of);
+        let plate = assemble_shell(&operator, &columns, &column_of);
         for (column, &vertex) in columns.iter().enumerate() {
             let mut unit = vec![[0.0]; count];
             unit[vertex as usize] = [1.0];
-            let inner = laplacian.per_area(&unit);
+            let potential = operator.potential(&unit);
             let entries = plate.lower_offsets[column] as usize..plate.lower_offsets[column + 1] as usize;
             let mut seen = 0;
             for entry in entries {
                 let row = plate.lower_rows[entry] as usize;
-                let expected = laplacian.row(columns[row] as usize, &inner)[0] * plate.scale[row] * plate.scale[column];
+                let expected =
+                    operator.force(columns[row] as usize, &potential)[0] * plate.scale[row] * plate.scale[column];
                 assert!((plate.lower_values[entry] - expected).abs() < 1e-13, "{row} {column}");
                 seen += 1;
             }
             let diagonal = plate.lower_values[plate.lower_offsets[column] as usize];
             assert!((diagonal - 1.0).abs() < 1e-13);
             let filled = (0..columns.len())
-                .filter(|&row| row >= column && laplacian.row(columns[row] as usize, &inner)[0].abs() > 1e-12)
+                .filter(|&row| {
+                    let force = operator.force(columns[row] as usize, &potential)[0];
+                    row >= column && (force * plate.scale[row] * plate.scale[column]).abs() > 1e-12
+                })
                 .count();
             assert!(filled <= seen);
         }
         assert_eq!(plate.upper_rows.len() + columns.len(), plate.lower_rows.len());
+    }
+
+    #[test]
+    fn the_matrix_is_the_operator_column_by_column() {
+        for order in ShellOrder::ALL {
+            for stretching in [0.0, 40.0] {
+                matches_its_operator(&Bilaplacian {
+                    order,
+                    stretching,
+                    ..Bilaplacian::default()
+                });
+            }
+        }
     }
 }

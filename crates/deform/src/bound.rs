@@ -36,8 +36,8 @@ enum Solver {
 pub struct Step {
     /// Whether further steps to the same targets would change nothing. Linear methods: always.
     pub converged: bool,
-    /// The deformation energy, 0 at rest; for the thin plate ½ dᵀ L M⁻¹ L d, which has no unit and does not change
-    /// with the model's scale. Components without a handle are left out.
+    /// The deformation energy, 0 at rest; for the linear shell ½ dᵀ A d (see [`crate::Bilaplacian`]), which has no
+    /// unit and does not change with the model's scale. Components without a handle are left out.
     pub energy: f64,
     /// How many steps were taken towards these targets, this one included.
     pub iteration: u32,
@@ -69,8 +69,8 @@ impl Bound {
             .map(|vertices| Handle::new(vertices.clone(), positions))
             .collect();
         let solver = match problem.method {
-            Method::Bilaplacian(_) => {
-                let plate = Plate::bind(problem, &partition, &handles, ordering, progress, cancel)?;
+            Method::Bilaplacian(options) => {
+                let plate = Plate::bind(problem, options, &partition, &handles, ordering, progress, cancel)?;
                 partition.warnings.extend(plate.warnings());
                 Solver::Plate(Box::new(plate))
             }

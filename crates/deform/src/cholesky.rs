@@ -122,8 +122,10 @@ fn analyse(plate: &PlateMatrix) -> Option<supernodal::SymbolicSupernodalCholesky
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::Factor;
+    use crate::Bilaplacian;
     use crate::Laplacian;
-    use crate::assembly::{CONSTRAINED, PlateMatrix, assemble_plate};
+    use crate::assembly::{CONSTRAINED, PlateMatrix, assemble_shell};
+    use crate::shell_operator::ShellOperator;
     use pliant_mesh::shapes;
 
     fn plate() -> PlateMatrix {
@@ -135,7 +137,8 @@ mod tests {
         for (column, &vertex) in columns.iter().enumerate() {
             column_of[vertex as usize] = column as u32;
         }
-        assemble_plate(&laplacian, &columns, &column_of)
+        let operator = ShellOperator::new(laplacian, &Bilaplacian::default(), 1.0);
+        assemble_shell(&operator, &columns, &column_of)
     }
 
     fn product<const K: usize>(plate: &PlateMatrix, x: &[[f64; K]]) -> Vec<[f64; K]> {

@@ -67,7 +67,7 @@ pub enum BindError {
     },
     /// The system is not positive definite, even with a little regularisation.
     #[error(
-        "the thin plate of component {component} cannot be factored at surface vertex {vertex}: fix vertices around it or repair the triangles there"
+        "the shell of component {component} cannot be factored at surface vertex {vertex}: fix vertices around it, repair the triangles there or lower the method's order"
     )]
     NotPositiveDefinite {
         /// The component, as `cli.md` numbers them.
@@ -77,7 +77,7 @@ pub enum BindError {
     },
     /// The factor does not reproduce a constant.
     #[error(
-        "the thin plate of component {component} is solved only to {error:.1e} near surface vertex {vertex}: fix vertices around it or repair the triangles there"
+        "the shell of component {component} is solved only to {error:.1e} near surface vertex {vertex}: fix vertices around it, repair the triangles there or lower the method's order"
     )]
     Inaccurate {
         /// The component, as `cli.md` numbers them.

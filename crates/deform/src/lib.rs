@@ -5,15 +5,17 @@
 //! current pool is the caller's, and every result is the same bit for bit whatever its size.
 //!
 //! Binding goes [`Problem`] → `partition` (who is solved for) → [`Laplacian`] → `assembly` → `cholesky` in the
-//! restricted `ordering` → `shell` (check; `refine`) → `plate` ([`HandleBases`], energies) → [`Bound`]. A frame is
+//! restricted `ordering` → `shell` (`shell_operator`; check; `refine`) → `plate` ([`HandleBases`], energies) → [`Bound`]. A frame is
 //! [`HandleBases`] and `follow`.
 
 mod assembly;
 mod bases;
+mod bilaplacian;
 mod bound;
 mod cholesky;
 mod error;
 mod etree;
+mod face_terms;
 mod follow;
 mod handle;
 mod method;
@@ -26,12 +28,14 @@ mod reach;
 mod refine;
 mod rigid_fit;
 mod shell;
+mod shell_operator;
 mod triangular;
 
 pub use bases::HandleBases;
+pub use bilaplacian::{Bilaplacian, Discretisation, ShellOrder};
 pub use bound::{Bound, Step};
 pub use error::{BindError, SolveError};
-pub use method::{Bilaplacian, Method};
+pub use method::Method;
 pub use operators::Laplacian;
 pub use ordering::Ordering;
 pub use problem::{Loose, Problem, Role};

@@ -1,17 +1,14 @@
-//! The methods by name, and their options.
+//! The methods by name.
+
+use crate::Bilaplacian;
 
 /// How a surface follows its handles. Later methods join as variants.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum Method {
-    /// The linear thin plate (Botsch & Kobbelt 2004).
+    /// The linear shell, by default a thin plate (Botsch & Kobbelt 2004).
     Bilaplacian(Bilaplacian),
 }
-
-/// Options of the thin plate L M⁻¹ L d = 0. It has none yet.
-#[derive(Clone, PartialEq, Debug, Default)]
-#[non_exhaustive]
-pub struct Bilaplacian {}
 
 impl Method {
     /// Every method's name, in the order in which they are shown.
@@ -35,7 +32,7 @@ impl Method {
     /// The power of the Laplacian whose graph the method's system has: what [`crate::Ordering::of`] takes.
     pub fn operator_power(&self) -> u32 {
         match self {
-            Self::Bilaplacian(_) => 2,
+            Self::Bilaplacian(options) => options.operator_power(),
         }
     }
 }

@@ -7,21 +7,22 @@
 //!
 //! Robustness: a triangle's cotangents come from its three edge lengths, *mollified* where they hardly or don't satisfy
 //! the triangle inequality (Sharp & Crane 2020, section 4.5, here triangle by triangle and relative to its own longest
-//! edge, so that sound triangles keep their shape and units don't matter). Each triangle's part of L is then negative
+//! edge, so that sound triangles keep their shape and units don't matter). Other weights are for comparison: see
+//! [`Discretisation`]. Each triangle's part of L is then negative
 //! semidefinite whatever its shape, and so is L: edges with a negative weight are no harm. Areas are bounded below by a
 //! millionth of their component's mean. Stiffness scales each *face* by the mean of its corners, which keeps that law;
 //! scaling edges would break it.
 
 use std::collections::BTreeMap;
 
-use pliant_mesh::{Surface, SurfaceVertex, Topology, cotangents, edge_lengths, mixed_corner_areas};
+use pliant_mesh::{Surface, SurfaceVertex, Topology};
 use rayon::prelude::*;
+
+use crate::Discretisation;
+use crate::face_terms::{FaceTerms, Metric};
 
 /// Rows or faces that one task takes: fixed, so that results don't depend on the number of threads.
 pub(crate) const CHUNK: usize = 1024;
-
-/// By how much two edges of a triangle are made to exceed the third, in units of the longest.
-const MOLLIFICATION: f64 = 1e-5;
 
 /// The least area of a vertex, in units of the mean over its component.
 const AREA_FLOOR: f64 = 1e-6;
@@ -51,6 +52,17 @@ impl Laplacian {
 
     /// The operator with full rows for the surface vertices `rows` (ascending); their neighbours get empty rows.
     pub fn with_rows(surface: &Surface, topology: &Topology, stiffness: &[f64], rows: &[u32]) -> Self {
+        Self::discretised(surface, topology, stiffness, rows, Discretisation::default())
+    }
+
+    /// As [`Laplacian::with_rows`], with other weights and areas than the default.
+    pub fn discretised(
+        surface: &Surface,
+        topology: &Topology,
+        stiffness: &[f64],
+        rows: &[u32],
+        discretisation: Discretisation,
+    ) -> Self {
         let mut local_of = vec![ABSENT; surface.positions.len()];
         for &row in rows {
             local_of[row as usize] = 0;
@@ -85,13 +97,14 @@ impl Laplacian {
             neighbours,
             ..Self::default()
         };
-        operator.fill(surface, topology, stiffness, &local_of);
+        let metric = Metric::of(surface, discretisation);
+        operator.fill(surface, topology, stiffness, &local_of, &metric);
         operator
     }
 
     /// Cotangents per face first, then gathered per row: both sides of an edge add up the same numbers in the same
     /// order, so the weights are symmetric to the last bit.
-    fn fill(&mut self, surface: &Surface, topology: &Topology, stiffness: &[f64], local_of: &[u32]) {
+    fn fill(&mut self, surface: &Surface, topology: &Topology, stiffness: &[f64], local_of: &[u32], metric: &Metric) {
         let mut needed = vec![false; surface.triangles.len()];
         for (local, &vertex) in self.vertices.iter().enumerate() {
             if self.is_full(local) {
@@ -107,7 +120,7 @@ impl Laplacian {
         let terms: Vec<FaceTerms> = faces
             .par_iter()
             .with_min_len(CHUNK)
-            .map(|&face| FaceTerms::of(surface, stiffness, surface.triangles[face as usize]))
+            .map(|&face| metric.face(surface, stiffness, surface.triangles[face as usize]))
             .collect();
         self.mollified_faces = terms.iter().filter(|terms| terms.mollified).count();
         let mut slot_of_face = vec![ABSENT; surface.triangles.len()];
@@ -148,7 +161,13 @@ impl Laplacian {
                     }
                 }
             });
-        let mut areas: Vec<f64> = rows.into_iter().map(|(_, area)| area).collect();
+        let mut areas: Vec<f64> = rows
+            .into_iter()
+            .map(|(row, area)| match metric.common_area() {
+                Some(common) if !row.is_empty() => common,
+                _ => area,
+            })
+            .collect();
         self.weights = weights;
         self.floor_areas(topology, &mut areas);
         self.inverse_areas = areas
@@ -229,32 +248,5 @@ impl Laplacian {
             .with_min_len(CHUNK)
             .map(|local| self.row(local, f).map(|value| value * self.inverse_areas[local]))
             .collect()
-    }
-}
-
-struct FaceTerms {
-    half_cotangents: [f64; 3],
-    areas: [f64; 3],
-    mollified: bool,
-}
-
-impl FaceTerms {
-    fn of(surface: &Surface, stiffness: &[f64], corners: [SurfaceVertex; 3]) -> Self {
-        let lengths = edge_lengths(corners.map(|corner| surface.positions[corner.index()]));
-        let sum = lengths[0] + lengths[1] + lengths[2];
-        let longest = lengths[0].max(lengths[1]).max(lengths[2]);
-        let excess = MOLLIFICATION * longest - (sum - 2.0 * longest);
-        let mollified = excess > 0.0;
-        let lengths = if mollified {
-            lengths.map(|length| length + excess)
-        } else {
-            lengths
-        };
-        let stiffness = corners.iter().map(|corner| stiffness[corner.index()]).sum::<f64>() / 3.0;
-        Self {
-            half_cotangents: cotangents(lengths).map(|cotangent| 0.5 * stiffness * cotangent),
-            areas: mixed_corner_areas(lengths),
-            mollified,
-        }
     }
 }

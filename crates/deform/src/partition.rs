@@ -1,7 +1,8 @@
 //! Who is solved for, who is prescribed, who follows: what the roles mean on this surface.
 //!
-//! Only vertices that a handle can reach are solved for. The system's graph is that of L², so influence travels two
-//! edges at a time, across constrained vertices too, and ends where a band of constrained vertices is two rings wide.
+//! Only vertices that a handle can reach are solved for. The system's graph is that of Lⁿ, n the shell's order, so
+//! influence travels n edges at a time, across constrained vertices too, and ends where a band of constrained vertices
+//! is n rings wide.
 //! Free vertices that it does not reach have the solution zero and stay out of the factor: binding costs what is
 //! deformed, not what is loaded.
 
@@ -112,29 +113,32 @@ fn check(problem: &Problem) -> Result<(), BindError> {
     }
 }
 
-/// The free vertices that handles reach in the graph of L², ascending.
-///
-/// A middle vertex joins all its neighbours, itself included, so each needs to be opened once.
+/// The free vertices that handles reach in the graph of Lⁿ, ascending: by walks of which no n successive vertices are
+/// constrained.
 fn influenced(problem: &Problem, handles: &[Vec<u32>]) -> Vec<u32> {
     let topology = problem.topology;
-    let mut reached = vec![false; problem.roles.len()];
-    let mut opened = vec![false; problem.roles.len()];
+    let power = problem.method.operator_power();
+    // How many edges a walk may go on from here before it must meet a free vertex; at a reached one, `power`.
+    let mut left = vec![0; problem.roles.len()];
     let mut queue: Vec<u32> = handles.iter().flatten().copied().collect();
+    for &vertex in &queue {
+        left[vertex as usize] = power;
+    }
     while let Some(vertex) = queue.pop() {
-        let vertex = SurfaceVertex(vertex);
-        for middle in std::iter::once(vertex).chain(topology.neighbours(vertex).iter().copied()) {
-            if std::mem::replace(&mut opened[middle.index()], true) {
-                continue;
-            }
-            for next in std::iter::once(middle).chain(topology.neighbours(middle).iter().copied()) {
-                if problem.roles[next.index()] == Role::Free && !std::mem::replace(&mut reached[next.index()], true) {
-                    queue.push(next.0);
-                }
+        let beyond = left[vertex as usize] - 1;
+        for &next in topology.neighbours(SurfaceVertex(vertex)) {
+            let allowed = match problem.roles[next.index()] {
+                Role::Free => power,
+                Role::Fixed | Role::Handle(_) => beyond,
+            };
+            if allowed > left[next.index()] {
+                left[next.index()] = allowed;
+                queue.push(next.0);
             }
         }
     }
-    (0..reached.len())
-        .filter(|&vertex| reached[vertex])
+    (0..left.len())
+        .filter(|&vertex| left[vertex] > 0 && problem.roles[vertex] == Role::Free)
         .map(|vertex| vertex as u32)
         .collect()
 }

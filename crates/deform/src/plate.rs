@@ -1,15 +1,16 @@
-//! The thin-plate method: what binding it computes, and its two ways to a frame.
+//! The linear shell's method: what binding it computes, and its two ways to a frame.
 
 use glam::DVec3;
-use pliant_mesh::{Cancel, Progress, SurfaceVertex};
+use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
 use rayon::prelude::*;
 
 use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
 use crate::shell::{Shell, ShellError};
-use crate::{BindError, HandleBases, Laplacian, Ordering, Problem, SolveError};
+use crate::shell_operator::ShellOperator;
+use crate::{Bilaplacian, BindError, HandleBases, Laplacian, Ordering, Problem, SolveError};
 
-/// The bound bi-Laplacian.
+/// The bound linear shell.
 #[derive(Debug)]
 pub(crate) struct Plate {
     shell: Shell,
@@ -27,6 +28,7 @@ impl Plate {
     /// Assembles, factors, checks, and solves for the bases of `handles`.
     pub fn bind(
         problem: &Problem,
+        options: &Bilaplacian,
         partition: &Partition,
         handles: &[Handle],
         ordering: &Ordering,
@@ -40,10 +42,18 @@ impl Plate {
         cancel.check()?;
         progress.set(0.1);
         let rows = bent_rows(problem, solved, handles);
-        let laplacian = Laplacian::with_rows(problem.surface, problem.topology, problem.stiffness, &rows);
+        let laplacian = Laplacian::discretised(
+            problem.surface,
+            problem.topology,
+            problem.stiffness,
+            &rows,
+            options.discretisation,
+        );
+        let diagonal = bounding_box(&problem.surface.positions).map_or(0.0, |bounds| bounds.diagonal());
+        let operator = ShellOperator::new(laplacian, options, diagonal);
         cancel.check()?;
         progress.set(0.2);
-        let mut shell = Shell::new(laplacian, &order, cancel).map_err(refuse)?;
+        let mut shell = Shell::new(operator, &order, cancel).map_err(refuse)?;
         progress.set(0.7);
         shell.check(cancel).map_err(refuse)?;
         cancel.check()?;
@@ -54,6 +64,7 @@ impl Plate {
                 let coordinates = |vertex: u32| handle.coordinates(problem.surface.positions[vertex as usize]);
                 let local = |vertex: u32| {
                     shell
+                        .operator
                         .laplacian
                         .local(vertex)
                         .map(|local| (local as u32, coordinates(vertex)))
@@ -63,7 +74,7 @@ impl Plate {
             .collect();
         let solved_locals: Vec<u32> = solved
             .iter()
-            .filter_map(|&v| shell.laplacian.local(v))
+            .filter_map(|&v| shell.operator.laplacian.local(v))
             .map(|local| local as u32)
             .collect();
         let columns: Vec<Columns> = prescribed
@@ -108,7 +119,7 @@ impl Plate {
     /// Sentences about what had to be repaired.
     pub fn warnings(&self) -> Vec<String> {
         let mut sentences = Vec::new();
-        match self.shell.laplacian.mollified_faces() {
+        match self.shell.operator.laplacian.mollified_faces() {
             0 => {}
             1 => sentences.push("1 degenerate triangle was given the smallest safe shape".to_owned()),
             count => sentences.push(format!(
@@ -117,7 +128,7 @@ impl Plate {
         }
         if self.shell.shift > 0.0 {
             sentences.push(format!(
-                "the thin plate was barely stable on this mesh: it was stiffened by {:.0e} of its diagonal and refined",
+                "the shell was barely stable on this mesh: it was stiffened by {:.0e} of its diagonal and refined",
                 self.shell.shift
             ));
         }
@@ -158,12 +169,13 @@ impl Plate {
     pub fn energy_of(&self, displacements: &[DVec3]) -> f64 {
         let d: Vec<[f64; 3]> = self
             .shell
+            .operator
             .laplacian
             .vertices()
             .iter()
             .map(|&v| displacements[v as usize].to_array())
             .collect();
-        self.shell.energy(&d)
+        self.shell.operator.energy(&d)
     }
 
     /// Solves for the solved vertices' displacements from whatever the other vertices' are.
@@ -171,7 +183,7 @@ impl Plate {
     /// # Errors
     /// Where the solution stays too far from the operator's.
     pub fn back_substitute(&self, displacements: &mut [DVec3]) -> Result<(), SolveError> {
-        let vertices = self.shell.laplacian.vertices();
+        let vertices = self.shell.operator.laplacian.vertices();
         let mut d: Vec<[f64; 3]> = vertices
             .iter()
             .map(|&vertex| displacements[vertex as usize].to_array())
@@ -190,7 +202,7 @@ impl Plate {
 
     /// The handles' vertices and coordinates, as surface vertices.
     pub fn prescribed(&self, handle: usize) -> impl Iterator<Item = (u32, [f64; 4])> + '_ {
-        let vertices = self.shell.laplacian.vertices();
+        let vertices = self.shell.operator.laplacian.vertices();
         self.prescribed[handle]
             .iter()
             .map(|&(local, coordinates)| (vertices[local as usize], coordinates))
@@ -215,17 +227,17 @@ fn solve_handle(
     cancel: &Cancel,
 ) -> Result<Columns, BindError> {
     cancel.check()?;
-    let mut d = vec![[0.0; 4]; shell.laplacian.vertices().len()];
+    let mut d = vec![[0.0; 4]; shell.operator.laplacian.vertices().len()];
     for &(local, coordinates) in own {
         d[local as usize] = coordinates;
     }
     let error = shell.solve(&mut d, cancel).error;
     cancel.check()?;
-    let bent = shell.laplacian.per_area(&d);
+    let potential = shell.operator.potential(&d);
     let energy = |handle: &Vec<(u32, [f64; 4])>| {
         let mut block = [[0.0; 4]; 4];
         for &(local, coordinates) in handle {
-            let force = shell.laplacian.row(local as usize, &bent);
+            let force = shell.operator.force(local as usize, &potential);
             for i in 0..4 {
                 for j in 0..4 {
                     block[i][j] += coordinates[i] * force[j];
@@ -240,7 +252,7 @@ fn solve_handle(
         .collect();
     let worst_vertex = own
         .first()
-        .map_or(0, |&(local, _)| shell.laplacian.vertices()[local as usize]);
+        .map_or(0, |&(local, _)| shell.operator.laplacian.vertices()[local as usize]);
     Ok(Columns {
         rows,
         energies: prescribed.iter().map(energy).collect(),
@@ -249,7 +261,8 @@ fn solve_handle(
     })
 }
 
-/// The vertices where L d can differ from zero: solved ones, handles and their neighbours, ascending.
+/// The vertices where L d can differ from zero: solved ones, handles and their neighbours, ascending. Their rows are
+/// enough at every order: further out all inner factors are zero, as they should be.
 fn bent_rows(problem: &Problem, solved: &[u32], handles: &[Handle]) -> Vec<u32> {
     let mut bent = vec![false; problem.surface.positions.len()];
     for &vertex in solved.iter().chain(handles.iter().flat_map(|handle| &handle.vertices)) {

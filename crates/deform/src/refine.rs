@@ -114,7 +114,7 @@ fn conjugate_gradients<const K: usize>(shell: &Shell, mut r: Vec<[f64; K]>, canc
     let mut p = z.clone();
     let mut rho = dots(&r, &z);
     let first = rho;
-    let mut scattered = vec![[0.0; K]; shell.laplacian.vertices().len()];
+    let mut scattered = vec![[0.0; K]; shell.operator.laplacian.vertices().len()];
     for _ in 0..GRADIENT_STEPS {
         if cancel.is_cancelled() || (0..K).all(|k| rho[k].is_nan() || rho[k] <= GRADIENT_DROP * first[k]) {
             break;

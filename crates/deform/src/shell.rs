@@ -1,4 +1,4 @@
-//! The bound thin plate: A_ff d_f = −A_fc d_c with A = L M⁻¹ L, factored, refined and checked.
+//! The bound linear shell: A_ff d_f = −A_fc d_c, factored, refined and checked.
 //!
 //! A factorisation that succeeds proves nothing: condition numbers reach 1e15 on real scans. So every solve is refined
 //! (see `refine`), and every bind solves for the constant 1, whose solution is known, and refuses where it is missed.
@@ -6,16 +6,17 @@
 use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
-use crate::assembly::{CONSTRAINED, assemble_plate};
+use crate::BindError;
+use crate::assembly::{CONSTRAINED, assemble_shell};
 use crate::cholesky::{Factor, FactorError};
 use crate::operators::CHUNK;
 use crate::refine::{Outcome, solve};
-use crate::{BindError, Laplacian};
+use crate::shell_operator::ShellOperator;
 
-/// The factored plate over the local vertices of its Laplacian.
+/// The factored shell over the local vertices of its Laplacian.
 #[derive(Debug)]
 pub(crate) struct Shell {
-    pub laplacian: Laplacian,
+    pub operator: ShellOperator,
     /// The local vertex of each column of the factor.
     columns: Vec<u32>,
     scale: Vec<f64>,
@@ -43,9 +44,10 @@ const SHIFTS: [f64; 4] = [0.0, 1e-13, 1e-11, 1e-9];
 const TOLERANCE: f64 = 1e-7;
 
 impl Shell {
-    /// Factors the plate in which the surface vertices `order` are solved for, eliminated in that order; `laplacian`
-    /// has full rows for them and their neighbours.
-    pub fn new(laplacian: Laplacian, order: &[u32], cancel: &Cancel) -> Result<Self, ShellError> {
+    /// Factors the shell in which the surface vertices `order` are solved for, eliminated in that order; the
+    /// operator's Laplacian has full rows for them and their neighbours.
+    pub fn new(operator: ShellOperator, order: &[u32], cancel: &Cancel) -> Result<Self, ShellError> {
+        let laplacian = &operator.laplacian;
         let columns: Vec<u32> = order
             .iter()
             .filter_map(|&vertex| laplacian.local(vertex))
@@ -55,7 +57,7 @@ impl Shell {
         for (column, &local) in columns.iter().enumerate() {
             column_of[local as usize] = column as u32;
         }
-        let mut plate = assemble_plate(&laplacian, &columns, &column_of);
+        let mut plate = assemble_shell(&operator, &columns, &column_of);
         cancel.check().map_err(|_| ShellError::Cancelled)?;
         let mut failed = None;
         for shift in SHIFTS {
@@ -63,7 +65,7 @@ impl Shell {
                 Ok(factor) => {
                     let scale = std::mem::take(&mut plate.scale);
                     return Ok(Self {
-                        laplacian,
+                        operator,
                         columns,
                         scale,
                         factor,
@@ -80,7 +82,7 @@ impl Shell {
             .and_then(|column| columns.get(column))
             .map_or(0, |&local| local as usize);
         Err(ShellError::NotPositiveDefinite {
-            vertex: laplacian.vertices()[local],
+            vertex: operator.laplacian.vertices()[local],
         })
     }
 
@@ -101,12 +103,16 @@ impl Shell {
 
     /// −S A d on the solved vertices, by differences along edges.
     pub fn scaled_residual<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
-        let bent = self.laplacian.per_area(d);
+        let potential = self.operator.potential(d);
         self.columns
             .par_iter()
             .with_min_len(CHUNK)
             .zip(&self.scale)
-            .map(|(&local, &scale)| self.laplacian.row(local as usize, &bent).map(|value| -value * scale))
+            .map(|(&local, &scale)| {
+                self.operator
+                    .force(local as usize, &potential)
+                    .map(|value| -value * scale)
+            })
             .collect()
     }
 
@@ -117,7 +123,7 @@ impl Shell {
 
     /// Solves for the constant 1, compares, and keeps how fast refinement was.
     pub fn check(&mut self, cancel: &Cancel) -> Result<(), ShellError> {
-        let mut ones = vec![[1.0]; self.laplacian.vertices().len()];
+        let mut ones = vec![[1.0]; self.operator.laplacian.vertices().len()];
         self.contraction = solve(self, &mut ones, 0.0, cancel).contraction;
         cancel.check().map_err(|_| ShellError::Cancelled)?;
         let mut worst = (0.0, 0);
@@ -131,26 +137,10 @@ impl Shell {
             Ok(())
         } else {
             Err(ShellError::Inaccurate {
-                vertex: self.laplacian.vertices()[worst.1 as usize],
+                vertex: self.operator.laplacian.vertices()[worst.1 as usize],
                 error: worst.0,
             })
         }
-    }
-
-    /// ½ Σ_i M_ii |(M⁻¹ L d)_i|² over K functions on the local vertices: ½ dᵀ A d.
-    pub fn energy<const K: usize>(&self, d: &[[f64; K]]) -> f64 {
-        let partial: Vec<f64> = (0..d.len().div_ceil(CHUNK))
-            .into_par_iter()
-            .map(|chunk| {
-                (chunk * CHUNK..((chunk + 1) * CHUNK).min(d.len()))
-                    .map(|local| {
-                        let row = self.laplacian.row(local, d);
-                        self.laplacian.inverse_areas()[local] * row.iter().map(|value| value * value).sum::<f64>()
-                    })
-                    .sum()
-            })
-            .collect();
-        0.5 * partial.iter().sum::<f64>()
     }
 }
 

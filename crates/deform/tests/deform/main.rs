@@ -8,3 +8,4 @@ mod ordering;
 mod plate;
 mod rig;
 mod robust;
+mod shell;

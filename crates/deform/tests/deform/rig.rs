@@ -11,6 +11,7 @@ pub struct Scene {
     pub handle_count: usize,
     pub stiffness: Vec<f64>,
     pub loose: Loose,
+    pub method: Method,
 }
 
 impl Scene {
@@ -24,6 +25,7 @@ impl Scene {
             handle_count: 0,
             stiffness: vec![1.0; count],
             loose: Loose::Follow,
+            method: Method::default(),
         }
     }
 
@@ -68,15 +70,15 @@ impl Scene {
     }
 
     pub fn try_bind(&self) -> Result<Bound, pliant_deform::BindError> {
-        let method = Method::default();
         let ordering = Ordering::of(
             &self.model.topology,
-            method.operator_power(),
+            self.method.operator_power(),
             &Progress::new(),
             &Cancel::new(),
         )
         .unwrap();
-        self.problem(&method).bind(&ordering, &Progress::new(), &Cancel::new())
+        self.problem(&self.method)
+            .bind(&ordering, &Progress::new(), &Cancel::new())
     }
 
     pub fn problem<'a>(&'a self, method: &'a Method) -> Problem<'a> {
