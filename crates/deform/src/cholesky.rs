@@ -1,26 +1,29 @@
-//! The sparse Cholesky factor: faer's supernodal L Lᵀ in the order that the matrix already has.
+//! The sparse Cholesky factor L Lᵀ, supernodal, in the order that the matrix already has.
 //!
-//! Symbolic and numeric parts are two steps, since the pattern outlives the values. Sequential inside (`Par::Seq`).
+//! Symbolic and numeric parts are two steps, since the pattern outlives the values: faer analyses, `multifrontal`
+//! factors over the subtrees that `forest` cuts, `triangular` solves over the same.
 //!
 //! Measured on horse.ply and once subdivided (45,797 and 183,208 free vertices, one core of a busy machine, processor
-//! time): factoring took 114 and 840 ms supernodal, 720 and 12,300 ms simplicial; solving for three right-hand sides 18
-//! and 98 ms supernodal, 12 and 74 ms simplicial. A frame solves nothing, so the factorisation decides. Other
-//! relaxations of the supernodes than faer's changed fill (6.4 to 6.8 million numbers) and times by under a tenth.
+//! time) with faer's own factorisations: 114 and 840 ms supernodal, 720 and 12,300 ms simplicial; solving for three
+//! right-hand sides 18 and 98 ms supernodal, 12 and 74 ms simplicial. A frame solves nothing, so the factorisation
+//! decides. Other relaxations of the supernodes than faer's changed fill (6.4 to 6.8 million numbers) and times by
+//! under a tenth.
 
-use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
+use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SymbolicSupernodalParams;
 use faer::sparse::linalg::cholesky::{simplicial, supernodal};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use pliant_mesh::Cancel;
 
 use crate::assembly::PlateMatrix;
-use crate::triangular;
+use crate::forest::Forest;
+use crate::{multifrontal, triangular};
 
 /// A factor of the scaled matrix.
 #[derive(Debug)]
 pub(crate) struct Factor {
     symbolic: supernodal::SymbolicSupernodalCholesky<u32>,
+    forest: Forest,
     values: Vec<f64>,
 }
 
@@ -31,63 +34,42 @@ pub(crate) enum FactorError {
     Pivot(usize),
     /// Too large for the machine or for the index type.
     Memory,
+    /// Somebody raised the flag.
+    Cancelled,
 }
 
 impl Factor {
     /// Factors the matrix with `shift` added to its unit diagonal.
-    pub fn of(plate: &PlateMatrix, shift: f64) -> Result<Self, FactorError> {
+    pub fn of(plate: &PlateMatrix, shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
         let symbolic = analyse(plate).ok_or(FactorError::Memory)?;
-        let mut values = Vec::new();
-        values
+        // Whether it fits; then zeros from the system, which are only touched where the factor is written.
+        Vec::<f64>::new()
             .try_reserve_exact(symbolic.len_val())
             .map_err(|_| FactorError::Memory)?;
-        values.resize(symbolic.len_val(), 0.0);
-        let mut factor = Self { symbolic, values };
-        factor.fill(plate, shift)?;
+        let values = vec![0.0; symbolic.len_val()];
+        let forest = Forest::of(&symbolic);
+        let mut factor = Self {
+            symbolic,
+            forest,
+            values,
+        };
+        factor.fill(plate, shift, cancel)?;
         Ok(factor)
     }
 
     /// Factors again, for other values on the same pattern.
-    pub fn fill(&mut self, plate: &PlateMatrix, shift: f64) -> Result<(), FactorError> {
-        let count = plate.scale.len();
-        let shifted: Vec<f64>;
-        let lower_values = if shift == 0.0 {
-            &plate.lower_values
-        } else {
-            let mut values = plate.lower_values.clone();
-            for &first in &plate.lower_offsets[..count] {
-                values[first as usize] += shift;
-            }
-            shifted = values;
-            &shifted
-        };
-        let pattern =
-            SymbolicSparseColMatRef::new_unsorted_checked(count, count, &plate.lower_offsets, None, &plate.lower_rows);
-        let matrix = SparseColMatRef::new(pattern, lower_values);
-        let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
-            &self.symbolic,
-            Par::Seq,
-            Default::default(),
-        );
-        let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::Memory)?;
-        let outcome = supernodal::factorize_supernodal_numeric_llt(
-            &mut self.values,
-            matrix,
-            LltRegularization::default(),
-            &self.symbolic,
-            Par::Seq,
-            MemStack::new(&mut memory),
-            Default::default(),
-        );
-        match outcome {
-            Ok(_) => Ok(()),
-            Err(LltError::NonPositivePivot { index }) => Err(FactorError::Pivot(index)),
-        }
+    pub fn fill(&mut self, plate: &PlateMatrix, shift: f64, cancel: &Cancel) -> Result<(), FactorError> {
+        multifrontal::factor(plate, shift, &self.symbolic, &self.forest, &mut self.values, cancel)
     }
 
     /// How many numbers the factor stores.
     pub fn stored(&self) -> usize {
         self.values.len()
+    }
+
+    #[cfg(test)]
+    pub fn parts(&self) -> (&supernodal::SymbolicSupernodalCholesky<u32>, &Forest) {
+        (&self.symbolic, &self.forest)
     }
 
     /// Solves for K right-hand sides in place.
@@ -120,19 +102,33 @@ fn analyse(plate: &PlateMatrix) -> Option<supernodal::SymbolicSupernodalCholesky
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
-mod tests {
+pub(crate) mod tests {
     use super::Factor;
     use crate::Bilaplacian;
     use crate::Laplacian;
+    use crate::Ordering;
     use crate::assembly::{CONSTRAINED, PlateMatrix, assemble_shell};
     use crate::shell_operator::ShellOperator;
-    use pliant_mesh::shapes;
+    use pliant_mesh::{Cancel, Drawn, Progress, Topology, shapes};
+
+    /// The plate's factor with every ninth vertex held, in the order that binding takes.
+    pub(crate) fn factor_of(drawn: Drawn) -> Factor {
+        let plate = plate_of(drawn, |topology, columns| {
+            let ordering = Ordering::of(topology, 2, &Progress::new(), &Cancel::new()).unwrap();
+            ordering.restricted(topology, &columns)
+        });
+        Factor::of(&plate, 0.0, &Cancel::new()).unwrap()
+    }
 
     fn plate() -> PlateMatrix {
-        let model = shapes::model(shapes::torus(14, 9));
+        plate_of(shapes::torus(14, 9), |_, columns| columns)
+    }
+
+    fn plate_of(drawn: Drawn, order: impl FnOnce(&Topology, Vec<u32>) -> Vec<u32>) -> PlateMatrix {
+        let model = shapes::model(drawn);
         let count = model.surface.positions.len();
         let laplacian = Laplacian::of(&model.surface, &model.topology, &vec![1.0; count]);
-        let columns: Vec<u32> = (0..count as u32).filter(|v| v % 9 != 0).collect();
+        let columns = order(&model.topology, (0..count as u32).filter(|v| v % 9 != 0).collect());
         let mut column_of = vec![CONSTRAINED; count];
         for (column, &vertex) in columns.iter().enumerate() {
             column_of[vertex as usize] = column as u32;
@@ -159,7 +155,7 @@ mod tests {
 
     fn solving_undoes_multiplying<const K: usize>() {
         let plate = plate();
-        let factor = Factor::of(&plate, 0.0).unwrap();
+        let factor = Factor::of(&plate, 0.0, &Cancel::new()).unwrap();
         let x: Vec<[f64; K]> = (0..plate.scale.len())
             .map(|i| std::array::from_fn(|k| ((i * 7 + k * 3) % 11) as f64 - 5.0))
             .collect();
@@ -184,10 +180,20 @@ mod tests {
         let mut plate = plate();
         let diagonal = plate.lower_offsets[5] as usize;
         plate.lower_values[diagonal] = -1.0;
-        let refused = Factor::of(&plate, 0.0).err();
+        let refused = Factor::of(&plate, 0.0, &Cancel::new()).err();
         assert!(
             matches!(refused, Some(super::FactorError::Pivot(column)) if column >= 5),
             "{refused:?}"
+        );
+    }
+
+    #[test]
+    fn a_raised_flag_ends_a_factorisation() {
+        let cancel = Cancel::new();
+        cancel.cancel();
+        assert_eq!(
+            Factor::of(&plate(), 0.0, &cancel).err(),
+            Some(super::FactorError::Cancelled)
         );
     }
 }

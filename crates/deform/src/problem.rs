@@ -58,7 +58,7 @@ impl Problem<'_> {
     ///
     /// # Errors
     /// [`BindError`] names what is wrong with the problem, or where the system could not be solved;
-    /// [`BindError::Cancelled`] once `cancel` is raised, which is looked at between the steps; the longest is one numeric
+    /// [`BindError::Cancelled`] once `cancel` is raised, which is looked at between the steps and many times within a
     /// factorisation.
     pub fn bind(&self, ordering: &Ordering, progress: &Progress, cancel: &Cancel) -> Result<Bound, BindError> {
         Bound::bind(self, ordering, progress, cancel)

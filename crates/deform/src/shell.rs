@@ -61,7 +61,7 @@ impl Shell {
         cancel.check().map_err(|_| ShellError::Cancelled)?;
         let mut failed = None;
         for shift in SHIFTS {
-            match Factor::of(&plate, shift) {
+            match Factor::of(&plate, shift, cancel) {
                 Ok(factor) => {
                     let scale = std::mem::take(&mut plate.scale);
                     return Ok(Self {
@@ -75,6 +75,7 @@ impl Shell {
                 }
                 Err(FactorError::Pivot(column)) => failed = failed.or(Some(column)),
                 Err(FactorError::Memory) => return Err(ShellError::OutOfMemory),
+                Err(FactorError::Cancelled) => return Err(ShellError::Cancelled),
             }
             cancel.check().map_err(|_| ShellError::Cancelled)?;
         }

@@ -1,0 +1,131 @@
+//! The tree of supernodes, cut into independent subtrees that can be worked on beside each other.
+//!
+//! Columns stand in postorder, so a subtree is a run of supernodes, its columns a run of columns and its numbers one
+//! slice of the factor. The cut depends on the work alone, never on the number of threads: a subtree is a task once it
+//! holds at most a [`SHARE`]th of all work. What stands above the cut, the *top*, has few supernodes and large ones.
+
+use std::ops::Range;
+
+use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+
+/// A task has at most one over this of the whole work.
+const SHARE: f64 = 24.0;
+
+/// No parent: a root.
+pub(crate) const ROOT: u32 = u32::MAX;
+
+/// The supernodes' tree and its cut.
+#[derive(Debug)]
+pub(crate) struct Forest {
+    /// The parent of each supernode, [`ROOT`] at a root.
+    pub parent: Vec<u32>,
+    /// Runs of supernodes, ascending and without gaps: a task's subtree, or one supernode of the top.
+    pub parts: Vec<Part>,
+}
+
+/// One run of supernodes.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(crate) enum Part {
+    /// A subtree that depends on nothing outside; its last supernode is its root.
+    Task(Range<usize>),
+    /// A supernode above the cut.
+    Top(usize),
+}
+
+impl Forest {
+    /// Cuts the tree of the factor's supernodes.
+    pub fn of(symbolic: &SymbolicSupernodalCholesky<u32>) -> Self {
+        let count = symbolic.n_supernodes();
+        let mut parent = vec![ROOT; count];
+        let mut work = vec![0.0; count];
+        let mut first: Vec<usize> = (0..count).collect();
+        let mut size = vec![1; count];
+        let supernode_of = |column: u32| symbolic.supernode_end().partition_point(|&end| end <= column);
+        let mut total = 0.0;
+        for s in 0..count {
+            let pattern = pattern(symbolic, s);
+            let width = (symbolic.supernode_end()[s] - symbolic.supernode_begin()[s]) as f64;
+            let height = width + pattern.len() as f64;
+            let own = width * height * height;
+            work[s] += own;
+            total += own;
+            if let Some(&row) = pattern.first() {
+                let above = supernode_of(row);
+                parent[s] = above as u32;
+                work[above] += work[s];
+                first[above] = first[above].min(first[s]);
+                size[above] += size[s];
+            }
+        }
+        let small = |s: usize| work[s] * SHARE <= total;
+        let mut parts = Vec::new();
+        let mut next = 0;
+        for s in 0..count {
+            let is_root_of_task = small(s) && (parent[s] == ROOT || !small(parent[s] as usize));
+            if is_root_of_task && first[s] >= next && size[s] == s + 1 - first[s] {
+                // Whatever stands before the subtree and is in no task goes to the top.
+                parts.extend((next..first[s]).map(Part::Top));
+                parts.push(Part::Task(first[s]..s + 1));
+                next = s + 1;
+            }
+        }
+        parts.extend((next..count).map(Part::Top));
+        Self { parent, parts }
+    }
+}
+
+/// The rows below a supernode's own columns, ascending.
+pub(crate) fn pattern(symbolic: &SymbolicSupernodalCholesky<u32>, s: usize) -> &[u32] {
+    let first = symbolic.col_ptr_for_row_idx()[s] as usize;
+    &symbolic.row_idx()[first..first + symbolic.nnz_per_super()[s] as usize]
+}
+
+/// A supernode's columns.
+pub(crate) fn columns(symbolic: &SymbolicSupernodalCholesky<u32>, s: usize) -> Range<usize> {
+    symbolic.supernode_begin()[s] as usize..symbolic.supernode_end()[s] as usize
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::{Part, ROOT, columns, pattern};
+    use crate::cholesky::tests::factor_of;
+    use pliant_mesh::shapes;
+
+    #[test]
+    fn subtrees_cover_all_and_need_nothing_from_each_other() {
+        for (name, drawn) in [
+            ("torus", shapes::torus(40, 30)),
+            ("two", shapes::together(&[shapes::torus(9, 7), shapes::grid(20, 20)])),
+        ] {
+            let factor = factor_of(drawn);
+            let (symbolic, forest) = factor.parts();
+            let mut next = 0;
+            let mut tasks = 0;
+            for part in &forest.parts {
+                let range = match part {
+                    Part::Task(range) => range.clone(),
+                    Part::Top(s) => *s..s + 1,
+                };
+                assert_eq!(range.start, next, "{name}");
+                next = range.end;
+                if matches!(part, Part::Task(_)) {
+                    tasks += 1;
+                    for s in range.clone() {
+                        let parent = forest.parent[s];
+                        let is_root = s + 1 == range.end;
+                        assert!(is_root || (parent as usize) < range.end, "{name}");
+                        // Nothing below the columns of another task: what lies outside is in the root's pattern.
+                        let outside = pattern(symbolic, range.end - 1);
+                        let end = columns(symbolic, range.end - 1).end;
+                        let beyond = pattern(symbolic, s).iter().filter(|row| **row as usize >= end);
+                        assert!(is_root || beyond.clone().all(|row| outside.contains(row)), "{name}");
+                    }
+                }
+            }
+            assert_eq!(next, symbolic.n_supernodes(), "{name}");
+            assert!(tasks > 4 && forest.parent.contains(&ROOT), "{name}: {tasks}");
+            assert!((0..next).all(|s| pattern(symbolic, s).is_sorted()), "{name}");
+        }
+    }
+}
