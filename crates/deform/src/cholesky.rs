@@ -74,7 +74,7 @@ impl Factor {
 
     /// Solves for K right-hand sides in place.
     pub fn solve<const K: usize>(&self, x: &mut [[f64; K]]) {
-        triangular::solve_in_place(&self.symbolic, &self.values, x);
+        triangular::solve_in_place(&self.symbolic, &self.forest, &self.values, x);
     }
 }
 
@@ -195,5 +195,35 @@ pub(crate) mod tests {
             Factor::of(&plate(), 0.0, &cancel).err(),
             Some(super::FactorError::Cancelled)
         );
+    }
+
+    #[test]
+    fn the_bits_of_factor_and_solution_do_not_depend_on_the_number_of_threads() {
+        // Large enough for tasks, and for supernodes of more than one block.
+        let plate = plate_of(shapes::icosphere(5), |topology, columns| {
+            let ordering = Ordering::of(topology, 2, &Progress::new(), &Cancel::new()).unwrap();
+            ordering.restricted(topology, &columns)
+        });
+        let outcome = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let factor = Factor::of(&plate, 0.0, &Cancel::new()).unwrap();
+                let mut x: Vec<[f64; 3]> = (0..plate.scale.len()).map(|i| [1.0, i as f64, -0.3]).collect();
+                factor.solve(&mut x);
+                (factor.values, x)
+            })
+        };
+        let (values, x) = outcome(1);
+        for threads in [2, 5] {
+            let (other_values, other_x) = outcome(threads);
+            assert!(
+                values
+                    .iter()
+                    .zip(&other_values)
+                    .all(|(a, b)| a.to_bits() == b.to_bits())
+            );
+            let bits = |row: &[f64; 3]| row.map(f64::to_bits);
+            assert!(x.iter().map(bits).eq(other_x.iter().map(bits)), "{threads}");
+        }
     }
 }

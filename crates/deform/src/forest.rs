@@ -21,6 +21,9 @@ pub(crate) struct Forest {
     pub parent: Vec<u32>,
     /// Runs of supernodes, ascending and without gaps: a task's subtree, or one supernode of the top.
     pub parts: Vec<Part>,
+    /// The supernodes' patterns, one after the other as the factor has them, in the coordinates of their part: in a
+    /// task its own columns from 0 on, then the rows of its root's pattern; in the top the factor's columns.
+    pub places: Vec<u32>,
 }
 
 /// One run of supernodes.
@@ -70,14 +73,42 @@ impl Forest {
             }
         }
         parts.extend((next..count).map(Part::Top));
-        Self { parent, parts }
+        let places = places(symbolic, &parts);
+        Self { parent, parts, places }
     }
+}
+
+fn places(symbolic: &SymbolicSupernodalCholesky<u32>, parts: &[Part]) -> Vec<u32> {
+    let mut places = symbolic.row_idx().to_vec();
+    let mut outside = vec![0; symbolic.supernode_end().last().map_or(0, |&end| end as usize)];
+    for part in parts {
+        let Part::Task(range) = part else { continue };
+        let (start, end) = (
+            columns(symbolic, range.start).start as u32,
+            columns(symbolic, range.end - 1).end as u32,
+        );
+        for (place, &row) in (end - start..).zip(pattern(symbolic, range.end - 1)) {
+            outside[row as usize] = place;
+        }
+        for s in range.clone() {
+            for place in &mut places[pattern_range(symbolic, s)] {
+                let row = *place;
+                *place = if row < end { row - start } else { outside[row as usize] };
+            }
+        }
+    }
+    places
+}
+
+/// Where a supernode's pattern stands among all of them.
+pub(crate) fn pattern_range(symbolic: &SymbolicSupernodalCholesky<u32>, s: usize) -> Range<usize> {
+    let first = symbolic.col_ptr_for_row_idx()[s] as usize;
+    first..first + symbolic.nnz_per_super()[s] as usize
 }
 
 /// The rows below a supernode's own columns, ascending.
 pub(crate) fn pattern(symbolic: &SymbolicSupernodalCholesky<u32>, s: usize) -> &[u32] {
-    let first = symbolic.col_ptr_for_row_idx()[s] as usize;
-    &symbolic.row_idx()[first..first + symbolic.nnz_per_super()[s] as usize]
+    &symbolic.row_idx()[pattern_range(symbolic, s)]
 }
 
 /// A supernode's columns.
