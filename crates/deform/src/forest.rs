@@ -8,8 +8,10 @@ use std::ops::Range;
 
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 
-/// A task has at most one over this of the whole work.
-const SHARE: f64 = 24.0;
+/// A task has at most one over this of the whole work. Fewer, larger tasks leave less to the top, whose supernodes run
+/// one by one: on two cores at 183,208 free vertices, tasks and top took 413 + 135 ms at 3, 377 + 213 at 5, 364 + 250 at
+/// 8 and 270 + 330 at 24.
+const SHARE: f64 = 4.0;
 
 /// No parent: a root.
 pub(crate) const ROOT: u32 = u32::MAX;
@@ -155,7 +157,7 @@ mod tests {
                 }
             }
             assert_eq!(next, symbolic.n_supernodes(), "{name}");
-            assert!(tasks > 4 && forest.parent.contains(&ROOT), "{name}: {tasks}");
+            assert!(tasks > 1 && forest.parent.contains(&ROOT), "{name}: {tasks}");
             assert!((0..next).all(|s| pattern(symbolic, s).is_sorted()), "{name}");
         }
     }

@@ -1,9 +1,9 @@
 //! The thin plate as a material: deflections known by formula, and what stiffness does.
 
 use crate::rig::Scene;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat4, DVec3, DVec4};
 use pliant_deform::Role;
-use pliant_mesh::shapes;
+use pliant_mesh::{Drawn, shapes};
 
 /// The largest error of a strip, clamped over slabs at both ends, of which one is lifted by 1, against the beam's
 /// cubic 3 s² − 2 s³.
@@ -29,6 +29,48 @@ fn strip_error(cells: usize) -> f64 {
 fn a_lifted_strip_converges_to_the_beam() {
     let errors = [10, 20, 40].map(strip_error);
     assert!(errors[0] < 0.1, "{errors:?}");
+    assert!(
+        errors[1] < 0.65 * errors[0] && errors[2] < 0.65 * errors[1],
+        "{errors:?}"
+    );
+}
+
+/// The largest error of a ring plate of radii 1 and 3, clamped over two rows at both rims, its inner rim lifted by 1,
+/// against w = a + b r² + c ln r + d r² ln r with w and w' given at both ends of what is free.
+fn ring_error(cells: usize) -> f64 {
+    let step = 2.0 / cells as f64;
+    let around = 3 * cells;
+    let sheet = shapes::grid(around, cells);
+    let positions = sheet.positions.iter().map(|p| {
+        // The seam's two sides are welded where they fall on each other to the last bit.
+        let turn = (p.x * around as f64).round() as usize % around;
+        let (sin, cos) = (std::f64::consts::TAU * turn as f64 / around as f64).sin_cos();
+        let radius = 1.0 + 2.0 * p.y;
+        DVec3::new(radius * cos, radius * sin, 0.0)
+    });
+    let positions = positions.collect();
+    let scene = Scene::new(Drawn { positions, ..sheet })
+        .with(Role::Fixed, |p| p.length() > 3.0 - 1.5 * step)
+        .with(Role::Handle(0), |p| p.length() < 1.0 + 1.5 * step);
+    let displacements = scene.moved(&[DAffine3::from_translation(DVec3::Z)]);
+    let (inner, outer) = (1.0 + step, 3.0 - step);
+    let row = |r: f64| DVec4::new(1.0, r * r, r.ln(), r * r * r.ln());
+    let slope = |r: f64| DVec4::new(0.0, 2.0 * r, 1.0 / r, 2.0 * r * r.ln() + r);
+    let rows = DMat4::from_cols(row(inner), row(outer), slope(inner), slope(outer)).transpose();
+    let coefficients = rows.inverse() * DVec4::new(1.0, 0.0, 0.0, 0.0);
+    let mut worst = 0.0_f64;
+    for (displacement, p) in displacements.iter().zip(scene.positions()) {
+        let exact = coefficients.dot(row(p.length().clamp(inner, outer)));
+        worst = worst.max((displacement.z - exact).abs());
+    }
+    worst
+}
+
+#[test]
+fn a_clamped_ring_plate_converges_to_the_analytic_deflection() {
+    // Clamps by two rows of vertices are of first order.
+    let errors = [12, 24, 48].map(ring_error);
+    assert!(errors[0] < 0.12 && errors[2] < 0.03, "{errors:?}");
     assert!(
         errors[1] < 0.65 * errors[0] && errors[2] < 0.65 * errors[1],
         "{errors:?}"
