@@ -4,11 +4,12 @@ use glam::{DAffine3, DVec3};
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
+use crate::arap::ArapSolver;
 use crate::bases::FRAME_CHUNK;
 use crate::follow::{Follower, carry, followers};
 use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
-use crate::plate::Plate;
+use crate::plate::{Plate, repairs};
 use crate::{BindError, HandleBases, Method, Ordering, Problem, SolveError};
 
 /// A bound problem: everything that does not depend on the handles' transforms is solved.
@@ -29,6 +30,7 @@ pub struct Bound {
 #[derive(Debug)]
 enum Solver {
     Plate(Box<Plate>),
+    Arap(Box<ArapSolver>),
 }
 
 /// What one step did.
@@ -36,8 +38,11 @@ enum Solver {
 pub struct Step {
     /// Whether further steps to the same targets would change nothing. Linear methods: always.
     pub converged: bool,
-    /// The deformation energy, 0 at rest; for the linear shell ½ dᵀ A d (see [`crate::Bilaplacian`]), which has no
-    /// unit and does not change with the model's scale. Components without a handle are left out.
+    /// Whether further steps to the same targets do nothing: it converged, or met the method's limit.
+    pub finished: bool,
+    /// The deformation energy, 0 at rest, which has no unit and does not change with the model's scale: for the linear
+    /// shell ½ dᵀ A d (see [`crate::Bilaplacian`]), for ARAP its energy over ½ Σ w |e|² of the rest shape. Components
+    /// without a handle are left out.
     pub energy: f64,
     /// How many steps were taken towards these targets, this one included.
     pub iteration: u32,
@@ -74,6 +79,11 @@ impl Bound {
                 partition.warnings.extend(plate.warnings());
                 Solver::Plate(Box::new(plate))
             }
+            Method::Arap(options) => {
+                let arap = ArapSolver::bind(problem, options, &partition, &handles, ordering, progress, cancel)?;
+                partition.warnings.extend(repairs(arap.mollified_faces()));
+                Solver::Arap(Box::new(arap))
+            }
         };
         Ok(Self {
             revision: problem.revision,
@@ -107,13 +117,17 @@ impl Bound {
         if let Some(handle) = world_targets.iter().position(|target| !target.is_finite()) {
             return Err(SolveError::TargetNotFinite { handle });
         }
-        self.motions = self
+        let motions: Vec<Motion> = self
             .handles
             .iter()
             .zip(world_targets)
             .map(|(handle, target)| handle.motion(target))
             .collect();
-        self.iteration = 0;
+        // A method that iterates goes on where it is.
+        if matches!(self.solver, Solver::Plate(_)) || motions != self.motions {
+            self.iteration = 0;
+        }
+        self.motions = motions;
         Ok(())
     }
 
@@ -130,7 +144,8 @@ impl Bound {
         })
     }
 
-    /// As [`Bound::step`], but by solving with the factor in f64 instead of using the handles' bases.
+    /// As [`Bound::step`], but by solving with the factor in f64 instead of using the handles' bases. What has no bases
+    /// takes a step.
     ///
     /// # Errors
     /// As [`Bound::step`].
@@ -141,7 +156,8 @@ impl Bound {
         })
     }
 
-    /// The handles' vertices and zeros first, then what `solve` makes of them, then the followers and the gate.
+    /// The handles' vertices and zeros first, then what `solve` makes of them on a plate or a step of ARAP, then the
+    /// followers and the gate.
     fn frame(
         &mut self,
         displacements: &mut [DVec3],
@@ -157,19 +173,32 @@ impl Bound {
         self.iteration += 1;
         let mut step = Step {
             converged: true,
+            finished: true,
             energy: 0.0,
             iteration: self.iteration,
         };
         if self.motions.iter().all(Motion::is_rest) {
+            if let Solver::Arap(arap) = &mut self.solver {
+                arap.rest();
+            }
             return Ok(step);
         }
-        let Solver::Plate(plate) = &self.solver;
         for (handle, motion) in self.motions.iter().enumerate() {
-            for (vertex, coordinates) in plate.prescribed(handle) {
-                displacements[vertex as usize] = motion.displace(coordinates);
+            match &self.solver {
+                Solver::Plate(plate) => place(plate.prescribed(handle), motion, displacements),
+                Solver::Arap(arap) => place(arap.prescribed(handle), motion, displacements),
             }
         }
-        step.energy = solve(plate, &self.motions, displacements).inspect_err(|_| displacements.fill(DVec3::ZERO))?;
+        match &mut self.solver {
+            Solver::Plate(plate) => {
+                step.energy =
+                    solve(plate, &self.motions, displacements).inspect_err(|_| displacements.fill(DVec3::ZERO))?;
+            }
+            Solver::Arap(arap) => {
+                (step.converged, step.energy) = arap.step(&self.motions, displacements);
+                step.finished = step.converged || self.iteration >= arap.max_iterations();
+            }
+        }
         carry(&self.followers, displacements);
         gate(displacements)?;
         Ok(step)
@@ -178,20 +207,25 @@ impl Bound {
     /// The energy of any displacements, one a surface vertex, as in [`Step::energy`]; `None` where the method has no
     /// energy or the length is wrong.
     pub fn energy_of(&self, displacements: &[DVec3]) -> Option<f64> {
-        let Solver::Plate(plate) = &self.solver;
-        (displacements.len() == self.vertex_count).then(|| plate.energy_of(displacements))
+        (displacements.len() == self.vertex_count).then(|| match &self.solver {
+            Solver::Plate(plate) => plate.energy_of(displacements),
+            Solver::Arap(arap) => arap.energy_of(displacements),
+        })
     }
 
     /// The handles' bases, where the method is linear.
     pub fn handle_bases(&self) -> Option<&HandleBases> {
-        let Solver::Plate(plate) = &self.solver;
-        Some(plate.bases())
+        match &self.solver {
+            Solver::Plate(plate) => Some(plate.bases()),
+            Solver::Arap(_) => None,
+        }
     }
 
     /// The energy of the rest shape, as in [`Step::energy`].
     pub fn energy_rest(&self) -> f64 {
-        let Solver::Plate(_) = &self.solver;
-        0.0
+        match self.solver {
+            Solver::Plate(_) | Solver::Arap(_) => 0.0,
+        }
     }
 
     /// Sentences for a person: what components do that lack a handle or a hold, what was repaired.
@@ -211,18 +245,30 @@ impl Bound {
 
     /// How many of them the system is solved for: those that a handle can reach.
     pub fn solved_count(&self) -> usize {
-        self.handle_bases().map_or(0, |bases| bases.vertices().len())
+        match &self.solver {
+            Solver::Plate(plate) => plate.bases().vertices().len(),
+            Solver::Arap(arap) => arap.solved_count(),
+        }
     }
 
     /// How many numbers the system's factor stores, 8 bytes each.
     pub fn factor_len(&self) -> usize {
-        let Solver::Plate(plate) = &self.solver;
-        plate.factor_len()
+        match &self.solver {
+            Solver::Plate(plate) => plate.factor_len(),
+            Solver::Arap(arap) => arap.factor_len(),
+        }
     }
 
     /// [`Problem::revision`] of the problem it was bound from.
     pub fn revision(&self) -> u64 {
         self.revision
+    }
+}
+
+/// Writes where a handle's vertices go.
+fn place(vertices: impl Iterator<Item = (u32, [f64; 4])>, motion: &Motion, displacements: &mut [DVec3]) {
+    for (vertex, coordinates) in vertices {
+        displacements[vertex as usize] = motion.displace(coordinates);
     }
 }
 

@@ -5,9 +5,11 @@
 //! current pool is the caller's, and every result is the same bit for bit whatever its size.
 //!
 //! Binding goes [`Problem`] → `partition` (who is solved for) → [`Laplacian`] → `assembly` → `cholesky` in the
-//! restricted `ordering` → `shell` (`shell_operator`; check; `refine`) → `plate` ([`HandleBases`], energies) → [`Bound`]. A frame is
-//! [`HandleBases`] and `follow`.
+//! restricted `ordering` → `shell` (`shell_operator`; check; `refine`) → `plate` ([`HandleBases`],
+//! energies) → [`Bound`]. A frame is [`HandleBases`] and `follow`. The nonlinear `arap` shares `partition`,
+//! [`Laplacian`], `cholesky` and `follow`, and takes as many steps as it needs.
 
+mod arap;
 mod assembly;
 mod bases;
 mod bilaplacian;
@@ -34,6 +36,7 @@ mod shell;
 mod shell_operator;
 mod triangular;
 
+pub use arap::{Arap, ArapEnergy};
 pub use bases::HandleBases;
 pub use bilaplacian::{Bilaplacian, Discretisation, ShellOrder};
 pub use bound::{Bound, Step};

@@ -1,6 +1,6 @@
 //! The methods by name.
 
-use crate::Bilaplacian;
+use crate::{Arap, Bilaplacian};
 
 /// How a surface follows its handles. Later methods join as variants.
 #[derive(Clone, PartialEq, Debug)]
@@ -8,16 +8,19 @@ use crate::Bilaplacian;
 pub enum Method {
     /// The linear shell, by default a thin plate (Botsch & Kobbelt 2004).
     Bilaplacian(Bilaplacian),
+    /// As-rigid-as-possible (Sorkine & Alexa 2007).
+    Arap(Arap),
 }
 
 impl Method {
     /// Every method's name, in the order in which they are shown.
-    pub const NAMES: &'static [&'static str] = &["bilaplacian"];
+    pub const NAMES: &'static [&'static str] = &["bilaplacian", "arap"];
 
     /// The method called `name`, with its defaults.
     pub fn from_name(name: &str) -> Option<Self> {
         match name {
             "bilaplacian" => Some(Self::Bilaplacian(Bilaplacian::default())),
+            "arap" => Some(Self::Arap(Arap::default())),
             _ => None,
         }
     }
@@ -26,6 +29,7 @@ impl Method {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Bilaplacian(_) => "bilaplacian",
+            Self::Arap(_) => "arap",
         }
     }
 
@@ -33,6 +37,7 @@ impl Method {
     pub fn operator_power(&self) -> u32 {
         match self {
             Self::Bilaplacian(options) => options.operator_power(),
+            Self::Arap(_) => 1,
         }
     }
 }

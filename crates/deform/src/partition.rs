@@ -8,7 +8,7 @@
 
 use pliant_mesh::SurfaceVertex;
 
-use crate::{BindError, Loose, Problem, Role};
+use crate::{BindError, Loose, Method, Problem, Role};
 
 /// The vertices by what happens to them, all lists ascending.
 #[derive(Debug)]
@@ -117,7 +117,11 @@ fn check(problem: &Problem) -> Result<(), BindError> {
 /// constrained.
 fn influenced(problem: &Problem, handles: &[Vec<u32>]) -> Vec<u32> {
     let topology = problem.topology;
-    let power = problem.method.operator_power();
+    let power = match problem.method {
+        // Across a constrained vertex too, whose cell turns with all its neighbours.
+        Method::Arap(_) => 2,
+        Method::Bilaplacian(_) => problem.method.operator_power(),
+    };
     // How many edges a walk may go on from here before it must meet a free vertex; at a reached one, `power`.
     let mut left = vec![0; problem.roles.len()];
     let mut queue: Vec<u32> = handles.iter().flatten().copied().collect();

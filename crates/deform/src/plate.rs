@@ -118,14 +118,9 @@ impl Plate {
 
     /// Sentences about what had to be repaired.
     pub fn warnings(&self) -> Vec<String> {
-        let mut sentences = Vec::new();
-        match self.shell.operator.laplacian.mollified_faces() {
-            0 => {}
-            1 => sentences.push("1 degenerate triangle was given the smallest safe shape".to_owned()),
-            count => sentences.push(format!(
-                "{count} degenerate triangles were given the smallest safe shape"
-            )),
-        }
+        let mut sentences: Vec<String> = repairs(self.shell.operator.laplacian.mollified_faces())
+            .into_iter()
+            .collect();
         if self.shell.shift > 0.0 {
             sentences.push(format!(
                 "the shell was barely stable on this mesh: it was stiffened by {:.0e} of its diagonal and refined",
@@ -206,6 +201,17 @@ impl Plate {
         self.prescribed[handle]
             .iter()
             .map(|&(local, coordinates)| (vertices[local as usize], coordinates))
+    }
+}
+
+/// What is said of triangles too flat for cotangents.
+pub(crate) fn repairs(mollified_faces: usize) -> Option<String> {
+    match mollified_faces {
+        0 => None,
+        1 => Some("1 degenerate triangle was given the smallest safe shape".to_owned()),
+        count => Some(format!(
+            "{count} degenerate triangles were given the smallest safe shape"
+        )),
     }
 }
 

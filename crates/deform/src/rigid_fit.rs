@@ -45,7 +45,7 @@ impl RigidMotion {
 }
 
 /// The rotation R that maximises tr(R S), S = `covariance` = Σ from toᵀ.
-fn best_rotation(covariance: &DMat3) -> DQuat {
+pub(crate) fn best_rotation(covariance: &DMat3) -> DQuat {
     let largest = covariance
         .to_cols_array()
         .into_iter()

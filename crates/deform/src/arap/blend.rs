@@ -1,0 +1,120 @@
+//! A start that is already bent: each point carried by exp(Σ w_h log T_h), with the handles' harmonic weights w.
+//!
+//! Rigid parts are blended as screw motions about one common origin, so that handles which move alike carry everything
+//! rigidly; what they stretch is blended linearly before.
+
+use glam::{DMat3, DQuat, DVec3};
+
+use super::rotation::fit;
+
+/// A handle's motion as its rigid part's logarithm and its stretch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Screw {
+    /// Axis times angle, in radians.
+    turn_rad: DVec3,
+    /// The velocity at the common origin.
+    slide: DVec3,
+    /// Where the stretch leaves points in place.
+    centre: DVec3,
+    /// The stretch less the identity.
+    stretch: DMat3,
+}
+
+impl Screw {
+    /// The motion whose linear part is `linear` and that moves the point `centre` by `shift`; all points here are
+    /// relative to the common origin.
+    pub fn of(linear: DMat3, shift: DVec3, centre: DVec3) -> Self {
+        let rotation = fit(&linear, DQuat::IDENTITY);
+        let stretch = DMat3::from_quat(rotation.conjugate()) * linear - DMat3::IDENTITY;
+        let turn_rad = logarithm(rotation);
+        // The slide at the centre whose exponential shifts it by `shift`, seen from the origin.
+        let at_centre = if turn_rad == DVec3::ZERO {
+            shift
+        } else {
+            slides(turn_rad).inverse() * shift
+        };
+        Self {
+            turn_rad,
+            slide: at_centre + centre.cross(turn_rad),
+            centre,
+            stretch,
+        }
+    }
+}
+
+/// Where the screws carry a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Carried {
+    /// Where the point goes, less the point.
+    pub displacement: DVec3,
+    /// How its surroundings turn.
+    pub turn: DQuat,
+}
+
+/// The point under exp(Σ w log T).
+pub(crate) fn carried(point: DVec3, screws: &[Screw], weights: &[f64]) -> Carried {
+    let (mut turn_rad, mut slide, mut stretch) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+    for (screw, &weight) in screws.iter().zip(weights) {
+        turn_rad += screw.turn_rad * weight;
+        slide += screw.slide * weight;
+        stretch += screw.stretch * (point - screw.centre) * weight;
+    }
+    let arm = point + stretch;
+    let turn = DQuat::from_scaled_axis(turn_rad);
+    let slid = if turn_rad == DVec3::ZERO {
+        slide
+    } else {
+        slides(turn_rad) * slide
+    };
+    Carried {
+        displacement: stretch + (turn * arm - arm) + slid,
+        turn,
+    }
+}
+
+/// The rotation vector, at most π long.
+fn logarithm(rotation: DQuat) -> DVec3 {
+    let rotation = if rotation.w < 0.0 { -rotation } else { rotation };
+    rotation.to_scaled_axis()
+}
+
+/// V with exp(turn, slide) = (exp(turn), V slide), the left Jacobian of the rotations.
+fn slides(turn: DVec3) -> DMat3 {
+    let angle = turn.length();
+    let cross = DMat3::from_cols(turn.cross(DVec3::X), turn.cross(DVec3::Y), turn.cross(DVec3::Z));
+    let (first, second) = if angle < 1e-4 {
+        (0.5 - angle * angle / 24.0, (1.0 - angle * angle / 20.0) / 6.0)
+    } else {
+        let square = angle * angle;
+        ((1.0 - angle.cos()) / square, (angle - angle.sin()) / (square * angle))
+    };
+    DMat3::IDENTITY + cross * first + cross * cross * second
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Screw, carried};
+    use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+    #[test]
+    fn whole_weights_give_the_whole_motion_and_none_gives_none() {
+        let centre = DVec3::new(1.0, 2.0, 3.0);
+        for (angle, shift, scale) in [
+            (0.0, DVec3::new(0.1, 0.2, 0.3), 1.0),
+            (1e-6, DVec3::ZERO, 1.0),
+            (2.0, DVec3::new(5.0, -2.0, 0.0), 2.0),
+            (std::f64::consts::PI, DVec3::X, 0.0),
+            (3.0, DVec3::Y, -1.0),
+        ] {
+            let linear = DMat3::from_quat(DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), angle)) * scale;
+            let screw = Screw::of(linear, shift, centre);
+            let map = DAffine3::from_mat3_translation(linear, centre + shift - linear * centre);
+            let point = DVec3::new(0.3, -7.0, 1.0);
+            let expected = map.transform_point3(point) - point;
+            // Two handles that move alike share the weight.
+            let found = carried(point, &[screw, screw], &[0.3, 0.7]).displacement;
+            assert!((found - expected).length() < 1e-9, "{angle}: {found} {expected}");
+            assert_eq!(carried(point, &[screw], &[0.0]).displacement, DVec3::ZERO);
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Where to begin for new targets: the rest shape or the last one, carried by the handles' blended motions.
+
+use glam::{DMat3, DQuat, DVec3};
+use rayon::prelude::*;
+
+use super::blend::{Screw, carried};
+use super::rotation::fit;
+use super::{ArapSolver, State, domain};
+use crate::handle::Motion;
+use crate::operators::CHUNK;
+
+/// A map whose determinant is below this, in units of its largest entry's cube, is taken by its rotation alone.
+const SINGULAR: f64 = 1e-3;
+
+impl ArapSolver {
+    /// Makes the better of two starts the current shape for `motions`.
+    pub(super) fn start(&mut self, motions: &[Motion]) {
+        let was_at_rest = self.motions.iter().all(Motion::is_rest);
+        let from_rest: Vec<Screw> = self
+            .handles
+            .iter()
+            .zip(motions)
+            .map(|(handle, motion)| Screw::of(handle.linear(motion), motion.shift, handle.centre))
+            .collect();
+        let onwards: Vec<Screw> = self
+            .handles
+            .iter()
+            .zip(self.motions.iter().zip(motions))
+            .map(|(handle, (old, new))| handle.onwards(old, new))
+            .collect();
+        self.motions.copy_from_slice(motions);
+        if !was_at_rest {
+            self.carry(&onwards, Origin::Current);
+            std::mem::swap(&mut self.current, &mut self.trial);
+        }
+        self.carry(&from_rest, Origin::Rest);
+        if was_at_rest || self.trial.energy < self.current.energy || !self.current.energy.is_finite() {
+            self.memory.clear();
+            std::mem::swap(&mut self.current, &mut self.trial);
+        }
+        self.state = State::Descending;
+    }
+
+    /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles where they go.
+    fn carry(&mut self, screws: &[Screw], origin: Origin) {
+        let Self {
+            current,
+            trial,
+            weights,
+            rest,
+            ..
+        } = self;
+        let cell_count = current.rotations.len();
+        let count = screws.len();
+        trial
+            .rotations
+            .par_iter_mut()
+            .zip(&mut trial.displacements[..cell_count])
+            .with_min_len(CHUNK)
+            .enumerate()
+            .for_each(|(cell, (rotation, displacement))| {
+                let (before, turned) = match origin {
+                    Origin::Rest => (DVec3::ZERO, DQuat::IDENTITY),
+                    Origin::Current => (current.displacements[cell], current.rotations[cell]),
+                };
+                let carried = carried(rest[cell] + before, screws, &weights[cell * count..(cell + 1) * count]);
+                *displacement = before + carried.displacement;
+                *rotation = (carried.turn * turned).normalize();
+            });
+        // What is constrained goes exactly where it must.
+        trial.displacements[self.domain.solved_count..].fill(DVec3::ZERO);
+        for (own, motion) in self.prescribed.iter().zip(&self.motions) {
+            for vertex in own.iter().filter(|vertex| vertex.local != domain::ABSENT) {
+                trial.displacements[vertex.local as usize] = motion.displace(vertex.coordinates);
+            }
+        }
+        self.energy.evaluate(&mut self.trial, &mut self.scratch);
+    }
+}
+
+/// What a start is made of.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Origin {
+    Rest,
+    Current,
+}
+
+/// A handle in coordinates relative to the solver's origin.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HandleFrame {
+    pub centre: DVec3,
+    pub radius: f64,
+}
+
+impl HandleFrame {
+    /// The linear part of the map.
+    fn linear(&self, motion: &Motion) -> DMat3 {
+        DMat3::IDENTITY + motion.linear * self.radius.recip()
+    }
+
+    /// The map from where `old` carries points to where `new` carries them.
+    fn onwards(&self, old: &Motion, new: &Motion) -> Screw {
+        let (mut from, mut to) = (self.linear(old), self.linear(new));
+        let largest = from.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        if !(from.determinant().abs() > SINGULAR * largest.powi(3)) {
+            (from, to) = (
+                DMat3::from_quat(fit(&from, DQuat::IDENTITY)),
+                DMat3::from_quat(fit(&to, DQuat::IDENTITY)),
+            );
+        }
+        Screw::of(to * from.inverse(), new.shift - old.shift, self.centre + old.shift)
+    }
+}
