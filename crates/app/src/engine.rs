@@ -19,9 +19,6 @@ use crate::files::{self, Neighbours, Staged, Staging};
 use crate::report::{Distortion, Energy, FrameTimes, Report, finite_or};
 use crate::watch::Watch;
 
-/// A frame ends after so many steps, converged or not.
-const MOST_STEPS: usize = 1000;
-
 /// A file, read and welded.
 #[derive(Debug)]
 pub struct Loaded {
@@ -286,10 +283,8 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
         let start = Instant::now();
         bound.set_targets(&targets).map_err(refuse)?;
         last = bound.step(&mut displacements).map_err(refuse)?;
-        for _ in 1..MOST_STEPS {
-            if last.converged || watch.cancel.is_cancelled() {
-                break;
-            }
+        // The method's own options limit the steps.
+        while !last.finished && !watch.cancel.is_cancelled() {
             last = bound.step(&mut displacements).map_err(refuse)?;
         }
         model.drawn_positions(&displacements, &mut positions);

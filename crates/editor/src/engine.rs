@@ -9,7 +9,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{BindError, Bound, Ordering, Problem};
+use pliant_deform::{BindError, Bound, Ordering, Problem, SolveError, Step};
 use pliant_mesh::{Bvh, Cancel, Model, Progress};
 
 use crate::document::{Document, HandleId, sum_of_shapes};
@@ -19,8 +19,12 @@ use crate::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
 
 type Work = Box<dyn FnOnce(&Progress, &Cancel) -> JobOutcome + Send>;
 
-/// How many steps a method may take towards one set of targets before the shape counts as final.
-const MAX_STEPS: u32 = 1000;
+/// A solve takes so many vertices' worth of steps before it shows its shape: about what a window's frame has time for.
+/// There is no clock here.
+const VERTEX_STEPS: usize = 60_000;
+
+/// The most steps of one solve, however few its vertices are.
+const MOST_STEPS: usize = 16;
 
 /// What the person is doing, as far as jobs care.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -47,7 +51,6 @@ pub(crate) struct Engine {
     pub(crate) shape_revision: Revision,
     /// Solves that were asked for before this are dropped.
     solve_floor: Revision,
-    steps: u32,
     pub(crate) bvh: Option<Arc<Bvh>>,
     bvh_revision: Revision,
     ordering: Option<Arc<Ordering>>,
@@ -92,7 +95,6 @@ impl Engine {
             target_revision: Revision(0),
             shape_revision: Revision(0),
             solve_floor: Revision(0),
-            steps: 0,
             bvh: None,
             bvh_revision: Revision(0),
             ordering: None,
@@ -137,7 +139,6 @@ impl Engine {
     /// The handles' transforms are no longer what they were.
     pub(crate) fn targets_changed(&mut self) {
         self.target_revision = self.next_revision();
-        self.steps = 0;
     }
 
     /// What is drawn is no longer what it was.
@@ -259,9 +260,7 @@ impl Engine {
                 self.bound_revision = stamp;
             }
             JobOutcome::Solved(solved) if stamp >= self.solve_floor => {
-                let newest = stamp == self.target_revision;
-                self.steps += u32::from(newest);
-                let last = newest && (solved.converged || self.steps >= MAX_STEPS);
+                let last = stamp == self.target_revision && solved.finished;
                 return Arrival::Shape(solved, if last { Finality::Final } else { Finality::Preview });
             }
             _ => {}
@@ -373,10 +372,7 @@ impl Engine {
             }
             let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
             let mut displacements = from_rest.to_vec();
-            let stepped = bound
-                .set_targets(&targets)
-                .and_then(|()| bound.step(&mut displacements));
-            match stepped {
+            match steps(&mut bound, &targets, &mut displacements, cancel) {
                 Err(error) => JobOutcome::Failed(error.to_string()),
                 Ok(step) => {
                     let from_rest = Arc::new(displacements);
@@ -384,12 +380,30 @@ impl Engine {
                     JobOutcome::Solved(Solved {
                         from_rest,
                         from_file,
-                        converged: step.converged,
+                        finished: step.finished,
                     })
                 }
             }
         }))
     }
+}
+
+/// Takes steps towards the targets until the shape is worth showing; it goes on from where the last solve ended.
+fn steps(
+    bound: &mut Bound,
+    targets: &[DAffine3],
+    displacements: &mut [DVec3],
+    cancel: &Cancel,
+) -> Result<Step, SolveError> {
+    bound.set_targets(targets)?;
+    let mut step = bound.step(displacements)?;
+    for _ in 1..(VERTEX_STEPS / bound.solved_count().max(1)).clamp(1, MOST_STEPS) {
+        if step.finished || cancel.is_cancelled() {
+            break;
+        }
+        step = bound.step(displacements)?;
+    }
+    Ok(step)
 }
 
 /// Everything that the region follows from.

@@ -134,13 +134,13 @@ impl std::fmt::Debug for JobOutcome {
     }
 }
 
-/// A step's result: displacements per surface vertex.
+/// A solve's result, after as many steps as a frame has time for: displacements per surface vertex.
 #[derive(Clone, Debug)]
 pub struct Solved {
     /// From the present rest shape.
     pub from_rest: Arc<Vec<DVec3>>,
     /// From the file's shape: what is drawn. The same allocation while nothing was applied.
     pub from_file: Arc<Vec<DVec3>>,
-    /// Whether further steps would change it.
-    pub converged: bool,
+    /// Whether further steps would leave it as it is.
+    pub finished: bool,
 }

@@ -1,6 +1,6 @@
 //! How a method and its options stand in an edit, and what the command line's help says about them.
 
-use pliant_deform::{Bilaplacian, Discretisation, Method, ShellOrder};
+use pliant_deform::{Arap, ArapEnergy, Bilaplacian, Discretisation, Method, ShellOrder};
 use serde_json::{Map, Value, json};
 
 use crate::edit_error::EditError;
@@ -16,7 +16,7 @@ pub struct MethodOption {
 }
 
 /// Each method's options.
-const OPTIONS: &[(&str, &[MethodOption])] = &[("bilaplacian", BILAPLACIAN)];
+const OPTIONS: &[(&str, &[MethodOption])] = &[("bilaplacian", BILAPLACIAN), ("arap", ARAP)];
 
 /// The largest coefficient of the linear shell.
 const LARGEST_COEFFICIENT: f64 = 1e12;
@@ -37,6 +37,21 @@ const BILAPLACIAN: &[MethodOption] = &[
     MethodOption {
         name: "discretisation",
         says: "\"uniform\", \"cotangent\" or \"cotangent-area\" Laplacian; default \"cotangent-area\"",
+    },
+];
+
+const ARAP: &[MethodOption] = &[
+    MethodOption {
+        name: "energy",
+        says: "a vertex's cell: \"spokes\", its edges, or \"spokes-and-rims\", its triangles' edges; default \"spokes-and-rims\"",
+    },
+    MethodOption {
+        name: "tolerance",
+        says: "iteration ends where a step lowers the energy by less than this share of it, 1e-12 to 0.1; default 1e-4",
+    },
+    MethodOption {
+        name: "max_iterations",
+        says: "iteration ends after so many steps a frame, 1 to 100000; default 500",
     },
 ];
 
@@ -63,8 +78,10 @@ pub(crate) fn read_method(node: &Node<'_>) -> Result<Method, EditError> {
     let mut known = vec!["name"];
     known.extend(method_options(text).iter().map(|option| option.name));
     let members = node.object(expected, &known)?;
-    if let Method::Bilaplacian(options) = &mut method {
-        read_bilaplacian(&members, options)?;
+    match &mut method {
+        Method::Bilaplacian(options) => read_bilaplacian(&members, options)?,
+        Method::Arap(options) => read_arap(&members, options)?,
+        _ => {}
     }
     Ok(method)
 }
@@ -101,6 +118,30 @@ fn read_bilaplacian(members: &Members<'_>, options: &mut Bilaplacian) -> Result<
     Ok(())
 }
 
+fn read_arap(members: &Members<'_>, options: &mut Arap) -> Result<(), EditError> {
+    if let Some(node) = members.get("energy") {
+        let text = node.string("an energy's name")?;
+        let names = ArapEnergy::ALL.map(ArapEnergy::name);
+        options.energy = *ArapEnergy::ALL
+            .iter()
+            .find(|energy| energy.name() == text)
+            .ok_or_else(|| node.unknown_name(text, &names))?;
+    }
+    if let Some(node) = members.get("tolerance") {
+        options.tolerance = match node.number()? {
+            number if (1e-12..=0.1).contains(&number) => number,
+            _ => return Err(node.out_of_range("a number from 1e-12 to 0.1")),
+        };
+    }
+    if let Some(node) = members.get("max_iterations") {
+        options.max_iterations = match node.whole()? {
+            number @ 1..=100_000 => number as u32,
+            _ => return Err(node.out_of_range("a whole number from 1 to 100000")),
+        };
+    }
+    Ok(())
+}
+
 /// The method as the edit format has it: its name and what differs from its defaults.
 pub(crate) fn method_to_value(method: &Method) -> Value {
     let mut members = Map::new();
@@ -118,6 +159,18 @@ pub(crate) fn method_to_value(method: &Method) -> Value {
         }
         if options.discretisation != default.discretisation {
             members.insert("discretisation".to_owned(), json!(options.discretisation.name()));
+        }
+    }
+    if let Method::Arap(options) = method {
+        let default = Arap::default();
+        if options.energy != default.energy {
+            members.insert("energy".to_owned(), json!(options.energy.name()));
+        }
+        if options.tolerance != default.tolerance {
+            members.insert("tolerance".to_owned(), json!(options.tolerance));
+        }
+        if options.max_iterations != default.max_iterations {
+            members.insert("max_iterations".to_owned(), json!(options.max_iterations));
         }
     }
     Value::Object(members)
@@ -169,6 +222,30 @@ mod tests {
         assert_eq!(method_to_value(&read(&value).unwrap()), value);
         let spelled = json!({ "name": "bilaplacian", "order": 2, "bending": 1, "discretisation": "cotangent-area" });
         assert_eq!(read(&spelled).unwrap(), Method::default());
+    }
+
+    #[test]
+    fn every_option_of_arap_is_read_and_written_again_or_refused_by_name() {
+        let value = json!({ "name": "arap", "energy": "spokes", "tolerance": 1e-6, "max_iterations": 40 });
+        let method = read(&value).unwrap();
+        assert_eq!(method_to_value(&method), value);
+        assert_eq!(method_options("arap").len() + 1, value.as_object().unwrap().len());
+        let default = json!({ "name": "arap" });
+        assert_eq!(method_to_value(&read(&default).unwrap()), default);
+        for (option, value) in [
+            ("energy", json!("rims")),
+            ("energy", json!(2)),
+            ("tolerance", json!(0)),
+            ("tolerance", json!(0.2)),
+            ("tolerance", json!("little")),
+            ("max_iterations", json!(0)),
+            ("max_iterations", json!(100_001)),
+            ("max_iterations", json!(1.5)),
+            ("order", json!(2)),
+        ] {
+            let refused = read(&json!({ "name": "arap", option: value })).unwrap_err();
+            assert!(refused.to_string().contains(option), "{refused}");
+        }
     }
 
     #[test]

@@ -221,7 +221,7 @@ impl Rig {
         let mut bound = problem.bind(&ordering, &progress, &cancel).unwrap();
         let targets: Vec<DAffine3> = document.handles().iter().map(Handle::affine).collect();
         bound.set_targets(&targets).unwrap();
-        while !bound.step(&mut displacements).unwrap().converged {}
+        while !bound.step(&mut displacements).unwrap().finished {}
         displacements
     }
 
