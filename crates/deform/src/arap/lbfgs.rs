@@ -41,7 +41,7 @@ impl Memory {
     /// Remembers a step, if the energy is convex along it.
     pub fn push(&mut self, step: Field, change: Field) {
         let curvature = dot(&step, &change);
-        if !(curvature > FLAT * (dot(&step, &step) * dot(&change, &change)).sqrt()) {
+        if curvature.is_nan() || curvature <= FLAT * (dot(&step, &step) * dot(&change, &change)).sqrt() {
             return;
         }
         if self.pairs.len() == MEMORY {

@@ -35,7 +35,7 @@ pub(crate) fn fit(s: &DMat3, start: DQuat) -> DQuat {
 #[cold]
 fn fit_anew(s: &DMat3, start: DQuat) -> DQuat {
     let size = s.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    if !(size > 0.0 && size.is_finite()) {
+    if !(size > 0.0 && s.is_finite()) {
         return start;
     }
     let rotation = best_rotation(&s.transpose());
@@ -75,7 +75,7 @@ fn newton(s: &DMat3, start: DQuat) -> Option<DQuat> {
         let w = (skew.z - lxz * u - lyz * v) / d3;
         let v = v / d2 - lyz * w;
         let turn = DVec3::new(u * i1 - lxy * v - lxz * w, v, w);
-        if !(turn.length_squared() < 4.0) {
+        if turn.is_nan() || turn.length_squared() >= 4.0 {
             return None;
         }
         // The unit quaternion of exp(turn), to second order.

@@ -102,7 +102,8 @@ impl HandleFrame {
     fn onwards(&self, old: &Motion, new: &Motion) -> Screw {
         let (mut from, mut to) = (self.linear(old), self.linear(new));
         let largest = from.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-        if !(from.determinant().abs() > SINGULAR * largest.powi(3)) {
+        let is_sound = from.determinant().abs() > SINGULAR * largest.powi(3);
+        if !is_sound {
             (from, to) = (
                 DMat3::from_quat(fit(&from, DQuat::IDENTITY)),
                 DMat3::from_quat(fit(&to, DQuat::IDENTITY)),

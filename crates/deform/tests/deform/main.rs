@@ -1,6 +1,7 @@
 //! The solver's laws, on every class of mesh.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+mod arap;
 mod components;
 mod laws;
 mod operators;
