@@ -238,12 +238,15 @@ impl ArapSolver {
 
     /// One step towards `motions`: writes the solved vertices' displacements. Says whether it converged, and the energy.
     pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> (bool, f64) {
-        if self.motions != motions {
-            self.start(motions);
-        }
-        if self.state == State::Descending {
-            self.descend();
-        }
+        // One entry into the pool: each of the many short loops would wait for it otherwise.
+        rayon::scope(|_| {
+            if self.motions != motions {
+                self.start(motions);
+            }
+            if self.state == State::Descending {
+                self.descend();
+            }
+        });
         for (&vertex, &own) in self.domain.vertices[..self.domain.solved_count]
             .iter()
             .zip(&self.current.displacements)

@@ -1,5 +1,6 @@
 //! One step down.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::shape::Shape;
@@ -25,12 +26,12 @@ impl ArapSolver {
     pub(super) fn descend(&mut self) {
         loop {
             let preconditioner = &self.preconditioner;
-            let direction = self
+            let uphill = self
                 .memory
                 .direction(&self.current.gradient, |x| preconditioner.apply(x));
-            let slope = dot(&direction, &self.current.gradient);
+            let slope = -dot(&uphill, &self.current.gradient);
             let before = self.current.energy;
-            if slope < 0.0 && self.search(&direction, slope) {
+            if slope < 0.0 && self.search(&uphill, slope) {
                 let (gained, enough) = (
                     before - self.current.energy,
                     self.options.tolerance * self.current.energy + NOTHING * self.energy.scale(),
@@ -48,16 +49,16 @@ impl ArapSolver {
         }
     }
 
-    /// Moves along `direction`, by its whole length if that lowers the energy enough; says whether any length did.
-    fn search(&mut self, direction: &Field, slope: f64) -> bool {
+    /// Moves against `uphill`, by its whole length if that lowers the energy enough; says whether any length did.
+    fn search(&mut self, uphill: &Field, slope: f64) -> bool {
         let before = self.current.energy;
         let mut length = 1.0;
         for _ in 0..TRIALS {
-            moved(&self.current, direction, length, &mut self.trial);
+            moved(&self.current, uphill, -length, &mut self.trial);
             self.energy.evaluate(&mut self.trial, &mut self.scratch);
             let after = self.trial.energy;
             if after <= before + SUFFICIENT * length * slope && after < before {
-                self.accept(length, direction);
+                self.accept(-length, uphill);
                 return true;
             }
             // The least of the parabola through both energies and the slope.
@@ -78,10 +79,14 @@ impl ArapSolver {
         };
         let change: Field = (0..direction.len())
             .into_par_iter()
-            .with_min_len(CHUNK)
+            .with_min_len(4 * CHUNK)
             .map(difference)
             .collect();
-        let step = direction.iter().map(|value| value.map(|v| v * length)).collect();
+        let step = direction
+            .par_iter()
+            .with_min_len(4 * CHUNK)
+            .map(|value| value.map(|v| v * length))
+            .collect();
         self.memory.push(step, change);
         std::mem::swap(&mut self.current, &mut self.trial);
     }
@@ -90,10 +95,12 @@ impl ArapSolver {
 /// Makes `trial` the shape at `length` along `direction` from `from`, still to be evaluated.
 fn moved(from: &Shape, direction: &Field, length: f64, trial: &mut Shape) {
     trial.rotations.copy_from_slice(&from.rotations);
-    trial.displacements.copy_from_slice(&from.displacements);
-    for (own, step) in trial.displacements.iter_mut().zip(direction) {
-        own.x += length * step[0];
-        own.y += length * step[1];
-        own.z += length * step[2];
-    }
+    let (solved, constrained) = trial.displacements.split_at_mut(direction.len());
+    constrained.copy_from_slice(&from.displacements[direction.len()..]);
+    solved
+        .par_iter_mut()
+        .zip(&from.displacements)
+        .zip(direction)
+        .with_min_len(4 * CHUNK)
+        .for_each(|((own, &from), &step)| *own = from + DVec3::from_array(step) * length);
 }

@@ -54,7 +54,7 @@ impl Memory {
         });
     }
 
-    /// −H g, where `precondition` applies the first inverse in place.
+    /// H g, uphill, where `precondition` applies the first inverse in place.
     pub fn direction(&self, gradient: &[[f64; 3]], precondition: impl FnOnce(&mut [[f64; 3]])) -> Field {
         let mut q = gradient.to_vec();
         let mut alphas = Vec::with_capacity(self.pairs.len());
@@ -67,9 +67,6 @@ impl Memory {
         for (pair, alpha) in self.pairs.iter().zip(alphas.into_iter().rev()) {
             let beta = pair.inverse_curvature * dot(&pair.change, &q);
             add(&mut q, alpha - beta, &pair.step);
-        }
-        for value in &mut q {
-            *value = value.map(|v| -v);
         }
         q
     }

@@ -1,10 +1,12 @@
 //! The factored Laplacian: a global step, and the handles' harmonic weights.
 
 use pliant_mesh::Cancel;
+use rayon::prelude::*;
 
 use super::domain::Domain;
 use super::matrix::System;
 use crate::cholesky::{Factor, FactorError};
+use crate::operators::CHUNK;
 
 /// The inverse of the Laplacian on the solved vertices, or nearly so.
 #[derive(Debug)]
@@ -71,9 +73,10 @@ impl Preconditioner {
     /// x ← (−L)⁻¹ x.
     pub fn apply<const K: usize>(&self, x: &mut [[f64; K]]) {
         let rescale = |x: &mut [[f64; K]]| {
-            for (x, &scale) in x.iter_mut().zip(&self.scale) {
-                *x = x.map(|value| value * scale);
-            }
+            x.par_iter_mut()
+                .zip(&self.scale)
+                .with_min_len(4 * CHUNK)
+                .for_each(|(x, &scale)| *x = x.map(|value| value * scale));
         };
         rescale(x);
         self.factor.solve(x);

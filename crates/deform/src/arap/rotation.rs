@@ -16,8 +16,9 @@ const STEPS: u32 = 6;
 /// The skew part that counts as none, in units of tr(B).
 const STATIONARY: f64 = 1e-14;
 
-/// A skew part from which one further step leaves none: the convergence is quadratic at least.
-const NEARLY: f64 = 1e-7;
+/// A turn, in radians, from which no further step is needed: convergence is quadratic at least, and what is left of it
+/// enters the energy squared once more.
+const SMALL_RAD: f64 = 1e-4;
 
 /// What is added to H, in units of its trace: a cell whose edges lie on one line leaves the turn about it open, and
 /// keeps the one it had.
@@ -81,7 +82,7 @@ fn newton(s: &DMat3, start: DQuat) -> Option<DQuat> {
         // The unit quaternion of exp(turn), to second order.
         let step = DQuat::from_xyzw(0.5 * turn.x, 0.5 * turn.y, 0.5 * turn.z, 1.0);
         rotation = (rotation * step).normalize();
-        if residual <= NEARLY * trace && turn.length_squared() < NEARLY {
+        if turn.length_squared() < SMALL_RAD * SMALL_RAD {
             return Some(rotation);
         }
     }

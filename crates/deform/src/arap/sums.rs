@@ -8,11 +8,15 @@ use crate::operators::CHUNK;
 /// A field of vectors, one a column of the factor.
 pub(crate) type Field = Vec<[f64; 3]>;
 
+/// Chunks that a task takes at least: shorter fields are not worth a thread's waking.
+const CHUNKS_A_TASK: usize = 8;
+
 /// a · b.
 pub(crate) fn dot(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     let partial: Vec<f64> = a
         .par_chunks(CHUNK)
         .zip(b.par_chunks(CHUNK))
+        .with_min_len(CHUNKS_A_TASK)
         .map(|(a, b)| {
             let mut sums = [0.0; 3];
             for (a, b) in a.iter().zip(b) {
@@ -28,11 +32,14 @@ pub(crate) fn dot(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
 
 /// a ← a + factor b.
 pub(crate) fn add(a: &mut [[f64; 3]], factor: f64, b: &[[f64; 3]]) {
-    a.par_chunks_mut(CHUNK).zip(b.par_chunks(CHUNK)).for_each(|(a, b)| {
-        for (a, b) in a.iter_mut().zip(b) {
-            for k in 0..3 {
-                a[k] += factor * b[k];
+    a.par_chunks_mut(CHUNK)
+        .zip(b.par_chunks(CHUNK))
+        .with_min_len(CHUNKS_A_TASK)
+        .for_each(|(a, b)| {
+            for (a, b) in a.iter_mut().zip(b) {
+                for k in 0..3 {
+                    a[k] += factor * b[k];
+                }
             }
-        }
-    });
+        });
 }
