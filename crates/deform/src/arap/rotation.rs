@@ -17,8 +17,8 @@ const STEPS: u32 = 6;
 const STATIONARY: f64 = 1e-14;
 
 /// A turn, in radians, from which no further step is needed: convergence is quadratic at least, and what is left of it
-/// enters the energy squared once more.
-const SMALL_RAD: f64 = 1e-4;
+/// enters the energy squared once more. As a descent settles its turns get smaller, and the rotations exact.
+const SMALL_RAD: f64 = 3e-3;
 
 /// What is added to H, in units of its trace: a cell whose edges lie on one line leaves the turn about it open, and
 /// keeps the one it had.
