@@ -25,7 +25,6 @@ pub(crate) fn solve_in_place<const K: usize>(
         forest,
         values,
     };
-    let widest = symbolic.nnz_per_super().iter().copied().max().unwrap_or(0) as usize;
     let tasks: Vec<_> = forest
         .parts
         .iter()
@@ -44,7 +43,7 @@ pub(crate) fn solve_in_place<const K: usize>(
             let mut part = Vec::with_capacity(own.len() + outside(task).len());
             part.extend_from_slice(&x[own.clone()]);
             part.resize(own.len() + outside(task).len(), [0.0; K]);
-            let mut below = vec![[0.0; K]; widest];
+            let mut below = room(symbolic, task.clone());
             for s in task.clone() {
                 forward(&factor.supernode(s, own.start), &mut part, &mut below);
             }
@@ -63,7 +62,7 @@ pub(crate) fn solve_in_place<const K: usize>(
         Part::Top(s) => Some(*s),
         Part::Task(_) => None,
     });
-    let mut below = vec![[0.0; K]; widest];
+    let mut below = room(symbolic, 0..symbolic.n_supernodes());
     for s in top.clone() {
         forward(&factor.supernode(s, 0), x, &mut below);
     }
@@ -79,7 +78,7 @@ pub(crate) fn solve_in_place<const K: usize>(
             for (&row, value) in outside(task).iter().zip(&mut part[own.len()..]) {
                 *value = x[row as usize];
             }
-            let mut below = vec![[0.0; K]; widest];
+            let mut below = room(symbolic, task.clone());
             for s in task.clone().rev() {
                 backward(&factor.supernode(s, own.start), part, &mut below);
             }
@@ -88,6 +87,15 @@ pub(crate) fn solve_in_place<const K: usize>(
         let own = own(task);
         x[own.clone()].copy_from_slice(&part[..own.len()]);
     }
+}
+
+/// Room for the longest pattern among these supernodes: most tasks are small, and so is theirs.
+fn room<const K: usize>(
+    symbolic: &SymbolicSupernodalCholesky<u32>,
+    supernodes: std::ops::Range<usize>,
+) -> Vec<[f64; K]> {
+    let widest = symbolic.nnz_per_super()[supernodes].iter().copied().max();
+    vec![[0.0; K]; widest.unwrap_or(0) as usize]
 }
 
 /// The factor as it is stored.
