@@ -79,8 +79,12 @@ fn what_the_edit_format_does_not_have_is_refused_by_name() {
             &["method.name", "laplace", "bilaplacian"],
         ),
         (
-            json!({ "version": 1, "method": { "name": "bilaplacian", "order": 2 } }),
+            json!({ "version": 1, "method": { "name": "bilaplacian", "order": 4 } }),
             &["order", "method"],
+        ),
+        (
+            json!({ "version": 1, "method": { "name": "bilaplacian", "ordre": 2 } }),
+            &["ordre", "method"],
         ),
         (json!({ "version": 1, "method": "bilaplacian" }), &["method", "object"]),
         (with("hadles", json!([])), &["hadles", "handles"]),

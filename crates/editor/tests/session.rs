@@ -60,7 +60,7 @@ fn a_loose_part_within_reach_follows_and_what_extends_beyond_is_held() {
         .camera
         .project(glam::DVec3::NEG_X, rig::VIEWPORT_PX)
         .unwrap();
-    rig.paint(pliant_editor::ToolMode::PaintHandle, &[middle]);
+    rig.paint(ToolMode::PaintHandle, &[middle]);
     rig.drain();
     let wart = roles_near(&rig, glam::DVec3::new(-1.02, 0.0, 0.2), 0.021);
     assert!(
