@@ -72,6 +72,9 @@ const ZOOM_PER_LINE: f64 = 1.15;
 /// How much larger than what is framed the picture is.
 const FRAME_MARGIN: f64 = 1.15;
 
+/// How many vertices tell where the middle of a picture is.
+const FRAME_SAMPLE: usize = 20_000;
+
 /// An eye that circles a target.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Camera {
@@ -266,17 +269,33 @@ impl Camera {
         if !size.is_finite() {
             return;
         }
-        let centre = 0.5 * (least + most);
-        self.target = *first + view_from_world.transpose() * centre;
+        let mut centre = 0.5 * (least + most);
         let slope_y = (0.5 * self.fov_y_rad).tan() / FRAME_MARGIN;
         let slope_x = slope_y * viewport_px.x / viewport_px.y;
-        let nearest = positions.iter().map(|position| {
-            // It lies `distance − seen.z` before the eye, which must see it within the slopes.
-            let seen = seen(position) - centre;
-            seen.z + (seen.x.abs() / slope_x).max(seen.y.abs() / slope_y)
-        });
         let least = if size > 0.0 { 1e-3 * size } else { self.scale };
-        self.distance = nearest.fold(least, f64::max);
+        let distance = |centre: DVec3, stride: usize| {
+            let nearest = positions.iter().step_by(stride).map(|position| {
+                // It lies `distance − seen.z` before the eye, which must see it within the slopes.
+                let seen = seen(position) - centre;
+                seen.z + (seen.x.abs() / slope_x).max(seen.y.abs() / slope_y)
+            });
+            nearest.fold(least, f64::max)
+        };
+        // What is near looks larger: its share of the picture moves the middle. A sample tells by how much.
+        let stride = positions.len() / FRAME_SAMPLE + 1;
+        for _ in 0..3 {
+            let from_eye = distance(centre, stride);
+            let slopes = positions.iter().step_by(stride).map(|position| {
+                let seen = seen(position) - centre;
+                seen.truncate() / (from_eye - seen.z).max(1e-9 * from_eye)
+            });
+            let (low, high) = slopes.fold((DVec2::MAX, DVec2::MIN), |(low, high), slope| {
+                (low.min(slope), high.max(slope))
+            });
+            centre += (0.5 * from_eye * (low + high)).extend(0.0);
+        }
+        self.target = *first + view_from_world.transpose() * centre;
+        self.distance = distance(centre, 1);
     }
 
     /// Looks from a named side.
