@@ -130,7 +130,11 @@ fn main() {
         session.move_to(top + vec2(1.5 * step as f32, -(step as f32)));
         session.harness.step();
         while session.harness.state().shown_displacements().map(Arc::as_ptr) == before {
-            assert!(start.elapsed() < Duration::from_secs(20), "the surface does not follow");
+            assert!(
+                start.elapsed() < Duration::from_secs(20),
+                "the surface does not follow move {step}: {}",
+                session.harness.state().editor().view().status
+            );
             session.harness.step();
         }
         let drawing = session.harness.state().drawing_time() - drawn_before;

@@ -273,6 +273,7 @@ impl Application {
             rect,
             pointer: ui.input(|input| input.pointer.latest_pos()).unwrap_or(rect.center()),
             pointer_over: response.contains_pointer() && self.question.is_none(),
+            follows_pointer: self.editor.view().cursor == Cursor::Move,
             keys: self.question.is_none() && !ui.ctx().egui_wants_keyboard_input(),
         };
         let events = self.input.events(ui.ctx(), attention);

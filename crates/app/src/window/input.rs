@@ -23,6 +23,8 @@ pub struct Attention {
     pub pointer: egui::Pos2,
     /// Whether the pointer is over the view and nothing lies above it.
     pub pointer_over: bool,
+    /// Whether a transform follows the pointer wherever it goes, over panels and bars too.
+    pub follows_pointer: bool,
     /// Whether keys are for the view: nobody types into a field and no question is open.
     pub keys: bool,
 }
@@ -35,7 +37,7 @@ impl Input {
         for event in events {
             self.translate(&event, modifiers, attention, &mut out);
         }
-        if self.inside && !attention.pointer_over && self.held.is_empty() {
+        if self.inside && !attention.pointer_over && !attention.follows_pointer && self.held.is_empty() {
             self.inside = false;
             out.push(Event::PointerLeft);
         }
@@ -56,7 +58,7 @@ impl Input {
                 modifiers: held_modifiers(modifiers),
             }
         };
-        let over = attention.pointer_over || !self.held.is_empty();
+        let over = attention.pointer_over || attention.follows_pointer || !self.held.is_empty();
         match *event {
             egui::Event::PointerMoved(position) if over => {
                 self.inside = true;
