@@ -91,6 +91,18 @@ impl Desktop {
         }
     }
 
+    /// Waits until the window's title says so.
+    fn wait_for_title(&self, title: &str) {
+        let start = Instant::now();
+        while self
+            .xdotool(&["search", "--name", &format!("^Pliant.*{title}")])
+            .is_empty()
+        {
+            assert!(start.elapsed() < Duration::from_secs(60), "no title says {title}");
+            sleep(PAUSE);
+        }
+    }
+
     fn xdotool(&self, arguments: &[&str]) -> String {
         let output = Command::new("xdotool")
             .args(arguments)
@@ -124,10 +136,11 @@ impl Desktop {
     }
 
     /// Types a path into the question that comes up where the system has no file dialog, and waits for the file.
-    fn answer_with(&self, key: &str, path: &Path) {
+    fn answer_with(&self, key: &str, question: &str, path: &Path) {
         let start = Instant::now();
         self.key(key);
-        sleep(4 * PAUSE);
+        self.wait_for_title(question);
+        sleep(2 * PAUSE);
         self.key("ctrl+a");
         self.xdotool(&["type", "--delay", "20", &path.to_string_lossy()]);
         sleep(PAUSE);
@@ -182,6 +195,7 @@ fn pointer_and_keys_make_the_shape_that_the_engine_says() {
         .unwrap();
     let Some(desktop) = Desktop::open(&sample) else { return };
     let folder = tempfile::tempdir().unwrap();
+    desktop.wait_for_title("bar.glb");
     sleep(8 * PAUSE);
 
     // The view's middle is the bar's, wherever the panels end: the 3D view takes the window less the panel.
@@ -201,8 +215,9 @@ fn pointer_and_keys_make_the_shape_that_the_engine_says() {
         folder.path().join("edit.json"),
         folder.path().join("applied.glb"),
     );
-    desktop.answer_with("ctrl+shift+s", &saved);
-    desktop.answer_with("ctrl+e", &edit);
+    desktop.answer_with("ctrl+shift+s", "Save the model as", &saved);
+    desktop.wait_for_title("saved.glb");
+    desktop.answer_with("ctrl+e", "Export the edit", &edit);
     sleep(PAUSE);
 
     let status = Command::new(PLIANT)

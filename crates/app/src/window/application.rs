@@ -44,6 +44,7 @@ pub struct Application {
     pub(super) closing: bool,
     longest_frame: Duration,
     view_rect: egui::Rect,
+    title: String,
 }
 
 impl Application {
@@ -79,6 +80,7 @@ impl Application {
             closing: false,
             longest_frame: Duration::ZERO,
             view_rect: egui::Rect::ZERO,
+            title: String::new(),
         })
     }
 
@@ -251,6 +253,20 @@ impl Application {
         );
     }
 
+    /// Names the open file, or the question that waits, in the window's title.
+    fn entitle(&mut self, context: &egui::Context) {
+        let about = match (&self.question, &self.session.open) {
+            (Some(question), _) => question.title().to_owned(),
+            (None, Some(open)) => open.name(),
+            (None, None) => "opening".to_owned(),
+        };
+        let title = format!("Pliant — {about}");
+        if self.title != title {
+            context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+
     /// The 3D view: input first, then the picture.
     fn view(&mut self, ui: &mut egui::Ui) -> Result<(), pliant_render::RenderError> {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
@@ -362,6 +378,7 @@ impl eframe::App for Application {
             context.request_repaint();
         }
         self.close_or_stay(&context);
+        self.entitle(&context);
         if self.session.doing().is_some() || !self.editor.view().jobs.is_empty() {
             context.request_repaint_after(Duration::from_millis(100));
         }

@@ -60,6 +60,19 @@ pub enum Question {
     Discard(Then),
 }
 
+impl Question {
+    /// What it is about, for the window's title: who doesn't see the window learns that it waits.
+    pub fn title(&self) -> &'static str {
+        match self {
+            Self::WriteOver(_) => "Save over the source?",
+            Self::Path(Purpose::Open, _) => "Open a model",
+            Self::Path(Purpose::SaveAs, _) => "Save the model as",
+            Self::Path(Purpose::ExportEdit, _) => "Export the edit",
+            Self::Discard(_) => "There is unsaved work",
+        }
+    }
+}
+
 /// What was asked for when unsaved work stood in the way.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Then {
