@@ -42,26 +42,27 @@ impl Verdict {
         let started = Instant::now();
         let failures = self.failures.len();
         let result = self.listen(command);
-        // A test that failed is named already; anything else that went wrong (it didn't compile) is this step's.
-        let result = if self.failures.len() > failures { Ok(()) } else { result };
-        self.record(name, result, started);
+        if self.failures.len() > failures {
+            // A test that failed is named already; anything else that went wrong (it didn't compile) is this step's.
+            self.steps.push(step(name, "FAILED", started));
+        } else {
+            self.record(name, result, started);
+        }
     }
 
     fn record(&mut self, name: &str, result: Result<(), String>, started: Instant) {
-        let seconds = started.elapsed().as_secs_f64();
-        match result {
-            Ok(()) => self.passed += 1,
+        let word = match result {
+            Ok(()) => {
+                self.passed += 1;
+                "ok"
+            }
             Err(sentence) => {
                 eprintln!("{sentence}");
                 self.failures.push(name.to_owned());
+                "FAILED"
             }
-        }
-        let word = if self.failures.iter().any(|failure| failure == name) {
-            "FAILED"
-        } else {
-            "ok"
         };
-        self.steps.push(format!("test {name} ... {word} ({seconds:.0} s)"));
+        self.steps.push(step(name, word, started));
     }
 
     fn listen(&mut self, command: &mut Command) -> Result<(), String> {
@@ -164,6 +165,11 @@ impl Verdict {
             self.filtered,
         )
     }
+}
+
+/// A step as the summary lists it.
+fn step(name: &str, word: &str, started: Instant) -> String {
+    format!("test {name} ... {word} ({:.0} s)", started.elapsed().as_secs_f64())
 }
 
 #[cfg(test)]
