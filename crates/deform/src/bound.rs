@@ -5,11 +5,11 @@ use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
 use crate::arap::ArapSolver;
-use crate::bases::FRAME_CHUNK;
 use crate::follow::{Follower, carry, followers};
 use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
-use crate::plate::{Plate, repairs};
+use crate::shell::bases::FRAME_CHUNK;
+use crate::shell::plate::{Plate, repairs};
 use crate::{BindError, HandleBases, Method, Ordering, Problem, SolveError};
 
 /// A bound problem: everything that does not depend on the handles' transforms is solved.

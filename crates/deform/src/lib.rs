@@ -4,44 +4,28 @@
 //! [`Bound::step`] with the handles' transforms. There is no clock here, no file, no thread of its own: rayon's
 //! current pool is the caller's, and every result is the same bit for bit whatever its size.
 //!
-//! Binding goes [`Problem`] → `partition` (who is solved for) → [`Laplacian`] → `assembly` → `cholesky` in the
-//! restricted `ordering` → `shell` (`shell_operator`; check; `refine`) → `plate` ([`HandleBases`],
-//! energies) → [`Bound`]. A frame is [`HandleBases`] and `follow`. The nonlinear `arap` shares `partition`,
-//! [`Laplacian`], `cholesky` and `follow`, and takes as many steps as it needs.
+//! Binding goes [`Problem`] → `partition` (who is solved for) → [`Laplacian`] (`operators`) → a matrix in the
+//! restricted [`Ordering`], factored (`sparse`) → the method: `shell` gives [`HandleBases`], so that a frame is a
+//! product with them and `follow`; `arap` shares everything up to the factor and takes as many steps as it needs.
 
 mod arap;
-mod assembly;
-mod bases;
-mod bilaplacian;
 mod bound;
-mod cholesky;
 mod error;
-mod etree;
-mod face_terms;
 mod follow;
-mod forest;
-mod front;
 mod handle;
 mod method;
-mod multifrontal;
 mod operators;
-mod ordering;
 mod partition;
-mod plate;
 mod problem;
-mod reach;
-mod refine;
 mod rigid_fit;
 mod shell;
-mod shell_operator;
-mod triangular;
+mod sparse;
 
 pub use arap::{Arap, ArapEnergy};
-pub use bases::HandleBases;
-pub use bilaplacian::{Bilaplacian, Discretisation, ShellOrder};
 pub use bound::{Bound, Step};
 pub use error::{BindError, SolveError};
 pub use method::Method;
 pub use operators::Laplacian;
-pub use ordering::Ordering;
 pub use problem::{Loose, Problem, Role};
+pub use shell::{Bilaplacian, Discretisation, HandleBases, ShellOrder};
+pub use sparse::Ordering;

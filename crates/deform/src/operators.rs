@@ -13,13 +13,15 @@
 //! millionth of their component's mean. Stiffness scales each *face* by the mean of its corners, which keeps that law;
 //! scaling edges would break it.
 
+pub(crate) mod face_terms;
+
 use std::collections::BTreeMap;
 
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
 use rayon::prelude::*;
 
 use crate::Discretisation;
-use crate::face_terms::{FaceTerms, Metric};
+use crate::operators::face_terms::{FaceTerms, Metric};
 
 /// Rows or faces that one task takes: fixed, so that results don't depend on the number of threads.
 pub(crate) const CHUNK: usize = 1024;

@@ -3,13 +3,13 @@
 
 use super::domain::Domain;
 use super::spokes::{floored, largest_weights};
-use crate::assembly::PlateMatrix;
+use crate::sparse::matrix::ScaledMatrix;
 use crate::{ArapEnergy, Laplacian};
 
 /// The matrix, and each solved vertex's weights to constrained vertices.
 pub(crate) struct System {
     /// S (−L) S.
-    pub matrix: PlateMatrix,
+    pub matrix: ScaledMatrix,
     /// Solved vertex, constrained local vertex, weight.
     pub constrained: Vec<(u32, u32, f64)>,
 }
@@ -48,7 +48,7 @@ pub(crate) fn assemble(laplacian: &Laplacian, domain: &Domain, energy: ArapEnerg
         .iter()
         .map(|&value| if value > 0.0 { value.sqrt().recip() } else { 1.0 })
         .collect();
-    let mut matrix = PlateMatrix {
+    let mut matrix = ScaledMatrix {
         scale,
         upper_offsets: vec![0],
         upper_rows: Vec::new(),

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use super::domain::Domain;
 use super::matrix::System;
-use crate::cholesky::{Factor, FactorError};
 use crate::operators::CHUNK;
+use crate::sparse::cholesky::{Factor, FactorError};
 
 /// The inverse of the Laplacian on the solved vertices, or nearly so.
 #[derive(Debug)]

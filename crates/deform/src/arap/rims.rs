@@ -15,8 +15,8 @@ use rayon::prelude::*;
 use super::domain::Domain;
 use super::shape::{Scratch, Shape, fit_cells};
 use crate::Discretisation;
-use crate::face_terms::Metric;
 use crate::operators::CHUNK;
+use crate::operators::face_terms::Metric;
 
 /// The energy's terms on a domain.
 #[derive(Debug)]

@@ -15,9 +15,9 @@ use faer::sparse::linalg::SymbolicSupernodalParams;
 use faer::sparse::linalg::cholesky::{simplicial, supernodal};
 use pliant_mesh::Cancel;
 
-use crate::assembly::PlateMatrix;
-use crate::forest::Forest;
-use crate::{multifrontal, triangular};
+use crate::sparse::forest::Forest;
+use crate::sparse::matrix::ScaledMatrix;
+use crate::sparse::{multifrontal, triangular};
 
 /// A factor of the scaled matrix.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ pub(crate) enum FactorError {
 
 impl Factor {
     /// Factors the matrix with `shift` added to its unit diagonal.
-    pub fn of(plate: &PlateMatrix, shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
+    pub fn of(plate: &ScaledMatrix, shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
         let symbolic = analyse(plate).ok_or(FactorError::Memory)?;
         // Whether it fits; then zeros from the system, which are only touched where the factor is written.
         Vec::<f64>::new()
@@ -58,7 +58,7 @@ impl Factor {
     }
 
     /// Factors again, for other values on the same pattern.
-    pub fn fill(&mut self, plate: &PlateMatrix, shift: f64, cancel: &Cancel) -> Result<(), FactorError> {
+    pub fn fill(&mut self, plate: &ScaledMatrix, shift: f64, cancel: &Cancel) -> Result<(), FactorError> {
         multifrontal::factor(plate, shift, &self.symbolic, &self.forest, &mut self.values, cancel)
     }
 
@@ -78,7 +78,7 @@ impl Factor {
     }
 }
 
-fn analyse(plate: &PlateMatrix) -> Option<supernodal::SymbolicSupernodalCholesky<u32>> {
+fn analyse(plate: &ScaledMatrix) -> Option<supernodal::SymbolicSupernodalCholesky<u32>> {
     let count = plate.scale.len();
     let pattern =
         SymbolicSparseColMatRef::new_unsorted_checked(count, count, &plate.upper_offsets, None, &plate.upper_rows);
@@ -107,8 +107,9 @@ pub(crate) mod tests {
     use crate::Bilaplacian;
     use crate::Laplacian;
     use crate::Ordering;
-    use crate::assembly::{CONSTRAINED, PlateMatrix, assemble_shell};
-    use crate::shell_operator::ShellOperator;
+    use crate::shell::assembly::assemble_shell;
+    use crate::shell::operator::ShellOperator;
+    use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
     use pliant_mesh::{Cancel, Drawn, Progress, Topology, shapes};
 
     /// The plate's factor with every ninth vertex held, in the order that binding takes.
@@ -120,11 +121,11 @@ pub(crate) mod tests {
         Factor::of(&plate, 0.0, &Cancel::new()).unwrap()
     }
 
-    fn plate() -> PlateMatrix {
+    fn plate() -> ScaledMatrix {
         plate_of(shapes::torus(14, 9), |_, columns| columns)
     }
 
-    fn plate_of(drawn: Drawn, order: impl FnOnce(&Topology, Vec<u32>) -> Vec<u32>) -> PlateMatrix {
+    fn plate_of(drawn: Drawn, order: impl FnOnce(&Topology, Vec<u32>) -> Vec<u32>) -> ScaledMatrix {
         let model = shapes::model(drawn);
         let count = model.surface.positions.len();
         let laplacian = Laplacian::of(&model.surface, &model.topology, &vec![1.0; count]);
@@ -137,7 +138,7 @@ pub(crate) mod tests {
         assemble_shell(&operator, &columns, &column_of)
     }
 
-    fn product<const K: usize>(plate: &PlateMatrix, x: &[[f64; K]]) -> Vec<[f64; K]> {
+    fn product<const K: usize>(plate: &ScaledMatrix, x: &[[f64; K]]) -> Vec<[f64; K]> {
         let mut y = vec![[0.0; K]; x.len()];
         for column in 0..x.len() {
             for entry in plate.lower_offsets[column] as usize..plate.lower_offsets[column + 1] as usize {

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
-use crate::shell::{Shell, ShellError};
-use crate::shell_operator::ShellOperator;
+use crate::shell::factored::{Shell, ShellError};
+use crate::shell::operator::ShellOperator;
 use crate::{Bilaplacian, BindError, HandleBases, Laplacian, Ordering, Problem, SolveError};
 
 /// The bound linear shell.

@@ -11,15 +11,15 @@ use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
-use crate::assembly::PlateMatrix;
-use crate::cholesky::FactorError;
-use crate::forest::{Forest, Part, columns, pattern};
-use crate::front::eliminate;
+use crate::sparse::cholesky::FactorError;
+use crate::sparse::forest::{Forest, Part, columns, pattern};
+use crate::sparse::front::eliminate;
+use crate::sparse::matrix::ScaledMatrix;
 
 /// What is factored.
 #[derive(Clone, Copy)]
 struct Job<'a> {
-    plate: &'a PlateMatrix,
+    plate: &'a ScaledMatrix,
     shift: f64,
     symbolic: &'a SymbolicSupernodalCholesky<u32>,
     forest: &'a Forest,
@@ -28,7 +28,7 @@ struct Job<'a> {
 
 /// Factors the matrix, with `shift` added to its unit diagonal, into `values`.
 pub(crate) fn factor(
-    plate: &PlateMatrix,
+    plate: &ScaledMatrix,
     shift: f64,
     symbolic: &SymbolicSupernodalCholesky<u32>,
     forest: &Forest,

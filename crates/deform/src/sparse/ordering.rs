@@ -12,9 +12,9 @@ use faer::sparse::linalg::amd;
 use pliant_mesh::{Cancel, Cancelled, Progress, Topology};
 use rayon::prelude::*;
 
-use crate::etree::{elimination_tree, postorder};
 use crate::operators::CHUNK;
-use crate::reach::Reach;
+use crate::sparse::etree::{elimination_tree, postorder};
+use crate::sparse::reach::Reach;
 
 /// An elimination order of all surface vertices for systems with the graph of Lᵏ.
 #[derive(Clone, PartialEq, Eq, Debug)]

@@ -8,7 +8,7 @@
 
 use pliant_mesh::Cancel;
 
-use crate::shell::Shell;
+use crate::shell::factored::Shell;
 
 /// Corrections of a solve, the first one included.
 const STEPS: std::ops::RangeInclusive<usize> = 2..=8;

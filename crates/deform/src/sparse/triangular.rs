@@ -9,7 +9,7 @@
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use rayon::prelude::*;
 
-use crate::forest::{Forest, Part, columns, pattern, pattern_range};
+use crate::sparse::forest::{Forest, Part, columns, pattern, pattern_range};
 
 /// Solves L Lᵀ x = b in place.
 ///

@@ -122,7 +122,7 @@ pub(crate) fn columns(symbolic: &SymbolicSupernodalCholesky<u32>, s: usize) -> R
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::{Part, ROOT, columns, pattern};
-    use crate::cholesky::tests::factor_of;
+    use crate::sparse::cholesky::tests::factor_of;
     use pliant_mesh::shapes;
 
     #[test]

@@ -9,31 +9,12 @@ use rayon::prelude::*;
 
 use crate::Laplacian;
 use crate::operators::CHUNK;
-use crate::shell_operator::ShellOperator;
-
-/// The scaled matrix S A S: the pattern above its diagonal and the values on and below it.
-#[derive(Debug)]
-pub(crate) struct PlateMatrix {
-    /// S: one over the root of A's diagonal, one a column.
-    pub scale: Vec<f64>,
-    /// Column starts of `upper_rows`.
-    pub upper_offsets: Vec<u32>,
-    /// Rows strictly above the diagonal.
-    pub upper_rows: Vec<u32>,
-    /// Column starts of `lower_rows` and `lower_values`.
-    pub lower_offsets: Vec<u32>,
-    /// Rows on and below the diagonal; the diagonal comes first in its column.
-    pub lower_rows: Vec<u32>,
-    /// Values of `lower_rows`.
-    pub lower_values: Vec<f64>,
-}
-
-/// No column: a constrained vertex.
-pub(crate) const CONSTRAINED: u32 = u32::MAX;
+use crate::shell::operator::ShellOperator;
+use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
 
 /// Assembles the shell over the local vertices `columns`, in that order; `column_of` is the inverse table, with
 /// [`CONSTRAINED`] where a local vertex has no column.
-pub(crate) fn assemble_shell(operator: &ShellOperator, columns: &[u32], column_of: &[u32]) -> PlateMatrix {
+pub(crate) fn assemble_shell(operator: &ShellOperator, columns: &[u32], column_of: &[u32]) -> ScaledMatrix {
     let chunks: Vec<Chunk> = (0..columns.len().div_ceil(CHUNK))
         .into_par_iter()
         .map_init(
@@ -44,7 +25,7 @@ pub(crate) fn assemble_shell(operator: &ShellOperator, columns: &[u32], column_o
             },
         )
         .collect();
-    let mut plate = PlateMatrix {
+    let mut plate = ScaledMatrix {
         scale: Vec::with_capacity(columns.len()),
         upper_offsets: vec![0],
         upper_rows: Vec::with_capacity(chunks.iter().map(|chunk| chunk.upper_rows.len()).sum()),
@@ -73,28 +54,6 @@ pub(crate) fn assemble_shell(operator: &ShellOperator, columns: &[u32], column_o
     }
     plate.scale_values();
     plate
-}
-
-impl PlateMatrix {
-    fn scale_values(&mut self) {
-        let scale = &self.scale;
-        let mut columns = Vec::with_capacity(scale.len());
-        let mut rest = self.lower_values.as_mut_slice();
-        for bounds in self.lower_offsets.windows(2) {
-            let (column, tail) = rest.split_at_mut((bounds[1] - bounds[0]) as usize);
-            columns.push((&self.lower_rows[bounds[0] as usize..bounds[1] as usize], column));
-            rest = tail;
-        }
-        columns
-            .into_par_iter()
-            .with_min_len(CHUNK)
-            .enumerate()
-            .for_each(|(column, (rows, values))| {
-                for (&row, value) in rows.iter().zip(values) {
-                    *value *= scale[column] * scale[row as usize];
-                }
-            });
-    }
 }
 
 #[derive(Default)]
@@ -236,8 +195,9 @@ fn stiffness_row(laplacian: &Laplacian, vertex: u32) -> impl Iterator<Item = (u3
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
-    use super::{CONSTRAINED, assemble_shell};
-    use crate::shell_operator::ShellOperator;
+    use super::assemble_shell;
+    use crate::shell::operator::ShellOperator;
+    use crate::sparse::matrix::CONSTRAINED;
     use crate::{Bilaplacian, Laplacian, ShellOrder};
     use pliant_mesh::shapes;
 

@@ -11,7 +11,7 @@ use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, MatRef, Par};
 use pliant_mesh::Cancel;
 
-use crate::cholesky::FactorError;
+use crate::sparse::cholesky::FactorError;
 
 /// Columns that are factored or updated at once.
 const BLOCK: usize = 96;

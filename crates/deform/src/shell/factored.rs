@@ -1,0 +1,166 @@
+//! The bound linear shell: A_ff d_f = −A_fc d_c, factored, refined and checked.
+//!
+//! A factorisation that succeeds proves nothing: condition numbers reach 1e15 on real scans. So every solve is refined
+//! (see `refine`), and every bind solves for the constant 1, whose solution is known, and refuses where it is missed.
+
+use pliant_mesh::Cancel;
+use rayon::prelude::*;
+
+use crate::BindError;
+use crate::operators::CHUNK;
+use crate::shell::assembly::assemble_shell;
+use crate::shell::operator::ShellOperator;
+use crate::shell::refine::{Outcome, solve};
+use crate::sparse::cholesky::{Factor, FactorError};
+use crate::sparse::matrix::CONSTRAINED;
+
+/// The factored shell over the local vertices of its Laplacian.
+#[derive(Debug)]
+pub(crate) struct Shell {
+    pub operator: ShellOperator,
+    /// The local vertex of each column of the factor.
+    columns: Vec<u32>,
+    scale: Vec<f64>,
+    factor: Factor,
+    /// [`Outcome::contraction`] of the check.
+    contraction: f64,
+    /// What was added to the scaled matrix' unit diagonal to factor it; 0 where nothing had to be.
+    pub shift: f64,
+}
+
+/// Where the system could not be factored or solved, as a surface vertex.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) enum ShellError {
+    NotPositiveDefinite { vertex: u32 },
+    Inaccurate { vertex: u32, error: f64 },
+    OutOfMemory,
+    Cancelled,
+}
+
+/// Shifts of the unit diagonal that are tried one after the other. Refinement with the unshifted operator takes their
+/// effect out again; the check of the constant says whether it did.
+const SHIFTS: [f64; 4] = [0.0, 1e-13, 1e-11, 1e-9];
+
+/// By how much the constant may be missed.
+const TOLERANCE: f64 = 1e-7;
+
+impl Shell {
+    /// Factors the shell in which the surface vertices `order` are solved for, eliminated in that order; the
+    /// operator's Laplacian has full rows for them and their neighbours.
+    pub fn new(operator: ShellOperator, order: &[u32], cancel: &Cancel) -> Result<Self, ShellError> {
+        let laplacian = &operator.laplacian;
+        let columns: Vec<u32> = order
+            .iter()
+            .filter_map(|&vertex| laplacian.local(vertex))
+            .map(|local| local as u32)
+            .collect();
+        let mut column_of = vec![CONSTRAINED; laplacian.vertices().len()];
+        for (column, &local) in columns.iter().enumerate() {
+            column_of[local as usize] = column as u32;
+        }
+        let mut plate = assemble_shell(&operator, &columns, &column_of);
+        cancel.check().map_err(|_| ShellError::Cancelled)?;
+        let mut failed = None;
+        for shift in SHIFTS {
+            match Factor::of(&plate, shift, cancel) {
+                Ok(factor) => {
+                    let scale = std::mem::take(&mut plate.scale);
+                    return Ok(Self {
+                        operator,
+                        columns,
+                        scale,
+                        factor,
+                        contraction: 0.0,
+                        shift,
+                    });
+                }
+                Err(FactorError::Pivot(column)) => failed = failed.or(Some(column)),
+                Err(FactorError::Memory) => return Err(ShellError::OutOfMemory),
+                Err(FactorError::Cancelled) => return Err(ShellError::Cancelled),
+            }
+            cancel.check().map_err(|_| ShellError::Cancelled)?;
+        }
+        let local = failed
+            .and_then(|column| columns.get(column))
+            .map_or(0, |&local| local as usize);
+        Err(ShellError::NotPositiveDefinite {
+            vertex: operator.laplacian.vertices()[local],
+        })
+    }
+
+    /// The local vertices that are solved for.
+    pub fn columns(&self) -> &[u32] {
+        &self.columns
+    }
+
+    /// The factor of S A S, or nearly so.
+    pub fn factor(&self) -> &Factor {
+        &self.factor
+    }
+
+    /// S: the scale of each column.
+    pub fn scale(&self) -> &[f64] {
+        &self.scale
+    }
+
+    /// −S A d on the solved vertices, by differences along edges.
+    pub fn scaled_residual<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
+        let potential = self.operator.potential(d);
+        self.columns
+            .par_iter()
+            .with_min_len(CHUNK)
+            .zip(&self.scale)
+            .map(|(&local, &scale)| {
+                self.operator
+                    .force(local as usize, &potential)
+                    .map(|value| -value * scale)
+            })
+            .collect()
+    }
+
+    /// Fills in the solved vertices of `d` from its constrained ones, as well as the check found it to take.
+    pub fn solve<const K: usize>(&self, d: &mut [[f64; K]], cancel: &Cancel) -> Outcome {
+        solve(self, d, self.contraction, cancel)
+    }
+
+    /// Solves for the constant 1, compares, and keeps how fast refinement was.
+    pub fn check(&mut self, cancel: &Cancel) -> Result<(), ShellError> {
+        let mut ones = vec![[1.0]; self.operator.laplacian.vertices().len()];
+        self.contraction = solve(self, &mut ones, 0.0, cancel).contraction;
+        cancel.check().map_err(|_| ShellError::Cancelled)?;
+        let mut worst = (0.0, 0);
+        for &local in &self.columns {
+            let error = (ones[local as usize][0] - 1.0).abs();
+            if error > worst.0 || error.is_nan() {
+                worst = (error, local);
+            }
+        }
+        if worst.0 <= TOLERANCE {
+            Ok(())
+        } else {
+            Err(ShellError::Inaccurate {
+                vertex: self.operator.laplacian.vertices()[worst.1 as usize],
+                error: worst.0,
+            })
+        }
+    }
+}
+
+impl ShellError {
+    /// The error as the caller sees it.
+    pub fn into_bind_error(self, component_of: impl Fn(u32) -> u32, free_count: usize) -> BindError {
+        match self {
+            Self::NotPositiveDefinite { vertex } => BindError::NotPositiveDefinite {
+                component: component_of(vertex),
+                vertex,
+            },
+            Self::Inaccurate { vertex, error } => BindError::Inaccurate {
+                component: component_of(vertex),
+                vertex,
+                error,
+            },
+            Self::OutOfMemory => BindError::OutOfMemory { free_count },
+            Self::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! A symmetric matrix as the factorisation takes it: compressed columns, scaled to a unit diagonal.
+
+use rayon::prelude::*;
+
+use crate::operators::CHUNK;
+
+/// The scaled matrix S A S: the pattern above its diagonal and the values on and below it.
+#[derive(Debug)]
+pub(crate) struct ScaledMatrix {
+    /// S: one over the root of A's diagonal, one a column.
+    pub scale: Vec<f64>,
+    /// Column starts of `upper_rows`.
+    pub upper_offsets: Vec<u32>,
+    /// Rows strictly above the diagonal.
+    pub upper_rows: Vec<u32>,
+    /// Column starts of `lower_rows` and `lower_values`.
+    pub lower_offsets: Vec<u32>,
+    /// Rows on and below the diagonal; the diagonal comes first in its column.
+    pub lower_rows: Vec<u32>,
+    /// Values of `lower_rows`.
+    pub lower_values: Vec<f64>,
+}
+
+/// No column: a constrained vertex.
+pub(crate) const CONSTRAINED: u32 = u32::MAX;
+
+impl ScaledMatrix {
+    /// Turns the values of A into those of S A S.
+    pub fn scale_values(&mut self) {
+        let scale = &self.scale;
+        let mut columns = Vec::with_capacity(scale.len());
+        let mut rest = self.lower_values.as_mut_slice();
+        for bounds in self.lower_offsets.windows(2) {
+            let (column, tail) = rest.split_at_mut((bounds[1] - bounds[0]) as usize);
+            columns.push((&self.lower_rows[bounds[0] as usize..bounds[1] as usize], column));
+            rest = tail;
+        }
+        columns
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .enumerate()
+            .for_each(|(column, (rows, values))| {
+                for (&row, value) in rows.iter().zip(values) {
+                    *value *= scale[column] * scale[row as usize];
+                }
+            });
+    }
+}
