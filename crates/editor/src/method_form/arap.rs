@@ -1,0 +1,94 @@
+//! ARAP's options in an edit.
+
+use pliant_deform::{Arap, ArapEnergy};
+use serde_json::{Map, Value, json};
+
+use super::MethodOption;
+use crate::edit_error::EditError;
+use crate::edit_node::Members;
+
+pub(super) const OPTIONS: &[MethodOption] = &[
+    MethodOption {
+        name: "energy",
+        says: "a vertex's cell: \"spokes\", its edges, or \"spokes-and-rims\", its triangles' edges; default \"spokes-and-rims\"",
+    },
+    MethodOption {
+        name: "tolerance",
+        says: "iteration ends where a step lowers the energy by less than this share of it, 1e-12 to 0.1; default 1e-4",
+    },
+    MethodOption {
+        name: "max_iterations",
+        says: "iteration ends after so many steps a frame, 1 to 100000; default 500",
+    },
+];
+
+pub(super) fn read(members: &Members<'_>, options: &mut Arap) -> Result<(), EditError> {
+    if let Some(node) = members.get("energy") {
+        let text = node.string("an energy's name")?;
+        let names = ArapEnergy::ALL.map(ArapEnergy::name);
+        options.energy = *ArapEnergy::ALL
+            .iter()
+            .find(|energy| energy.name() == text)
+            .ok_or_else(|| node.unknown_name(text, &names))?;
+    }
+    if let Some(node) = members.get("tolerance") {
+        options.tolerance = match node.number()? {
+            number if (1e-12..=0.1).contains(&number) => number,
+            _ => return Err(node.out_of_range("a number from 1e-12 to 0.1")),
+        };
+    }
+    if let Some(node) = members.get("max_iterations") {
+        options.max_iterations = match node.whole()? {
+            number @ 1..=100_000 => number as u32,
+            _ => return Err(node.out_of_range("a whole number from 1 to 100000")),
+        };
+    }
+    Ok(())
+}
+
+/// Adds what differs from the defaults.
+pub(super) fn write(options: &Arap, members: &mut Map<String, Value>) {
+    let default = Arap::default();
+    if options.energy != default.energy {
+        members.insert("energy".to_owned(), json!(options.energy.name()));
+    }
+    if options.tolerance != default.tolerance {
+        members.insert("tolerance".to_owned(), json!(options.tolerance));
+    }
+    if options.max_iterations != default.max_iterations {
+        members.insert("max_iterations".to_owned(), json!(options.max_iterations));
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use serde_json::json;
+
+    use super::super::tests::read;
+    use super::super::{method_options, method_to_value};
+
+    #[test]
+    fn every_option_of_arap_is_read_and_written_again_or_refused_by_name() {
+        let value = json!({ "name": "arap", "energy": "spokes", "tolerance": 1e-6, "max_iterations": 40 });
+        let method = read(&value).unwrap();
+        assert_eq!(method_to_value(&method), value);
+        assert_eq!(method_options("arap").len() + 1, value.as_object().unwrap().len());
+        let default = json!({ "name": "arap" });
+        assert_eq!(method_to_value(&read(&default).unwrap()), default);
+        for (option, value) in [
+            ("energy", json!("rims")),
+            ("energy", json!(2)),
+            ("tolerance", json!(0)),
+            ("tolerance", json!(0.2)),
+            ("tolerance", json!("little")),
+            ("max_iterations", json!(0)),
+            ("max_iterations", json!(100_001)),
+            ("max_iterations", json!(1.5)),
+            ("order", json!(2)),
+        ] {
+            let refused = read(&json!({ "name": "arap", option: value })).unwrap_err();
+            assert!(refused.to_string().contains(option), "{refused}");
+        }
+    }
+}
