@@ -9,7 +9,6 @@
 //! `precondition` make the global step and the handles' harmonic weights, `blend` and `start` choose where to begin,
 //! `lbfgs` gives the direction and `descent` takes the step.
 
-mod blend;
 mod descent;
 mod domain;
 mod lbfgs;
@@ -17,7 +16,6 @@ mod matrix;
 mod options;
 mod precondition;
 mod rims;
-mod rotation;
 mod shape;
 mod spokes;
 mod start;

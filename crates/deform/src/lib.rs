@@ -9,6 +9,7 @@
 //! product with them and `follow`; `arap` shares everything up to the factor and takes as many steps as it needs.
 
 mod arap;
+mod blend;
 mod bound;
 mod error;
 mod follow;
@@ -18,6 +19,7 @@ mod operators;
 mod partition;
 mod problem;
 mod rigid_fit;
+mod rotation;
 mod shell;
 mod sparse;
 

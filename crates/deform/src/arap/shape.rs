@@ -4,10 +4,10 @@ use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
 
 use super::rims::Rims;
-use super::rotation::fit;
 use super::spokes::Spokes;
 use super::sums::Field;
 use crate::operators::CHUNK;
+use crate::rotation::fit;
 
 /// A shape; energy and gradient belong to the displacements once they were evaluated.
 #[derive(Clone, Debug, Default)]

@@ -3,11 +3,11 @@
 use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
 
-use super::blend::{Screw, carried};
-use super::rotation::fit;
 use super::{ArapSolver, State, domain};
+use crate::blend::{Screw, carried};
 use crate::handle::Motion;
 use crate::operators::CHUNK;
+use crate::rotation::fit;
 
 /// A map whose determinant is below this, in units of its largest entry's cube, is taken by its rotation alone.
 const SINGULAR: f64 = 1e-3;

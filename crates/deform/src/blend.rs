@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::rotation::fit;
+use crate::rotation::fit;
 
 /// A handle's motion as its rigid part's logarithm and its stretch.
 #[derive(Clone, Copy, Debug)]
