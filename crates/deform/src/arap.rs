@@ -5,13 +5,12 @@
 //! one iteration of the usual local/global method (Sorkine & Alexa 2007), which descends slowly: an iteration of ours
 //! costs a tenth more and needs an order of magnitude fewer.
 //!
-//! Parts: `domain` numbers the vertices, `rims` and `spokes` are the two energies, `rotation` fits a cell, `matrix` and
-//! `precondition` make the global step and the handles' harmonic weights, `blend` and `start` choose where to begin,
-//! `lbfgs` gives the direction and `descent` takes the step.
+//! Parts: `domain` numbers the vertices, `rims` and `spokes` are the two energies, `matrix` and
+//! `precondition` make the global step and the handles' harmonic weights, `start` chooses where to begin and `descent`
+//! takes the step.
 
 mod descent;
 mod domain;
-mod lbfgs;
 mod matrix;
 mod options;
 mod precondition;
@@ -19,7 +18,6 @@ mod rims;
 mod shape;
 mod spokes;
 mod start;
-mod sums;
 
 use glam::{DQuat, DVec3};
 use pliant_mesh::{Cancel, Progress, SurfaceVertex};
@@ -27,13 +25,13 @@ use pliant_mesh::{Cancel, Progress, SurfaceVertex};
 pub use self::options::{Arap, ArapEnergy};
 
 use self::domain::Domain;
-use self::lbfgs::Memory;
 use self::precondition::{PreconditionError, Preconditioner};
 use self::rims::Rims;
 use self::shape::{Energy, Scratch, Shape};
 use self::spokes::Spokes;
 use self::start::HandleFrame;
 use crate::handle::{Handle, Motion};
+use crate::lbfgs::Memory;
 use crate::partition::Partition;
 use crate::{BindError, Laplacian, Ordering, Problem, Role};
 

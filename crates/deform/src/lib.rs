@@ -14,6 +14,7 @@ mod bound;
 mod error;
 mod follow;
 mod handle;
+mod lbfgs;
 mod method;
 mod operators;
 mod partition;
@@ -22,6 +23,7 @@ mod rigid_fit;
 mod rotation;
 mod shell;
 mod sparse;
+mod sums;
 
 pub use arap::{Arap, ArapEnergy};
 pub use bound::{Bound, Step};

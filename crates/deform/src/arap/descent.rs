@@ -4,9 +4,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::shape::Shape;
-use super::sums::{Field, dot};
 use super::{ArapSolver, State};
 use crate::operators::CHUNK;
+use crate::sums::{Field, dot};
 
 /// A step must lower the energy by this share of what its slope promises.
 const SUFFICIENT: f64 = 1e-4;

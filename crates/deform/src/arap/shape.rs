@@ -5,9 +5,9 @@ use rayon::prelude::*;
 
 use super::rims::Rims;
 use super::spokes::Spokes;
-use super::sums::Field;
 use crate::operators::CHUNK;
 use crate::rotation::fit;
+use crate::sums::Field;
 
 /// A shape; energy and gradient belong to the displacements once they were evaluated.
 #[derive(Clone, Debug, Default)]

@@ -1,11 +1,12 @@
 //! The limited-memory quasi-Newton direction (Nocedal & Wright, algorithm 7.4) on top of a preconditioner.
 //!
-//! The Laplacian majorises the ARAP energy's Hessian, so the first inverse is its factor, unscaled, and the last steps'
-//! curvature corrects it: with no memory the direction is exactly a global step of the plain local/global method.
+//! The first inverse is the preconditioner, unscaled, and the last steps' curvature corrects it. For ARAP that is the
+//! Laplacian's factor, which majorises the energy's Hessian: with no memory the direction is exactly a global step of
+//! the plain local/global method.
 
 use std::collections::VecDeque;
 
-use super::sums::{Field, add, dot};
+use crate::sums::{Field, add, dot};
 
 /// Steps that are remembered. On the survey's bar, cylinder and cactus and a 43k scan 5, 8, 14 and 24 took the same
 /// iterations within 4%; each costs four passes over the field.
