@@ -12,6 +12,8 @@ pub struct Appearance {
     pub normals: Option<Vec<[f32; 3]>>,
     /// Texture coordinates of the base colour image, v down (glTF's way), the material's transform applied.
     pub uvs: Option<Vec<[f32; 2]>>,
+    /// Texture coordinates as stored of the second set that materials look images up in, where one does.
+    pub second_uvs: Option<Vec<[f32; 2]>>,
     /// Linear-light vertex colours, 0 to 255; white where a vertex has none.
     pub colours: Option<Vec<[u8; 4]>>,
     /// Runs of `Drawn::triangles` that share node and material, in order, covering all of them.
@@ -46,6 +48,22 @@ pub struct Material {
     pub metallic: f32,
     /// 0 (mirror) to 1 (matt).
     pub roughness: f32,
+    /// Its green multiplies the roughness, its blue the metallic share; not encoded.
+    pub metallic_roughness_map: Option<Map>,
+    /// Normals in tangent space, x along u and y against v; not encoded.
+    pub normal_map: Option<Map>,
+    /// What the map's x and y are multiplied by.
+    pub normal_scale: f32,
+    /// Its red is the share of ambient light that arrives; not encoded.
+    pub occlusion_map: Option<Map>,
+    /// How much of the map's darkening is used, 0 to 1.
+    pub occlusion_strength: f32,
+    /// Light of its own, linear; above 1 with KHR_materials_emissive_strength.
+    pub emissive: [f32; 3],
+    /// Multiplies it; sRGB.
+    pub emissive_map: Option<Map>,
+    /// Whether light plays a part.
+    pub lighting: Lighting,
     /// Whether back faces are drawn.
     pub double_sided: bool,
     /// What the base colour's alpha means.
@@ -62,11 +80,51 @@ impl Default for Material {
             base_colour_image: None,
             metallic: 0.0,
             roughness: 1.0,
+            metallic_roughness_map: None,
+            normal_map: None,
+            normal_scale: 1.0,
+            occlusion_map: None,
+            occlusion_strength: 1.0,
+            emissive: [0.0; 3],
+            emissive_map: None,
+            lighting: Lighting::Lit,
             double_sided: false,
             alpha: AlphaMode::Opaque,
             wrap: [Wrap::Repeat; 2],
         }
     }
+}
+
+/// An image other than the base colour's, and how it is laid on the surface.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Map {
+    /// Index into [`Appearance::images`].
+    pub image: usize,
+    /// How texture coordinates beyond 0 to 1 are taken along u and v.
+    pub wrap: [Wrap; 2],
+    /// Which texture coordinates are taken.
+    pub set: UvSet,
+    /// Where the image is looked up: rows that multiply (u, v, 1).
+    pub transform: [[f32; 3]; 2],
+}
+
+/// Which texture coordinates an image takes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum UvSet {
+    /// [`Appearance::uvs`], those of the base colour.
+    Base,
+    /// [`Appearance::second_uvs`].
+    Second,
+}
+
+/// Whether light plays a part in how a material looks.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Lighting {
+    /// It does.
+    #[default]
+    Lit,
+    /// The base colour is shown as it is (KHR_materials_unlit), as photographed scans often want.
+    Unlit,
 }
 
 /// What alpha means.

@@ -25,7 +25,7 @@ mod scene;
 mod stl;
 mod text;
 
-pub use appearance::{AlphaMode, Appearance, Group, Image, Material, Wrap};
+pub use appearance::{AlphaMode, Appearance, Group, Image, Lighting, Map, Material, UvSet, Wrap};
 pub use error::{ImageError, ReadError, SaveError, UnknownFormat};
 pub use format::Format;
 pub use image::{Rgba8, decode_image};

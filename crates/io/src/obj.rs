@@ -172,6 +172,7 @@ impl Stored {
         Appearance {
             normals,
             uvs,
+            second_uvs: None,
             colours: self.colours(),
             groups: self.groups.clone(),
             materials: self.materials.materials.clone(),

@@ -94,6 +94,7 @@ impl Stored {
         Appearance {
             normals: (!records.normals.is_empty()).then(|| records.normals.iter().map(unit).collect()),
             uvs: (!records.uvs.is_empty()).then(|| records.uvs.iter().map(|&[u, v]| [u, 1.0 - v]).collect()),
+            second_uvs: None,
             colours: (!records.colours.is_empty()).then(|| records.colours.iter().map(colour).collect()),
             groups: vec![Group {
                 triangles: 0..self.triangle_count,

@@ -113,6 +113,7 @@ impl Stored {
         Appearance {
             normals: are_any_set.then(|| self.normals.iter().map(unit).collect()),
             uvs: (!self.uvs.is_empty()).then(|| self.uvs.iter().map(|&[u, v]| [u, 1.0 - v]).collect()),
+            second_uvs: None,
             colours: (!self.colours.is_empty()).then(|| self.colours.iter().map(colour).collect()),
             groups: vec![Group {
                 triangles: 0..self.triangle_count,

@@ -362,3 +362,62 @@ fn materials_images_and_colours_come_with_the_looks() {
     assert_eq!((colours[0], colours[24]), ([0, 128, 255, 255], [255; 4]));
     assert!(split(&maker.glb()).0.contains("KHR_texture_transform"));
 }
+
+#[test]
+fn maps_take_the_coordinates_that_their_transforms_say() {
+    let shape = cube();
+    let mut maker = Maker::default();
+    let mut primitive = maker.primitive(&shape);
+    let second: Vec<[f32; 2]> = shape.uvs.iter().map(|&[u, v]| [v, 3.0 * u]).collect();
+    primitive["attributes"]["TEXCOORD_1"] = maker.floats(&second).into();
+    primitive["material"] = 0.into();
+    maker.mesh_of(vec![primitive]);
+    maker.node(json!({ "mesh": 0 }));
+    let image = maker.view(b"\x89PNG\r\n\x1a\nnot really");
+    maker.root["images"] = json!([{ "bufferView": image, "mimeType": "image/png" }]);
+    maker.root["textures"] = json!([{ "source": 0 }, { "source": 9 }]);
+    let moved = |offset: [f64; 2], scale: [f64; 2], rotation: f64| json!({ "KHR_texture_transform": { "offset": offset, "scale": scale, "rotation": rotation } });
+    maker.root["materials"] = json!([{
+        "pbrMetallicRoughness": {
+            "baseColorTexture": { "index": 0, "extensions": moved([0.5, 0.0], [2.0, 1.0], 0.0) },
+            "metallicRoughnessTexture": { "index": 0, "extensions": moved([0.5, 0.0], [2.0, 1.0], 0.0) },
+        },
+        "normalTexture": { "index": 0, "scale": 0.5, "extensions": moved([0.0, 0.25], [3.0, 4.0], 0.7) },
+        "occlusionTexture": { "index": 0, "texCoord": 1, "strength": 0.75 },
+        "emissiveTexture": { "index": 1 },
+        "emissiveFactor": [1, 0.5, 0],
+        "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 4 }, "KHR_materials_unlit": {} },
+    }]);
+    let looks = open(&maker.glb()).scene.appearance();
+    let material = &looks.materials[0];
+    assert_eq!((material.normal_scale, material.occlusion_strength), (0.5, 0.75));
+    assert_eq!(material.emissive, [4.0, 2.0, 0.0]);
+    assert_eq!(material.lighting, pliant_io::Lighting::Unlit);
+    assert_eq!(material.emissive_map, None, "an image that is not there is left out");
+    assert_eq!(looks.second_uvs.as_ref(), Some(&second));
+    let at = |map: pliant_io::Map, vertex: usize| {
+        let [u, v] = match map.set {
+            pliant_io::UvSet::Base => looks.uvs.as_ref().unwrap()[vertex],
+            pliant_io::UvSet::Second => looks.second_uvs.as_ref().unwrap()[vertex],
+        };
+        map.transform.map(|[a, b, c]| a * u + b * v + c)
+    };
+    let same = material.metallic_roughness_map.unwrap();
+    assert_eq!(
+        same.transform,
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        "equal transforms cancel exactly"
+    );
+    for vertex in 0..shape.uvs.len() {
+        let [u, v] = shape.uvs[vertex];
+        // Scaled, turned by 0.7 and shifted, as the extension's matrices say.
+        let (sin, cos) = 0.7_f32.sin_cos();
+        let wanted = [3.0 * u * cos + 4.0 * v * sin, 4.0 * v * cos - 3.0 * u * sin + 0.25];
+        let found = at(material.normal_map.unwrap(), vertex);
+        assert!(
+            (found[0] - wanted[0]).abs() + (found[1] - wanted[1]).abs() < 1e-5,
+            "{found:?} {wanted:?}"
+        );
+        assert_eq!(at(material.occlusion_map.unwrap(), vertex), second[vertex]);
+    }
+}

@@ -41,6 +41,7 @@ pub(super) struct Document {
     pub nodes_at: Vec<At>,
     pub buffers_at: Vec<At>,
     pub images_at: Vec<At>,
+    pub materials_at: Vec<At>,
     /// What was missing but not needed, as sentences.
     pub notes: Vec<String>,
 }
@@ -94,9 +95,10 @@ impl Document {
         let section = |key: &str| objects(&json, key);
         let (accessors_at, views_at, meshes_at) = (section("accessors")?, section("bufferViews")?, section("meshes")?);
         let (nodes_at, buffers_at, images_at) = (section("nodes")?, section("buffers")?, section("images")?);
+        let materials_at = section("materials")?;
         let accessors = typed(&json, &accessors_at, "accessor")?;
         let views = typed(&json, &views_at, "buffer view")?;
-        let materials = typed(&json, &section("materials")?, "material")?;
+        let materials = typed(&json, &materials_at, "material")?;
         let textures = typed(&json, &section("textures")?, "texture")?;
         let samplers = typed(&json, &section("samplers")?, "sampler")?;
         let mut document = Self {
@@ -116,6 +118,7 @@ impl Document {
             nodes_at,
             buffers_at,
             images_at,
+            materials_at,
             notes: Vec::new(),
             json,
         };

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use ::gltf::json;
-use ::gltf::json::texture::WrappingMode;
 use ::gltf::json::validation::Checked;
 use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;
@@ -11,6 +10,7 @@ use rayon::prelude::*;
 use super::accessor::Layout;
 use super::document::{Document, ImageFile};
 use super::geometry::{Part, Pieces};
+use super::maps;
 use super::primitive::Primitive;
 use crate::appearance::{AlphaMode, Appearance, Group, Image, Material, Wrap};
 
@@ -37,6 +37,9 @@ pub(super) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
             uvs.iter_mut().for_each(|uv| *uv = primitive.uv_transform.apply(*uv));
             Some(uvs)
         }),
+        second_uvs: gather(pieces, [0.0; 2], |part| {
+            attribute::<2>(document, part, primitive(meshes, part).second_uv)
+        }),
         colours: gather(pieces, [255; 4], |part| {
             let accessor = primitive(meshes, part).colour?;
             let has_alpha = Layout::of(document, accessor).ok()?.lanes == 4;
@@ -49,7 +52,12 @@ pub(super) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
         materials: document
             .materials
             .iter()
-            .map(|material| self::material(document, material))
+            .enumerate()
+            .map(|(number, material)| {
+                let mut material = self::material(document, material);
+                maps::dress(document, number, &mut material);
+                material
+            })
             .collect(),
         images: (0..document.images.len())
             .map(|image| self::image(document, image))
@@ -134,13 +142,10 @@ fn gather<T: Copy + Send>(pieces: &Pieces, missing: T, of_part: impl Fn(&Part) -
 
 fn material(document: &Document, material: &json::Material) -> Material {
     let surface = &material.pbr_metallic_roughness;
-    let texture = surface
+    let base = surface
         .base_color_texture
         .as_ref()
-        .and_then(|info| document.textures.get(info.index.value()));
-    let sampler = texture
-        .and_then(|texture| texture.sampler)
-        .and_then(|sampler| document.samplers.get(sampler.value()));
+        .and_then(|info| maps::image_of(document, info.index.value()));
     let alpha = match material.alpha_mode {
         Checked::Valid(json::material::AlphaMode::Mask) => {
             AlphaMode::Mask(material.alpha_cutoff.as_ref().map_or(0.5, |cutoff| cutoff.0))
@@ -148,28 +153,16 @@ fn material(document: &Document, material: &json::Material) -> Material {
         Checked::Valid(json::material::AlphaMode::Blend) => AlphaMode::Blend,
         _ => AlphaMode::Opaque,
     };
-    let image = texture
-        .map(|texture| texture.source.value())
-        .filter(|&image| image < document.images.len());
     Material {
         name: material.name.clone().unwrap_or_default(),
         base_colour: surface.base_color_factor.0,
-        base_colour_image: image,
+        base_colour_image: base.map(|(image, _)| image),
         metallic: surface.metallic_factor.0,
         roughness: surface.roughness_factor.0,
         double_sided: material.double_sided,
         alpha,
-        wrap: sampler.map_or([Wrap::Repeat; 2], |sampler| {
-            [wrap(sampler.wrap_s), wrap(sampler.wrap_t)]
-        }),
-    }
-}
-
-fn wrap(mode: Checked<WrappingMode>) -> Wrap {
-    match mode {
-        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::ClampToEdge,
-        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::MirroredRepeat,
-        _ => Wrap::Repeat,
+        wrap: base.map_or([Wrap::Repeat; 2], |(_, wrap)| wrap),
+        ..Material::default()
     }
 }
 

@@ -10,6 +10,7 @@ mod fault;
 mod geometry;
 mod json;
 mod look;
+mod maps;
 mod pack;
 mod patch;
 mod primitive;

@@ -3,6 +3,7 @@
 use super::document::Document;
 use super::fault::Fault;
 use super::json::At;
+use super::maps::{MaterialMaps, UvTransform};
 
 /// How a primitive's corners make shapes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -29,37 +30,12 @@ pub(super) struct Primitive {
     pub uv: Option<usize>,
     /// How they are transformed on the way.
     pub uv_transform: UvTransform,
+    /// The second set of texture coordinates that the material's other images take.
+    pub second_uv: Option<usize>,
     pub indices: Option<usize>,
     pub material: Option<usize>,
     /// Morph targets.
     pub target_count: usize,
-}
-
-/// KHR_texture_transform: scaled, then turned, then shifted.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct UvTransform {
-    pub offset: [f32; 2],
-    /// Counter-clockwise, radians.
-    pub rotation: f32,
-    pub scale: [f32; 2],
-}
-
-impl UvTransform {
-    const IDENTITY: Self = Self {
-        offset: [0.0; 2],
-        rotation: 0.0,
-        scale: [1.0; 2],
-    };
-
-    /// The texture coordinates that the image is looked up at.
-    pub fn apply(&self, [u, v]: [f32; 2]) -> [f32; 2] {
-        if *self == Self::IDENTITY {
-            return [u, v];
-        }
-        let (sin, cos) = self.rotation.sin_cos();
-        let (u, v) = (u * self.scale[0], v * self.scale[1]);
-        [cos * u + sin * v + self.offset[0], cos * v - sin * u + self.offset[1]]
-    }
 }
 
 /// The primitives of every mesh, in the file's order.
@@ -90,7 +66,7 @@ impl Primitive {
         let attributes = json.member(at, "attributes");
         let attribute = |key: &str| attributes.map_or(Ok(None), |attributes| accessor(attributes, key));
         let material = document.index(at, "material", document.materials.len(), &what)?;
-        let (uv_set, uv_transform) = material.map_or((0, UvTransform::IDENTITY), |material| uv_of(document, material));
+        let maps = material.map_or_else(MaterialMaps::default, |material| MaterialMaps::of(document, material));
         let targets = json.member(at, "targets");
         Ok(Self {
             at,
@@ -99,8 +75,12 @@ impl Primitive {
             normal: attribute("NORMAL")?,
             tangent: attribute("TANGENT")?,
             colour: attribute("COLOR_0")?,
-            uv: attribute(&format!("TEXCOORD_{uv_set}"))?,
-            uv_transform,
+            uv: attribute(&format!("TEXCOORD_{}", maps.base_set))?,
+            uv_transform: maps.base_transform,
+            second_uv: match maps.second_set {
+                Some(set) => attribute(&format!("TEXCOORD_{set}"))?,
+                None => None,
+            },
             indices: accessor(at, "indices")?,
             material,
             target_count: targets.map_or(0, |targets| json.elements(targets).count()),
@@ -109,7 +89,7 @@ impl Primitive {
 
     /// Whether two primitives' vertices look the same, so that their drawn vertices are the same.
     pub fn has_attributes_of(&self, other: &Self) -> bool {
-        let key = |p: &Self| (p.position, p.normal, p.tangent, p.colour, p.uv);
+        let key = |p: &Self| (p.position, p.normal, p.tangent, p.colour, p.uv, p.second_uv);
         key(self) == key(other) && (self.uv.is_none() || self.uv_transform == other.uv_transform)
     }
 
@@ -128,6 +108,7 @@ impl Primitive {
             self.tangent,
             self.colour,
             self.uv,
+            self.second_uv,
             self.indices,
         ];
         for accessor in read.into_iter().flatten() {
@@ -148,28 +129,6 @@ impl Primitive {
             }
         }
         Ok(())
-    }
-}
-
-/// The set of texture coordinates that a material's base colour takes, and their transform.
-fn uv_of(document: &Document, material: usize) -> (u32, UvTransform) {
-    let Some(texture) = &document.materials[material].pbr_metallic_roughness.base_color_texture else {
-        return (0, UvTransform::IDENTITY);
-    };
-    match texture
-        .extensions
-        .as_ref()
-        .and_then(|extensions| extensions.texture_transform.as_ref())
-    {
-        None => (texture.tex_coord, UvTransform::IDENTITY),
-        Some(found) => {
-            let transform = UvTransform {
-                offset: found.offset.0,
-                rotation: found.rotation.0,
-                scale: found.scale.0,
-            };
-            (found.tex_coord.unwrap_or(texture.tex_coord), transform)
-        }
     }
 }
 

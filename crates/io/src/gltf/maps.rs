@@ -1,0 +1,225 @@
+//! A material's images other than the base colour's, and the texture coordinates that all of them take.
+//!
+//! The drawn vertices carry the base colour's coordinates with their transform applied, and at most one further set as
+//! stored. An image that takes the base colour's set is looked up from there, its own transform put behind the inverse
+//! of the base colour's; one that takes any other set comes from the second. They are read from the text, since the
+//! `gltf` crate types extensions of some texture references and not of others.
+
+use ::gltf::json::texture::WrappingMode;
+use ::gltf::json::validation::Checked;
+use glam::{Mat3, Vec2};
+
+use super::document::Document;
+use super::json::At;
+use crate::appearance::{Lighting, Map, Material, UvSet, Wrap};
+
+/// KHR_texture_transform: scaled, then turned, then shifted.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct UvTransform {
+    pub offset: [f32; 2],
+    /// Counter-clockwise, radians.
+    pub rotation: f32,
+    pub scale: [f32; 2],
+}
+
+impl UvTransform {
+    pub const IDENTITY: Self = Self {
+        offset: [0.0; 2],
+        rotation: 0.0,
+        scale: [1.0; 2],
+    };
+
+    /// The texture coordinates that the image is looked up at.
+    pub fn apply(&self, [u, v]: [f32; 2]) -> [f32; 2] {
+        if *self == Self::IDENTITY {
+            return [u, v];
+        }
+        let (sin, cos) = self.rotation.sin_cos();
+        let (u, v) = (u * self.scale[0], v * self.scale[1]);
+        [cos * u + sin * v + self.offset[0], cos * v - sin * u + self.offset[1]]
+    }
+
+    fn matrix(&self) -> Mat3 {
+        let at = |uv| Vec2::from(self.apply(uv));
+        let origin = at([0.0, 0.0]);
+        Mat3::from_cols(
+            (at([1.0, 0.0]) - origin).extend(0.0),
+            (at([0.0, 1.0]) - origin).extend(0.0),
+            origin.extend(1.0),
+        )
+    }
+}
+
+/// Which texture coordinates a material's images take.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct MaterialMaps {
+    /// The set of the base colour's image; without one, of the first other image.
+    pub base_set: u32,
+    /// How that set is transformed on the way to the drawn vertices.
+    pub base_transform: UvTransform,
+    /// The first other set that is asked for.
+    pub second_set: Option<u32>,
+}
+
+impl Default for MaterialMaps {
+    fn default() -> Self {
+        Self {
+            base_set: 0,
+            base_transform: UvTransform::IDENTITY,
+            second_set: None,
+        }
+    }
+}
+
+/// The images beside the base colour's, by their paths in a material.
+const OTHER_MAPS: [&[&str]; 4] = [
+    &["pbrMetallicRoughness", "metallicRoughnessTexture"],
+    &["normalTexture"],
+    &["occlusionTexture"],
+    &["emissiveTexture"],
+];
+
+impl MaterialMaps {
+    /// The sets of a material of the file.
+    pub fn of(document: &Document, material: usize) -> Self {
+        let references = References::of(document, material);
+        let (base_set, base_transform) = match (references.base, references.others.iter().flatten().next()) {
+            (Some(base), _) => (base.set, base.transform),
+            (None, Some(other)) => (other.set, UvTransform::IDENTITY),
+            (None, None) => (0, UvTransform::IDENTITY),
+        };
+        let is_lost = base_transform.matrix().determinant().abs() < 1e-12;
+        let second_set = references
+            .others
+            .iter()
+            .flatten()
+            .map(|reference| reference.set)
+            .find(|&set| set != base_set || is_lost);
+        Self {
+            base_set,
+            base_transform,
+            second_set,
+        }
+    }
+}
+
+/// Gives `out` what the text says about a material beside its base colour, factors and alpha.
+pub(super) fn dress(document: &Document, material: usize, out: &mut Material) {
+    let Some(&at) = document.materials_at.get(material) else {
+        return;
+    };
+    let json = &document.json;
+    let number = |path: &[&str]| json.path(at, path).and_then(|at| json.number(at));
+    let sets = MaterialMaps::of(document, material);
+    let references = References::of(document, material);
+    let [metallic_roughness, normal, occlusion, emissive] =
+        references.others.map(|reference| map(document, &sets, reference?));
+    out.metallic_roughness_map = metallic_roughness;
+    out.normal_map = normal;
+    out.occlusion_map = occlusion;
+    out.emissive_map = emissive;
+    out.normal_scale = number(&["normalTexture", "scale"]).unwrap_or(1.0) as f32;
+    out.occlusion_strength = number(&["occlusionTexture", "strength"]).unwrap_or(1.0).clamp(0.0, 1.0) as f32;
+    let strength = number(&["extensions", "KHR_materials_emissive_strength", "emissiveStrength"])
+        .unwrap_or(1.0)
+        .max(0.0);
+    let factor: Option<[f64; 3]> = json.member(at, "emissiveFactor").and_then(|at| json.typed(at).ok());
+    out.emissive = factor.unwrap_or_default().map(|channel| (channel * strength) as f32);
+    if json.path(at, &["extensions", "KHR_materials_unlit"]).is_some() {
+        out.lighting = Lighting::Unlit;
+    }
+}
+
+/// The image of a texture and how it is wrapped.
+pub(super) fn image_of(document: &Document, texture: usize) -> Option<(usize, [Wrap; 2])> {
+    let texture = document.textures.get(texture)?;
+    let image = texture.source.value();
+    let sampler = texture
+        .sampler
+        .and_then(|sampler| document.samplers.get(sampler.value()));
+    let wrap = sampler.map_or([Wrap::Repeat; 2], |sampler| {
+        [wrap(sampler.wrap_s), wrap(sampler.wrap_t)]
+    });
+    (image < document.images.len()).then_some((image, wrap))
+}
+
+fn wrap(mode: Checked<WrappingMode>) -> Wrap {
+    match mode {
+        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::ClampToEdge,
+        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::MirroredRepeat,
+        _ => Wrap::Repeat,
+    }
+}
+
+/// A texture that a material names.
+#[derive(Clone, Copy, PartialEq, Debug)]
+struct Reference {
+    texture: usize,
+    set: u32,
+    transform: UvTransform,
+}
+
+/// All that a material names.
+struct References {
+    base: Option<Reference>,
+    others: [Option<Reference>; 4],
+}
+
+impl References {
+    fn of(document: &Document, material: usize) -> Self {
+        let at = document.materials_at.get(material).copied();
+        let reference = |path: &[&str]| Reference::read(document, document.json.path(at?, path)?);
+        Self {
+            base: reference(&["pbrMetallicRoughness", "baseColorTexture"]),
+            others: OTHER_MAPS.map(reference),
+        }
+    }
+}
+
+impl Reference {
+    fn read(document: &Document, info: At) -> Option<Self> {
+        let json = &document.json;
+        let number = |path: &[&str]| json.path(info, path).and_then(|at| json.number(at));
+        let transform = json.path(info, &["extensions", "KHR_texture_transform"]);
+        let pair = |key: &str, missing: [f32; 2]| {
+            let stored = json.member(transform?, key).and_then(|at| json.typed(at).ok());
+            Some(stored.unwrap_or(missing))
+        };
+        let set = number(&["extensions", "KHR_texture_transform", "texCoord"])
+            .or(number(&["texCoord"]))
+            .unwrap_or(0.0);
+        Some(Self {
+            texture: number(&["index"]).filter(|index| *index >= 0.0)? as usize,
+            set: set.max(0.0) as u32,
+            transform: UvTransform {
+                offset: pair("offset", [0.0; 2]).unwrap_or([0.0; 2]),
+                rotation: number(&["extensions", "KHR_texture_transform", "rotation"]).unwrap_or(0.0) as f32,
+                scale: pair("scale", [1.0; 2]).unwrap_or([1.0; 2]),
+            },
+        })
+    }
+}
+
+/// Where a reference is looked up from what drawn vertices carry; `None` for an image that isn't there, or a third set.
+fn map(document: &Document, sets: &MaterialMaps, reference: Reference) -> Option<Map> {
+    let (image, wrap) = image_of(document, reference.texture)?;
+    let own = reference.transform.matrix();
+    let base = sets.base_transform.matrix();
+    let (set, matrix) = if reference.set == sets.base_set && base.determinant().abs() >= 1e-12 {
+        // Equal transforms cancel to the last bit.
+        let is_same = reference.transform == sets.base_transform;
+        let relative = if is_same { Mat3::IDENTITY } else { own * base.inverse() };
+        (UvSet::Base, relative)
+    } else if sets.second_set == Some(reference.set) {
+        (UvSet::Second, own)
+    } else {
+        return None;
+    };
+    let rows = matrix.transpose();
+    Some(Map {
+        image,
+        wrap,
+        set,
+        transform: [rows.x_axis.to_array(), rows.y_axis.to_array()],
+    })
+}
