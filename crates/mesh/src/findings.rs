@@ -1,15 +1,6 @@
 //! What loading found wrong with a mesh, as numbers with examples and as sentences for a person.
 
-use rayon::prelude::*;
-
-/// How often something was found, and a few places.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Finding {
-    /// How many there are.
-    pub count: usize,
-    /// The first few of them or of their vertices, at most [`Findings::EXAMPLES`].
-    pub examples: Vec<u32>,
-}
+use crate::Finding;
 
 /// What loading found wrong with a mesh. Vertices are named by their file vertex, triangles by their drawn triangle.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -32,184 +23,236 @@ pub struct Findings {
     pub non_manifold_vertices: Finding,
     /// Edges whose two triangles disagree about which side is outside; the examples are vertices on them.
     pub misoriented_edges: Finding,
+    /// Closed parts whose triangles face inwards; the examples are their first vertices. A part within the box of
+    /// another closed part is taken for a cavity, which has to.
+    pub inside_out_components: Finding,
     /// Edges with one triangle only; the examples are vertices on them.
     pub boundary_edges: Finding,
     /// Holes; the examples are vertices on their rims.
     pub boundary_loops: Finding,
     /// Connected parts, largest first; the examples are their first vertices.
     pub components: Finding,
+    /// Parts with less than a hundredth of the largest one's vertices; the examples are their first vertices.
+    pub loose_bits: Finding,
 }
 
-impl Finding {
-    /// All of `found`, which is in order.
-    pub(crate) fn of(found: &[u32]) -> Self {
-        Self {
-            count: found.len(),
-            examples: found[..found.len().min(Findings::EXAMPLES)].to_vec(),
-        }
-    }
-
-    /// One thing at each of `vertices`; the examples are the lowest of them, each once.
-    pub(crate) fn at_vertices(vertices: impl Iterator<Item = u32>) -> Self {
-        let mut vertices: Vec<u32> = vertices.collect();
-        let count = vertices.len();
-        vertices.sort_unstable();
-        vertices.dedup();
-        Self {
-            count,
-            ..Self::of(&vertices)
-        }
-    }
-
-    /// Whether nothing was found.
-    pub fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
-    /// The same finding with other names for the examples.
-    pub(crate) fn renamed(mut self, name: impl Fn(u32) -> u32) -> Self {
-        for example in &mut self.examples {
-            *example = name(*example);
-        }
-        self
-    }
-
-    /// Adds what was found further on.
-    pub(crate) fn extend(&mut self, later: &Self) {
-        self.count += later.count;
-        let room = Findings::EXAMPLES - self.examples.len();
-        self.examples.extend(later.examples.iter().take(room));
-    }
-
-    /// Adds one more.
-    pub(crate) fn push(&mut self, example: u32) {
-        self.count += 1;
-        if self.examples.len() < Findings::EXAMPLES {
-            self.examples.push(example);
-        }
-    }
-
-    /// "3 vertices (4, 5 and 9)": how many, and the first of them named by `at` and their numbers.
-    fn counted(&self, one: &str, many: &str, at: &str) -> String {
-        let shown: Vec<String> = self.examples.iter().take(3).map(u32::to_string).collect();
-        let noun = if self.count == 1 { one } else { many };
-        match shown.as_slice() {
-            [] => format!("{} {noun}", self.count),
-            [only] => format!("{} {noun} ({at}{only})", self.count),
-            [firsts @ .., last] if self.count == shown.len() => {
-                format!("{} {noun} ({at}{} and {last})", self.count, firsts.join(", "))
-            }
-            all => format!("{} {noun} ({at}{}, ...)", self.count, all.join(", ")),
-        }
-    }
+/// One of the things that loading looks for.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+#[expect(missing_docs, reason = "each variant is the field of its name in `Findings`")]
+pub enum FindingKind {
+    NonFiniteVertices,
+    NonFiniteTriangles,
+    UnreferencedVertices,
+    CollapsedTriangles,
+    ZeroAreaTriangles,
+    DuplicateTriangles,
+    NonManifoldEdges,
+    NonManifoldVertices,
+    MisorientedEdges,
+    InsideOutComponents,
+    BoundaryEdges,
+    BoundaryLoops,
+    Components,
+    LooseBits,
 }
 
-/// Finds the numbers below `count` of which `is_found` holds, in parallel.
-pub(crate) fn collect(count: usize, is_found: impl Fn(usize) -> bool + Sync) -> Finding {
-    const PIECE: usize = 65_536;
-    let pieces: Vec<Finding> = (0..count.div_ceil(PIECE))
-        .into_par_iter()
-        .map(|piece| {
-            let mut finding = Finding::default();
-            for i in piece * PIECE..((piece + 1) * PIECE).min(count) {
-                if is_found(i) {
-                    finding.push(i as u32);
-                }
-            }
-            finding
-        })
-        .collect();
-    let mut all = Finding::default();
-    for piece in &pieces {
-        all.extend(piece);
+/// What a finding's examples are numbers of.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Named {
+    /// The file's vertices.
+    FileVertex,
+    /// The drawn triangles.
+    DrawnTriangle,
+}
+
+impl FindingKind {
+    /// Every kind, in the order in which they are told.
+    pub const ALL: [Self; 14] = [
+        Self::NonFiniteVertices,
+        Self::NonFiniteTriangles,
+        Self::UnreferencedVertices,
+        Self::CollapsedTriangles,
+        Self::ZeroAreaTriangles,
+        Self::DuplicateTriangles,
+        Self::NonManifoldEdges,
+        Self::NonManifoldVertices,
+        Self::MisorientedEdges,
+        Self::InsideOutComponents,
+        Self::BoundaryEdges,
+        Self::BoundaryLoops,
+        Self::Components,
+        Self::LooseBits,
+    ];
+
+    /// Its name in machine-readable output.
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::NonFiniteVertices => "non_finite_vertices",
+            Self::NonFiniteTriangles => "non_finite_triangles",
+            Self::UnreferencedVertices => "unreferenced_vertices",
+            Self::CollapsedTriangles => "collapsed_triangles",
+            Self::ZeroAreaTriangles => "zero_area_triangles",
+            Self::DuplicateTriangles => "duplicate_triangles",
+            Self::NonManifoldEdges => "non_manifold_edges",
+            Self::NonManifoldVertices => "non_manifold_vertices",
+            Self::MisorientedEdges => "misoriented_edges",
+            Self::InsideOutComponents => "inside_out_components",
+            Self::BoundaryEdges => "boundary_edges",
+            Self::BoundaryLoops => "boundary_loops",
+            Self::Components => "components",
+            Self::LooseBits => "loose_bits",
+        }
     }
-    all
+
+    /// What its examples are numbers of.
+    pub const fn named(self) -> Named {
+        match self {
+            Self::NonFiniteTriangles
+            | Self::CollapsedTriangles
+            | Self::ZeroAreaTriangles
+            | Self::DuplicateTriangles => Named::DrawnTriangle,
+            _ => Named::FileVertex,
+        }
+    }
 }
 
 impl Findings {
     /// How many examples a finding keeps.
     pub const EXAMPLES: usize = 8;
 
-    /// One sentence for each thing that is not as in a clean, closed, connected mesh; none for such a mesh.
-    pub fn sentences(&self) -> Vec<String> {
-        let mut sentences = Vec::new();
-        let mut say = |finding: &Finding, [one, many]: [&str; 2], at: &str, [is, are]: [&str; 2]| {
-            if !finding.is_empty() {
-                let rest = if finding.count == 1 { is } else { are };
-                sentences.push(format!("{} {rest}.", finding.counted(one, many, at)));
-            }
-        };
+    /// The finding of a kind.
+    pub fn of(&self, kind: FindingKind) -> &Finding {
+        match kind {
+            FindingKind::NonFiniteVertices => &self.non_finite_vertices,
+            FindingKind::NonFiniteTriangles => &self.non_finite_triangles,
+            FindingKind::UnreferencedVertices => &self.unreferenced_vertices,
+            FindingKind::CollapsedTriangles => &self.collapsed_triangles,
+            FindingKind::ZeroAreaTriangles => &self.zero_area_triangles,
+            FindingKind::DuplicateTriangles => &self.duplicate_triangles,
+            FindingKind::NonManifoldEdges => &self.non_manifold_edges,
+            FindingKind::NonManifoldVertices => &self.non_manifold_vertices,
+            FindingKind::MisorientedEdges => &self.misoriented_edges,
+            FindingKind::InsideOutComponents => &self.inside_out_components,
+            FindingKind::BoundaryEdges => &self.boundary_edges,
+            FindingKind::BoundaryLoops => &self.boundary_loops,
+            FindingKind::Components => &self.components,
+            FindingKind::LooseBits => &self.loose_bits,
+        }
+    }
+
+    /// A sentence about a kind; `None` where it is as in a clean, closed, connected mesh, and for rims' edges, which
+    /// their holes tell of.
+    pub fn sentence(&self, kind: FindingKind) -> Option<String> {
+        let finding = self.of(kind);
         let vertices = ["vertex", "vertices"];
         let triangles = ["triangle", "triangles"];
         let edges = ["edge", "edges"];
         let at_vertex = "at vertex ";
-        let not_finite = [
-            "has a position that is not a finite number and was set aside",
-            "have positions that are not finite numbers and were set aside",
-        ];
-        say(&self.non_finite_vertices, vertices, "", not_finite);
-        let use_such = [
-            "uses such a vertex and was left out",
-            "use such vertices and were left out",
-        ];
-        say(&self.non_finite_triangles, triangles, "", use_such);
-        let unused = [
-            "is used by no triangle and keeps its place",
-            "are used by no triangle and keep their places",
-        ];
-        say(&self.unreferenced_vertices, vertices, "", unused);
-        let collapsed = [
-            "has two corners in one place and was left out",
-            "have two corners in one place and were left out",
-        ];
-        say(&self.collapsed_triangles, triangles, "", collapsed);
-        say(
-            &self.zero_area_triangles,
-            triangles,
-            "",
-            ["has no area", "have no area"],
-        );
-        let repeated = [
-            "repeats an earlier one and was left out",
-            "repeat earlier ones and were left out",
-        ];
-        say(&self.duplicate_triangles, triangles, "", repeated);
-        let crowded = ["has more than two triangles", "have more than two triangles"];
-        say(&self.non_manifold_edges, edges, at_vertex, crowded);
-        let pinched = [
-            "joins parts that share nothing else there",
-            "join parts that share nothing else there",
-        ];
-        say(&self.non_manifold_vertices, vertices, "", pinched);
-        let disagree = [
-            "lies between triangles that disagree about which side is outside",
-            "lie between triangles that disagree about which side is outside",
-        ];
-        say(&self.misoriented_edges, edges, at_vertex, disagree);
-        let open = [
-            format!("lies on the rim of {}", self.holes()),
-            format!("lie on the rim of {}", self.holes()),
-        ];
-        say(
-            &self.boundary_edges,
-            edges,
-            at_vertex,
-            open.each_ref().map(String::as_str),
-        );
-        if self.components.count > 1 {
-            sentences.push(format!(
-                "The surface has {} parts that don't touch.",
-                self.components.count
-            ));
-        }
-        sentences
+        let (nouns, at, rests) = match kind {
+            FindingKind::NonFiniteVertices => (
+                vertices,
+                "",
+                [
+                    "has a position that is not a finite number and was set aside",
+                    "have positions that are not finite numbers and were set aside",
+                ],
+            ),
+            FindingKind::NonFiniteTriangles => (
+                triangles,
+                "",
+                [
+                    "uses such a vertex and was left out",
+                    "use such vertices and were left out",
+                ],
+            ),
+            FindingKind::UnreferencedVertices => (
+                vertices,
+                "",
+                [
+                    "is used by no triangle and keeps its place",
+                    "are used by no triangle and keep their places",
+                ],
+            ),
+            FindingKind::CollapsedTriangles => (
+                triangles,
+                "",
+                [
+                    "has two corners in one place and was left out",
+                    "have two corners in one place and were left out",
+                ],
+            ),
+            FindingKind::ZeroAreaTriangles => (triangles, "", ["has no area", "have no area"]),
+            FindingKind::DuplicateTriangles => (
+                triangles,
+                "",
+                [
+                    "repeats an earlier one and was left out",
+                    "repeat earlier ones and were left out",
+                ],
+            ),
+            FindingKind::NonManifoldEdges => (
+                edges,
+                at_vertex,
+                ["has more than two triangles", "have more than two triangles"],
+            ),
+            FindingKind::NonManifoldVertices => (
+                vertices,
+                "",
+                [
+                    "joins parts that share nothing else there",
+                    "join parts that share nothing else there",
+                ],
+            ),
+            FindingKind::MisorientedEdges => (
+                edges,
+                at_vertex,
+                [
+                    "lies between triangles that disagree about which side is outside",
+                    "lie between triangles that disagree about which side is outside",
+                ],
+            ),
+            FindingKind::InsideOutComponents => (
+                ["closed part", "closed parts"],
+                at_vertex,
+                [
+                    "is inside out: its triangles face inwards",
+                    "are inside out: their triangles face inwards",
+                ],
+            ),
+            FindingKind::BoundaryEdges => return None,
+            FindingKind::BoundaryLoops => {
+                let rim = self.boundary_edges.count;
+                let holes = finding.counted("hole", "holes", at_vertex);
+                let (has, edges) = (
+                    if finding.count == 1 { "has" } else { "have" },
+                    if rim == 1 { "edge" } else { "edges" },
+                );
+                return (!finding.is_empty()).then(|| format!("{holes} {has} {rim} {edges} on the rim."));
+            }
+            FindingKind::Components => {
+                let parts = finding.count;
+                return (parts > 1).then(|| format!("The surface has {parts} parts that don't touch."));
+            }
+            FindingKind::LooseBits => (
+                ["loose bit", "loose bits"],
+                at_vertex,
+                [
+                    "has less than a hundredth of the largest part's vertices",
+                    "have less than a hundredth of the largest part's vertices each",
+                ],
+            ),
+        };
+        let rest = rests[usize::from(finding.count != 1)];
+        let [one, many] = nouns;
+        (!finding.is_empty()).then(|| format!("{} {rest}.", finding.counted(one, many, at)))
     }
 
-    fn holes(&self) -> String {
-        match self.boundary_loops.count {
-            1 => "a hole".to_owned(),
-            count => format!("{count} holes"),
-        }
+    /// One sentence for each thing that is not as in a clean, closed, connected mesh; none for such a mesh.
+    pub fn sentences(&self) -> Vec<String> {
+        FindingKind::ALL
+            .into_iter()
+            .filter_map(|kind| self.sentence(kind))
+            .collect()
     }
 }
 
@@ -227,22 +270,26 @@ mod tests {
         findings.boundary_edges = Finding::of(&[0, 1, 2, 3]);
         findings.boundary_loops = Finding::of(&[0]);
         findings.components = Finding::of(&[0, 5]);
+        findings.loose_bits = Finding::of(&[5]);
         assert_eq!(
             findings.sentences(),
             [
                 "1 triangle (7) has two corners in one place and was left out.",
                 "5 triangles (1, 2, 3, ...) repeat earlier ones and were left out.",
                 "3 edges (at vertex 1, 2 and 9) have more than two triangles.",
-                "4 edges (at vertex 0, 1, 2, ...) lie on the rim of a hole.",
+                "1 hole (at vertex 0) has 4 edges on the rim.",
                 "The surface has 2 parts that don't touch.",
+                "1 loose bit (at vertex 5) has less than a hundredth of the largest part's vertices.",
             ]
         );
     }
 
     #[test]
-    fn many_are_counted_and_few_kept() {
-        let finding = collect(200_000, |i| i % 3 == 1);
-        assert_eq!((finding.count, finding.examples.len()), (66_667, Findings::EXAMPLES));
-        assert_eq!(finding.examples[..3], [1, 4, 7]);
+    fn every_kind_is_listed_once_by_a_name_of_its_own() {
+        let mut keys: Vec<&str> = FindingKind::ALL.iter().map(|kind| kind.key()).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        assert_eq!(keys.len(), FindingKind::ALL.len());
+        assert!(FindingKind::ALL.is_sorted());
     }
 }

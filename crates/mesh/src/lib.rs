@@ -12,9 +12,11 @@ mod areas;
 mod boundary;
 mod bvh;
 mod components;
+mod diagnosis;
 mod distance;
 mod distortion;
 mod drawn;
+mod finding;
 mod findings;
 pub mod geometry;
 mod gradient;
@@ -23,6 +25,7 @@ mod joining;
 mod model;
 mod morton;
 mod normals;
+mod parts;
 mod progress;
 mod rings;
 pub mod shapes;
@@ -32,10 +35,12 @@ mod weld;
 
 pub use bvh::{Bvh, Hit};
 pub use components::Component;
+pub use diagnosis::{Diagnosis, Example};
 pub use distance::{DistanceSearch, distances_along_surface};
 pub use distortion::Distortion;
 pub use drawn::Drawn;
-pub use findings::{Finding, Findings};
+pub use finding::Finding;
+pub use findings::{FindingKind, Findings, Named};
 pub use geometry::{
     Bounds, area_of_lengths, bounding_box, cotangents, edge_lengths, face_area, face_areas, face_normal,
     mixed_corner_areas, mixed_voronoi_areas, signed_volume, vertex_normals,

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::parts;
 use crate::weld::{Welded, weld};
 use crate::{
     Bounds, Cancel, Cancelled, Drawn, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex, Topology,
@@ -55,7 +56,7 @@ impl Model {
         let topology = Topology::with_file_vertices(&surface, &first_file_vertex);
         cancel.check()?;
         progress.set(0.9);
-        report_topology(&topology, &first_file_vertex, &mut findings);
+        report_topology(&surface, &topology, &first_file_vertex, &mut findings);
         progress.set(1.0);
         Ok(Self {
             drawn,
@@ -98,7 +99,7 @@ impl Model {
 }
 
 /// Tells the topology's findings in file vertices.
-fn report_topology(topology: &Topology, first_file_vertex: &[FileVertex], findings: &mut Findings) {
+fn report_topology(surface: &Surface, topology: &Topology, first_file_vertex: &[FileVertex], findings: &mut Findings) {
     let file_vertex = |v: &SurfaceVertex| first_file_vertex[v.index()].0;
     let [edges, vertices, misoriented] = topology
         .oddities()
@@ -115,6 +116,8 @@ fn report_topology(topology: &Topology, first_file_vertex: &[FileVertex], findin
         .map(|component| component.first_file_vertex.0)
         .collect();
     findings.components = Finding::of(&firsts);
+    findings.loose_bits = parts::loose_bits(topology.components());
+    findings.inside_out_components = parts::inside_out(surface, topology);
 }
 
 /// The surface vertices behind each file vertex.

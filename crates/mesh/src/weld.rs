@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::findings::collect;
+use crate::finding::collect;
 use crate::geometry::{bounds_of, is_without_area};
 use crate::joining::{self, Joined};
 use crate::{Cancel, Cancelled, Drawn, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex, WeldOptions};

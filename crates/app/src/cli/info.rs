@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use pliant_mesh::{Finding, WeldOptions};
+use pliant_mesh::{FindingKind, WeldOptions};
 use serde_json::{Value, json};
 
 use super::arguments::InfoArguments;
@@ -123,7 +123,24 @@ fn as_json(loaded: &Loaded) -> Value {
             })
         })
         .collect();
-    let finding = |finding: &Finding| json!({ "count": finding.count, "examples": finding.examples });
+    let diagnoses = model.diagnoses();
+    let mut found = serde_json::Map::new();
+    for kind in FindingKind::ALL
+        .into_iter()
+        .filter(|kind| *kind != FindingKind::Components)
+    {
+        let finding = findings.of(kind);
+        let diagnosis = diagnoses.iter().find(|diagnosis| diagnosis.kind == kind);
+        let places = diagnosis.into_iter().flat_map(|diagnosis| &diagnosis.examples);
+        let places: Vec<Value> = places
+            .map(|example| example.position.map_or(Value::Null, |place| json!(place.to_array())))
+            .collect();
+        let mut told = json!({ "count": finding.count, "examples": finding.examples });
+        if !places.is_empty() {
+            told["positions"] = places.into();
+        }
+        found.insert(kind.key().to_owned(), told);
+    }
     json!({
         "file": loaded.path.to_string_lossy(),
         "format": loaded.scene.format().extension(),
@@ -139,19 +156,7 @@ fn as_json(loaded: &Loaded) -> Value {
         "texture_coordinates": appearance.uvs.is_some(),
         "colours": appearance.colours.is_some(),
         "materials": appearance.materials.iter().map(|material| &material.name).collect::<Vec<_>>(),
-        "findings": {
-            "non_finite_vertices": finding(&findings.non_finite_vertices),
-            "non_finite_triangles": finding(&findings.non_finite_triangles),
-            "unreferenced_vertices": finding(&findings.unreferenced_vertices),
-            "collapsed_triangles": finding(&findings.collapsed_triangles),
-            "zero_area_triangles": finding(&findings.zero_area_triangles),
-            "duplicate_triangles": finding(&findings.duplicate_triangles),
-            "non_manifold_edges": finding(&findings.non_manifold_edges),
-            "non_manifold_vertices": finding(&findings.non_manifold_vertices),
-            "misoriented_edges": finding(&findings.misoriented_edges),
-            "boundary_edges": finding(&findings.boundary_edges),
-            "boundary_loops": finding(&findings.boundary_loops),
-        },
+        "findings": found,
         "sentences": findings.sentences(),
         "notes": loaded.scene.notes(),
     })

@@ -1,0 +1,88 @@
+//! A mesh's findings with the places of their examples, for a panel in which one can jump to each.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use crate::{FindingKind, Model, Named};
+
+/// One thing that is not as in a clean mesh.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Diagnosis {
+    /// What it is.
+    pub kind: FindingKind,
+    /// How many there are.
+    pub count: usize,
+    /// The same for a person.
+    pub sentence: String,
+    /// The first few.
+    pub examples: Vec<Example>,
+}
+
+/// One of the things that were found.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Example {
+    /// Its number: of what, [`FindingKind::named`] says.
+    pub number: u32,
+    /// Where it is at rest, in world space (of a triangle: its centre); `None` where it has no finite place or is not
+    /// drawn.
+    pub position: Option<DVec3>,
+}
+
+impl Model {
+    /// What is wrong with the mesh, each with the places of its first examples, in the order of
+    /// [`Findings::sentences`](crate::Findings::sentences). One look at every vertex, so made on request.
+    pub fn diagnoses(&self) -> Vec<Diagnosis> {
+        let told = || {
+            FindingKind::ALL
+                .into_iter()
+                .filter_map(|kind| Some((kind, self.findings.sentence(kind)?)))
+        };
+        let named = told()
+            .filter(|(kind, _)| kind.named() == Named::FileVertex)
+            .flat_map(|(kind, _)| self.findings.of(kind).examples.iter().copied());
+        let places = self.places_of_file_vertices(named);
+        let place = |kind: FindingKind, number: u32| match kind.named() {
+            Named::FileVertex => places.get(&number).copied(),
+            Named::DrawnTriangle => self.centre_of_drawn_triangle(number),
+        };
+        told()
+            .map(|(kind, sentence)| {
+                let finding = self.findings.of(kind);
+                let example = |&number: &u32| Example {
+                    number,
+                    position: place(kind, number),
+                };
+                Diagnosis {
+                    kind,
+                    count: finding.count,
+                    sentence,
+                    examples: finding.examples.iter().map(example).collect(),
+                }
+            })
+            .collect()
+    }
+
+    /// Where file vertices are first drawn at a finite place.
+    fn places_of_file_vertices(&self, wanted: impl Iterator<Item = u32>) -> HashMap<u32, DVec3> {
+        let mut is_wanted = vec![false; self.drawn.file_vertex_count];
+        for vertex in wanted {
+            if let Some(is_wanted) = is_wanted.get_mut(vertex as usize) {
+                *is_wanted = true;
+            }
+        }
+        let mut places = HashMap::new();
+        for (vertex, &position) in self.drawn.file_vertex.iter().zip(&self.drawn.positions) {
+            if is_wanted.get(vertex.index()) == Some(&true) && position.is_finite() {
+                places.entry(vertex.0).or_insert(position);
+            }
+        }
+        places
+    }
+
+    fn centre_of_drawn_triangle(&self, triangle: u32) -> Option<DVec3> {
+        let corners = self.drawn.triangles.get(triangle as usize)?;
+        let centre = corners.map(|v| self.drawn.positions[v.index()]).iter().sum::<DVec3>() / 3.0;
+        centre.is_finite().then_some(centre)
+    }
+}

@@ -1,0 +1,112 @@
+//! Something found wrong with a mesh, counted, with examples.
+
+use rayon::prelude::*;
+
+use crate::Findings;
+
+/// How often something was found, and a few places.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Finding {
+    /// How many there are.
+    pub count: usize,
+    /// The first few of them or of their vertices, at most [`Findings::EXAMPLES`].
+    pub examples: Vec<u32>,
+}
+
+impl Finding {
+    /// All of `found`, which is in order.
+    pub(crate) fn of(found: &[u32]) -> Self {
+        Self {
+            count: found.len(),
+            examples: found[..found.len().min(Findings::EXAMPLES)].to_vec(),
+        }
+    }
+
+    /// One thing at each of `vertices`; the examples are the lowest of them, each once.
+    pub(crate) fn at_vertices(vertices: impl Iterator<Item = u32>) -> Self {
+        let mut vertices: Vec<u32> = vertices.collect();
+        let count = vertices.len();
+        vertices.sort_unstable();
+        vertices.dedup();
+        Self {
+            count,
+            ..Self::of(&vertices)
+        }
+    }
+
+    /// Whether nothing was found.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// The same finding with other names for the examples.
+    pub(crate) fn renamed(mut self, name: impl Fn(u32) -> u32) -> Self {
+        for example in &mut self.examples {
+            *example = name(*example);
+        }
+        self
+    }
+
+    /// Adds what was found further on.
+    pub(crate) fn extend(&mut self, later: &Self) {
+        self.count += later.count;
+        let room = Findings::EXAMPLES - self.examples.len();
+        self.examples.extend(later.examples.iter().take(room));
+    }
+
+    /// Adds one more.
+    pub(crate) fn push(&mut self, example: u32) {
+        self.count += 1;
+        if self.examples.len() < Findings::EXAMPLES {
+            self.examples.push(example);
+        }
+    }
+
+    /// "3 vertices (4, 5 and 9)": how many, and the first of them named by `at` and their numbers.
+    pub(crate) fn counted(&self, one: &str, many: &str, at: &str) -> String {
+        let shown: Vec<String> = self.examples.iter().take(3).map(u32::to_string).collect();
+        let noun = if self.count == 1 { one } else { many };
+        match shown.as_slice() {
+            [] => format!("{} {noun}", self.count),
+            [only] => format!("{} {noun} ({at}{only})", self.count),
+            [firsts @ .., last] if self.count == shown.len() => {
+                format!("{} {noun} ({at}{} and {last})", self.count, firsts.join(", "))
+            }
+            all => format!("{} {noun} ({at}{}, ...)", self.count, all.join(", ")),
+        }
+    }
+}
+
+/// Finds the numbers below `count` of which `is_found` holds, in parallel.
+pub(crate) fn collect(count: usize, is_found: impl Fn(usize) -> bool + Sync) -> Finding {
+    const PIECE: usize = 65_536;
+    let pieces: Vec<Finding> = (0..count.div_ceil(PIECE))
+        .into_par_iter()
+        .map(|piece| {
+            let mut finding = Finding::default();
+            for i in piece * PIECE..((piece + 1) * PIECE).min(count) {
+                if is_found(i) {
+                    finding.push(i as u32);
+                }
+            }
+            finding
+        })
+        .collect();
+    let mut all = Finding::default();
+    for piece in &pieces {
+        all.extend(piece);
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_are_counted_and_few_kept() {
+        let finding = collect(200_000, |i| i % 3 == 1);
+        assert_eq!((finding.count, finding.examples.len()), (66_667, Findings::EXAMPLES));
+        assert_eq!(finding.examples[..3], [1, 4, 7]);
+    }
+}

@@ -1,0 +1,87 @@
+//! What is found wrong with a mesh, and where.
+
+use glam::{DAffine3, DQuat, DVec3};
+use pliant_mesh::{Drawn, DrawnVertex, FindingKind, Named, shapes};
+
+fn placed(drawn: &Drawn, scale: f64, by: DVec3) -> Drawn {
+    shapes::moved(
+        drawn,
+        DAffine3::from_scale_rotation_translation(DVec3::splat(scale), DQuat::IDENTITY, by),
+    )
+}
+
+fn turned_inside_out(mut drawn: Drawn) -> Drawn {
+    drawn.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    drawn
+}
+
+#[test]
+fn a_part_that_faces_inwards_is_found_and_a_cavity_is_none() {
+    for far in [DVec3::ZERO, DVec3::new(4e6, 5e5, -3e6)] {
+        let ball = |scale, x| placed(&shapes::icosphere(2), scale, DVec3::X * x + far);
+        let count = |parts: &[Drawn]| {
+            shapes::model(shapes::together(parts))
+                .findings
+                .inside_out_components
+                .count
+        };
+        assert_eq!(count(&[ball(1.0, 0.0)]), 0);
+        assert_eq!(count(&[turned_inside_out(ball(1.0, 0.0))]), 1);
+        assert_eq!(count(&[ball(1.0, 0.0), turned_inside_out(ball(0.5, 0.0))]), 0, "hollow");
+        assert_eq!(count(&[ball(1.0, 0.0), turned_inside_out(ball(0.5, 3.0))]), 1, "beside");
+    }
+    let open = shapes::model(turned_inside_out(shapes::grid(3, 3)));
+    assert!(open.findings.inside_out_components.is_empty(), "a sheet has no inside");
+}
+
+#[test]
+fn bits_beside_a_large_part_are_loose_and_equal_parts_are_not() {
+    let bit = Drawn::once(
+        vec![DVec3::X * 9.0, DVec3::X * 9.5, DVec3::Y * 9.0],
+        vec![[0, 1, 2].map(DrawnVertex)],
+    );
+    let large = shapes::uv_sphere(20, 40);
+    let first = large.positions.len() as u32;
+    let model = shapes::model(shapes::together(&[large.clone(), bit]));
+    assert_eq!(model.findings.loose_bits.examples, [first]);
+    let two = shapes::together(&[placed(&large, 1.0, DVec3::X * 5.0), large]);
+    assert!(shapes::model(two).findings.loose_bits.is_empty());
+}
+
+/// On every class of mesh, and on one with every fault: what is told is told with where it is.
+#[test]
+fn every_example_stands_where_it_was_found() {
+    let mut all: Vec<Drawn> = shapes::classes().into_iter().map(|(_, drawn)| drawn).collect();
+    all.push(shapes::broken(&shapes::icosphere(1)));
+    let mut seen = 0;
+    for drawn in all {
+        let model = shapes::model(drawn);
+        let diagnoses = model.diagnoses();
+        let sentences: Vec<String> = diagnoses.iter().map(|diagnosis| diagnosis.sentence.clone()).collect();
+        assert_eq!(sentences, model.findings.sentences());
+        for diagnosis in &diagnoses {
+            assert_eq!(diagnosis.count, model.findings.of(diagnosis.kind).count);
+            assert_eq!(
+                diagnosis.examples.len(),
+                model.findings.of(diagnosis.kind).examples.len()
+            );
+            for example in &diagnosis.examples {
+                seen += 1;
+                match (diagnosis.kind, diagnosis.kind.named(), example.position) {
+                    (FindingKind::NonFiniteVertices | FindingKind::NonFiniteTriangles, _, place) => {
+                        assert_eq!(place, None);
+                    }
+                    (_, Named::FileVertex, place) => {
+                        assert_eq!(place, Some(model.drawn.positions[example.number as usize]));
+                    }
+                    (_, Named::DrawnTriangle, place) => {
+                        let corners = model.drawn.triangles[example.number as usize];
+                        let corners = corners.map(|v| model.drawn.positions[v.index()]);
+                        assert_eq!(place, Some(corners.iter().sum::<DVec3>() / 3.0));
+                    }
+                }
+            }
+        }
+    }
+    assert!(seen > 10);
+}
