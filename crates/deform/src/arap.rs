@@ -29,7 +29,7 @@ use self::precondition::{PreconditionError, Preconditioner};
 use self::rims::Rims;
 use self::shape::{Energy, Scratch, Shape};
 use self::spokes::Spokes;
-use self::start::HandleFrame;
+use crate::blend::HandleFrame;
 use crate::handle::{Handle, Motion};
 use crate::lbfgs::Memory;
 use crate::partition::Partition;

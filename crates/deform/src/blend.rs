@@ -5,7 +5,11 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
+use crate::handle::Motion;
 use crate::rotation::fit;
+
+/// A map whose determinant is below this, in units of its largest entry's cube, is taken by its rotation alone.
+const SINGULAR: f64 = 1e-3;
 
 /// A handle's motion as its rigid part's logarithm and its stretch.
 #[derive(Clone, Copy, Debug)]
@@ -89,6 +93,34 @@ fn slides(turn: DVec3) -> DMat3 {
         ((1.0 - angle.cos()) / square, (angle - angle.sin()) / (square * angle))
     };
     DMat3::IDENTITY + cross * first + cross * cross * second
+}
+
+/// A handle in coordinates relative to the solver's origin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HandleFrame {
+    pub centre: DVec3,
+    pub radius: f64,
+}
+
+impl HandleFrame {
+    /// The linear part of the map.
+    pub fn linear(&self, motion: &Motion) -> DMat3 {
+        DMat3::IDENTITY + motion.linear * self.radius.recip()
+    }
+
+    /// The map from where `old` carries points to where `new` carries them.
+    pub fn onwards(&self, old: &Motion, new: &Motion) -> Screw {
+        let (mut from, mut to) = (self.linear(old), self.linear(new));
+        let largest = from.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let is_sound = from.determinant().abs() > SINGULAR * largest.powi(3);
+        if !is_sound {
+            (from, to) = (
+                DMat3::from_quat(fit(&from, DQuat::IDENTITY)),
+                DMat3::from_quat(fit(&to, DQuat::IDENTITY)),
+            );
+        }
+        Screw::of(to * from.inverse(), new.shift - old.shift, self.centre + old.shift)
+    }
 }
 
 #[cfg(test)]

@@ -1,16 +1,12 @@
 //! Where to begin for new targets: the rest shape or the last one, carried by the handles' blended motions.
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 
 use super::{ArapSolver, State, domain};
 use crate::blend::{Screw, carried};
 use crate::handle::Motion;
 use crate::operators::CHUNK;
-use crate::rotation::fit;
-
-/// A map whose determinant is below this, in units of its largest entry's cube, is taken by its rotation alone.
-const SINGULAR: f64 = 1e-3;
 
 impl ArapSolver {
     /// Makes the better of two starts the current shape for `motions`.
@@ -83,32 +79,4 @@ impl ArapSolver {
 enum Origin {
     Rest,
     Current,
-}
-
-/// A handle in coordinates relative to the solver's origin.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct HandleFrame {
-    pub centre: DVec3,
-    pub radius: f64,
-}
-
-impl HandleFrame {
-    /// The linear part of the map.
-    fn linear(&self, motion: &Motion) -> DMat3 {
-        DMat3::IDENTITY + motion.linear * self.radius.recip()
-    }
-
-    /// The map from where `old` carries points to where `new` carries them.
-    fn onwards(&self, old: &Motion, new: &Motion) -> Screw {
-        let (mut from, mut to) = (self.linear(old), self.linear(new));
-        let largest = from.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-        let is_sound = from.determinant().abs() > SINGULAR * largest.powi(3);
-        if !is_sound {
-            (from, to) = (
-                DMat3::from_quat(fit(&from, DQuat::IDENTITY)),
-                DMat3::from_quat(fit(&to, DQuat::IDENTITY)),
-            );
-        }
-        Screw::of(to * from.inverse(), new.shift - old.shift, self.centre + old.shift)
-    }
 }
