@@ -1,0 +1,107 @@
+//! The command line's own report: what a person waits for.
+
+use std::path::Path;
+use std::process::Stdio;
+
+use super::Scale;
+use super::meshes::creature_glb;
+use super::table::{Row, folder};
+use crate::process::{cargo, succeed};
+
+const COLUMNS: [&str; 8] = [
+    "free_vertices",
+    "load_ms",
+    "order_ms",
+    "bind_ms",
+    "median_ms",
+    "p95_ms",
+    "max_ms",
+    "normals_ms",
+];
+
+/// A row for every size and for one and all threads.
+pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
+    succeed(&mut cargo(&[
+        "build",
+        "--locked",
+        "--release",
+        "--package",
+        "pliant-app",
+        "--bin",
+        "pliant",
+    ]))?;
+    let sizes: &[usize] = match scale {
+        Scale::Usual => &[60_000, 200_000, 600_000],
+        Scale::Full => &[60_000, 200_000, 600_000, 5_000_000],
+    };
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut rows = Vec::new();
+    for &triangles in sizes {
+        let file = creature_glb(triangles)?;
+        for threads in [1, all] {
+            let report = folder().join("report.json");
+            apply(&file, &folder().join("edited.glb"), &report, threads)?;
+            let text =
+                std::fs::read_to_string(&report).map_err(|e| format!("{} can't be read: {e}.", report.display()))?;
+            let mut row = Row::default()
+                .number("triangles", triangles as f64)
+                .number("threads", threads as f64);
+            for column in COLUMNS {
+                row = match number(&text, column) {
+                    Some(value) => row.number(column, value),
+                    None => row.text(column, "-"),
+                };
+            }
+            rows.push(row);
+        }
+    }
+    Ok(rows)
+}
+
+fn apply(file: &Path, output: &Path, report: &Path, threads: usize) -> Result<(), String> {
+    let mut command = cargo(&[
+        "run",
+        "--locked",
+        "--quiet",
+        "--release",
+        "--package",
+        "pliant-app",
+        "--bin",
+        "pliant",
+    ]);
+    command
+        .args(["--", "apply"])
+        .arg(file)
+        .args(["--edit", "assets/creature.edit.json", "--frames", "60"]);
+    command
+        .arg("--output")
+        .arg(output)
+        .arg("--report")
+        .arg(report)
+        .args(["--threads", &threads.to_string()]);
+    succeed(command.stdout(Stdio::null()))
+}
+
+/// The number behind the first member of this name in a report of our own.
+fn number(report: &str, name: &str) -> Option<f64> {
+    let (_, rest) = report.split_once(&format!("\"{name}\""))?;
+    let rest = rest.trim_start().strip_prefix(':')?.trim_start();
+    let end = rest
+        .find(|c: char| !matches!(c, '0'..='9' | '.' | '-' | '+' | 'e' | 'E'))
+        .unwrap_or(rest.len());
+    rest[..end].parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_found_by_name() {
+        let report = "{\"bind_ms\" : 150.25,\n \"frames\": {\"median_ms\":9e-1}}";
+        assert_eq!(number(report, "bind_ms"), Some(150.25));
+        assert_eq!(number(report, "median_ms"), Some(0.9));
+        assert_eq!(number(report, "max_ms"), None);
+        assert_eq!(number(report, "frames"), None);
+    }
+}

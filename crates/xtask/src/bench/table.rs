@@ -1,0 +1,193 @@
+//! Rows of measurements: read from what an example prints, printed as a table, kept as JSON.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use crate::process::{cargo, target_folder, words};
+
+/// What one measurement found: names and values as JSON writes them, in the order in which they are to be shown.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Row(Vec<(String, String)>);
+
+impl Row {
+    /// With a text put behind what is there.
+    #[must_use]
+    pub fn text(mut self, name: &str, value: &str) -> Self {
+        let escaped = value.replace('\\', "\\\\").replace('"', "\\\"");
+        self.0.push((name.to_owned(), format!("\"{escaped}\"")));
+        self
+    }
+
+    /// With a number put behind what is there.
+    #[must_use]
+    pub fn number(mut self, name: &str, value: f64) -> Self {
+        self.0.push((name.to_owned(), format!("{value}")));
+        self
+    }
+
+    /// With all of another row behind what is there.
+    #[must_use]
+    pub fn and(mut self, other: Self) -> Self {
+        self.0.extend(other.0);
+        self
+    }
+
+    /// The number of this name.
+    pub fn get(&self, name: &str) -> Option<f64> {
+        self.0.iter().find(|(own, _)| own == name)?.1.parse().ok()
+    }
+
+    /// Reads one flat JSON object of texts and numbers on one line; `None` for anything else.
+    pub fn parse(line: &str) -> Option<Self> {
+        let mut rest = line.trim().strip_prefix('{')?.strip_suffix('}')?.trim();
+        let mut row = Vec::new();
+        while !rest.is_empty() {
+            let (name, after) = rest.strip_prefix('"')?.split_once('"')?;
+            let after = after.trim_start().strip_prefix(':')?.trim_start();
+            let end = match after.strip_prefix('"') {
+                Some(text) => text.find('"')? + 2,
+                None => after.find(',').unwrap_or(after.len()),
+            };
+            row.push((name.to_owned(), after[..end].trim().to_owned()));
+            let tail = after[end..].trim_start();
+            rest = tail.strip_prefix(',').unwrap_or(tail).trim_start();
+        }
+        Some(Self(row))
+    }
+
+    fn json(&self) -> String {
+        let members: Vec<String> = self
+            .0
+            .iter()
+            .map(|(name, value)| format!("\"{name}\": {value}"))
+            .collect();
+        format!("{{{}}}", members.join(", "))
+    }
+}
+
+/// Builds a crate's example in release and runs it; every JSON object that it prints on a line of its own is a row.
+///
+/// # Errors
+/// One sentence when it can't be built or fails.
+pub fn measured(package: &str, example: &str, arguments: &[String]) -> Result<Vec<Row>, String> {
+    let mut command = cargo(&[
+        "run",
+        "--locked",
+        "--quiet",
+        "--release",
+        "--package",
+        package,
+        "--example",
+        example,
+        "--",
+    ]);
+    rows_of(command.args(arguments))
+}
+
+/// Runs a program; every JSON object that it prints on a line of its own is a row.
+///
+/// # Errors
+/// One sentence when it can't be started or fails.
+pub fn rows_of(command: &mut Command) -> Result<Vec<Row>, String> {
+    let words = words(command);
+    let output = command
+        .stderr(Stdio::inherit())
+        .output()
+        .map_err(|e| format!("`{words}` can't be started: {e}."))?;
+    if !output.status.success() {
+        return Err(format!("`{words}` failed ({}).", output.status));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout)
+        .lines()
+        .filter_map(Row::parse)
+        .collect())
+}
+
+/// Prints rows below the names of their columns; rows with other columns start a table of their own.
+pub fn print(rows: &[Row]) {
+    let names = |row: &Row| row.0.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    let mut rest = rows;
+    while let Some(first) = rest.first() {
+        let columns = names(first);
+        let end = rest.iter().position(|row| names(row) != columns).unwrap_or(rest.len());
+        let (table, tail) = rest.split_at(end);
+        let cells: Vec<Vec<String>> = table
+            .iter()
+            .map(|row| row.0.iter().map(|(_, value)| shown(value)).collect())
+            .collect();
+        let width = |column: usize| {
+            let longest = cells.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+            longest.max(columns[column].chars().count())
+        };
+        let line = |row: &[String]| {
+            let padded: Vec<String> = (0..row.len()).map(|i| format!("{:>1$}", row[i], width(i))).collect();
+            println!("{}", padded.join("  "));
+        };
+        line(&columns);
+        cells.iter().for_each(|row| line(row));
+        rest = tail;
+    }
+}
+
+/// Numbers with three digits that count, texts without their quotes.
+fn shown(value: &str) -> String {
+    match value.parse::<f64>() {
+        Ok(number) if number.fract() == 0.0 || number.abs() >= 100.0 => format!("{number:.0}"),
+        Ok(number) if number.abs() >= 10.0 => format!("{number:.1}"),
+        Ok(number) => format!("{number:.2}"),
+        Err(_) => value.trim_matches('"').to_owned(),
+    }
+}
+
+/// Keeps a section's rows as `target/bench/<name>.json`.
+///
+/// # Errors
+/// One sentence when it can't be written.
+pub fn keep(name: &str, rows: &[Row]) -> Result<(), String> {
+    let path = folder().join(format!("{name}.json"));
+    let lines: Vec<String> = rows.iter().map(|row| format!("  {}", row.json())).collect();
+    write(&path, format!("[\n{}\n]\n", lines.join(",\n")).as_bytes())
+}
+
+/// Where measurements and the meshes for them lie.
+pub fn folder() -> std::path::PathBuf {
+    target_folder().join("bench")
+}
+
+/// Writes a file, and the folders above it.
+///
+/// # Errors
+/// One sentence when it can't be written.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    let parent = path.parent().unwrap_or(path);
+    std::fs::create_dir_all(parent)
+        .and_then(|()| std::fs::write(path, bytes))
+        .map_err(|e| format!("{} can't be written: {e}.", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_is_read_as_it_is_written() {
+        let row = Row::default()
+            .text("mesh", "a, b")
+            .number("ms", 1.25)
+            .number("count", 3.0);
+        assert_eq!(row.json(), r#"{"mesh": "a, b", "ms": 1.25, "count": 3}"#);
+        assert_eq!(Row::parse(&row.json()), Some(row.clone()));
+        assert_eq!(row.get("ms"), Some(1.25));
+        assert_eq!(row.get("mesh"), None);
+        assert_eq!(Row::parse("bound in 3 ms"), None);
+        assert_eq!(Row::parse("{}"), Some(Row::default()));
+    }
+
+    #[test]
+    fn numbers_are_shown_as_far_as_they_count() {
+        assert_eq!(
+            ["1234.5", "12.34", "0.123", "7", "\"x\""].map(shown),
+            ["1234", "12.3", "0.12", "7", "x"]
+        );
+    }
+}
