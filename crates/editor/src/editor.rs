@@ -50,6 +50,8 @@ pub struct Editor {
     pub(crate) wireframe: bool,
     pub(crate) shows_regions: bool,
     pub(crate) problem: Option<String>,
+    /// The step that a widget is adjusting, while a command is added to it.
+    pub(crate) open_step: Option<Transaction>,
     pub(crate) overlay: Overlay,
     /// Events that wait until rays can be answered from what is drawn.
     held: VecDeque<Event>,
@@ -86,6 +88,7 @@ impl Editor {
             wireframe: false,
             shows_regions: true,
             problem: None,
+            open_step: None,
             overlay: Overlay::default(),
             held: VecDeque::new(),
             shape_counter: 0,
@@ -205,11 +208,25 @@ impl Editor {
 
     /// Changes the document in one named step; false if that changed nothing.
     pub(crate) fn change(&mut self, name: impl Into<String>, change: impl FnOnce(&mut Document)) -> bool {
-        let transaction = self.begin(name);
-        change(&mut self.document);
-        if !Arc::ptr_eq(&transaction.before().from_rest, &self.document.from_rest) {
-            self.engine.drop_solves();
+        self.step(name, |editor| {
+            let shape = Arc::clone(&editor.document.from_rest);
+            change(&mut editor.document);
+            if !Arc::ptr_eq(&shape, &editor.document.from_rest) {
+                editor.engine.drop_solves();
+            }
+        })
+    }
+
+    /// Does something to the document in one named step, or in the step that is being adjusted; false if that changed
+    /// nothing.
+    pub(crate) fn step(&mut self, name: impl Into<String>, act: impl FnOnce(&mut Self)) -> bool {
+        if let Some(open) = &mut self.open_step {
+            open.rename(name);
+            act(self);
+            return true;
         }
+        let transaction = self.begin(name);
+        act(self);
         transaction.commit(&self.document, &mut self.history)
     }
 
@@ -279,6 +296,8 @@ impl Editor {
             }
             Event::Key(key, modifiers) => self.key(key, modifiers),
             Event::Command(command) => self.execute(command),
+            Event::Adjust(command) => self.adjust(command),
+            Event::Adjusted => self.adjusted(),
             Event::JobDone(done) => self.job_done(done),
             Event::Opened { model, name, edit } => self.open(model, name, edit),
             Event::Saved => {
@@ -418,7 +437,7 @@ impl Editor {
             Tool::Paint(_) => Cursor::Brush,
             Tool::Idle if self.overlay.hovered.is_some() => Cursor::Grab,
             Tool::Idle if self.overlay.is_over_surface && self.mode != ToolMode::Select => Cursor::Brush,
-            Tool::Idle => Cursor::Arrow,
+            Tool::Idle | Tool::Adjust(_) => Cursor::Arrow,
         }
     }
 

@@ -44,6 +44,11 @@ pub enum Event {
     Key(Key, Modifiers),
     /// Something a menu, a button or the command palette asks for.
     Command(Command),
+    /// A widget is being dragged: what the command changes is shown, and becomes one step with all that follow it until
+    /// [`Event::Adjusted`].
+    Adjust(Command),
+    /// The widget was let go.
+    Adjusted,
     /// A job that the executor was given has ended, or has an intermediate result.
     JobDone(JobDone),
     /// A file was loaded and welded; `edit` is what is to be set up on it.

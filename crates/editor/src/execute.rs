@@ -64,7 +64,7 @@ impl Editor {
         if !self.is_enabled(&command) {
             return;
         }
-        if concerns_document(&command) {
+        if concerns_document(&command) && self.open_step.is_none() {
             let was_idle = matches!(self.tool, Tool::Idle);
             self.abort_tool();
             self.problem = None;
@@ -177,9 +177,7 @@ impl Editor {
         let Some(name) = self.document.handle(id).map(|handle| handle.name.clone()) else {
             return;
         };
-        let transaction = self.begin(format!("{verb} {name}"));
-        self.put_handle(id, transform);
-        transaction.commit(&self.document, &mut self.history);
+        self.step(format!("{verb} {name}"), |editor| editor.put_handle(id, transform));
     }
 
     fn select_next(&mut self) {

@@ -56,7 +56,7 @@ pub use history::{HISTORY_BYTES, History};
 pub use inline_executor::InlineExecutor;
 pub use job::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
 pub use job_queue::{JobQueue, Running};
-pub use method_form::{MethodOption, method_options};
+pub use method_form::{MethodOption, OptionKind, method_options, method_title, option_value, when_to_use, with_option};
 pub use picking::Pick;
 pub use region::Region;
 pub use scene_view::{Counts, Cursor, SceneView, Shading};

@@ -9,17 +9,114 @@ use serde_json::{Map, Value, json};
 use crate::edit_error::EditError;
 use crate::edit_node::Node;
 
-/// One option of a method, for a person.
+/// One option of a method, for a person: the command line's help and the window's panel are made of it.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct MethodOption {
     /// Its name in the edit.
     pub name: &'static str,
     /// What it does, its unit, range and default.
     pub says: &'static str,
+    /// What values it takes.
+    pub takes: OptionKind,
+}
+
+/// What values an option takes, and which one it has where an edit says nothing.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum OptionKind {
+    /// A number.
+    Number {
+        /// The smallest and the largest that are taken.
+        range: [f64; 2],
+        /// What it is at first.
+        default: f64,
+        /// What it is counted in; empty for a plain number.
+        unit: &'static str,
+    },
+    /// A whole number.
+    Whole {
+        /// The smallest and the largest that are taken.
+        range: [u64; 2],
+        /// What it is at first.
+        default: u64,
+    },
+    /// One of a few whole numbers, each with what it stands for.
+    Numbered {
+        /// The numbers and their words.
+        choices: &'static [(u64, &'static str)],
+        /// What it is at first.
+        default: u64,
+    },
+    /// One of a few names.
+    Named {
+        /// The names.
+        choices: &'static [&'static str],
+        /// What it is at first.
+        default: &'static str,
+    },
+    /// Yes or no.
+    Switch {
+        /// What it is at first.
+        default: bool,
+    },
 }
 
 /// Each method's options.
 const OPTIONS: &[(&str, &[MethodOption])] = &[("bilaplacian", bilaplacian::OPTIONS), ("arap", arap::OPTIONS)];
+
+/// Each method's title, and a sentence on when it is the one to take.
+const WORDS: &[(&str, &str, &str)] = &[
+    (
+        "bilaplacian",
+        "Thin plate",
+        "Bends like a thin plate, at once: for small turns and smooth bulges.",
+    ),
+    (
+        "arap",
+        "As rigid as possible",
+        "Keeps every neighbourhood as rigid as it can, step by step: for large turns and long drags.",
+    ),
+];
+
+/// A sentence on when the method called `name` is the one to take; empty for a name that is not known.
+pub fn when_to_use(name: &str) -> &'static str {
+    WORDS
+        .iter()
+        .find(|(method, ..)| *method == name)
+        .map_or("", |(_, _, sentence)| sentence)
+}
+
+/// What a person calls the method called `name`: its own name where nothing shorter is known.
+pub fn method_title(name: &str) -> &str {
+    WORDS
+        .iter()
+        .find(|(method, ..)| *method == name)
+        .map_or(name, |(_, title, _)| title)
+}
+
+/// What an option of a method is now, its default where the method says nothing else.
+pub fn option_value(method: &Method, option: &MethodOption) -> Value {
+    match method_to_value(method).get(option.name) {
+        Some(value) => value.clone(),
+        None => match option.takes {
+            OptionKind::Number { default, .. } => json!(default),
+            OptionKind::Whole { default, .. } | OptionKind::Numbered { default, .. } => json!(default),
+            OptionKind::Named { default, .. } => json!(default),
+            OptionKind::Switch { default } => json!(default),
+        },
+    }
+}
+
+/// The method with one of its options set.
+///
+/// # Errors
+/// An option or a value that the method does not take, in a sentence.
+pub fn with_option(method: &Method, name: &str, value: Value) -> Result<Method, EditError> {
+    let mut members = method_to_value(method);
+    if let Some(members) = members.as_object_mut() {
+        members.insert(name.to_owned(), value);
+    }
+    read_method(&Node::new(&members, "method"))
+}
 
 /// The options of the method called `name`, empty where it has none.
 pub fn method_options(name: &str) -> &'static [MethodOption] {
@@ -65,14 +162,66 @@ pub(crate) fn method_to_value(method: &Method) -> Value {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use pliant_deform::Method;
-    use serde_json::Value;
+    use serde_json::{Value, json};
 
+    use super::{OptionKind, method_options, option_value, when_to_use, with_option};
     use crate::edit_error::EditError;
     use crate::edit_node::Node;
 
     pub(super) fn read(value: &Value) -> Result<Method, EditError> {
         super::read_method(&Node::new(value, "method"))
+    }
+
+    #[test]
+    fn every_listed_option_has_the_default_it_says_and_takes_the_ends_of_its_range() {
+        for &name in Method::NAMES {
+            let method = Method::from_name(name).unwrap();
+            assert!(!when_to_use(name).is_empty(), "{name}");
+            for option in method_options(name) {
+                let default = option_value(&method, option);
+                assert_eq!(
+                    with_option(&method, option.name, default.clone()).unwrap(),
+                    method,
+                    "{name} {}",
+                    option.name
+                );
+                let (taken, refused) = match option.takes {
+                    OptionKind::Number {
+                        range: [least, most], ..
+                    } => (vec![json!(most)], vec![json!(least - 1.0), json!(most * 1.01)]),
+                    OptionKind::Whole {
+                        range: [least, most], ..
+                    } => (vec![json!(least), json!(most)], vec![json!(most + 1)]),
+                    OptionKind::Numbered { choices, .. } => (
+                        choices.iter().map(|(number, _)| json!(number)).collect(),
+                        vec![json!("many")],
+                    ),
+                    OptionKind::Named { choices, .. } => (
+                        choices.iter().map(|choice| json!(choice)).collect(),
+                        vec![json!("banana")],
+                    ),
+                    OptionKind::Switch { .. } => (vec![json!(true), json!(false)], vec![json!(1)]),
+                };
+                for value in taken {
+                    let set = with_option(&method, option.name, value.clone()).unwrap();
+                    let read = option_value(&set, option);
+                    assert!(
+                        read == value || read.as_f64() == value.as_f64(),
+                        "{name} {}: {read} {value}",
+                        option.name
+                    );
+                }
+                for value in refused {
+                    assert!(
+                        with_option(&method, option.name, value).is_err(),
+                        "{name} {}",
+                        option.name
+                    );
+                }
+            }
+        }
     }
 }

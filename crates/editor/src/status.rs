@@ -17,7 +17,7 @@ impl Editor {
             Tool::Navigate(navigate) => format!("{}: Esc takes it back", navigate.status()),
             Tool::Paint(stroke) => format!("{}: Esc takes it back", self.painting(stroke.paint())),
             Tool::Transform(drag) => drag.status(self),
-            Tool::Idle => self.idle(),
+            Tool::Idle | Tool::Adjust(_) => self.idle(),
         };
         match self.working() {
             Some(working) => format!("{working} · {now}"),

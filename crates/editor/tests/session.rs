@@ -5,7 +5,7 @@ mod rig;
 
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DQuat, DVec2, DVec3};
 use pliant_deform::Role;
 use pliant_editor::{
     Command, EditFile, Editor, Event, ExportError, GizmoPart, HandleTransform, InlineExecutor, Key, Modifiers, Paint,
@@ -296,4 +296,42 @@ fn nothing_open_nothing_breaks() {
     editor.handle(Event::Saved);
     assert_eq!(editor.edit_file(), Err(ExportError::NoFile));
     assert!(editor.view().model.is_none());
+}
+
+#[test]
+fn a_widget_that_is_dragged_is_one_step_and_escape_takes_it_back() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    let before = rig.fingerprint();
+    let id = rig.editor.view().selected.unwrap();
+    let put = |rig: &mut Rig, x: f64| {
+        let transform = HandleTransform::Trs {
+            translation: DVec3::new(x, 0.0, 0.0),
+            rotation: DQuat::IDENTITY,
+            scale: DVec3::ONE,
+            pivot: None,
+        };
+        rig.editor
+            .handle(Event::Adjust(Command::SetHandleTransform(id, transform)));
+    };
+    for x in [0.1, 0.2, 0.3] {
+        put(&mut rig, x);
+        rig.drain();
+    }
+    rig.editor.handle(Event::Adjusted);
+    assert_eq!(
+        rig.editor.history().names().1,
+        2,
+        "the paint, and all of the widget's values"
+    );
+    assert!(rig.largest_displacement() > 0.29);
+    rig.undo();
+    rig.drain();
+    assert_eq!(rig.fingerprint(), before);
+    put(&mut rig, 0.4);
+    rig.editor.handle(Event::Adjust(Command::Undo));
+    rig.key(Key::Escape);
+    rig.drain();
+    assert_eq!(rig.fingerprint(), before);
 }

@@ -14,6 +14,7 @@ use super::dialog::{self, Question, Then};
 use super::input::{Attention, Input};
 use super::message::{Message, Opened, Posed};
 use super::notes::{Note, Notes};
+use super::outbox::Outbox;
 use super::panels;
 use super::session::{KeepOriginal, OpenFile, Session, Source};
 use super::status;
@@ -331,7 +332,7 @@ impl eframe::App for Application {
         self.take_messages();
         self.file_shortcuts(&context);
 
-        let mut commands: Vec<Command> = Vec::new();
+        let mut commands = Outbox::default();
         let mut file_command = None;
         let title = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
         Panel::top("top").show(ui, |ui| {
@@ -362,8 +363,9 @@ impl eframe::App for Application {
             self.fail(error.to_string());
         }
 
-        for command in commands {
-            self.command(command);
+        for event in commands.take() {
+            self.last_change = Instant::now();
+            self.editor.handle(event);
             context.request_repaint();
         }
         if let Some(command) = file_command {

@@ -1,15 +1,17 @@
 //! The panel beside the view: handles, brush, how the surface bends, and what is to be known about the file.
 
-use eframe::egui::{self, Color32, ComboBox, DragValue, RichText, ScrollArea, Slider};
-use pliant_deform::{Loose, Method};
+use eframe::egui::{self, Color32, DragValue, RichText, ScrollArea, Slider};
+use pliant_deform::Loose;
 use pliant_editor::{Command, Editor, Handle, HandleTransform, Reach};
 
 use super::command_button::command_button;
+use super::method_panel;
 use super::notes::Notes;
+use super::outbox::Outbox;
 use super::status::thousands;
 
 /// Shows the panel; commands for the editor are added to `commands`.
-pub fn show(ui: &mut egui::Ui, editor: &Editor, notes: &Notes, commands: &mut Vec<Command>) {
+pub fn show(ui: &mut egui::Ui, editor: &Editor, notes: &Notes, commands: &mut Outbox) {
     ScrollArea::vertical().show(ui, |ui| {
         ui.add_space(6.0);
         handles(ui, editor, commands);
@@ -22,7 +24,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, notes: &Notes, commands: &mut Ve
     });
 }
 
-fn handles(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
+fn handles(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let view = editor.view();
     ui.heading("Handles");
     if view.handles.is_empty() {
@@ -56,7 +58,7 @@ fn handles(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
     });
 }
 
-fn selected_handle(ui: &mut egui::Ui, handle: &Handle, commands: &mut Vec<Command>) {
+fn selected_handle(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
     ui.add_space(2.0);
     egui::Grid::new("handle").num_columns(2).show(ui, |ui| {
         ui.label("Reach");
@@ -70,9 +72,8 @@ fn selected_handle(ui: &mut egui::Ui, handle: &Handle, commands: &mut Vec<Comman
             .max_decimals(3)
             .suffix(suffix);
         let hover = "How far along the surface this handle takes the surface along.";
-        if ui.add(field).on_hover_text(hover).changed() {
-            commands.push(Command::SetReach(handle.id, make(value)));
-        }
+        let field = ui.add(field.update_while_editing(false)).on_hover_text(hover);
+        commands.adjust(&field, || Command::SetReach(handle.id, make(value)));
         ui.end_row();
         if let HandleTransform::Trs {
             mut translation,
@@ -82,30 +83,28 @@ fn selected_handle(ui: &mut egui::Ui, handle: &Handle, commands: &mut Vec<Comman
         } = handle.transform
         {
             ui.label("Moved by");
-            let mut changed = false;
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 2.0;
-                for axis in translation.as_mut() {
-                    changed |= ui.add(DragValue::new(axis).speed(0.01).max_decimals(4)).changed();
+                for axis in 0..3 {
+                    let field = DragValue::new(&mut translation[axis]).speed(0.01).max_decimals(4);
+                    let field = ui.add(field.update_while_editing(false));
+                    commands.adjust(&field, || {
+                        let transform = HandleTransform::Trs {
+                            translation,
+                            rotation,
+                            scale,
+                            pivot,
+                        };
+                        Command::SetHandleTransform(handle.id, transform)
+                    });
                 }
             });
             ui.end_row();
-            if changed {
-                commands.push(Command::SetHandleTransform(
-                    handle.id,
-                    HandleTransform::Trs {
-                        translation,
-                        rotation,
-                        scale,
-                        pivot,
-                    },
-                ));
-            }
         }
     });
 }
 
-fn brush(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
+fn brush(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     ui.heading("Brush");
     let mut radius_px = editor.view().brush_radius_px;
     let slider = Slider::new(&mut radius_px, 4.0..=200.0)
@@ -121,25 +120,10 @@ fn brush(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
     }
 }
 
-fn bending(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
+fn bending(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     ui.heading("Bending");
+    method_panel::show(ui, editor, commands);
     let document = editor.document();
-    ComboBox::from_label("method")
-        .selected_text(document.method().name())
-        .show_ui(ui, |ui| {
-            for &name in Method::NAMES {
-                let chosen = document.method().name() == name;
-                if ui
-                    .selectable_label(chosen, name)
-                    .on_hover_text(when_to_use(name))
-                    .clicked()
-                    && !chosen
-                    && let Some(method) = Method::from_name(name)
-                {
-                    commands.push(Command::SetMethod(method));
-                }
-            }
-        });
     ui.horizontal(|ui| {
         ui.label("Loose parts");
         for (name, loose, hover) in [
@@ -166,15 +150,6 @@ fn bending(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
             }
         }
     });
-}
-
-/// A sentence on when a method is the one to take.
-fn when_to_use(method: &str) -> &'static str {
-    match method {
-        "bilaplacian" => "Bends like a thin plate, at once: for small turns and smooth bulges.",
-        "arap" => "Keeps every neighbourhood as rigid as it can, step by step: for large turns and long drags.",
-        _ => "",
-    }
 }
 
 fn about_file(ui: &mut egui::Ui, editor: &Editor, notes: &Notes) {

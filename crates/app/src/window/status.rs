@@ -4,6 +4,7 @@ use eframe::egui::{self, Color32, ProgressBar, RichText};
 use pliant_editor::{Command, Editor};
 
 use super::notes::Note;
+use super::outbox::Outbox;
 
 /// What went wrong.
 const FAILED: Color32 = Color32::from_rgb(255, 138, 122);
@@ -17,7 +18,7 @@ pub fn show(
     file_work: Option<(&'static str, f32)>,
     headline: &mut Option<Note>,
     software_device: Option<&str>,
-    commands: &mut Vec<Command>,
+    commands: &mut Outbox,
 ) -> bool {
     let view = editor.view();
     let mut stop_opening = false;

@@ -6,6 +6,7 @@ use eframe::egui::{self, Key, KeyboardShortcut, MenuBar, Modifiers, RichText};
 use pliant_editor::{Command, Editor, NamedView, Shading, ToolMode, UpAxis};
 
 use super::command_button::{command_button, command_choice};
+use super::outbox::Outbox;
 
 /// What is done with files; the window's own, since the editor knows no paths.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -53,7 +54,7 @@ impl FileCommand {
 }
 
 /// Shows the bar. Commands for the editor are added to `commands`; one for files is returned.
-pub fn show(ui: &mut egui::Ui, editor: &Editor, file_name: &str, commands: &mut Vec<Command>) -> Option<FileCommand> {
+pub fn show(ui: &mut egui::Ui, editor: &Editor, file_name: &str, commands: &mut Outbox) -> Option<FileCommand> {
     let mut chosen = None;
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| chosen = file_menu(ui, editor));
@@ -93,7 +94,7 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor) -> Option<FileCommand> {
     chosen
 }
 
-fn edit_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
+fn edit_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let groups: [&[Command]; 3] = [
         &[Command::Undo, Command::Redo],
         &[
@@ -118,7 +119,7 @@ fn edit_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
     }
 }
 
-fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
+fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     for command in [Command::FrameAll, Command::FrameSelected] {
         if command_button(ui, editor, &command) {
             commands.push(command);
@@ -144,7 +145,7 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
     }
 }
 
-fn tools(ui: &mut egui::Ui, editor: &Editor, commands: &mut Vec<Command>) {
+fn tools(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let view = editor.view();
     let mut choice = |ui: &mut egui::Ui, command: Command, chosen: bool| {
         if command_choice(ui, editor, &command, chosen) {

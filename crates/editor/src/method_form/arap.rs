@@ -3,7 +3,7 @@
 use pliant_deform::{Arap, ArapEnergy};
 use serde_json::{Map, Value, json};
 
-use super::MethodOption;
+use super::{MethodOption, OptionKind};
 use crate::edit_error::EditError;
 use crate::edit_node::Members;
 
@@ -11,14 +11,27 @@ pub(super) const OPTIONS: &[MethodOption] = &[
     MethodOption {
         name: "energy",
         says: "a vertex's cell: \"spokes\", its edges, or \"spokes-and-rims\", its triangles' edges; default \"spokes-and-rims\"",
+        takes: OptionKind::Named {
+            choices: &["spokes", "spokes-and-rims"],
+            default: "spokes-and-rims",
+        },
     },
     MethodOption {
         name: "tolerance",
         says: "iteration ends where a step lowers the energy by less than this share of it, 1e-12 to 0.1; default 1e-4",
+        takes: OptionKind::Number {
+            range: [1e-12, 0.1],
+            default: 1e-4,
+            unit: "of the energy",
+        },
     },
     MethodOption {
         name: "max_iterations",
         says: "iteration ends after so many steps a frame, 1 to 100000; default 500",
+        takes: OptionKind::Whole {
+            range: [1, 100_000],
+            default: 500,
+        },
     },
 ];
 

@@ -3,7 +3,7 @@
 use pliant_deform::{Bilaplacian, Discretisation, ShellOrder};
 use serde_json::{Map, Value, json};
 
-use super::MethodOption;
+use super::{MethodOption, OptionKind};
 use crate::edit_error::EditError;
 use crate::edit_node::{Members, Node};
 
@@ -14,18 +14,36 @@ pub(super) const OPTIONS: &[MethodOption] = &[
     MethodOption {
         name: "order",
         says: "1 membrane, 2 thin plate, 3 least change of curvature; default 2",
+        takes: OptionKind::Numbered {
+            choices: &[(1, "membrane"), (2, "thin plate"), (3, "least change of curvature")],
+            default: 2,
+        },
     },
     MethodOption {
         name: "bending",
         says: "resistance k_b to what the order names, 0 to 1e12; default 1",
+        takes: OptionKind::Number {
+            range: [0.0, LARGEST_COEFFICIENT],
+            default: 1.0,
+            unit: "",
+        },
     },
     MethodOption {
         name: "stretching",
         says: "resistance k_s to stretching, in units of k_b per squared diagonal of the model, 0 to 1e12; default 0",
+        takes: OptionKind::Number {
+            range: [0.0, LARGEST_COEFFICIENT],
+            default: 0.0,
+            unit: "k_b/d²",
+        },
     },
     MethodOption {
         name: "discretisation",
         says: "\"uniform\", \"cotangent\" or \"cotangent-area\" Laplacian; default \"cotangent-area\"",
+        takes: OptionKind::Named {
+            choices: &["uniform", "cotangent", "cotangent-area"],
+            default: "cotangent-area",
+        },
     },
 ];
 

@@ -3,12 +3,14 @@
 //! Each takes itself and gives back what comes after it, so a tool that has ended can't be asked anything. A tool that
 //! is aborted leaves no trace.
 
+mod adjust;
 mod navigate;
 mod paint;
 mod transform;
 
 use glam::DVec2;
 
+pub(crate) use adjust::Adjust;
 pub(crate) use navigate::Navigate;
 pub(crate) use paint::{PaintStroke, handle_colour};
 pub(crate) use transform::{TransformDrag, TransformKind};
@@ -48,12 +50,14 @@ pub(crate) enum Tool {
     Paint(Box<PaintStroke>),
     /// Moving, turning or scaling a handle.
     Transform(Box<TransformDrag>),
+    /// Following a widget that is being dragged.
+    Adjust(Box<Adjust>),
 }
 
 impl Tool {
     pub(crate) fn activity(&self) -> Activity {
         match self {
-            Self::Idle | Self::Navigate(_) => Activity::Still,
+            Self::Idle | Self::Navigate(_) | Self::Adjust(_) => Activity::Still,
             Self::Paint(_) => Activity::Painting,
             Self::Transform(_) => Activity::Dragging,
         }
@@ -62,6 +66,7 @@ impl Tool {
     pub(crate) fn moved(self, editor: &mut Editor, pointer: Pointer) -> Self {
         match self {
             Self::Idle => Self::Idle,
+            Self::Adjust(adjust) => Self::Adjust(adjust),
             Self::Navigate(navigate) => navigate.moved(editor, pointer),
             Self::Paint(stroke) => stroke.moved(editor, pointer),
             Self::Transform(drag) => drag.moved(editor, pointer),
@@ -72,6 +77,10 @@ impl Tool {
         match (self, button) {
             (Self::Idle, _) => begin(editor, pointer, button),
             (Self::Transform(drag), _) => drag.pressed(editor, pointer, button),
+            (Self::Adjust(adjust), _) => {
+                adjust.commit(editor);
+                begin(editor, pointer, button)
+            }
             (tool, Button::Secondary) => tool.abort(editor),
             (tool, _) => tool,
         }
@@ -80,6 +89,7 @@ impl Tool {
     pub(crate) fn released(self, editor: &mut Editor, pointer: Pointer, button: Button) -> Self {
         match self {
             Self::Idle => Self::Idle,
+            Self::Adjust(adjust) => Self::Adjust(adjust),
             Self::Navigate(navigate) => navigate.released(button),
             Self::Paint(stroke) => stroke.released(editor, pointer, button),
             Self::Transform(drag) => drag.released(editor, pointer, button),
@@ -103,6 +113,7 @@ impl Tool {
             Self::Navigate(navigate) => navigate.abort(editor),
             Self::Paint(stroke) => stroke.abort(editor),
             Self::Transform(drag) => drag.abort(editor),
+            Self::Adjust(adjust) => adjust.abort(editor),
         }
         Self::Idle
     }
