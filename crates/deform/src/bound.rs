@@ -41,7 +41,7 @@ pub struct Step {
     /// Whether further steps to the same targets do nothing: it converged, or met the method's limit.
     pub finished: bool,
     /// The deformation energy, 0 at rest, which has no unit and does not change with the model's scale: for the linear
-    /// shell ½ dᵀ A d (see [`crate::Bilaplacian`]), for ARAP its energy over ½ Σ w |e|² of the rest shape. Components
+    /// shell ½ dᵀ A d (see [`crate::Bilaplacian`]) and what soft handles' springs hold, for ARAP its energy over ½ Σ w |e|² of the rest shape. Components
     /// without a handle are left out.
     pub energy: f64,
     /// How many steps were taken towards these targets, this one included.
@@ -133,7 +133,7 @@ impl Bound {
 
     /// One step towards the targets: fills `displacements`, one a surface vertex, in world units.
     ///
-    /// Handle vertices get what their transform says; what nothing moves gets zero to the last bit.
+    /// Hard handles' vertices get what their transform says; what nothing moves gets zero to the last bit.
     ///
     /// # Errors
     /// A wrong length, or a result that is not finite; `displacements` is all zero then.
@@ -150,9 +150,9 @@ impl Bound {
     /// # Errors
     /// As [`Bound::step`].
     pub fn step_by_back_substitution(&mut self, displacements: &mut [DVec3]) -> Result<Step, SolveError> {
-        self.frame(displacements, |plate, _, displacements| {
+        self.frame(displacements, |plate, motions, displacements| {
             plate.back_substitute(displacements)?;
-            Ok(plate.energy_of(displacements))
+            Ok(plate.energy_of(motions, displacements))
         })
     }
 
@@ -204,11 +204,12 @@ impl Bound {
         Ok(step)
     }
 
-    /// The energy of any displacements, one a surface vertex, as in [`Step::energy`]; `None` where the method has no
+    /// The energy of any displacements, one a surface vertex, as in [`Step::energy`], with soft handles wanting what the
+    /// present targets say; `None` where the method has no
     /// energy or the length is wrong.
     pub fn energy_of(&self, displacements: &[DVec3]) -> Option<f64> {
         (displacements.len() == self.vertex_count).then(|| match &self.solver {
-            Solver::Plate(plate) => plate.energy_of(displacements),
+            Solver::Plate(plate) => plate.energy_of(&self.motions, displacements),
             Solver::Arap(arap) => arap.energy_of(displacements),
         })
     }

@@ -10,13 +10,13 @@ pub enum BindError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// A table has another length than the surface.
-    #[error("{table} has {found} entries for {expected} surface vertices: give one for each")]
+    #[error("{table} has {found} entries where {expected} are expected: give one for each")]
     Length {
         /// Which table.
         table: &'static str,
         /// Its length.
         found: usize,
-        /// The surface's.
+        /// What it should be.
         expected: usize,
     },
     /// A vertex belongs to a handle that does not exist.
@@ -40,6 +40,22 @@ pub enum BindError {
     /// A stiffness that is no stiffness.
     #[error("the stiffness {value} of surface vertex {vertex} is not a number above 0: paint it again")]
     Stiffness {
+        /// The vertex.
+        vertex: u32,
+        /// What it has.
+        value: f64,
+    },
+    /// A soft handle's weight that is no weight.
+    #[error("the weight {value} of soft handle {handle} is not a number above 0: give it one, or make it hard")]
+    SoftWeight {
+        /// The handle.
+        handle: usize,
+        /// What it has.
+        value: f64,
+    },
+    /// A continuity that is none.
+    #[error("the continuity {value} of surface vertex {vertex} is not a number from 0 to 2: paint it again")]
+    Continuity {
         /// The vertex.
         vertex: u32,
         /// What it has.

@@ -65,6 +65,19 @@ impl Laplacian {
         rows: &[u32],
         discretisation: Discretisation,
     ) -> Self {
+        Self::with_faces_scaled(surface, topology, stiffness, rows, discretisation, &|_| 1.0)
+    }
+
+    /// As [`Laplacian::discretised`], with the weights of each face, not its areas, times what `factor` gives for its
+    /// corners, from 0.
+    pub(crate) fn with_faces_scaled(
+        surface: &Surface,
+        topology: &Topology,
+        stiffness: &[f64],
+        rows: &[u32],
+        discretisation: Discretisation,
+        factor: &(dyn Fn([SurfaceVertex; 3]) -> f64 + Sync),
+    ) -> Self {
         let mut local_of = vec![ABSENT; surface.positions.len()];
         for &row in rows {
             local_of[row as usize] = 0;
@@ -100,13 +113,27 @@ impl Laplacian {
             ..Self::default()
         };
         let metric = Metric::of(surface, discretisation);
-        operator.fill(surface, topology, stiffness, &local_of, &metric);
+        let face = |face: u32| {
+            let corners = surface.triangles[face as usize];
+            let mut terms = metric.face(surface, stiffness, corners);
+            let factor = factor(corners);
+            terms.half_cotangents = terms.half_cotangents.map(|weight| factor * weight);
+            terms
+        };
+        operator.fill(surface, topology, &local_of, metric.common_area(), face);
         operator
     }
 
     /// Cotangents per face first, then gathered per row: both sides of an edge add up the same numbers in the same
     /// order, so the weights are symmetric to the last bit.
-    fn fill(&mut self, surface: &Surface, topology: &Topology, stiffness: &[f64], local_of: &[u32], metric: &Metric) {
+    fn fill(
+        &mut self,
+        surface: &Surface,
+        topology: &Topology,
+        local_of: &[u32],
+        common_area: Option<f64>,
+        face: impl Fn(u32) -> FaceTerms + Sync,
+    ) {
         let mut needed = vec![false; surface.triangles.len()];
         for (local, &vertex) in self.vertices.iter().enumerate() {
             if self.is_full(local) {
@@ -122,7 +149,7 @@ impl Laplacian {
         let terms: Vec<FaceTerms> = faces
             .par_iter()
             .with_min_len(CHUNK)
-            .map(|&face| metric.face(surface, stiffness, surface.triangles[face as usize]))
+            .map(|&number| face(number))
             .collect();
         self.mollified_faces = terms.iter().filter(|terms| terms.mollified).count();
         let mut slot_of_face = vec![ABSENT; surface.triangles.len()];
@@ -165,7 +192,7 @@ impl Laplacian {
             });
         let mut areas: Vec<f64> = rows
             .into_iter()
-            .map(|(row, area)| match metric.common_area() {
+            .map(|(row, area)| match common_area {
                 Some(common) if !row.is_empty() => common,
                 _ => area,
             })
@@ -191,6 +218,13 @@ impl Laplacian {
                 let mean = if *area > 0.0 { area / count } else { 1.0 };
                 areas[local] = areas[local].max(AREA_FLOOR * mean);
             }
+        }
+    }
+
+    /// Multiplies 1 / M_ii by what `factor` gives for the local vertex, from 0.
+    pub(crate) fn scale_inverse_areas(&mut self, factor: impl Fn(usize) -> f64) {
+        for (local, inverse) in self.inverse_areas.iter_mut().enumerate() {
+            *inverse *= factor(local);
         }
     }
 

@@ -8,15 +8,17 @@
 
 use pliant_mesh::SurfaceVertex;
 
-use crate::{BindError, Loose, Method, Problem, Role};
+use crate::{BindError, CONTINUITY_RANGE, Loose, Method, Problem, Role};
 
 /// The vertices by what happens to them, all lists ascending.
 #[derive(Debug)]
 pub(crate) struct Partition {
-    /// Free vertices that some handle influences.
+    /// Free vertices that some handle influences, and those of soft handles.
     pub solved: Vec<u32>,
     /// The vertices of each handle.
     pub handles: Vec<Vec<u32>>,
+    /// Each handle's weight, `None` where it is hard.
+    pub soft: Vec<Option<f64>>,
     /// Components that hold a handle, ascending.
     pub driven: Vec<u32>,
     /// Components that hold neither a handle nor a fixed vertex and are to follow, ascending.
@@ -60,10 +62,20 @@ impl Partition {
         };
         let loose = indices(&|c| !held[c] && !driven[c]);
         let follows = problem.loose == Loose::Follow && !handles.is_empty();
-        let warnings = warnings(problem, &loose, &indices(&|c| driven[c] && !held[c]), follows);
+        let mut warnings = warnings(problem, &loose, &indices(&|c| driven[c] && !held[c]), follows);
+        let soft = match problem.method {
+            Method::Bilaplacian(_) => (0..problem.handle_count)
+                .map(|handle| problem.holds.weight(handle as u16))
+                .collect(),
+            _ => {
+                warnings.extend(unheeded(problem));
+                vec![None; problem.handle_count]
+            }
+        };
         Ok(Self {
-            solved: influenced(problem, &handles),
+            solved: influenced(problem, &handles, &soft),
             handles,
+            soft,
             driven: indices(&|c| driven[c]),
             following: if follows { loose } else { Vec::new() },
             held,
@@ -83,6 +95,7 @@ fn check(problem: &Problem) -> Result<(), BindError> {
             return Err(BindError::Length { table, found, expected });
         }
     }
+    problem.holds.check(problem)?;
     for (vertex, role) in problem.roles.iter().enumerate() {
         if let Role::Handle(handle) = *role
             && usize::from(handle) >= problem.handle_count
@@ -114,13 +127,18 @@ fn check(problem: &Problem) -> Result<(), BindError> {
 }
 
 /// The free vertices that handles reach in the graph of Lⁿ, ascending: by walks of which no n successive vertices are
-/// constrained.
-fn influenced(problem: &Problem, handles: &[Vec<u32>]) -> Vec<u32> {
+/// constrained. A soft handle's vertices count as free, and are among them.
+fn influenced(problem: &Problem, handles: &[Vec<u32>], soft: &[Option<f64>]) -> Vec<u32> {
     let topology = problem.topology;
     let power = match problem.method {
         // Across a constrained vertex too, whose cell turns with all its neighbours.
         Method::Arap(_) => 2,
         Method::Bilaplacian(_) => problem.method.operator_power(),
+    };
+    let is_free = |vertex: usize| match problem.roles[vertex] {
+        Role::Free => true,
+        Role::Fixed => false,
+        Role::Handle(handle) => soft[usize::from(handle)].is_some(),
     };
     // How many edges a walk may go on from here before it must meet a free vertex; at a reached one, `power`.
     let mut left = vec![0; problem.roles.len()];
@@ -131,10 +149,7 @@ fn influenced(problem: &Problem, handles: &[Vec<u32>]) -> Vec<u32> {
     while let Some(vertex) = queue.pop() {
         let beyond = left[vertex as usize] - 1;
         for &next in topology.neighbours(SurfaceVertex(vertex)) {
-            let allowed = match problem.roles[next.index()] {
-                Role::Free => power,
-                Role::Fixed | Role::Handle(_) => beyond,
-            };
+            let allowed = if is_free(next.index()) { power } else { beyond };
             if allowed > left[next.index()] {
                 left[next.index()] = allowed;
                 queue.push(next.0);
@@ -142,9 +157,31 @@ fn influenced(problem: &Problem, handles: &[Vec<u32>]) -> Vec<u32> {
         }
     }
     (0..left.len())
-        .filter(|&vertex| left[vertex] > 0 && problem.roles[vertex] == Role::Free)
+        .filter(|&vertex| left[vertex] > 0 && is_free(vertex))
         .map(|vertex| vertex as u32)
         .collect()
+}
+
+/// What is said where the method has neither soft handles nor a choice of continuity.
+fn unheeded(problem: &Problem) -> Option<String> {
+    let name = problem.method.name();
+    let soft = problem.holds.soft.iter().position(Option::is_some);
+    match soft {
+        Some(handle) => Some(format!(
+            "handle {handle} is soft, and {name} holds every handle hard: take bilaplacian for soft handles"
+        )),
+        None if problem
+            .holds
+            .continuity
+            .iter()
+            .any(|&value| value != *CONTINUITY_RANGE.end()) =>
+        {
+            Some(format!(
+                "{name} has no choice of continuity: take bilaplacian for hinges and smooth joints"
+            ))
+        }
+        None => None,
+    }
 }
 
 /// How many components are named one by one before they are only counted.

@@ -2,7 +2,7 @@
 
 use pliant_mesh::{Cancel, Progress, Surface, Topology};
 
-use crate::{BindError, Bound, Method, Ordering};
+use crate::{BindError, Bound, Holds, Method, Ordering};
 
 /// What a surface vertex does.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -42,6 +42,8 @@ pub struct Problem<'a> {
     /// Painted stiffness of each surface vertex, above 0, 1 where nothing was painted. A face is as stiff as the mean
     /// of its three vertices.
     pub stiffness: &'a [f64],
+    /// How firmly handles pull and how smoothly the surface joins what holds it.
+    pub holds: Holds<'a>,
     /// What components do that nothing holds.
     pub loose: Loose,
     /// The method and its options.

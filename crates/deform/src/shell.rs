@@ -3,10 +3,12 @@
 pub(crate) mod assembly;
 pub(crate) mod bases;
 mod bilaplacian;
+mod continuity;
 pub(crate) mod factored;
 pub(crate) mod operator;
 pub(crate) mod plate;
 mod refine;
+mod springs;
 
 pub use bases::HandleBases;
 pub use bilaplacian::{Bilaplacian, Discretisation, ShellOrder};

@@ -118,13 +118,12 @@ impl Expansion {
         if operator.power == 1 {
             let factor = operator.stretching + operator.bending;
             self.add(laplacian, vertex, factor, &solved);
-            self.close();
-            return &self.entries;
+            return self.finished(operator, vertex);
         }
         // M⁻¹ P, then at order 3 M⁻¹ P M⁻¹ P, of the column's unit vector, with P = −L; nothing is left out yet.
         self.add(laplacian, vertex, operator.bending, |_| true);
-        for _ in 2..operator.power {
-            self.step(laplacian, |_| true);
+        if operator.power == 3 {
+            self.step(operator.middle());
         }
         self.close();
         std::mem::swap(&mut self.entries, &mut self.inner);
@@ -133,16 +132,24 @@ impl Expansion {
             self.add(laplacian, vertex, operator.stretching, &solved);
         }
         self.spread(laplacian, &solved);
+        self.finished(operator, vertex)
+    }
+
+    /// The column's entries with its spring on the diagonal, which comes first.
+    fn finished(&mut self, operator: &ShellOperator, vertex: u32) -> &[(u32, f64)] {
         self.close();
+        if let Some((_, diagonal)) = self.entries.first_mut() {
+            *diagonal += operator.springs.diagonal(vertex);
+        }
         &self.entries
     }
 
     /// entries ← P M⁻¹ entries.
-    fn step(&mut self, laplacian: &Laplacian, keep: impl Fn(u32) -> bool) {
+    fn step(&mut self, laplacian: &Laplacian) {
         self.close();
         std::mem::swap(&mut self.entries, &mut self.inner);
         self.entries.clear();
-        self.spread(laplacian, keep);
+        self.spread(laplacian, |_| true);
     }
 
     /// entries += P M⁻¹ inner.

@@ -21,6 +21,8 @@ pub(crate) struct Shell {
     /// The local vertex of each column of the factor.
     columns: Vec<u32>,
     scale: Vec<f64>,
+    /// The column of each of the operator's springs.
+    spring_columns: Vec<u32>,
     factor: Factor,
     /// [`Outcome::contraction`] of the check.
     contraction: f64,
@@ -58,6 +60,12 @@ impl Shell {
         for (column, &local) in columns.iter().enumerate() {
             column_of[local as usize] = column as u32;
         }
+        let spring_columns = operator
+            .springs
+            .locals()
+            .iter()
+            .map(|&local| column_of[local as usize])
+            .collect();
         let mut plate = assemble_shell(&operator, &columns, &column_of);
         cancel.check().map_err(|_| ShellError::Cancelled)?;
         let mut failed = None;
@@ -69,6 +77,7 @@ impl Shell {
                         operator,
                         columns,
                         scale,
+                        spring_columns,
                         factor,
                         contraction: 0.0,
                         shift,
@@ -103,10 +112,11 @@ impl Shell {
         &self.scale
     }
 
-    /// −S A d on the solved vertices, by differences along edges.
+    /// S (W (c − d) − A d) on the solved vertices, by differences along edges and springs.
     pub fn scaled_residual<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
         let potential = self.operator.potential(d);
-        self.columns
+        let mut residual: Vec<[f64; K]> = self
+            .columns
             .par_iter()
             .with_min_len(CHUNK)
             .zip(&self.scale)
@@ -115,7 +125,14 @@ impl Shell {
                     .force(local as usize, &potential)
                     .map(|value| -value * scale)
             })
-            .collect()
+            .collect();
+        for (spring, &column) in self.spring_columns.iter().enumerate() {
+            let pull = self.operator.pull(spring, d);
+            for k in 0..K {
+                residual[column as usize][k] += self.scale[column as usize] * pull[k];
+            }
+        }
+        residual
     }
 
     /// Fills in the solved vertices of `d` from its constrained ones, as well as the check found it to take.
@@ -125,7 +142,7 @@ impl Shell {
 
     /// Solves for the constant 1, compares, and keeps how fast refinement was.
     pub fn check(&mut self, cancel: &Cancel) -> Result<(), ShellError> {
-        let mut ones = vec![[1.0]; self.operator.laplacian.vertices().len()];
+        let mut ones = vec![[1.0]; self.operator.field_len()];
         self.contraction = solve(self, &mut ones, 0.0, cancel).contraction;
         cancel.check().map_err(|_| ShellError::Cancelled)?;
         let mut worst = (0.0, 0);

@@ -6,12 +6,19 @@
 use rayon::prelude::*;
 
 use crate::operators::CHUNK;
+use crate::shell::springs::Springs;
 use crate::{Bilaplacian, Laplacian};
 
 /// A over the local vertices of its Laplacian, which has full rows around everything that moves.
+///
+/// A *field* has one entry a local vertex and then one a spring, which is where its handle wants the spring's vertex.
 #[derive(Debug)]
 pub(crate) struct ShellOperator {
     pub laplacian: Laplacian,
+    /// The L between two others at order 3, where it is not the same.
+    pub middle: Option<Laplacian>,
+    /// The soft handles' springs, W in (A + W) d = W c.
+    pub springs: Springs,
     /// n: how many times L stands in the second term.
     pub power: u32,
     /// k_s over the squared diagonal.
@@ -32,10 +39,44 @@ impl ShellOperator {
         };
         Self {
             laplacian,
+            middle: None,
+            springs: Springs::default(),
             power,
             stretching: options.stretching / square,
             bending,
         }
+    }
+
+    /// How many entries a field has.
+    pub fn field_len(&self) -> usize {
+        self.laplacian.vertices().len() + self.springs.len()
+    }
+
+    /// The local vertex that a field's entry is for.
+    pub fn local_of(&self, place: usize) -> u32 {
+        match place.checked_sub(self.laplacian.vertices().len()) {
+            Some(spring) => self.springs.local(spring),
+            None => place as u32,
+        }
+    }
+
+    /// Hangs a handle's local vertices on springs of a weight (see [`crate::Holds`]); returns their places in a field.
+    pub fn soften(&mut self, locals: &[u32], weight: f64) -> Vec<u32> {
+        let area = |local: u32| self.laplacian.inverse_areas()[local as usize].recip();
+        let square_wave_number = std::f64::consts::PI.powi(2) / locals.iter().map(|&local| area(local)).sum::<f64>();
+        let resistance =
+            self.stretching * square_wave_number + self.bending * square_wave_number.powi(self.power as i32);
+        let strengths: Vec<f64> = locals.iter().map(|&local| weight * resistance * area(local)).collect();
+        let first = self.field_len() as u32;
+        self.springs.add(self.laplacian.vertices().len(), locals, &strengths);
+        (first..self.field_len() as u32).collect()
+    }
+
+    /// By how much a field's spring pulls at its vertex: W_i (c_i − d_i).
+    pub fn pull<const K: usize>(&self, spring: usize, d: &[[f64; K]]) -> [f64; K] {
+        let anchor = d[self.laplacian.vertices().len() + spring];
+        let own = d[self.springs.local(spring) as usize];
+        std::array::from_fn(|k| self.springs.strength(spring) * (anchor[k] - own[k]))
     }
 
     /// φ, of which A d is −L: K functions on the local vertices, right wherever a neighbour's row is full.
@@ -45,7 +86,7 @@ impl ShellOperator {
         }
         let mut phi = self.laplacian.per_area(d);
         if self.power == 3 {
-            phi = self.laplacian.per_area(&phi);
+            phi = self.middle().per_area(&phi);
         }
         let sign = if self.power == 2 { -self.bending } else { self.bending };
         phi.par_iter_mut().with_min_len(CHUNK).zip(d).for_each(|(phi, d)| {
@@ -70,43 +111,49 @@ impl ShellOperator {
         self.laplacian.row(local, potential).map(|value| factor * value)
     }
 
-    /// ½ dᵀ A d over K functions, summed from squares of differences, so that large common motions cost no digits.
+    /// ½ dᵀ A d over K functions and the springs' ½ (c − d)ᵀ W (c − d), summed from squares of differences, so that large
+    /// common motions cost no digits.
     pub fn energy<const K: usize>(&self, d: &[[f64; K]]) -> f64 {
-        let stretch = |f: &[[f64; K]]| sum_of_rows(f.len(), |local| self.edges(local, f));
+        let hung: f64 = (0..self.springs.len())
+            .map(|spring| {
+                let pull = self.pull(spring, d);
+                pull.iter().map(|pull| pull * pull).sum::<f64>() / self.springs.strength(spring)
+            })
+            .sum();
+        let stretch = |laplacian: &Laplacian, f: &[[f64; K]]| {
+            sum_of_rows(laplacian.vertices().len(), |local| edges(laplacian, local, f))
+        };
         let bend = match self.power {
-            1 => stretch(d),
-            2 => sum_of_rows(d.len(), |local| {
+            1 => stretch(&self.laplacian, d),
+            2 => sum_of_rows(self.laplacian.vertices().len(), |local| {
                 let row = self.laplacian.row(local, d);
                 self.laplacian.inverse_areas()[local] * row.iter().map(|value| value * value).sum::<f64>()
             }),
-            _ => stretch(&self.laplacian.per_area(d)),
+            _ => stretch(self.middle(), &self.laplacian.per_area(d)),
         };
         let stretched = if self.stretching > 0.0 {
-            self.stretching * stretch(d)
+            self.stretching * stretch(&self.laplacian, d)
         } else {
             0.0
         };
-        0.5 * (stretched + self.bending * bend)
+        0.5 * (stretched + self.bending * bend + hung)
     }
 
-    /// This vertex' share of −fᵀ L f: half of each edge's, and all of it where the other end's row is not full.
-    fn edges<const K: usize>(&self, local: usize, f: &[[f64; K]]) -> f64 {
-        let ends = self
-            .laplacian
-            .neighbours(local)
-            .iter()
-            .zip(self.laplacian.weights(local));
-        ends.map(|(&other, weight)| {
-            let share = if self.laplacian.is_full(other as usize) {
-                0.5
-            } else {
-                1.0
-            };
-            let square: f64 = (0..K).map(|k| (f[other as usize][k] - f[local][k]).powi(2)).sum();
-            share * weight * square
-        })
-        .sum()
+    /// The L between two others at order 3.
+    pub fn middle(&self) -> &Laplacian {
+        self.middle.as_ref().unwrap_or(&self.laplacian)
     }
+}
+
+/// This vertex' share of −fᵀ L f: half of each edge's, and all of it where the other end's row is not full.
+fn edges<const K: usize>(laplacian: &Laplacian, local: usize, f: &[[f64; K]]) -> f64 {
+    let ends = laplacian.neighbours(local).iter().zip(laplacian.weights(local));
+    ends.map(|(&other, weight)| {
+        let share = if laplacian.is_full(other as usize) { 0.5 } else { 1.0 };
+        let square: f64 = (0..K).map(|k| (f[other as usize][k] - f[local][k]).powi(2)).sum();
+        share * weight * square
+    })
+    .sum()
 }
 
 /// Summed in chunks of a fixed size, so that the number of threads doesn't show.

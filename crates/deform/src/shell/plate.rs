@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
+use crate::shell::continuity::join;
 use crate::shell::factored::{Shell, ShellError};
 use crate::shell::operator::ShellOperator;
 use crate::{Bilaplacian, BindError, HandleBases, Laplacian, Ordering, Problem, SolveError};
@@ -15,7 +16,7 @@ use crate::{Bilaplacian, BindError, HandleBases, Laplacian, Ordering, Problem, S
 pub(crate) struct Plate {
     shell: Shell,
     bases: HandleBases,
-    /// Each handle's vertices as local ones, and their coordinates.
+    /// Each handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
     prescribed: Vec<Vec<(u32, [f64; 4])>>,
     /// E = ½ Σ_hk tr(X_hᵀ G_hk X_k) over the motions' 4×3 matrices X; row-major, one 4×4 block a pair of handles.
     energy_blocks: Vec<[[f64; 4]; 4]>,
@@ -50,7 +51,9 @@ impl Plate {
             options.discretisation,
         );
         let diagonal = bounding_box(&problem.surface.positions).map_or(0.0, |bounds| bounds.diagonal());
-        let operator = ShellOperator::new(laplacian, options, diagonal);
+        let mut operator = ShellOperator::new(laplacian, options, diagonal);
+        join(&mut operator, problem, options, &rows, diagonal);
+        let prescribed = prescribe(&mut operator, problem, partition, handles);
         cancel.check()?;
         progress.set(0.2);
         let mut shell = Shell::new(operator, &order, cancel).map_err(refuse)?;
@@ -58,20 +61,6 @@ impl Plate {
         shell.check(cancel).map_err(refuse)?;
         cancel.check()?;
         progress.set(0.75);
-        let prescribed: Vec<Vec<(u32, [f64; 4])>> = handles
-            .iter()
-            .map(|handle| {
-                let coordinates = |vertex: u32| handle.coordinates(problem.surface.positions[vertex as usize]);
-                let local = |vertex: u32| {
-                    shell
-                        .operator
-                        .laplacian
-                        .local(vertex)
-                        .map(|local| (local as u32, coordinates(vertex)))
-                };
-                handle.vertices.iter().filter_map(|&vertex| local(vertex)).collect()
-            })
-            .collect();
         let solved_locals: Vec<u32> = solved
             .iter()
             .filter_map(|&v| shell.operator.laplacian.local(v))
@@ -160,29 +149,36 @@ impl Plate {
         (0.5 * sum).max(0.0)
     }
 
-    /// The energy of any displacements, one a surface vertex; components without a handle are left out.
-    pub fn energy_of(&self, displacements: &[DVec3]) -> f64 {
-        let d: Vec<[f64; 3]> = self
-            .shell
-            .operator
-            .laplacian
-            .vertices()
-            .iter()
-            .map(|&v| displacements[v as usize].to_array())
-            .collect();
+    /// The energy of any displacements, one a surface vertex, with soft handles wanting what `motions` say; components
+    /// without a handle are left out.
+    pub fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
+        let mut d = self.field(displacements);
+        let first_spring = self.shell.operator.laplacian.vertices().len();
+        for (own, motion) in self.prescribed.iter().zip(motions) {
+            for &(place, coordinates) in own.iter().filter(|(place, _)| *place as usize >= first_spring) {
+                d[place as usize] = motion.displace(coordinates).to_array();
+            }
+        }
         self.shell.operator.energy(&d)
     }
 
-    /// Solves for the solved vertices' displacements from whatever the other vertices' are.
+    /// Displacements, one a surface vertex, as a field.
+    fn field(&self, displacements: &[DVec3]) -> Vec<[f64; 3]> {
+        let operator = &self.shell.operator;
+        let vertices = operator.laplacian.vertices();
+        (0..operator.field_len())
+            .map(|place| displacements[vertices[operator.local_of(place) as usize] as usize].to_array())
+            .collect()
+    }
+
+    /// Solves for the solved vertices' displacements from whatever the other vertices' are, and those of soft handles'
+    /// vertices, which are taken as what the handles want.
     ///
     /// # Errors
     /// Where the solution stays too far from the operator's.
     pub fn back_substitute(&self, displacements: &mut [DVec3]) -> Result<(), SolveError> {
         let vertices = self.shell.operator.laplacian.vertices();
-        let mut d: Vec<[f64; 3]> = vertices
-            .iter()
-            .map(|&vertex| displacements[vertex as usize].to_array())
-            .collect();
+        let mut d = self.field(displacements);
         let error = self.shell.solve(&mut d, &Cancel::new()).error;
         for &local in self.shell.columns() {
             displacements[vertices[local as usize] as usize] = DVec3::from_array(d[local as usize]);
@@ -197,11 +193,36 @@ impl Plate {
 
     /// The handles' vertices and coordinates, as surface vertices.
     pub fn prescribed(&self, handle: usize) -> impl Iterator<Item = (u32, [f64; 4])> + '_ {
-        let vertices = self.shell.operator.laplacian.vertices();
+        let operator = &self.shell.operator;
+        let vertex = |place: u32| operator.laplacian.vertices()[operator.local_of(place as usize) as usize];
         self.prescribed[handle]
             .iter()
-            .map(|&(local, coordinates)| (vertices[local as usize], coordinates))
+            .map(move |&(place, coordinates)| (vertex(place), coordinates))
     }
+}
+
+/// Each handle's places in a field and their coordinates; soft handles' are hung on springs.
+fn prescribe(
+    operator: &mut ShellOperator,
+    problem: &Problem,
+    partition: &Partition,
+    handles: &[Handle],
+) -> Vec<Vec<(u32, [f64; 4])>> {
+    let mut prescribed = Vec::with_capacity(handles.len());
+    for (handle, &weight) in handles.iter().zip(&partition.soft) {
+        let (mut places, mut coordinates) = (Vec::new(), Vec::new());
+        for &vertex in &handle.vertices {
+            if let Some(local) = operator.laplacian.local(vertex) {
+                places.push(local as u32);
+                coordinates.push(handle.coordinates(problem.surface.positions[vertex as usize]));
+            }
+        }
+        if let Some(weight) = weight {
+            places = operator.soften(&places, weight);
+        }
+        prescribed.push(places.into_iter().zip(coordinates).collect());
+    }
+    prescribed
 }
 
 /// What is said of triangles too flat for cotangents.
@@ -219,7 +240,7 @@ pub(crate) fn repairs(mollified_faces: usize) -> Option<String> {
 struct Columns {
     /// On the solved vertices, ascending. **f32**.
     rows: Vec<[f32; 4]>,
-    /// C_hᵀ A B of this handle against each handle h.
+    /// C_hᵀ F of this handle against each handle h, F the force that it takes at h: A B, or the springs' W (C − B).
     energies: Vec<[[f64; 4]; 4]>,
     error: f64,
     worst_vertex: u32,
@@ -233,17 +254,22 @@ fn solve_handle(
     cancel: &Cancel,
 ) -> Result<Columns, BindError> {
     cancel.check()?;
-    let mut d = vec![[0.0; 4]; shell.operator.laplacian.vertices().len()];
-    for &(local, coordinates) in own {
-        d[local as usize] = coordinates;
+    let operator = &shell.operator;
+    let first_spring = operator.laplacian.vertices().len();
+    let mut d = vec![[0.0; 4]; operator.field_len()];
+    for &(place, coordinates) in own {
+        d[place as usize] = coordinates;
     }
     let error = shell.solve(&mut d, cancel).error;
     cancel.check()?;
-    let potential = shell.operator.potential(&d);
+    let potential = operator.potential(&d);
     let energy = |handle: &Vec<(u32, [f64; 4])>| {
         let mut block = [[0.0; 4]; 4];
-        for &(local, coordinates) in handle {
-            let force = shell.operator.force(local as usize, &potential);
+        for &(place, coordinates) in handle {
+            let force = match (place as usize).checked_sub(first_spring) {
+                Some(spring) => operator.pull(spring, &d),
+                None => operator.force(place as usize, &potential),
+            };
             for i in 0..4 {
                 for j in 0..4 {
                     block[i][j] += coordinates[i] * force[j];
@@ -256,9 +282,9 @@ fn solve_handle(
         .iter()
         .map(|&local| d[local as usize].map(|value| value as f32))
         .collect();
-    let worst_vertex = own
-        .first()
-        .map_or(0, |&(local, _)| shell.operator.laplacian.vertices()[local as usize]);
+    let worst_vertex = own.first().map_or(0, |&(place, _)| {
+        operator.laplacian.vertices()[operator.local_of(place as usize) as usize]
+    });
     Ok(Columns {
         rows,
         energies: prescribed.iter().map(energy).collect(),

@@ -36,7 +36,7 @@ pub(crate) struct Outcome {
     pub contraction: f64,
 }
 
-/// Fills in the solved vertices of `d`, K functions on the shell's local vertices, from its constrained ones.
+/// Fills in the solved vertices of the fields `d` from their other entries.
 ///
 /// `contraction` is what an earlier solve found: a right-hand side that hardly touches a direction in which the factor
 /// is wrong would not show it by itself, and be left with a large part of a small correction.
@@ -114,7 +114,7 @@ fn conjugate_gradients<const K: usize>(shell: &Shell, mut r: Vec<[f64; K]>, canc
     let mut p = z.clone();
     let mut rho = dots(&r, &z);
     let first = rho;
-    let mut scattered = vec![[0.0; K]; shell.operator.laplacian.vertices().len()];
+    let mut scattered = vec![[0.0; K]; shell.operator.field_len()];
     for _ in 0..GRADIENT_STEPS {
         if cancel.is_cancelled() || (0..K).all(|k| rho[k].is_nan() || rho[k] <= GRADIENT_DROP * first[k]) {
             break;

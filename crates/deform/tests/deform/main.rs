@@ -3,6 +3,7 @@
 
 mod arap;
 mod components;
+mod continuity;
 mod laws;
 mod operators;
 mod ordering;
@@ -10,3 +11,4 @@ mod plate;
 mod rig;
 mod robust;
 mod shell;
+mod soft;

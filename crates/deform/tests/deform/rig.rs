@@ -1,7 +1,7 @@
 //! A problem on a shape, and the verbs the laws need.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Bound, Loose, Method, Ordering, Problem, Role};
+use pliant_deform::{Bound, Holds, Loose, Method, Ordering, Problem, Role};
 use pliant_mesh::{Cancel, Drawn, Model, Progress, SurfaceVertex, shapes};
 
 /// A shape and the roles, stiffness and options on it.
@@ -10,6 +10,8 @@ pub struct Scene {
     pub roles: Vec<Role>,
     pub handle_count: usize,
     pub stiffness: Vec<f64>,
+    pub soft: Vec<Option<f64>>,
+    pub continuity: Vec<f64>,
     pub loose: Loose,
     pub method: Method,
 }
@@ -24,6 +26,8 @@ impl Scene {
             roles: vec![Role::Free; count],
             handle_count: 0,
             stiffness: vec![1.0; count],
+            soft: Vec::new(),
+            continuity: Vec::new(),
             loose: Loose::Follow,
             method: Method::default(),
         }
@@ -88,6 +92,10 @@ impl Scene {
             roles: &self.roles,
             handle_count: self.handle_count,
             stiffness: &self.stiffness,
+            holds: Holds {
+                soft: &self.soft,
+                continuity: &self.continuity,
+            },
             loose: self.loose,
             method,
             revision: 7,

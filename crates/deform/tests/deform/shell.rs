@@ -15,7 +15,7 @@ fn shell(order: ShellOrder, stretching: f64, bending: f64, discretisation: Discr
     Method::Bilaplacian(options)
 }
 
-fn of_order(order: ShellOrder) -> Method {
+pub fn of_order(order: ShellOrder) -> Method {
     shell(order, 0.0, 1.0, Discretisation::default())
 }
 

@@ -1,0 +1,52 @@
+//! Soft constraints: a spring from each vertex of a soft handle to where its handle wants it.
+//!
+//! In (A + W) d = W c a soft handle's vertices are solved for like free ones, with W on the diagonal. What is wanted, c,
+//! stands behind the vertices in every field, so that W (c − d) is a difference like those along edges: zero on
+//! constants to the last bit.
+
+/// The springs of all soft handles, handle by handle.
+#[derive(Debug, Default)]
+pub(crate) struct Springs {
+    locals: Vec<u32>,
+    /// W_i, by spring.
+    strengths: Vec<f64>,
+    /// W_i by local vertex, 0 where it has none; empty where there are no springs.
+    diagonal: Vec<f64>,
+}
+
+impl Springs {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.locals.len()
+    }
+
+    /// Springs of these strengths at the local vertices `locals`, of `vertex_count`.
+    pub fn add(&mut self, vertex_count: usize, locals: &[u32], strengths: &[f64]) {
+        self.diagonal.resize(vertex_count, 0.0);
+        for (&local, &strength) in locals.iter().zip(strengths) {
+            self.locals.push(local);
+            self.strengths.push(strength);
+            self.diagonal[local as usize] = strength;
+        }
+    }
+
+    /// The vertex that a spring pulls at.
+    pub fn local(&self, spring: usize) -> u32 {
+        self.locals[spring]
+    }
+
+    /// The vertices that springs pull at.
+    pub fn locals(&self) -> &[u32] {
+        &self.locals
+    }
+
+    /// W_i of a spring.
+    pub fn strength(&self, spring: usize) -> f64 {
+        self.strengths[spring]
+    }
+
+    /// W_i of a local vertex.
+    pub fn diagonal(&self, local: u32) -> f64 {
+        self.diagonal.get(local as usize).copied().unwrap_or(0.0)
+    }
+}
