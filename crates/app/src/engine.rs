@@ -85,6 +85,7 @@ pub fn bind(
         roles: &setup.roles,
         handle_count: setup.handles.len(),
         stiffness: &setup.stiffness,
+        holds: setup.holds(),
         loose: setup.loose,
         method: &setup.method,
         revision: 0,

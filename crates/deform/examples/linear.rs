@@ -7,7 +7,7 @@
 use std::time::Instant;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Loose, Method, Ordering, Problem, Role};
+use pliant_deform::{Holds, Loose, Method, Ordering, Problem, Role};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 use rayon::prelude::*;
 
@@ -33,6 +33,7 @@ fn measure(file: &str, threads: usize) {
         roles,
         handle_count: 1,
         stiffness: &stiffness,
+        holds: Holds::default(),
         loose: Loose::Rest,
         method: &method,
         revision: 0,

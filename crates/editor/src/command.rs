@@ -34,6 +34,8 @@ pub enum Command {
     SetHandleTransform(HandleId, HandleTransform),
     /// How far along the surface a handle takes the surface along.
     SetReach(HandleId, Reach),
+    /// Gives a handle a weight ([`SOFT_RANGE`](crate::SOFT_RANGE)), so that it only pulls; `None` makes it hard.
+    SetSoft(HandleId, Option<f64>),
     /// Makes the present shape the new rest shape: every handle's transform returns to the identity.
     Apply,
     /// Takes the rest shape and every handle back to the file's shape.

@@ -75,18 +75,24 @@ impl Editor {
 
 /// Whether region and factorisation of one document are no good for the other.
 fn is_other_problem(a: &Document, b: &Document) -> bool {
-    let same_stiffness = match (&a.stiffness, &b.stiffness) {
-        (None, None) => true,
-        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-        _ => false,
-    };
     !Arc::ptr_eq(&a.paint, &b.paint)
         || !Arc::ptr_eq(&a.rest, &b.rest)
         || a.applied != b.applied
-        || !same_stiffness
+        || !same_field(&a.stiffness, &b.stiffness)
+        || !same_field(&a.continuity, &b.continuity)
         || a.method != b.method
         || a.loose != b.loose
-        || !same(&a.handles, &b.handles, |a, b| (a.id, a.reach) == (b.id, b.reach))
+        || !same(&a.handles, &b.handles, |a, b| {
+            (a.id, a.reach, a.soft) == (b.id, b.reach, b.soft)
+        })
+}
+
+fn same_field(a: &Option<Arc<Vec<f64>>>, b: &Option<Arc<Vec<f64>>>) -> bool {
+    match (a, b) {
+        (None, None) => true,
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        _ => false,
+    }
 }
 
 fn same(a: &[Handle], b: &[Handle], equal: impl Fn(&Handle, &Handle) -> bool) -> bool {

@@ -45,6 +45,8 @@ pub struct Handle {
     pub pivot: DVec3,
     /// How far along the surface it takes the surface along.
     pub reach: Reach,
+    /// Its weight, in [`crate::SOFT_RANGE`], if it only pulls at its vertices.
+    pub soft: Option<f64>,
 }
 
 impl Handle {
@@ -73,6 +75,8 @@ pub struct Document {
     pub(crate) next_handle: u16,
     /// Painted stiffness; `None` is 1 everywhere.
     pub(crate) stiffness: Option<Arc<Vec<f64>>>,
+    /// With which continuity the surface joins what holds it; `None` is the highest everywhere.
+    pub(crate) continuity: Option<Arc<Vec<f64>>>,
     pub(crate) method: Method,
     pub(crate) loose: Loose,
     /// The rest shape's displacements from the file's.
@@ -96,6 +100,7 @@ impl Document {
             handles: Vec::new(),
             next_handle: 0,
             stiffness: None,
+            continuity: None,
             method: Method::default(),
             loose: Loose::default(),
             rest: Arc::clone(&zero),
@@ -128,6 +133,11 @@ impl Document {
     /// Painted stiffness per surface vertex; `None` is 1 everywhere.
     pub fn stiffness(&self) -> Option<&[f64]> {
         self.stiffness.as_ref().map(|field| field.as_slice())
+    }
+
+    /// With which continuity the surface joins what holds it, per surface vertex; `None` is the highest everywhere.
+    pub fn continuity(&self) -> Option<&[f64]> {
+        self.continuity.as_ref().map(|field| field.as_slice())
     }
 
     /// The method and its options.

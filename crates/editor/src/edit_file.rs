@@ -3,12 +3,13 @@
 //! The members are read by hand from JSON's values rather than derived, because every refusal must name the member or
 //! value that it speaks of, where it stands and what would be right.
 
-use pliant_deform::{Loose, Method};
+use pliant_deform::{CONTINUITY_RANGE, Loose, Method};
 use serde_json::{Value, json};
 
 use crate::HandleTransform;
 use crate::edit_error::EditError;
 use crate::edit_node::{Members, Node, ROOT};
+use crate::field_form::{FieldEntry, FieldKind};
 use crate::method_form::{method_to_value, read_method};
 use crate::selector::Selector;
 
@@ -17,6 +18,9 @@ pub const EDIT_VERSION: u64 = 1;
 
 /// The smallest and the largest stiffness that an edit may give.
 pub const STIFFNESS_RANGE: std::ops::RangeInclusive<f64> = 0.001..=1000.0;
+
+/// The smallest and the largest weight of a soft handle.
+pub const SOFT_RANGE: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
 /// An edit, as stored.
 #[derive(Clone, PartialEq, Debug)]
@@ -30,7 +34,10 @@ pub struct EditFile {
     /// The handles; they win over both.
     pub handles: Vec<HandleEntry>,
     /// Painted stiffness; the later entry wins, and it is 1 where no entry speaks.
-    pub stiffness: Vec<StiffnessEntry>,
+    pub stiffness: Vec<FieldEntry>,
+    /// With which continuity the free surface joins what is fixed and the handles (0 to 2); the later entry wins, and it
+    /// is 2 where no entry speaks.
+    pub continuity: Vec<FieldEntry>,
     /// What components that nothing holds do.
     pub loose: Loose,
 }
@@ -44,21 +51,10 @@ pub struct HandleEntry {
     pub select: Selector,
     /// How they move.
     pub transform: HandleTransform,
-}
-
-/// A part of the stiffness field.
-#[derive(Clone, PartialEq, Debug)]
-pub enum StiffnessEntry {
-    /// One value on a selection.
-    Select {
-        /// Where.
-        select: Selector,
-        /// The stiffness there, in [`STIFFNESS_RANGE`].
-        value: f64,
-    },
-    /// The whole field: one value in [`STIFFNESS_RANGE`] for each of the file's vertices. Twins that were welded take
-    /// the value of the one with the lowest number.
-    PerVertex(Vec<f64>),
+    /// Its weight, in [`SOFT_RANGE`], if it only pulls at its vertices.
+    pub soft: Option<f64>,
+    /// The continuity of its own border, over whatever [`EditFile::continuity`] says.
+    pub continuity: Option<f64>,
 }
 
 impl Default for EditFile {
@@ -70,6 +66,7 @@ impl Default for EditFile {
             fixed: Selector::None,
             handles: Vec::new(),
             stiffness: Vec::new(),
+            continuity: Vec::new(),
             loose: Loose::Follow,
         }
     }
@@ -92,7 +89,16 @@ impl EditFile {
     /// # Errors
     /// As [`EditFile::parse`].
     pub fn from_value(value: &Value) -> Result<Self, EditError> {
-        const KNOWN: [&str; 7] = ["version", "method", "region", "fixed", "handles", "stiffness", "loose"];
+        const KNOWN: [&str; 8] = [
+            "version",
+            "method",
+            "region",
+            "fixed",
+            "handles",
+            "stiffness",
+            "continuity",
+            "loose",
+        ];
         let root = Node::new(value, ROOT);
         // The version first: another one may have members that this one lacks.
         if let Some(found) = value.get("version")
@@ -104,6 +110,10 @@ impl EditFile {
         }
         let members = root.object("an object with `version` and `method`", &KNOWN)?;
         members.require("version")?;
+        let stiffness = FieldKind {
+            name: "a stiffness",
+            range: STIFFNESS_RANGE,
+        };
         Ok(Self {
             method: read_method(&members.require("method")?)?,
             region: read_selector(&members, "region", Selector::All)?,
@@ -119,10 +129,14 @@ impl EditFile {
             stiffness: match members.get("stiffness") {
                 Some(entries) => entries
                     .elements("a list of stiffness entries")?
-                    .map(|node| read_stiffness(&node))
+                    .map(|node| stiffness.read(&node))
                     .collect(),
                 None => Ok(Vec::new()),
             }?,
+            continuity: match members.get("continuity") {
+                Some(continuity) => read_continuity(&continuity)?,
+                None => Vec::new(),
+            },
             loose: match members.get("loose") {
                 Some(loose) => read_loose(&loose)?,
                 None => Loose::Follow,
@@ -132,27 +146,22 @@ impl EditFile {
 
     /// The edit as a JSON value; reading it back gives an equal edit.
     pub fn to_value(&self) -> Value {
-        let handle = |handle: &HandleEntry| {
-            json!({
-                "name": handle.name, "select": handle.select.to_value(), "transform": handle.transform.to_value(),
-            })
-        };
-        let stiffness = |entry: &StiffnessEntry| match entry {
-            StiffnessEntry::Select { select, value } => json!({ "select": select.to_value(), "value": value }),
-            StiffnessEntry::PerVertex(values) => json!({ "per_vertex": values }),
-        };
-        json!({
+        let mut value = json!({
             "version": EDIT_VERSION,
             "method": method_to_value(&self.method),
             "region": self.region.to_value(),
             "fixed": self.fixed.to_value(),
-            "handles": self.handles.iter().map(handle).collect::<Vec<_>>(),
-            "stiffness": self.stiffness.iter().map(stiffness).collect::<Vec<_>>(),
+            "handles": self.handles.iter().map(HandleEntry::to_value).collect::<Vec<_>>(),
+            "stiffness": self.stiffness.iter().map(FieldEntry::to_value).collect::<Vec<_>>(),
             "loose": match self.loose {
                 Loose::Follow => "follow",
                 Loose::Rest => "rest",
             },
-        })
+        });
+        if !self.continuity.is_empty() {
+            value["continuity"] = self.continuity.iter().map(FieldEntry::to_value).collect();
+        }
+        value
     }
 
     /// The edit as JSON text with a newline at its end.
@@ -173,8 +182,12 @@ fn read_selector(members: &Members<'_>, name: &str, default: Selector) -> Result
 fn read_handle(index: usize, node: &Node<'_>) -> Result<HandleEntry, EditError> {
     let members = node.object(
         "a handle: an object with `name`, `select` and `transform`",
-        &["name", "select", "transform"],
+        &["name", "select", "transform", "soft", "continuity"],
     )?;
+    let soft = FieldKind {
+        name: "a weight",
+        range: SOFT_RANGE,
+    };
     Ok(HandleEntry {
         name: match members.get("name") {
             Some(name) => name.string("a name")?.to_owned(),
@@ -185,38 +198,45 @@ fn read_handle(index: usize, node: &Node<'_>) -> Result<HandleEntry, EditError> 
             Some(transform) => HandleTransform::read(&transform)?,
             None => HandleTransform::IDENTITY,
         },
+        soft: members.get("soft").map(|node| soft.value(&node)).transpose()?,
+        continuity: members
+            .get("continuity")
+            .map(|node| continuity_kind().value(&node))
+            .transpose()?,
     })
 }
 
-fn read_stiffness(node: &Node<'_>) -> Result<StiffnessEntry, EditError> {
-    let expected = "a stiffness entry: an object with `select` and `value`, or with `per_vertex`";
-    let members = node.object(expected, &["select", "value", "per_vertex"])?;
-    if let Some(values) = members.get("per_vertex") {
-        if let Some(second) = members.names().find(|&name| name != "per_vertex") {
-            let place = node.place().to_owned();
-            return Err(EditError::Both {
-                place,
-                first: "per_vertex",
-                second: second.to_owned(),
-            });
+impl HandleEntry {
+    fn to_value(&self) -> Value {
+        let mut value = json!({
+            "name": self.name, "select": self.select.to_value(), "transform": self.transform.to_value(),
+        });
+        for (name, number) in [("soft", self.soft), ("continuity", self.continuity)] {
+            if let Some(number) = number {
+                value[name] = json!(number);
+            }
         }
-        return Ok(StiffnessEntry::PerVertex(
-            values.list("a list of numbers", stiffness_value)?,
-        ));
+        value
     }
-    Ok(StiffnessEntry::Select {
-        select: Selector::read(&members.require("select")?)?,
-        value: stiffness_value(&members.require("value")?)?,
-    })
 }
 
-fn stiffness_value(node: &Node<'_>) -> Result<f64, EditError> {
-    let value = node.number()?;
-    if STIFFNESS_RANGE.contains(&value) {
-        Ok(value)
-    } else {
-        let (least, most) = (STIFFNESS_RANGE.start(), STIFFNESS_RANGE.end());
-        Err(node.out_of_range(format!("a stiffness from {least} to {most}")))
+/// Continuities: a list of entries, or one number for whatever is held.
+fn read_continuity(node: &Node<'_>) -> Result<Vec<FieldEntry>, EditError> {
+    let kind = continuity_kind();
+    if node.value().is_number() {
+        let value = kind.value(node)?;
+        let select = Selector::All;
+        return Ok(vec![FieldEntry::Select { select, value }]);
+    }
+    node.elements("a number from 0 to 2, or a list of selections with one each")?
+        .map(|node| kind.read(&node))
+        .collect()
+}
+
+fn continuity_kind() -> FieldKind {
+    FieldKind {
+        name: "a continuity",
+        range: CONTINUITY_RANGE,
     }
 }
 

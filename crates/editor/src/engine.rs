@@ -9,7 +9,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{BindError, Bound, Ordering, Problem, SolveError, Step};
+use pliant_deform::{BindError, Bound, Holds, Ordering, Problem, SolveError, Step};
 use pliant_mesh::{Bvh, Cancel, Model, Progress};
 
 use crate::document::{Document, HandleId, sum_of_shapes};
@@ -333,6 +333,12 @@ impl Engine {
     fn bind_work(&self, model: &Arc<Model>, document: &Document) -> Option<Work> {
         let (model, ordering, region) = (Arc::clone(model), self.ordering.clone()?, self.region.clone());
         let (stiffness, loose, method) = (document.stiffness.clone(), document.loose, document.method.clone());
+        let soft: Vec<Option<f64>> = region
+            .handles
+            .iter()
+            .map(|&id| document.handle(id).and_then(|handle| handle.soft))
+            .collect();
+        let continuity = document.continuity.clone();
         let revision = self.problem_revision.0;
         Some(Box::new(move |progress, cancel| {
             let ones;
@@ -349,6 +355,10 @@ impl Engine {
                 roles: &region.roles,
                 handle_count: region.handles.len(),
                 stiffness,
+                holds: Holds {
+                    soft: &soft,
+                    continuity: continuity.as_ref().map_or(&[], |field| field.as_slice()),
+                },
                 loose,
                 method: &method,
                 revision,

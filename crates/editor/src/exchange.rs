@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use pliant_deform::Role;
+use pliant_deform::{CONTINUITY_RANGE, Role};
 use pliant_mesh::Model;
 
 use crate::command::Reach;
 use crate::document::{Document, Handle, HandleId, Paint};
-use crate::edit_file::{EditFile, HandleEntry, StiffnessEntry};
+use crate::edit_file::{EditFile, HandleEntry};
 use crate::editor::Editor;
 use crate::engine::region_input;
+use crate::field_form::FieldEntry;
 use crate::region::Region;
 use crate::tool::handle_colour;
 use crate::{EditError, HandleTransform, Selector};
@@ -71,24 +72,24 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
                 name: handle.name.clone(),
                 select: ranges(Role::Handle(index as u16)),
                 transform: with_pivot(handle),
+                soft: handle.soft,
+                continuity: None,
             });
         }
     }
-    let stiffness = document.stiffness.as_ref().map(|field| {
-        let mut values = vec![1.0; model.drawn.file_vertex_count];
-        for (surface_vertex, file_vertex) in model.surface_of_drawn.iter().zip(&model.drawn.file_vertex) {
-            if let Some(vertex) = surface_vertex {
-                values[file_vertex.index()] = field[vertex.index()];
-            }
-        }
-        StiffnessEntry::PerVertex(values)
-    });
+    let field = |field: &Option<Arc<Vec<f64>>>, default: f64| -> Vec<FieldEntry> {
+        let entry = field
+            .as_ref()
+            .map(|field| FieldEntry::of_surface(field, default, model));
+        entry.into_iter().collect()
+    };
     let edit = EditFile {
         method: document.method.clone(),
         region: ranges(Role::Free),
         fixed: Selector::None,
         handles,
-        stiffness: stiffness.into_iter().collect(),
+        stiffness: field(&document.stiffness, 1.0),
+        continuity: field(&document.continuity, *CONTINUITY_RANGE.end()),
         loose: document.loose,
     };
     let setup = edit.resolve(model)?;
@@ -128,6 +129,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
             transform: without_pivot(handle.transform),
             pivot: handle.pivot,
             reach: Reach::Length(0.0),
+            soft: setup.soft[index],
         });
         document.next_handle = id.0.saturating_add(1);
     }
@@ -136,6 +138,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
         .iter()
         .any(|&stiffness| stiffness != 1.0)
         .then(|| Arc::new(setup.stiffness.clone()));
+    document.continuity = (!setup.continuity.is_empty()).then(|| Arc::new(setup.continuity));
     document.method = setup.method;
     document.loose = setup.loose;
     document.settled = !document.handles.iter().any(Handle::is_displaced);

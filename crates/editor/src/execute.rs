@@ -10,7 +10,7 @@ use crate::document::{Handle, HandleId, Paint};
 use crate::editor::Editor;
 use crate::exchange::without_pivot;
 use crate::tool::{Tool, TransformDrag, TransformKind};
-use crate::{HandleTransform, STIFFNESS_RANGE};
+use crate::{HandleTransform, SOFT_RANGE, STIFFNESS_RANGE};
 
 /// The factor by which a key sizes the brush.
 const BRUSH_STEP: f64 = 1.2;
@@ -31,7 +31,8 @@ impl Editor {
             Command::SelectHandle(id)
             | Command::RenameHandle(id, _)
             | Command::SetHandleTransform(id, _)
-            | Command::SetReach(id, _) => self.document.handle(*id).is_some(),
+            | Command::SetReach(id, _)
+            | Command::SetSoft(id, _) => self.document.handle(*id).is_some(),
             Command::Apply => self.document.is_displaced(),
             Command::ResetShape => self.document.is_displaced() || self.document.applied,
             Command::ClearRegions => self.document.paint.iter().any(|paint| *paint != Paint::Bare),
@@ -117,6 +118,7 @@ impl Editor {
                 }
             }
             Command::SetReach(id, reach) => self.set_reach(id, reach),
+            Command::SetSoft(id, soft) => self.set_soft(id, soft),
             Command::Apply => {
                 self.change("Apply shape", |document| document.apply_shape());
                 self.engine.drop_solves();
@@ -226,6 +228,24 @@ impl Editor {
         });
     }
 
+    fn set_soft(&mut self, id: HandleId, soft: Option<f64>) {
+        if soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight)) {
+            let (least, most) = (SOFT_RANGE.start(), SOFT_RANGE.end());
+            self.problem = Some(format!(
+                "A soft handle's weight is from {least} to {most}: enter another number."
+            ));
+            return;
+        }
+        self.change("Change softness", |document| {
+            if document.handle(id).is_some_and(|handle| handle.soft != soft) {
+                document.settled &= !document.is_displaced();
+                if let Some(handle) = document.handle_mut(id) {
+                    handle.soft = soft;
+                }
+            }
+        });
+    }
+
     fn reset_shape(&mut self) {
         let Some(model) = self.engine.model.clone() else { return };
         self.engine.drop_solves();
@@ -305,6 +325,7 @@ fn concerns_document(command: &Command) -> bool {
             | Command::RenameHandle(..)
             | Command::SetHandleTransform(..)
             | Command::SetReach(..)
+            | Command::SetSoft(..)
             | Command::Apply
             | Command::ResetShape
             | Command::ClearRegions

@@ -27,6 +27,8 @@ pub(crate) enum Change {
     Handles(Vec<Handle>, u16),
     /// The stiffness field.
     Stiffness(Option<Arc<Vec<f64>>>),
+    /// The continuity field.
+    Continuity(Option<Arc<Vec<f64>>>),
     /// Method and loose components.
     Options(Method, Loose),
     /// The rest shape, and whether there is another than the file's.
@@ -100,9 +102,11 @@ impl Step {
             .map(|change| match change {
                 Change::Paint(sparse) => sparse.bytes(),
                 Change::Rest(sparse, _) => sparse.bytes(),
-                Change::Stiffness(Some(field)) => field.len() * size_of::<f64>(),
+                Change::Stiffness(Some(field)) | Change::Continuity(Some(field)) => field.len() * size_of::<f64>(),
                 Change::Handles(handles, _) => handles.len() * size_of::<Handle>(),
-                Change::Stiffness(None) | Change::Options(..) | Change::Settled(_) => size_of::<Change>(),
+                Change::Stiffness(None) | Change::Continuity(None) | Change::Options(..) | Change::Settled(_) => {
+                    size_of::<Change>()
+                }
             })
             .sum();
         size_of::<Self>() + self.name.len() + changes + self.shape.bytes()
@@ -252,6 +256,7 @@ fn swap(change: &mut Change, document: &mut Document) {
             std::mem::swap(next_handle, &mut document.next_handle);
         }
         Change::Stiffness(stiffness) => std::mem::swap(stiffness, &mut document.stiffness),
+        Change::Continuity(continuity) => std::mem::swap(continuity, &mut document.continuity),
         Change::Options(method, loose) => {
             std::mem::swap(method, &mut document.method);
             std::mem::swap(loose, &mut document.loose);

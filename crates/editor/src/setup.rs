@@ -1,12 +1,12 @@
 //! An edit resolved on a model: what every surface vertex does, how stiff it is and how each handle moves.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Loose, Method, Role};
+use pliant_deform::{CONTINUITY_RANGE, Holds, Loose, Method, Role};
 use pliant_mesh::{Model, SurfaceVertex};
 
 use crate::HandleTransform;
 use crate::edit_error::EditError;
-use crate::edit_file::{EditFile, StiffnessEntry};
+use crate::edit_file::EditFile;
 
 /// What [`pliant_deform::Problem`] needs of an edit, and the handles' transforms.
 #[derive(Clone, PartialEq, Debug)]
@@ -17,6 +17,10 @@ pub struct Setup {
     pub handles: Vec<HandleSetup>,
     /// The stiffness of each surface vertex, 1 where nothing was said.
     pub stiffness: Vec<f64>,
+    /// Each handle's weight, if it is soft.
+    pub soft: Vec<Option<f64>>,
+    /// The continuity of each surface vertex; empty for the highest everywhere.
+    pub continuity: Vec<f64>,
     /// What components that nothing holds do.
     pub loose: Loose,
     /// The method and its options.
@@ -38,6 +42,14 @@ impl Setup {
     /// How many vertices are solved for.
     pub fn free_count(&self) -> usize {
         self.roles.iter().filter(|&&role| role == Role::Free).count()
+    }
+
+    /// How firmly handles pull and how smoothly the surface joins what holds it.
+    pub fn holds(&self) -> Holds<'_> {
+        Holds {
+            soft: &self.soft,
+            continuity: &self.continuity,
+        }
     }
 
     /// Where the handles are at the share `t` of the way, 0 at rest and 1 at their targets.
@@ -102,10 +114,13 @@ impl EditFile {
             });
         }
         let stiffness = self.stiffness_on(model)?;
+        let continuity = self.continuity_on(model, &roles)?;
         Ok(Setup {
             roles,
             handles,
             stiffness,
+            soft: self.handles.iter().map(|handle| handle.soft).collect(),
+            continuity,
             loose: self.loose,
             method: self.method.clone(),
         })
@@ -114,38 +129,29 @@ impl EditFile {
     fn stiffness_on(&self, model: &Model) -> Result<Vec<f64>, EditError> {
         let mut stiffness = vec![1.0; model.surface.positions.len()];
         for (index, entry) in self.stiffness.iter().enumerate() {
-            match entry {
-                StiffnessEntry::Select { select, value } => {
-                    for vertex in select.evaluate_at(model, &format!("stiffness[{index}].select"))?.iter() {
-                        stiffness[vertex.index()] = *value;
-                    }
-                }
-                StiffnessEntry::PerVertex(values) => {
-                    let (found, count) = (values.len(), model.drawn.file_vertex_count);
-                    if found != count {
-                        let place = format!("stiffness[{index}].per_vertex");
-                        return Err(EditError::FieldLength { place, found, count });
-                    }
-                    for (vertex, file_vertex) in lowest_file_vertices(model).into_iter().enumerate() {
-                        stiffness[vertex] = values[file_vertex as usize];
-                    }
-                }
-            }
+            entry.paint(&mut stiffness, model, "stiffness", index)?;
         }
         Ok(stiffness)
     }
-}
 
-/// The lowest file vertex behind each surface vertex.
-fn lowest_file_vertices(model: &Model) -> Vec<u32> {
-    let mut lowest = vec![u32::MAX; model.surface.positions.len()];
-    for (surface_vertex, file_vertex) in model.surface_of_drawn.iter().zip(&model.drawn.file_vertex) {
-        if let Some(surface_vertex) = surface_vertex {
-            let slot = &mut lowest[surface_vertex.index()];
-            *slot = file_vertex.0.min(*slot);
+    /// The continuity of each surface vertex; empty where everything joins as smoothly as the method can.
+    fn continuity_on(&self, model: &Model, roles: &[Role]) -> Result<Vec<f64>, EditError> {
+        if self.continuity.is_empty() && self.handles.iter().all(|handle| handle.continuity.is_none()) {
+            return Ok(Vec::new());
         }
+        let mut continuity = vec![*CONTINUITY_RANGE.end(); roles.len()];
+        for (index, entry) in self.continuity.iter().enumerate() {
+            entry.paint(&mut continuity, model, "continuity", index)?;
+        }
+        for (own, role) in continuity.iter_mut().zip(roles) {
+            if let Role::Handle(handle) = *role
+                && let Some(value) = self.handles[usize::from(handle)].continuity
+            {
+                *own = value;
+            }
+        }
+        Ok(continuity)
     }
-    lowest
 }
 
 fn first_file_vertex(model: &Model, vertex: SurfaceVertex) -> u32 {

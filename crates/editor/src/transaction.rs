@@ -74,6 +74,9 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
     if before.stiffness != after.stiffness {
         changes.push(Change::Stiffness(before.stiffness.clone()));
     }
+    if before.continuity != after.continuity {
+        changes.push(Change::Continuity(before.continuity.clone()));
+    }
     if before.method != after.method || before.loose != after.loose {
         changes.push(Change::Options(before.method.clone(), before.loose));
     }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use pliant_editor::{EditFile, HandleTransform, Selector, StiffnessEntry};
+use pliant_editor::{EditFile, FieldEntry, HandleTransform, Selector};
 
 const FULL: &str = r#"{
   "version": 1,
@@ -15,9 +15,10 @@ const FULL: &str = r#"{
       "transform": { "translation": [0.1, 0.2, 0.3], "rotation": [0, 0, 1, 1], "scale": [1, 2, 3], "pivot": [0, 1, 0] } },
     { "select": { "vertices": [7, 1] },
       "transform": { "matrix": [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 2, 0, 5, 6, 7, 1] } },
-    { "select": { "sphere": { "center": [0, 0.5, 0], "radius": 0.2 } } }
+    { "select": { "sphere": { "center": [0, 0.5, 0], "radius": 0.2 } }, "soft": 2.5, "continuity": 0 }
   ],
   "stiffness": [{ "select": "all", "value": 10.0 }, { "per_vertex": [0.001, 1000, 1] }],
+  "continuity": [{ "select": { "vertices": [3] }, "value": 1.5 }],
   "loose": "rest"
 }"#;
 
@@ -39,7 +40,7 @@ fn what_an_edit_does_not_say_has_its_default() {
     let names: Vec<&str> = full.handles.iter().map(|handle| &*handle.name).collect();
     assert_eq!(names, ["head", "handle 2", "handle 3"]);
     assert_eq!(full.handles[2].transform, HandleTransform::IDENTITY);
-    assert_eq!(full.stiffness[1], StiffnessEntry::PerVertex(vec![0.001, 1000.0, 1.0]));
+    assert_eq!(full.stiffness[1], FieldEntry::PerVertex(vec![0.001, 1000.0, 1.0]));
 }
 
 fn transforms() -> Vec<HandleTransform> {

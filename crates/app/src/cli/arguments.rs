@@ -168,6 +168,13 @@ fn methods_help() -> String {
             help += &format!("\n      {}: {}", option.name, option.says);
         }
     }
+    help += "\n\nWhat holds the surface with bilaplacian, as members of the edit:\n  \
+             handles[].soft: weight of a handle that only pulls, 1e-6 to 1e6; at 1 handle and surface give way to each \
+             other; without it the handle holds exactly\n  \
+             handles[].continuity: how the surface joins this handle, 0 a hinge, 1 equal tangents, 2 equal curvature, \
+             or between; at most the order less 1; default 2\n  \
+             continuity: the same for all that is held: a number, or a list of {\"select\": .., \"value\": ..} in \
+             which the later entry wins";
     help
 }
 

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Color32, DragValue, RichText, ScrollArea, Slider};
 use pliant_deform::Loose;
-use pliant_editor::{Command, Editor, Handle, HandleTransform, Reach};
+use pliant_editor::{Command, Editor, Handle, HandleTransform, Reach, SOFT_RANGE};
 
 use super::command_button::command_button;
 use super::method_panel;
@@ -75,6 +75,8 @@ fn selected_handle(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
         let field = ui.add(field.update_while_editing(false)).on_hover_text(hover);
         commands.adjust(&field, || Command::SetReach(handle.id, make(value)));
         ui.end_row();
+        softness(ui, handle, commands);
+        ui.end_row();
         if let HandleTransform::Trs {
             mut translation,
             rotation,
@@ -102,6 +104,25 @@ fn selected_handle(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
             ui.end_row();
         }
     });
+}
+
+/// Whether the handle holds its vertices or only pulls at them, and how firmly.
+fn softness(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
+    let mut is_soft = handle.soft.is_some();
+    let hover = "A soft handle pulls at its part of the surface instead of holding it.";
+    if ui.checkbox(&mut is_soft, "Soft").on_hover_text(hover).changed() {
+        commands.push(Command::SetSoft(handle.id, is_soft.then_some(1.0)));
+    }
+    if let Some(mut weight) = handle.soft {
+        let speed = 0.02 * weight;
+        let field = DragValue::new(&mut weight)
+            .range(SOFT_RANGE)
+            .speed(speed)
+            .update_while_editing(false);
+        let hover = "Its weight: at 1 the handle and the surface give way to each other; the larger, the firmer.";
+        let field = ui.add(field).on_hover_text(hover);
+        commands.adjust(&field, || Command::SetSoft(handle.id, Some(weight)));
+    }
 }
 
 fn brush(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {

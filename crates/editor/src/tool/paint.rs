@@ -144,6 +144,7 @@ fn handle_to_paint(editor: &mut Editor) -> HandleId {
         transform: HandleTransform::IDENTITY,
         pivot: glam::DVec3::ZERO,
         reach: Reach::default(),
+        soft: None,
     });
     id
 }

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
-use pliant_deform::{Ordering, Problem};
+use pliant_deform::{Holds, Ordering, Problem};
 use pliant_editor::{
     Button, Command, Document, Editor, Event, GizmoPart, Handle, InlineExecutor, JobKind, Key, Modifiers, Paint,
     Pointer, ToolMode,
@@ -208,12 +208,17 @@ impl Rig {
         let (progress, cancel) = (Progress::new(), Cancel::new());
         let power = document.method().operator_power();
         let ordering = Ordering::of(&self.model.topology, power, &progress, &cancel).unwrap();
+        let soft: Vec<Option<f64>> = document.handles().iter().map(|handle| handle.soft).collect();
         let problem = Problem {
             surface: &surface,
             topology: &self.model.topology,
             roles: self.editor.roles(),
             handle_count: document.handles().len(),
             stiffness: document.stiffness().unwrap_or(&ones),
+            holds: Holds {
+                soft: &soft,
+                continuity: document.continuity().unwrap_or_default(),
+            },
             loose: document.loose(),
             method: document.method(),
             revision: 0,
