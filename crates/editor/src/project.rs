@@ -536,7 +536,6 @@ impl StoredCamera {
                 StoredUp::Z => UpAxis::Z,
             },
             scale: self.scale,
-            ..Camera::default()
         }
     }
 }
