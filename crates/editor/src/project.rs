@@ -9,7 +9,7 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{CONTINUITY_RANGE, Loose, Method, SOFT_RANGE};
+use pliant_deform::{CONTINUITY_RANGE, Loose, Method};
 use pliant_mesh::{Cancel, Model, SurfaceVertex};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -25,7 +25,7 @@ use crate::history::bits_equal;
 use crate::method_form::{method_to_value, read_method};
 use crate::project_field::{Field, Ranges, for_each_drawn, ranges_where};
 use crate::region::{Region, displaced};
-use crate::{Camera, HandleSetup, HandleTransform, Reach, Rest, STIFFNESS_RANGE, Setup};
+use crate::{Camera, HandleSetup, HandleTransform, Reach, Rest, SOFT_RANGE, STIFFNESS_RANGE, Setup};
 
 /// The version of the project format that is read and written.
 const PROJECT_VERSION: u64 = 1;
