@@ -9,7 +9,7 @@ use crate::{Camera, EditError, EditFile, Project, Setup};
 #[derive(Clone, PartialEq, Debug)]
 pub enum Beginning {
     /// An edit, which fits any mesh.
-    Edit(EditFile),
+    Edit(Box<EditFile>),
     /// A project, which belongs to one.
     Project(Box<Project>),
 }
@@ -24,7 +24,7 @@ impl Beginning {
         if Project::is_project(text) {
             Ok(Self::Project(Box::new(Project::parse(text)?)))
         } else {
-            EditFile::parse(text).map(Self::Edit)
+            EditFile::parse(text).map(Self::from)
         }
     }
 
@@ -72,7 +72,7 @@ impl Beginning {
 
 impl From<EditFile> for Beginning {
     fn from(edit: EditFile) -> Self {
-        Self::Edit(edit)
+        Self::Edit(Box::new(edit))
     }
 }
 

@@ -110,7 +110,7 @@ impl Settings {
             Ok(mut settings) => {
                 let scale = settings.ui_scale;
                 settings.ui_scale = if scale.is_finite() { scale.clamp(0.5, 3.0) } else { 1.0 };
-                settings.panel_width = settings.panel_width.max(200.0).min(600.0);
+                settings.panel_width = settings.panel_width.clamp(200.0, 600.0);
                 (settings, None)
             }
             Err(error) => (
