@@ -12,6 +12,7 @@ mod format;
 mod frames;
 mod gltf;
 mod image;
+mod ktx2;
 mod moved;
 mod new_faces;
 mod new_glb;

@@ -6,15 +6,18 @@ mod claims;
 mod container;
 mod deliver;
 mod document;
+mod draco;
 mod fault;
 mod geometry;
 mod json;
 mod look;
 mod maps;
+mod meshopt;
 mod pack;
 mod patch;
 mod primitive;
 mod tree;
+mod unpack;
 mod uri;
 
 use pliant_mesh::Drawn;
@@ -48,7 +51,9 @@ pub(crate) fn read(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn
 fn open(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn), Fault> {
     let mut document = Document::read(source, format)?;
     let mut notes = std::mem::take(&mut document.notes);
+    meshopt::decode(&mut document, source.cancel)?;
     let meshes = primitive::primitives(&document)?;
+    draco::decode(&mut document, &meshes, source.cancel)?;
     let placed = tree::placed_meshes(&document, &mut notes)?;
     let (drawn, pieces) = geometry::drawn(&document, &meshes, &placed, source.progress, source.cancel)?;
     Ok((
