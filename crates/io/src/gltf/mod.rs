@@ -3,6 +3,7 @@
 mod accessor;
 mod changes;
 mod claims;
+mod compare;
 mod container;
 mod deliver;
 mod document;
@@ -30,7 +31,7 @@ use self::primitive::Primitive;
 use crate::moved::Moved;
 use crate::save::{Save, Saved};
 use crate::scene::{Source, Summary};
-use crate::{Appearance, Format, ReadError, SaveError};
+use crate::{Appearance, Difference, Format, ReadError, SaveError};
 
 /// A glTF as read, and how its drawn set is made up.
 #[derive(Debug)]
@@ -101,6 +102,11 @@ impl Stored {
                 .map(|primitive| primitive.target_count)
                 .sum(),
         }
+    }
+
+    /// What differs between this file and another, in the order of this one's text.
+    pub fn differences(&self, other: &Self) -> Vec<Difference> {
+        compare::differences(&self.document, &other.document)
     }
 
     pub fn appearance(&self) -> Appearance {
