@@ -8,6 +8,7 @@ use crate::arap::ArapSolver;
 use crate::follow::{Follower, carry, followers};
 use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
+use crate::primo::PrimoSolver;
 use crate::shell::bases::FRAME_CHUNK;
 use crate::shell::plate::{Plate, repairs};
 use crate::{BindError, HandleBases, Method, Ordering, Problem, SolveError};
@@ -31,6 +32,7 @@ pub struct Bound {
 enum Solver {
     Plate(Box<Plate>),
     Arap(Box<ArapSolver>),
+    Primo(Box<PrimoSolver>),
 }
 
 /// What one step did.
@@ -83,6 +85,10 @@ impl Bound {
                 let arap = ArapSolver::bind(problem, options, &partition, &handles, ordering, progress, cancel)?;
                 partition.warnings.extend(repairs(arap.mollified_faces()));
                 Solver::Arap(Box::new(arap))
+            }
+            Method::Primo(options) => {
+                let primo = PrimoSolver::bind(problem, options, &partition, &handles, progress, cancel)?;
+                Solver::Primo(Box::new(primo))
             }
         };
         Ok(Self {
@@ -178,8 +184,10 @@ impl Bound {
             iteration: self.iteration,
         };
         if self.motions.iter().all(Motion::is_rest) {
-            if let Solver::Arap(arap) = &mut self.solver {
-                arap.rest();
+            match &mut self.solver {
+                Solver::Plate(_) => {}
+                Solver::Arap(arap) => arap.rest(),
+                Solver::Primo(primo) => primo.rest(),
             }
             return Ok(step);
         }
@@ -187,6 +195,7 @@ impl Bound {
             match &self.solver {
                 Solver::Plate(plate) => place(plate.prescribed(handle), motion, displacements),
                 Solver::Arap(arap) => place(arap.prescribed(handle), motion, displacements),
+                Solver::Primo(primo) => place(primo.prescribed(handle), motion, displacements),
             }
         }
         match &mut self.solver {
@@ -198,6 +207,10 @@ impl Bound {
                 (step.converged, step.energy) = arap.step(&self.motions, displacements);
                 step.finished = step.converged || self.iteration >= arap.max_iterations();
             }
+            Solver::Primo(primo) => {
+                (step.converged, step.energy) = primo.step(&self.motions, displacements);
+                step.finished = step.converged || self.iteration >= primo.max_iterations();
+            }
         }
         carry(&self.followers, displacements);
         gate(displacements)?;
@@ -208,24 +221,29 @@ impl Bound {
     /// present targets say; `None` where the method has no
     /// energy or the length is wrong.
     pub fn energy_of(&self, displacements: &[DVec3]) -> Option<f64> {
-        (displacements.len() == self.vertex_count).then(|| match &self.solver {
-            Solver::Plate(plate) => plate.energy_of(&self.motions, displacements),
-            Solver::Arap(arap) => arap.energy_of(displacements),
-        })
+        if displacements.len() != self.vertex_count {
+            return None;
+        }
+        match &self.solver {
+            Solver::Plate(plate) => Some(plate.energy_of(&self.motions, displacements)),
+            Solver::Arap(arap) => Some(arap.energy_of(displacements)),
+            // Its energy is the prisms', not the vertices'.
+            Solver::Primo(_) => None,
+        }
     }
 
     /// The handles' bases, where the method is linear.
     pub fn handle_bases(&self) -> Option<&HandleBases> {
         match &self.solver {
             Solver::Plate(plate) => Some(plate.bases()),
-            Solver::Arap(_) => None,
+            Solver::Arap(_) | Solver::Primo(_) => None,
         }
     }
 
     /// The energy of the rest shape, as in [`Step::energy`].
     pub fn energy_rest(&self) -> f64 {
         match self.solver {
-            Solver::Plate(_) | Solver::Arap(_) => 0.0,
+            Solver::Plate(_) | Solver::Arap(_) | Solver::Primo(_) => 0.0,
         }
     }
 
@@ -249,6 +267,7 @@ impl Bound {
         match &self.solver {
             Solver::Plate(plate) => plate.bases().vertices().len(),
             Solver::Arap(arap) => arap.solved_count(),
+            Solver::Primo(primo) => primo.solved_count(),
         }
     }
 
@@ -257,6 +276,7 @@ impl Bound {
         match &self.solver {
             Solver::Plate(plate) => plate.factor_len(),
             Solver::Arap(arap) => arap.factor_len(),
+            Solver::Primo(primo) => primo.factor_len(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! The methods by name.
 
-use crate::{Arap, Bilaplacian};
+use crate::{Arap, Bilaplacian, Primo};
 
 /// How a surface follows its handles. Later methods join as variants.
 #[derive(Clone, PartialEq, Debug)]
@@ -10,17 +10,20 @@ pub enum Method {
     Bilaplacian(Bilaplacian),
     /// As-rigid-as-possible (Sorkine & Alexa 2007).
     Arap(Arap),
+    /// Coupled prisms (Botsch et al. 2006).
+    Primo(Primo),
 }
 
 impl Method {
     /// Every method's name, in the order in which they are shown.
-    pub const NAMES: &'static [&'static str] = &["bilaplacian", "arap"];
+    pub const NAMES: &'static [&'static str] = &["bilaplacian", "arap", "primo"];
 
     /// The method called `name`, with its defaults.
     pub fn from_name(name: &str) -> Option<Self> {
         match name {
             "bilaplacian" => Some(Self::Bilaplacian(Bilaplacian::default())),
             "arap" => Some(Self::Arap(Arap::default())),
+            "primo" => Some(Self::Primo(Primo::default())),
             _ => None,
         }
     }
@@ -30,6 +33,7 @@ impl Method {
         match self {
             Self::Bilaplacian(_) => "bilaplacian",
             Self::Arap(_) => "arap",
+            Self::Primo(_) => "primo",
         }
     }
 
@@ -37,7 +41,7 @@ impl Method {
     pub fn operator_power(&self) -> u32 {
         match self {
             Self::Bilaplacian(options) => options.operator_power(),
-            Self::Arap(_) => 1,
+            Self::Arap(_) | Self::Primo(_) => 1,
         }
     }
 }

@@ -132,7 +132,7 @@ fn influenced(problem: &Problem, handles: &[Vec<u32>], soft: &[Option<f64>]) -> 
     let topology = problem.topology;
     let power = match problem.method {
         // Across a constrained vertex too, whose cell turns with all its neighbours.
-        Method::Arap(_) => 2,
+        Method::Arap(_) | Method::Primo(_) => 2,
         Method::Bilaplacian(_) => problem.method.operator_power(),
     };
     let is_free = |vertex: usize| match problem.roles[vertex] {

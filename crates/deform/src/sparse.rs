@@ -4,6 +4,7 @@ pub(crate) mod cholesky;
 mod etree;
 mod forest;
 mod front;
+pub(crate) mod graph;
 pub(crate) mod matrix;
 mod multifrontal;
 mod ordering;

@@ -2,6 +2,7 @@
 
 mod arap;
 mod bilaplacian;
+mod primo;
 
 use pliant_deform::Method;
 use serde_json::{Map, Value, json};
@@ -61,7 +62,11 @@ pub enum OptionKind {
 }
 
 /// Each method's options.
-const OPTIONS: &[(&str, &[MethodOption])] = &[("bilaplacian", bilaplacian::OPTIONS), ("arap", arap::OPTIONS)];
+const OPTIONS: &[(&str, &[MethodOption])] = &[
+    ("bilaplacian", bilaplacian::OPTIONS),
+    ("arap", arap::OPTIONS),
+    ("primo", primo::OPTIONS),
+];
 
 /// Each method's title, and a sentence on when it is the one to take.
 const WORDS: &[(&str, &str, &str)] = &[
@@ -74,6 +79,11 @@ const WORDS: &[(&str, &str, &str)] = &[
         "arap",
         "As rigid as possible",
         "Keeps every neighbourhood as rigid as it can, step by step: for large turns and long drags.",
+    ),
+    (
+        "primo",
+        "Coupled prisms",
+        "Bends like a rubber sheet of a thickness you choose, step by step: for even bends and twists.",
     ),
 ];
 
@@ -144,6 +154,7 @@ pub(crate) fn read_method(node: &Node<'_>) -> Result<Method, EditError> {
     match &mut method {
         Method::Bilaplacian(options) => bilaplacian::read(&members, options)?,
         Method::Arap(options) => arap::read(&members, options)?,
+        Method::Primo(options) => primo::read(&members, options)?,
         _ => {}
     }
     Ok(method)
@@ -156,6 +167,7 @@ pub(crate) fn method_to_value(method: &Method) -> Value {
     match method {
         Method::Bilaplacian(options) => bilaplacian::write(options, &mut members),
         Method::Arap(options) => arap::write(options, &mut members),
+        Method::Primo(options) => primo::write(options, &mut members),
         _ => {}
     }
     Value::Object(members)

@@ -8,6 +8,7 @@ mod frames;
 mod linear;
 mod meshes;
 mod peers;
+mod primo;
 mod table;
 
 use table::Row;
@@ -38,6 +39,11 @@ const SECTIONS: &[Section] = &[
         name: "frames",
         title: "Binding and drag frames: `pliant apply --frames 60 --report` of assets/creature.edit.json, milliseconds",
         rows: frames::rows,
+    },
+    Section {
+        name: "primo",
+        title: "Coupled prisms on the survey's scenes, from the rest shape to 1% of the least energy: milliseconds",
+        rows: primo::rows,
     },
     Section {
         name: "peers",

@@ -4,10 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{Beginning, JobDone, Revision, SnapshotKey};
+use pliant_editor::{EditFile, JobDone, Revision};
 use pliant_render::Surface;
 
-use super::project_file::MeshSource;
 use crate::drawing::{Drawing, Pose};
 use crate::engine::Loaded;
 
@@ -21,8 +20,6 @@ pub enum Message {
     Opened(Revision, Result<Box<Opened>, String>),
     /// A file was written, or why it was not.
     Written(Revision, Result<Written, String>),
-    /// The state of the document with this key was kept for a recovery, or why it was not.
-    Autosaved(SnapshotKey, Result<(), String>),
     /// A person chose a path in a dialog; `None` if they chose none.
     Chosen(Purpose, Option<PathBuf>),
 }
@@ -48,13 +45,7 @@ pub struct Opened {
     /// Its own shape: no vertex displaced.
     pub displacements: Arc<Vec<DVec3>>,
     /// Regions and handles to begin with.
-    pub beginning: Option<Beginning>,
-    /// The project that it was opened from, or is to be saved to.
-    pub project: Option<PathBuf>,
-    /// Where the mesh as it was read stands; the built-in sample stands nowhere.
-    pub source: MeshSource,
-    /// Whether it is what a session that ended without saving has left.
-    pub recovered: Option<PathBuf>,
+    pub edit: Option<EditFile>,
     /// What a person should know about the file, a sentence each.
     pub notes: Vec<String>,
 }
@@ -63,21 +54,10 @@ pub struct Opened {
 pub struct Written {
     /// Where.
     pub path: PathBuf,
-    /// What it is.
-    pub what: WrittenKind,
+    /// Whether it is the model (and not an edit): then there is no unsaved work now.
+    pub is_model: bool,
     /// What the file could not hold, a sentence each.
     pub warnings: Vec<String>,
-}
-
-/// What was written.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub enum WrittenKind {
-    /// The model; where the mesh as it was read stands now, if that has changed.
-    Model(Option<MeshSource>),
-    /// The project.
-    Project,
-    /// An edit for the command line: the work is not saved with it.
-    Edit,
 }
 
 /// What a path is chosen for.
@@ -87,8 +67,6 @@ pub enum Purpose {
     Open,
     /// To save the model under.
     SaveAs,
-    /// To save the project under.
-    SaveProject,
     /// To write the edit file to.
     ExportEdit,
 }

@@ -110,7 +110,7 @@ fn upper_graph(topology: &Topology, power: u32, cancel: &Cancel) -> Result<(Vec<
     Ok((offsets, rows))
 }
 
-fn minimum_degree(count: usize, offsets: &[u32], rows: &[u32]) -> Option<Vec<u32>> {
+pub(super) fn minimum_degree(count: usize, offsets: &[u32], rows: &[u32]) -> Option<Vec<u32>> {
     let graph = SymbolicSparseColMatRef::new_unsorted_checked(count, count, offsets, None, rows);
     let (mut order, mut rank) = (vec![0_u32; count], vec![0_u32; count]);
     let mut memory = MemBuffer::try_new(amd::order_maybe_unsorted_scratch::<u32>(count, rows.len())).ok()?;

@@ -8,6 +8,7 @@ mod laws;
 mod operators;
 mod ordering;
 mod plate;
+mod primo;
 mod rig;
 mod robust;
 mod shell;

@@ -1,0 +1,236 @@
+//! Coupled prisms (Botsch, Pauly, Gross, Kobbelt 2006): every triangle a rigid prism, elastically joined to its
+//! neighbours over the quads that they share at rest.
+//!
+//! The prisms' rotations are the unknowns. Where they are least stretched, given how they are turned, is a linear problem
+//! with one constant matrix, so that the translations are always solved for exactly (variable projection). What is left
+//! has long valleys no more: with the translations among the unknowns, turning a chain of prisms stretches it to second
+//! order, and steps stay short. The rotations descend by the quasi-Newton method on top of the factored Gauss–Newton
+//! matrix of *all* velocities, whose inverse's turning part is that of the reduced problem. In the prisms' own frames it
+//! hardly changes while they turn together, so the rest pose's serves for many steps, and is renewed where a minimum is
+//! far. The line search looks at the true energy, which never rises.
+//!
+//! Measured on the survey's bar (12,106 faces), iterations to within 1% of the least energy at a thickness of 0.02: with
+//! translations among the unknowns and the rest pose's matrix over 1000, or 10 plain Gauss–Newton steps that each factor;
+//! with translations eliminated 23, or 17 with the matrix renewed every twelve steps.
+//!
+//! Parts: `prisms` sorts the triangles, `quad` is the integral over a shared quad, `joints` are the couplings, `pose` is
+//! where the prisms are and their energy, `system` and `factored` make the matrices, `start` chooses where to begin,
+//! `sweep` unfolds, `descent` takes a step, and `vertices` takes the prisms' mean.
+
+mod descent;
+mod factored;
+mod joints;
+mod options;
+mod pose;
+mod prisms;
+mod quad;
+mod start;
+mod sweep;
+mod system;
+mod vertices;
+
+use glam::DVec3;
+use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
+
+pub use self::options::Primo;
+
+use self::factored::{Factored, Springs};
+use self::joints::{Joints, Material};
+use self::pose::Pose;
+use self::prisms::Prisms;
+use self::sweep::Colours;
+use self::vertices::Vertices;
+use crate::blend::HandleFrame;
+use crate::handle::{Handle, Motion};
+use crate::lbfgs::Memory;
+use crate::partition::Partition;
+use crate::sparse::cholesky::FactorError;
+use crate::sparse::graph::elimination_order;
+use crate::{BindError, Problem};
+
+/// The bound method, with the pose it is at.
+#[derive(Debug)]
+pub(crate) struct PrimoSolver {
+    options: Primo,
+    joints: Joints,
+    vertices: Vertices,
+    colours: Colours,
+    springs: Springs,
+    preconditioner: Factored,
+    /// Handles' harmonic weights, one row a solved prism.
+    weights: Vec<f64>,
+    /// The handles in coordinates relative to the first one's centre.
+    handles: Vec<HandleFrame>,
+    /// Of each handle: its surface vertices with their coordinates.
+    prescribed: Vec<Vec<(u32, [f64; 4])>>,
+    current: Pose,
+    trial: Pose,
+    memory: Memory,
+    /// The motions that `current` is a pose for.
+    motions: Vec<Motion>,
+    state: State,
+    /// Steps towards the present targets since the matrix was last factored.
+    age: u32,
+}
+
+/// How far the present targets are.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum State {
+    /// Prisms are folded onto their neighbours: local sweeps first.
+    Folded(u32),
+    /// On its way.
+    Descending,
+    /// At a minimum, to the tolerance.
+    Converged,
+}
+
+impl PrimoSolver {
+    /// Sorts the prisms, joins them, factors, and solves for the weights of `handles`.
+    pub fn bind(
+        problem: &Problem,
+        options: &Primo,
+        partition: &Partition,
+        handles: &[Handle],
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, BindError> {
+        let (surface, topology) = (problem.surface, problem.topology);
+        let mut prisms = Prisms::of(surface, topology, problem.roles);
+        cancel.check()?;
+        progress.set(0.1);
+        let (offsets, neighbours) = prisms.graph(surface, topology);
+        prisms.reorder(&elimination_order(&offsets, &neighbours));
+        cancel.check()?;
+        progress.set(0.2);
+        let world_origin = handles.first().map_or(DVec3::ZERO, |handle| handle.world_centre);
+        let mut world_grounds = vec![world_origin];
+        world_grounds.extend(handles.iter().map(|handle| handle.world_centre));
+        let diagonal = bounding_box(&surface.positions).map_or(0.0, |bounds| bounds.diagonal());
+        let joints = Joints::of(
+            &prisms,
+            &Material {
+                surface,
+                topology,
+                stiffness: problem.stiffness,
+                thickness: options.thickness * diagonal,
+                world_origin,
+                world_grounds: &world_grounds,
+            },
+        );
+        cancel.check()?;
+        progress.set(0.3);
+        let component = |prism: usize| {
+            let corner = surface.triangles[prisms.faces[prism] as usize][0];
+            (topology.component(corner), corner)
+        };
+        let refused = |error| match error {
+            FactorError::Pivot(prism) => {
+                let (component, SurfaceVertex(vertex)) = component(prism);
+                BindError::NotPositiveDefinite { component, vertex }
+            }
+            FactorError::Memory => BindError::OutOfMemory {
+                free_count: partition.free_count,
+            },
+            FactorError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
+        };
+        let unheld = |prism: usize| !partition.held[component(prism).0 as usize];
+        let springs = Springs::of(&joints, cancel).map_err(refused)?;
+        let weights = springs.weights(&joints, handles.len(), unheld);
+        cancel.check()?;
+        progress.set(0.4);
+        let at_rest = Pose::at_rest(joints.count(), world_grounds.len());
+        let preconditioner = Factored::at(&joints, &at_rest, cancel).map_err(refused)?;
+        progress.set(1.0);
+        let world_rest = |vertex: u32| surface.positions[vertex as usize];
+        Ok(Self {
+            options: options.clone(),
+            vertices: Vertices::of(surface, topology, problem.roles, &prisms, &joints.centres, world_origin),
+            colours: Colours::of(&joints),
+            joints,
+            springs,
+            preconditioner,
+            weights,
+            handles: handles
+                .iter()
+                .map(|handle| HandleFrame {
+                    centre: handle.world_centre - world_origin,
+                    radius: handle.radius,
+                })
+                .collect(),
+            prescribed: handles
+                .iter()
+                .map(|handle| {
+                    let of = |&vertex: &u32| (vertex, handle.coordinates(world_rest(vertex)));
+                    handle.vertices.iter().map(of).collect()
+                })
+                .collect(),
+            current: at_rest.clone(),
+            trial: at_rest,
+            memory: Memory::default(),
+            motions: vec![Motion::default(); handles.len()],
+            state: State::Converged,
+            age: 0,
+        })
+    }
+
+    /// How many numbers the factor stores.
+    pub fn factor_len(&self) -> usize {
+        self.preconditioner.stored()
+    }
+
+    /// How many vertices follow from solved prisms.
+    pub fn solved_count(&self) -> usize {
+        self.vertices.vertices.len()
+    }
+
+    /// Most iterations towards one set of targets.
+    pub fn max_iterations(&self) -> u32 {
+        self.options.max_iterations
+    }
+
+    /// The handles' surface vertices and their coordinates.
+    pub fn prescribed(&self, handle: usize) -> impl Iterator<Item = (u32, [f64; 4])> + '_ {
+        self.prescribed[handle].iter().copied()
+    }
+
+    /// The energy in units of the solved prisms' area, which a change of the model's scale leaves as it is.
+    fn relative(&self, energy: f64) -> f64 {
+        if self.joints.area > 0.0 {
+            energy / self.joints.area
+        } else {
+            0.0
+        }
+    }
+
+    /// Back to the rest pose.
+    pub fn rest(&mut self) {
+        self.motions.fill(Motion::default());
+        self.current = Pose::at_rest(self.joints.count(), 1 + self.handles.len());
+        self.memory.clear();
+        self.state = State::Converged;
+    }
+
+    /// One step towards `motions`: writes the displacements of solved prisms' free vertices. Says whether it converged,
+    /// and the energy.
+    pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> (bool, f64) {
+        // One entry into the pool: each of the many short loops would wait for it otherwise.
+        rayon::scope(|_| {
+            if self.motions != motions {
+                self.start(motions);
+            }
+            match self.state {
+                State::Folded(left) => self.unfold(left),
+                State::Descending => self.descend(),
+                State::Converged => {}
+            }
+            self.vertices.write(&self.current, displacements);
+        });
+        let energy = self.current.energy;
+        if !energy.is_finite() {
+            // The gate refuses it; the next targets begin afresh.
+            self.rest();
+            return (true, energy);
+        }
+        (self.state == State::Converged, self.relative(energy))
+    }
+}

@@ -1,0 +1,102 @@
+//! One step down.
+
+use rayon::prelude::*;
+
+use super::{PrimoSolver, State};
+use crate::operators::CHUNK;
+use crate::sums::{Field, dot};
+
+/// A step must lower the energy by this share of what its slope promises.
+const SUFFICIENT: f64 = 1e-4;
+
+/// Lengths that a line search tries.
+const TRIALS: u32 = 12;
+
+/// Steps towards the same targets after which the matrix is factored anew, where the prisms are by then. A factorisation
+/// takes about as long as eight steps. On the survey's bar at a thickness of 0.005 a step with each (plain Gauss–Newton)
+/// came within 1% of the least energy after 5, one with each tenth after 25 and the rest pose's alone after 133 steps,
+/// in 1.9, 1.5 and 6.2 s; at 0.05 after 1, 1 and 2 steps.
+const RENEWAL: u32 = 12;
+
+/// Energies below this share of the surface's area are rounding.
+const NOTHING: f64 = 1e-26;
+
+impl PrimoSolver {
+    /// Takes one step that lowers the energy, or finds that there is none to take.
+    ///
+    /// Converged is a pose from which the quadratic model promises less than the tolerance's share of the energy, and
+    /// that the last step improved by less than that too.
+    pub(super) fn descend(&mut self) {
+        if self.age == RENEWAL {
+            self.age = 0;
+            self.preconditioner.renew(&self.joints, &self.current);
+        }
+        self.age += 1;
+        loop {
+            let preconditioner = &self.preconditioner;
+            let uphill = self
+                .memory
+                .direction(&self.current.gradient, |x| preconditioner.apply(x));
+            let slope = -dot(&uphill, &self.current.gradient);
+            let before = self.current.energy;
+            if slope < 0.0 && self.search(&uphill, slope) {
+                let (gained, enough) = (
+                    before - self.current.energy,
+                    self.options.tolerance * self.current.energy + NOTHING * self.joints.area,
+                );
+                if -0.5 * slope <= enough && gained <= enough {
+                    self.state = State::Converged;
+                }
+                return;
+            }
+            if self.memory.is_empty() {
+                self.state = State::Converged;
+                return;
+            }
+            self.memory.clear();
+        }
+    }
+
+    /// Moves against `uphill`, by its whole length if that lowers the energy enough; says whether any length did.
+    fn search(&mut self, uphill: &Field, slope: f64) -> bool {
+        let before = self.current.energy;
+        let mut length = 1.0;
+        for _ in 0..TRIALS {
+            self.trial.moved(&self.current, uphill, -length);
+            self.trial.settle(&self.joints, &self.springs);
+            self.trial.evaluate(&self.joints);
+            let after = self.trial.energy;
+            if after <= before + SUFFICIENT * length * slope && after < before {
+                self.accept(-length, uphill);
+                return true;
+            }
+            // The least of the parabola through both energies and the slope.
+            let least = -0.5 * slope * length * length / (after - before - slope * length);
+            length = if least.is_finite() {
+                least.clamp(0.1 * length, 0.5 * length)
+            } else {
+                0.1 * length
+            };
+        }
+        false
+    }
+
+    fn accept(&mut self, length: f64, direction: &Field) {
+        let difference = |k: usize| {
+            let (new, old) = (self.trial.gradient[k], self.current.gradient[k]);
+            [new[0] - old[0], new[1] - old[1], new[2] - old[2]]
+        };
+        let change: Field = (0..direction.len())
+            .into_par_iter()
+            .with_min_len(4 * CHUNK)
+            .map(difference)
+            .collect();
+        let step = direction
+            .par_iter()
+            .with_min_len(4 * CHUNK)
+            .map(|value| value.map(|v| v * length))
+            .collect();
+        self.memory.push(step, change);
+        std::mem::swap(&mut self.current, &mut self.trial);
+    }
+}

@@ -1,0 +1,204 @@
+//! The couplings between prisms, seen from each solved one, and their weights.
+//!
+//! E = ½ Σ w_ij ∫∫ |T_i f − T_j f|² over the shared quads, w_ij = |e|² / (|F_i| + |F_j|) times the painted stiffness,
+//! which is the mean of the two triangles', each the mean of its vertices'.
+
+use glam::{DMat3, DVec3};
+use pliant_mesh::{Surface, SurfaceVertex, Topology, area_of_lengths, edge_lengths, vertex_normals};
+use rayon::prelude::*;
+
+use super::prisms::{Prisms, across, edges};
+use super::quad::Quad;
+use crate::operators::CHUNK;
+
+/// A triangle's area counts as at least this share of its longest edge's square, so that one without an area is
+/// coupled firmly, but not beyond what can be computed.
+const AREA_FLOOR: f64 = 1e-3;
+
+/// The least weight of a coupling: an edge of no length still holds its prisms together.
+const WEIGHT_FLOOR: f64 = 1e-9;
+
+/// The weight of a pin, a multiple of what an edge of an equilateral triangle has: with 1 a handle of one vertex would
+/// leave its surroundings behind by a tenth of its way.
+const PIN_WEIGHT: f64 = 1e3;
+
+/// The joints of the solved prisms.
+#[derive(Debug)]
+pub(crate) struct Joints {
+    /// Where each solved prism's `sides` start.
+    offsets: Vec<u32>,
+    sides: Vec<Side>,
+    /// The rest centre of each body, relative to the origin: prisms', then the fixed ground's and the handles'.
+    pub centres: Vec<DVec3>,
+    /// The sum of the solved prisms' areas.
+    pub area: f64,
+}
+
+/// One joint seen from one of its prisms.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Side {
+    /// The other body: a solved prism, or a ground.
+    pub other: u32,
+    /// w.
+    pub weight: f64,
+    /// The quad's middle from the own centre.
+    pub own_arm: DVec3,
+    /// The quad's middle from the other's centre.
+    pub other_arm: DVec3,
+    /// C.
+    pub spread: DMat3,
+}
+
+/// What joints are made of.
+pub(crate) struct Material<'a> {
+    pub surface: &'a Surface,
+    pub topology: &'a Topology,
+    /// One a surface vertex.
+    pub stiffness: &'a [f64],
+    /// The prisms' height, in world units.
+    pub thickness: f64,
+    pub world_origin: DVec3,
+    /// The grounds' centres, in world units.
+    pub world_grounds: &'a [DVec3],
+}
+
+impl Joints {
+    /// The joints of `prisms`, in their order.
+    pub fn of(prisms: &Prisms, material: &Material) -> Self {
+        let Material { surface, topology, .. } = *material;
+        let world_centre = |face: u32| {
+            let [a, b, c] = surface.corners(face as usize);
+            (a - material.world_origin) + ((b - a) + (c - a)) / 3.0
+        };
+        let mut centres: Vec<DVec3> = prisms.faces.par_iter().map(|&face| world_centre(face)).collect();
+        centres.extend(
+            material
+                .world_grounds
+                .iter()
+                .map(|&ground| ground - material.world_origin),
+        );
+        let mut normals = Vec::new();
+        vertex_normals(&surface.triangles, topology, &surface.positions, &mut normals);
+        let rows: Vec<Vec<Side>> = prisms
+            .faces
+            .par_iter()
+            .with_min_len(CHUNK)
+            .enumerate()
+            .map(|(prism, &face)| sides(prisms, material, &normals, &centres, prism, face))
+            .collect();
+        let mut offsets = vec![0];
+        let mut sides = Vec::with_capacity(rows.iter().map(Vec::len).sum());
+        for row in rows {
+            sides.extend(row);
+            offsets.push(sides.len() as u32);
+        }
+        let mut joints = Self {
+            offsets,
+            sides,
+            centres,
+            area: prisms.faces.iter().map(|&face| area(surface, face)).sum(),
+        };
+        joints.pin(prisms, material);
+        joints
+    }
+
+    /// How many prisms are solved for.
+    pub fn count(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// The joints of one prism.
+    pub fn sides(&self, prism: usize) -> &[Side] {
+        &self.sides[self.offsets[prism] as usize..self.offsets[prism + 1] as usize]
+    }
+
+    fn pin(&mut self, prisms: &Prisms, material: &Material) {
+        if prisms.pins.is_empty() {
+            return;
+        }
+        let mut extra = vec![Vec::new(); self.count()];
+        for pin in &prisms.pins {
+            let prism = prisms.body_of[pin.face as usize] as usize;
+            let other = (self.count() as u32) + pin.ground;
+            let point = material.surface.positions[pin.vertex as usize] - material.world_origin;
+            let ball = Quad::around(point, material.thickness);
+            extra[prism].push(Side {
+                other,
+                weight: PIN_WEIGHT * stiffness(material, pin.face),
+                own_arm: ball.middle - self.centres[prism],
+                other_arm: ball.middle - self.centres[other as usize],
+                spread: ball.spread,
+            });
+        }
+        let mut sides = Vec::with_capacity(self.sides.len() + prisms.pins.len());
+        let mut offsets = vec![0];
+        for (prism, extra) in extra.into_iter().enumerate() {
+            sides.extend_from_slice(self.sides(prism));
+            sides.extend(extra);
+            offsets.push(sides.len() as u32);
+        }
+        (self.sides, self.offsets) = (sides, offsets);
+    }
+}
+
+fn sides(
+    prisms: &Prisms,
+    material: &Material,
+    normals: &[DVec3],
+    centres: &[DVec3],
+    prism: usize,
+    face: u32,
+) -> Vec<Side> {
+    let Material { surface, topology, .. } = *material;
+    let mut sides = Vec::with_capacity(3);
+    for [a, b] in edges(surface.triangles[face as usize]) {
+        let at = |v: SurfaceVertex| surface.positions[v.index()] - material.world_origin;
+        let joints = across(surface, topology, face, [a, b]).count();
+        for other in across(surface, topology, face, [a, b]) {
+            let body = prisms.body_of[other as usize];
+            // Both of a joint's prisms must see the same quad, to the last bit.
+            let [a, b] = if a < b { [a, b] } else { [b, a] };
+            let face_normal = normal(surface, face.min(other)) + normal(surface, face.max(other));
+            let quad = Quad::over(
+                at(a),
+                at(b),
+                [normals[a.index()], normals[b.index()]],
+                face_normal,
+                material.thickness,
+            );
+            let (one, two) = (face.min(other), face.max(other));
+            let areas = area(surface, one) + area(surface, two);
+            let share = at(a).distance_squared(at(b)) / areas.max(f64::MIN_POSITIVE);
+            let stiffness = 0.5 * (stiffness(material, one) + stiffness(material, two));
+            sides.push(Side {
+                other: body,
+                weight: share.max(WEIGHT_FLOOR) * stiffness / joints as f64,
+                own_arm: quad.middle - centres[prism],
+                other_arm: quad.middle - centres[body as usize],
+                spread: quad.spread,
+            });
+        }
+    }
+    sides
+}
+
+/// Twice the area times the unit normal.
+fn normal(surface: &Surface, face: u32) -> DVec3 {
+    let [a, b, c] = surface.corners(face as usize);
+    (b - a).cross(c - a)
+}
+
+fn area(surface: &Surface, face: u32) -> f64 {
+    let lengths = edge_lengths(surface.corners(face as usize));
+    let longest = lengths[0].max(lengths[1]).max(lengths[2]);
+    area_of_lengths(lengths).max(AREA_FLOOR * longest * longest)
+}
+
+fn stiffness(material: &Material, face: u32) -> f64 {
+    let corners = material.surface.triangles[face as usize];
+    corners
+        .iter()
+        .map(|corner| material.stiffness[corner.index()])
+        .sum::<f64>()
+        / 3.0
+}

@@ -1,0 +1,21 @@
+//! Coupled prisms on the survey's scenes, by the example `primo` of `deform`.
+
+use std::path::Path;
+
+use super::Scale;
+use super::table::{Row, measured};
+
+/// A row for each scene, on all threads; none where the survey's scenes are not beside the project.
+pub fn rows(_: Scale) -> Result<Vec<Row>, String> {
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/survey");
+    let mut rows = Vec::new();
+    for scene in ["bar", "cylinder", "cactus", "plane"] {
+        let scene = folder.join(scene);
+        if scene.with_extension("off").exists() {
+            let arguments = [scene.display().to_string(), all.to_string()];
+            rows.extend(measured("pliant-deform", "primo", &arguments)?);
+        }
+    }
+    Ok(rows)
+}
