@@ -290,3 +290,45 @@ fn a_file_that_is_no_model_is_said_and_what_was_open_stays() {
     let size = DVec2::new(f64::from(session.harness.state().view_rect().width()), 0.0);
     assert!(size.x > 100.0 && session.harness.state().editor().view().model.is_some());
 }
+
+#[test]
+fn a_project_comes_back_as_it_was_though_its_mesh_was_saved_over() {
+    let Some(mut session) = Session::begin() else { return };
+    let folder = Folder::new();
+    let mesh = folder.path().join("bar.glb");
+    std::fs::copy(assets().join("bar.glb"), &mesh).unwrap();
+    session.harness.state_mut().open(mesh.clone());
+    session.settle();
+    let middle = session.harness.state().view_rect().center();
+    session.stroke(middle, middle + vec2(6.0, 4.0));
+    for key in [Key::G, Key::Y, Key::Num0, Key::Period, Key::Num1, Key::Enter] {
+        session.key(key, Modifiers::NONE);
+    }
+    session.settle();
+    assert!(moved(&session.shape()) > 0);
+    // Twice over the source: what was read stands nowhere then but as the kept original.
+    for _ in 0..2 {
+        session.harness.state_mut().save_to(mesh.clone(), KeepOriginal::Yes);
+        session.settle();
+    }
+    let project = folder.path().join("bar.pliant");
+    session.harness.state_mut().save_project_to(project.clone());
+    session.settle();
+    let text = std::fs::read_to_string(&project).unwrap();
+    assert!(text.contains("bar.original.glb"), "{}", &text[..300]);
+    let hash = |session: &Session| session.harness.state().editor().document_hash().unwrap();
+    let (before, shape) = (hash(&session), session.shape());
+    session.harness.state_mut().open(assets().join("plane.glb"));
+    session.settle();
+    assert_ne!(hash(&session), before);
+    session.harness.state_mut().open(project);
+    session.settle();
+    assert_eq!(session.harness.state().headline(), None);
+    assert_eq!(hash(&session), before);
+    assert!(session.shape() == shape);
+    assert_eq!(
+        session.harness.state().path(),
+        Some(&*mesh),
+        "saving goes on where it went"
+    );
+}

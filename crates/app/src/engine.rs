@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use pliant_deform::{Bound, Method, Ordering, Problem};
-use pliant_editor::{EditFile, Setup};
+use pliant_editor::{Beginning, Setup};
 use pliant_io::{Format, Save, Scene};
 use pliant_mesh::{Cancel, Model, Progress, WeldOptions, vertex_normals};
 
@@ -35,6 +35,9 @@ pub struct Loaded {
 /// # Errors
 /// A file that can't be read; [`AppError::Interrupted`] soon after `cancel` is raised.
 pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
+    if is_project(path) {
+        return Err(AppError::ProjectAsFile(path.to_owned()));
+    }
     Format::of_name(&path.to_string_lossy())?;
     watch.begin("reading");
     load_bytes(files::read(path)?, path, weld, watch)
@@ -59,6 +62,12 @@ pub fn load_bytes(bytes: Vec<u8>, path: &Path, weld: &WeldOptions, watch: &Watch
     })
 }
 
+/// Whether a path is called a project.
+pub fn is_project(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("pliant"))
+}
+
 /// Orders a model's equations for a method, once for all regions.
 ///
 /// # Errors
@@ -80,7 +89,7 @@ pub fn bind(
     cancel: &Cancel,
 ) -> Result<Bound, AppError> {
     let problem = Problem {
-        surface: &model.surface,
+        surface: setup.rest.as_ref().map_or(&model.surface, |rest| &*rest.surface),
         topology: &model.topology,
         roles: &setup.roles,
         handle_count: setup.handles.len(),
@@ -135,7 +144,7 @@ pub struct Apply<'a> {
     /// The file to be bent.
     pub file: &'a Path,
     /// How.
-    pub edit: &'a EditFile,
+    pub edit: &'a Beginning,
     /// Where the edit was read from, for messages.
     pub edit_path: &'a Path,
     /// The file to be written.
@@ -271,6 +280,7 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
     let progress = watch.begin("bending");
     let count = apply.frames.unwrap_or(1);
     let mut displacements = vec![DVec3::ZERO; model.surface.positions.len()];
+    let mut from_file = Vec::new();
     let mut positions = Vec::new();
     let mut normals = Vec::new();
     let (mut solve_ms, mut normals_ms) = (Vec::with_capacity(count), Vec::with_capacity(count));
@@ -288,14 +298,21 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
         while !last.finished && !watch.cancel.is_cancelled() {
             last = bound.step(&mut displacements).map_err(refuse)?;
         }
-        model.drawn_positions(&displacements, &mut positions);
+        from_file.clone_from(&displacements);
+        if let Some(rest) = &setup.rest {
+            from_file
+                .iter_mut()
+                .zip(rest.displacements.iter())
+                .for_each(|(d, rest)| *d += *rest);
+        }
+        model.drawn_positions(&from_file, &mut positions);
         solve_ms.push(ms_since(start));
         iterations += u64::from(last.iteration);
 
         for ((new, rest), d) in surface_positions
             .iter_mut()
             .zip(&model.surface.positions)
-            .zip(&displacements)
+            .zip(&from_file)
         {
             *new = *rest + *d;
         }

@@ -31,9 +31,22 @@ pub enum AppError {
         /// What is wrong with it.
         source: pliant_editor::EditError,
     },
-    /// The edit's file is one that this version can't read.
-    #[error("{} is a project, and this version reads edits only: give an EDIT.json", .0.display())]
-    ProjectAsEdit(PathBuf),
+    /// A project's mesh is not where it was, or is another one.
+    #[error(
+        "{}: its mesh {} is {what}: put the one it was made on there, or beside the project", .project.display(),
+        .mesh.display()
+    )]
+    ProjectMesh {
+        /// The project's file.
+        project: PathBuf,
+        /// Where its mesh should be.
+        mesh: PathBuf,
+        /// What is there.
+        what: &'static str,
+    },
+    /// A project where a mesh is asked for.
+    #[error("{} is a project, and FILE must be a mesh: give the mesh, and the project as --edit", .0.display())]
+    ProjectAsFile(PathBuf),
     /// The problem could not be factored.
     #[error("{}: {source}", .file.display())]
     Bind {

@@ -119,6 +119,17 @@ pub struct Ray {
 }
 
 impl Camera {
+    /// Whether it can be looked through: everything finite, distances above zero.
+    pub(crate) fn is_usable(&self) -> bool {
+        self.target.is_finite()
+            && [self.yaw_rad, self.pitch_rad].iter().all(|angle| angle.is_finite())
+            && [self.distance, self.scale]
+                .iter()
+                .all(|length| length.is_finite() && *length > 0.0)
+            && self.fov_y_rad > 0.0
+            && self.fov_y_rad < PI
+    }
+
     /// World from view: its columns are the view's right, up and backward axes and the eye.
     pub fn world_from_view(&self) -> DMat4 {
         let axes = self.axes();

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Loose, Method};
 
+use crate::tool::handle_colour;
 use crate::{HandleTransform, Reach};
 
 /// A handle's number for as long as the document lives.
@@ -43,13 +44,77 @@ pub struct Handle {
     pub transform: HandleTransform,
     /// The point that its turns and scales leave alone, on the rest shape, in world space.
     pub pivot: DVec3,
+    /// Where the pivot stands when the handle's vertices change.
+    pub pivot_place: PivotPlace,
     /// How far along the surface it takes the surface along.
     pub reach: Reach,
     /// Its weight, in [`crate::SOFT_RANGE`], if it only pulls at its vertices.
     pub soft: Option<f64>,
+    /// Whether its colour and its gizmo are shown.
+    pub visible: bool,
+    /// Whether it is kept from being moved, painted and deleted.
+    pub locked: bool,
+    /// The handle that does the same on the other side of a plane.
+    pub twin: Option<Twin>,
+}
+
+/// Where a handle's pivot stands.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum PivotPlace {
+    /// At the mean of its vertices.
+    #[default]
+    Centroid,
+    /// At the middle of its border with the rest of the surface: an arm turns about its shoulder.
+    Border,
+    /// Where a person put it.
+    Picked,
+}
+
+/// A handle's other half.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Twin {
+    /// The handle.
+    pub handle: HandleId,
+    /// The plane between both.
+    pub plane: MirrorPlane,
+}
+
+/// A plane across an axis of the world.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct MirrorPlane {
+    /// 0, 1, 2 for x, y, z.
+    pub axis: usize,
+    /// Where it crosses the axis, in world units.
+    pub at: f64,
+}
+
+impl MirrorPlane {
+    /// The point on the other side.
+    pub fn mirrored(&self, point: DVec3) -> DVec3 {
+        let mut other = point;
+        other[self.axis] = 2.0 * self.at - point[self.axis];
+        other
+    }
 }
 
 impl Handle {
+    /// A handle without vertices yet, at rest.
+    pub(crate) fn new(id: HandleId, name: String) -> Self {
+        Self {
+            id,
+            name,
+            colour: handle_colour(id),
+            transform: HandleTransform::IDENTITY,
+            pivot: DVec3::ZERO,
+            pivot_place: PivotPlace::default(),
+            reach: Reach::default(),
+            soft: None,
+            visible: true,
+            locked: false,
+            twin: None,
+        }
+    }
+
     /// The transform as a map of world positions of the rest shape.
     pub fn affine(&self) -> DAffine3 {
         self.transform.affine(self.pivot)

@@ -12,6 +12,25 @@ pub enum EditError {
         /// What stands there.
         found: String,
     },
+    /// The text is no project.
+    #[error("the project can't be read: {0}")]
+    Project(String),
+    /// The project's `version` is one that this program does not know.
+    #[error("the project's `version` is {0}, and this program reads version 1: use a newer Pliant")]
+    ProjectVersion(String),
+    /// The project was made on another mesh.
+    #[error(
+        "the project was made on another mesh than {name} (its hash is {found}, the project's {expected}): give the mesh \
+         it was made on"
+    )]
+    OtherMesh {
+        /// The mesh at hand.
+        name: String,
+        /// Its hash.
+        found: String,
+        /// The project's.
+        expected: String,
+    },
     /// A member that the format does not have.
     #[error("unknown member `{member}` in {place}: {remedy}")]
     UnknownMember {

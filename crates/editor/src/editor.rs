@@ -16,7 +16,7 @@ use crate::picking::{Pick, Picking};
 use crate::tool::{Tool, ToolMode};
 use crate::transaction::Transaction;
 use crate::{
-    BRUSH_RADIUS_PX, Button, Camera, Command, Cursor, EditFile, Event, Executor, GizmoMode, HandleTransform, JobDone,
+    BRUSH_RADIUS_PX, Beginning, Button, Camera, Command, Cursor, Event, Executor, GizmoMode, HandleTransform, JobDone,
     JobKind, Key, Modifiers, Pointer, Revision, SceneView, Shading,
 };
 
@@ -299,7 +299,8 @@ impl Editor {
             Event::Adjust(command) => self.adjust(command),
             Event::Adjusted => self.adjusted(),
             Event::JobDone(done) => self.job_done(done),
-            Event::Opened { model, name, edit } => self.open(model, name, edit),
+            Event::Opened { model, name, beginning } => self.open(model, name, beginning),
+            Event::Recovered => self.history.mark_unsaved(),
             Event::Saved => {
                 self.history.sync(&self.document);
                 self.history.mark_saved();
@@ -350,14 +351,14 @@ impl Editor {
         }
     }
 
-    fn open(&mut self, model: Arc<Model>, name: String, edit: Option<EditFile>) {
+    fn open(&mut self, model: Arc<Model>, name: String, beginning: Option<Beginning>) {
         self.abort_tool();
         self.held.clear();
         self.problem = None;
         self.selected = None;
         self.wants_new_handle = false;
         self.file_name = name;
-        self.document = match edit.as_ref().map(|edit| crate::exchange::import(edit, &model)) {
+        self.document = match beginning.as_ref().map(|beginning| beginning.document(&model)) {
             None => Document::new(model.surface.positions.len()),
             Some(Ok(document)) => document,
             Some(Err(error)) => {
@@ -380,6 +381,10 @@ impl Editor {
         self.shape_counter += 1;
         self.regions_revision += 1;
         self.frame_all();
+        if let Some(camera) = beginning.as_ref().and_then(Beginning::camera) {
+            self.camera = camera;
+            self.is_framed = false;
+        }
     }
 
     /// Ends what the tool is doing without a trace.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use pliant_mesh::Model;
 
-use crate::{Command, EditFile, JobDone};
+use crate::{Beginning, Command, JobDone};
 
 /// One thing that happened. No event carries the time: the editor has no clock.
 #[derive(Debug)]
@@ -51,15 +51,17 @@ pub enum Event {
     Adjusted,
     /// A job that the executor was given has ended, or has an intermediate result.
     JobDone(JobDone),
-    /// A file was loaded and welded; `edit` is what is to be set up on it.
+    /// A file was loaded and welded; `beginning` is what is to be set up on it.
     Opened {
         /// What the file shows and its welded surface.
         model: Arc<Model>,
         /// The file's name, for the status line.
         name: String,
         /// Regions, handles and transforms to begin with; `None` begins afresh.
-        edit: Option<EditFile>,
+        beginning: Option<Beginning>,
     },
+    /// What was opened was never saved: it comes from a session that ended without.
+    Recovered,
     /// The document as it stands was written to a file: there is no unsaved work now.
     Saved,
 }

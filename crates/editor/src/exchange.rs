@@ -6,13 +6,12 @@ use pliant_deform::{CONTINUITY_RANGE, Role};
 use pliant_mesh::Model;
 
 use crate::command::Reach;
-use crate::document::{Document, Handle, HandleId, Paint};
+use crate::document::{Document, Handle, HandleId, Paint, PivotPlace};
 use crate::edit_file::{EditFile, HandleEntry};
 use crate::editor::Editor;
 use crate::engine::region_input;
 use crate::field_form::FieldEntry;
 use crate::region::Region;
-use crate::tool::handle_colour;
 use crate::{EditError, HandleTransform, Selector};
 
 /// Why a document can't be said as an edit.
@@ -63,7 +62,10 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
                 selected[file_vertex.index()] = true;
             }
         }
-        ranges_of(&selected)
+        match ranges_of(&selected) {
+            ranges if ranges.is_empty() => Selector::None,
+            ranges => Selector::Ranges(ranges),
+        }
     };
     let mut handles = Vec::new();
     for (index, &id) in region.handles.iter().enumerate() {
@@ -123,13 +125,12 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
     for (index, handle) in setup.handles.iter().enumerate() {
         let id = HandleId(index as u16);
         document.handles.push(Handle {
-            id,
-            name: handle.name.clone(),
-            colour: handle_colour(id),
             transform: without_pivot(handle.transform),
             pivot: handle.pivot,
+            pivot_place: PivotPlace::Picked,
             reach: Reach::Length(0.0),
             soft: setup.soft[index],
+            ..Handle::new(id, handle.name.clone())
         });
         document.next_handle = id.0.saturating_add(1);
     }
@@ -163,7 +164,7 @@ pub(crate) fn without_pivot(transform: HandleTransform) -> HandleTransform {
     }
 }
 
-fn with_pivot(handle: &Handle) -> HandleTransform {
+pub(crate) fn with_pivot(handle: &Handle) -> HandleTransform {
     match handle.transform {
         HandleTransform::Trs {
             translation,
@@ -181,7 +182,7 @@ fn with_pivot(handle: &Handle) -> HandleTransform {
 }
 
 /// The set flags as ranges with both ends.
-fn ranges_of(selected: &[bool]) -> Selector {
+pub(crate) fn ranges_of(selected: &[bool]) -> Vec<[u32; 2]> {
     let mut ranges: Vec<[u32; 2]> = Vec::new();
     for (vertex, _) in selected.iter().enumerate().filter(|(_, selected)| **selected) {
         let vertex = vertex as u32;
@@ -190,9 +191,5 @@ fn ranges_of(selected: &[bool]) -> Selector {
             _ => ranges.push([vertex, vertex]),
         }
     }
-    if ranges.is_empty() {
-        Selector::None
-    } else {
-        Selector::Ranges(ranges)
-    }
+    ranges
 }

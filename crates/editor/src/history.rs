@@ -123,6 +123,8 @@ pub struct History {
     cap_bytes: usize,
     /// How many steps lie behind the state that was saved; `None` when that state was forgotten.
     saved_at: Option<usize>,
+    /// Grows with every step that is made, taken back or done again.
+    revision: u64,
 }
 
 impl History {
@@ -134,6 +136,7 @@ impl History {
             shape,
             cap_bytes,
             saved_at: Some(0),
+            revision: 0,
         }
     }
 
@@ -171,6 +174,11 @@ impl History {
         self.saved_at = Some(self.done.len());
     }
 
+    /// Notes that no state of this history was saved.
+    pub(crate) fn mark_unsaved(&mut self) {
+        self.saved_at = None;
+    }
+
     /// Makes the neighbouring steps relative to the shape that the document shows.
     pub(crate) fn sync(&mut self, document: &Document) {
         if Arc::ptr_eq(&self.shape, &document.from_rest) {
@@ -191,6 +199,7 @@ impl History {
         if self.saved_at.is_some_and(|saved_at| saved_at > self.done.len()) {
             self.saved_at = None;
         }
+        self.revision += 1;
         self.undone.clear();
         self.done.push_back(Step {
             name,
@@ -222,7 +231,13 @@ impl History {
         Some(name)
     }
 
+    /// Grows with every step that is made, taken back or done again.
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
+    }
+
     fn exchange(&mut self, step: &mut Step, document: &mut Document) {
+        self.revision += 1;
         for change in &mut step.changes {
             swap(change, document);
         }

@@ -1,8 +1,10 @@
 //! An edit resolved on a model: what every surface vertex does, how stiff it is and how each handle moves.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DVec3};
 use pliant_deform::{CONTINUITY_RANGE, Holds, Loose, Method, Role};
-use pliant_mesh::{Model, SurfaceVertex};
+use pliant_mesh::{Model, Surface, SurfaceVertex};
 
 use crate::HandleTransform;
 use crate::edit_error::EditError;
@@ -25,6 +27,23 @@ pub struct Setup {
     pub loose: Loose,
     /// The method and its options.
     pub method: Method,
+    /// The shape that is bent, where it is another than the file's.
+    pub rest: Option<Rest>,
+}
+
+/// A rest shape.
+#[derive(Clone, Debug)]
+pub struct Rest {
+    /// Its displacements from the file's shape, one a surface vertex.
+    pub displacements: Arc<Vec<DVec3>>,
+    /// The surface in it.
+    pub surface: Arc<Surface>,
+}
+
+impl PartialEq for Rest {
+    fn eq(&self, other: &Self) -> bool {
+        self.displacements == other.displacements
+    }
 }
 
 /// A handle on a model.
@@ -123,6 +142,7 @@ impl EditFile {
             continuity,
             loose: self.loose,
             method: self.method.clone(),
+            rest: None,
         })
     }
 

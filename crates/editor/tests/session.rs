@@ -33,7 +33,7 @@ fn a_fresh_document_holds_everything_still_and_a_handle_brings_its_region() {
 
 #[test]
 fn a_loose_part_within_reach_follows_and_what_extends_beyond_is_held() {
-    let bit = |radius: f64, centre: glam::DVec3| {
+    let bit = |radius: f64, centre: DVec3| {
         let mut bit = shapes::icosphere(2);
         bit.positions
             .iter_mut()
@@ -41,11 +41,11 @@ fn a_loose_part_within_reach_follows_and_what_extends_beyond_is_held() {
         bit
     };
     // A wart beside the handle, a moon behind, and a ring's worth of another body that only begins near the handle.
-    let wart = bit(0.02, glam::DVec3::new(-1.02, 0.0, 0.2));
-    let moon = bit(0.1, glam::DVec3::new(1.2, 0.0, 0.0));
-    let body = bit(0.6, glam::DVec3::new(-0.6, 1.4, 0.0));
+    let wart = bit(0.02, DVec3::new(-1.02, 0.0, 0.2));
+    let moon = bit(0.1, DVec3::new(1.2, 0.0, 0.0));
+    let body = bit(0.6, DVec3::new(-0.6, 1.4, 0.0));
     let mut rig = Rig::open(shapes::together(&[shapes::icosphere(4), wart, moon, body]));
-    let roles_near = |rig: &Rig, place: glam::DVec3, radius: f64| {
+    let roles_near = |rig: &Rig, place: DVec3, radius: f64| {
         let positions = rig.model.surface.positions.iter();
         let roles = positions
             .zip(rig.editor.roles())
@@ -58,22 +58,22 @@ fn a_loose_part_within_reach_follows_and_what_extends_beyond_is_held() {
         .editor
         .view()
         .camera
-        .project(glam::DVec3::NEG_X, rig::VIEWPORT_PX)
+        .project(DVec3::NEG_X, rig::VIEWPORT_PX)
         .unwrap();
     rig.paint(ToolMode::PaintHandle, &[middle]);
     rig.drain();
-    let wart = roles_near(&rig, glam::DVec3::new(-1.02, 0.0, 0.2), 0.021);
+    let wart = roles_near(&rig, DVec3::new(-1.02, 0.0, 0.2), 0.021);
     assert!(
         wart.iter().filter(|role| **role == Role::Free).count() >= 162,
         "{wart:?}"
     );
     assert!(
-        roles_near(&rig, glam::DVec3::new(1.2, 0.0, 0.0), 0.11)
+        roles_near(&rig, DVec3::new(1.2, 0.0, 0.0), 0.11)
             .iter()
             .all(|role| *role == Role::Fixed)
     );
     assert!(
-        roles_near(&rig, glam::DVec3::new(-0.6, 1.8, 0.0), 0.25)
+        roles_near(&rig, DVec3::new(-0.6, 1.8, 0.0), 0.25)
             .iter()
             .all(|role| *role == Role::Fixed)
     );
@@ -104,7 +104,7 @@ fn dragging_the_gizmo_moves_the_handle_by_what_the_pointer_says() {
         .count();
     assert!(free_moved > 10, "the surface follows");
     for (role, displacement) in rig.editor.roles().iter().zip(rig.editor.document().from_file().iter()) {
-        assert!(*role != Role::Fixed || *displacement == glam::DVec3::ZERO);
+        assert!(*role != Role::Fixed || *displacement == DVec3::ZERO);
     }
 }
 
@@ -118,13 +118,13 @@ fn typed_numbers_and_constraints_say_exactly_what_happens() {
     let HandleTransform::Trs { translation, .. } = transform(&rig) else {
         panic!()
     };
-    assert_eq!(translation, glam::DVec3::new(0.0, -0.5, 0.0));
+    assert_eq!(translation, DVec3::new(0.0, -0.5, 0.0));
     rig.type_keys("rz90");
     rig.key(Key::Enter);
     let HandleTransform::Trs { rotation, .. } = transform(&rig) else {
         panic!()
     };
-    assert!((rotation * glam::DVec3::X - glam::DVec3::Y).length() < 1e-12);
+    assert!((rotation * DVec3::X - DVec3::Y).length() < 1e-12);
     rig.type_keys("s");
     rig.editor.handle(Event::Key(Key::Character('z'), Modifiers::SHIFT));
     rig.type_keys("2");
@@ -132,7 +132,7 @@ fn typed_numbers_and_constraints_say_exactly_what_happens() {
     let HandleTransform::Trs { scale, .. } = transform(&rig) else {
         panic!()
     };
-    assert_eq!(scale, glam::DVec3::new(2.0, 2.0, 1.0));
+    assert_eq!(scale, DVec3::new(2.0, 2.0, 1.0));
     rig.command(Command::ResetHandle);
     rig.drain();
     assert_eq!(rig.largest_displacement(), 0.0);
@@ -217,7 +217,7 @@ fn the_edit_file_says_what_was_done() {
     editor.handle(Event::Opened {
         model: Arc::clone(&rig.model),
         name: "again".to_owned(),
-        edit: Some(edit),
+        beginning: Some((edit).into()),
     });
     while let Some(done) = jobs.run_next() {
         editor.handle(Event::JobDone(done));

@@ -1,4 +1,4 @@
-//! Images in: PNG and JPEG to pixels.
+//! Images in: PNG, JPEG, WebP and KTX2 to pixels.
 
 use std::io::Cursor;
 
@@ -18,13 +18,17 @@ pub struct Rgba8 {
 }
 
 /// The longest side that is decoded.
-const LONGEST_SIDE_PX: u32 = 16_384;
+pub(crate) const LONGEST_SIDE_PX: u32 = 16_384;
 
-/// Decodes a PNG or JPEG, told by its first bytes. Images beyond 16384 pixels a side are refused.
+/// Decodes a PNG, JPEG, WebP or KTX2 (with Basis Universal in it), told by its first bytes. Images beyond 16384 pixels
+/// a side are refused.
 pub fn decode_image(encoded: &[u8]) -> Result<Rgba8, ImageError> {
     let failed = |error: &dyn std::fmt::Display| ImageError {
         reason: error.to_string(),
     };
+    if mime_type(encoded) == Some("image/ktx2") {
+        return crate::ktx2::decode(encoded);
+    }
     let mut reader = ImageReader::new(Cursor::new(encoded))
         .with_guessed_format()
         .map_err(|error| failed(&error))?;

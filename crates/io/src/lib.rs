@@ -7,11 +7,13 @@
 
 mod appearance;
 mod colour;
+mod difference;
 mod error;
 mod format;
 mod frames;
 mod gltf;
 mod image;
+mod ktx2;
 mod moved;
 mod new_faces;
 mod new_glb;
@@ -26,6 +28,7 @@ mod stl;
 mod text;
 
 pub use appearance::{AlphaMode, Appearance, Group, Image, Lighting, Map, Material, UvSet, Wrap};
+pub use difference::{Difference, What};
 pub use error::{ImageError, ReadError, SaveError, UnknownFormat};
 pub use format::Format;
 pub use image::{Rgba8, decode_image};

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use pliant_mesh::{Cancel, Drawn, Progress};
 use serde::Serialize;
 
+use crate::difference::{self, Difference};
 use crate::moved::Moved;
 use crate::new_faces::{lost, lost_where};
 use crate::new_mesh::{NewMesh, Polygons};
@@ -223,6 +224,37 @@ impl Scene {
             ("morph targets", lost_where(summary.morph_targets > 0)),
         ];
         lost(&format.to_string(), &motion)
+    }
+
+    /// What differs between this file and another, given what [`read`] gave with each; nothing where they hold the
+    /// same. Two glTF are compared part by part, whatever their containers and wherever their numbers stand; others by
+    /// what they show, and, where they are of one kind, by whether anything beside the shape differs.
+    pub fn differences(&self, drawn: &Drawn, other: &Self, other_drawn: &Drawn) -> Vec<Difference> {
+        if self.format == other.format
+            && self.bytes == other.bytes
+            && !matches!(self.format, Format::Gltf | Format::Obj)
+        {
+            return Vec::new();
+        }
+        if let (Stored::Gltf(a), Stored::Gltf(b)) = (&self.stored, &other.stored) {
+            return a.differences(b);
+        }
+        let shown = |scene: &Self| (scene.appearance(), scene.summary());
+        let mut out = difference::of_shapes((drawn, &shown(self).0), (other_drawn, &shown(other).0));
+        if self.format == other.format && drawn.positions.len() == other_drawn.positions.len() {
+            // With the other's shape this file would be the other, if nothing else differs.
+            let save = Save {
+                drawn,
+                positions: &other_drawn.positions,
+                format: self.format,
+                name: "same",
+                placement: Placement::SameFolder,
+            };
+            if let Ok(saved) = self.save(&save) {
+                out.extend(difference::of_bytes(&saved.files[0].bytes, &other.bytes));
+            }
+        }
+        out
     }
 
     /// The file's own polygons over drawn vertices, where it has any that are not triangles.

@@ -274,10 +274,15 @@ fn what_can_not_be_read_is_one_sentence() {
             maker.root["accessors"][0]["bufferView"] = 99.into()
         }),
         ("more than buffer view", |maker| maker.bin.truncate(20)),
-        ("Draco", |maker| {
-            maker.root["meshes"][0]["primitives"][0]["extensions"] = json!({ "KHR_draco_mesh_compression": {} });
+        ("Draco data that is not there", |maker| {
+            maker.root["accessors"][0].as_object_mut().unwrap().remove("bufferView");
+            maker.root["meshes"][0]["primitives"][0]["extensions"] =
+                json!({ "KHR_draco_mesh_compression": { "attributes": { "POSITION": 0 } } });
         }),
-        ("meshopt", |maker| {
+        ("compressed buffer view 0, which does not say its buffer", |maker| {
+            let buffers = maker.root["buffers"].as_array_mut().unwrap();
+            buffers.push(json!({ "byteLength": 48 }));
+            maker.root["bufferViews"][0]["buffer"] = 1.into();
             maker.root["bufferViews"][0]["extensions"] = json!({ "EXT_meshopt_compression": {} })
         }),
         ("buffers are not a list of objects", |maker| {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use pliant_deform::Method;
-use pliant_editor::EditFile;
+use pliant_editor::{Beginning, Project};
 use pliant_io::Format;
 
 use super::arguments::ApplyArguments;
@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     }
     let mut edit = read_edit(edit_path)?;
     if let Some(method) = method {
-        edit.method = method;
+        edit.set_method(method);
     }
     let job = engine::Apply {
         file,
@@ -50,16 +50,15 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     Ok(())
 }
 
-/// Reads an edit's file.
-pub(super) fn read_edit(path: &Path) -> Result<EditFile, AppError> {
-    if path
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("pliant"))
-    {
-        return Err(AppError::ProjectAsEdit(path.to_owned()));
-    }
+/// Reads the file of an edit or of a project.
+pub(super) fn read_edit(path: &Path) -> Result<Beginning, AppError> {
     let text = files::read_text(path)?;
-    EditFile::parse(&text).map_err(|source| AppError::Edit {
+    let read = if engine::is_project(path) {
+        Project::parse(&text).map(Beginning::from)
+    } else {
+        Beginning::parse(&text)
+    };
+    read.map_err(|source| AppError::Edit {
         edit: path.to_owned(),
         source,
     })

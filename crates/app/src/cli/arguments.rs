@@ -33,12 +33,25 @@ pub(crate) enum Command {
     Apply(ApplyArguments),
     /// Draw a file as a picture
     Render(RenderArguments),
+    /// Say in words what differs between two files
+    Diff(DiffArguments),
 }
 
 #[derive(Args, Debug)]
 pub(crate) struct InfoArguments {
     /// The file: glb, gltf, obj, ply, stl or off
     pub file: PathBuf,
+    /// Print JSON instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct DiffArguments {
+    /// The first file: glb, gltf, obj, ply, stl or off
+    pub first: PathBuf,
+    /// The second file
+    pub second: PathBuf,
     /// Print JSON instead of text
     #[arg(long)]
     pub json: bool,

@@ -2,6 +2,7 @@
 
 mod apply;
 mod arguments;
+mod diff;
 mod info;
 mod interrupt;
 mod progress_line;
@@ -54,6 +55,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Info(arguments)) => info::run(&arguments, console),
             Some(Command::Apply(arguments)) => apply::run(&arguments, console),
             Some(Command::Render(arguments)) => render::run(&arguments, console),
+            Some(Command::Diff(arguments)) => diff::run(&arguments, console),
             None => crate::window::run(arguments.file),
         },
         Err(help) if !help.use_stderr() => print(console.out, &help.render().to_string()),

@@ -134,7 +134,7 @@ fn shape(arguments: &RenderArguments, loaded: &Loaded, watch: &Watch) -> Result<
     editor.handle(Event::Opened {
         model: Arc::clone(&loaded.model),
         name: String::new(),
-        edit,
+        beginning: edit,
     });
     while let Some(kind) = executor.waiting().first().copied() {
         if watch.cancel.is_cancelled() {

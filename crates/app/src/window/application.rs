@@ -16,7 +16,10 @@ use super::message::{Message, Opened, Posed};
 use super::notes::{Note, Notes};
 use super::outbox::Outbox;
 use super::panels;
+use super::places::Places;
+use super::recovery::{self, Recovery};
 use super::session::{KeepOriginal, OpenFile, Session, Source};
+use super::settings::SettingsFile;
 use super::status;
 use super::theme;
 use super::top_bar;
@@ -37,12 +40,16 @@ pub struct Application {
     poses: JobQueue<Arc<Vec<DVec3>>>,
     next_pose: u64,
     input: Input,
+    pub(super) settings: SettingsFile,
+    recovery: Option<Recovery>,
     pub(super) question: Option<Question>,
     /// What to do once the save that was asked for first has ended.
     pub(super) after_saving: Option<Then>,
     pub(super) notes: Notes,
     last_change: Instant,
     pub(super) closing: bool,
+    /// The left session that is open now, until its work is kept or saved by this one.
+    recovered_from: Option<PathBuf>,
     longest_frame: Duration,
     view_rect: egui::Rect,
     title: String,
@@ -54,6 +61,18 @@ impl Application {
     /// # Errors
     /// Where there is no graphics device, or it can't run our pipelines.
     pub fn new(context: &eframe::CreationContext<'_>, source: Source) -> Result<Self, AppError> {
+        Self::with_places(context, source, &Places::default())
+    }
+
+    /// The same, with a person's settings, and unsaved work kept for a recovery.
+    ///
+    /// # Errors
+    /// As [`Application::new`].
+    pub fn with_places(
+        context: &eframe::CreationContext<'_>,
+        source: Source,
+        places: &Places,
+    ) -> Result<Self, AppError> {
         theme::apply(&context.egui_ctx);
         let Some(state) = context.wgpu_render_state.clone() else {
             return Err(AppError::System(
@@ -63,6 +82,20 @@ impl Application {
         let viewport = Viewport::new(state).map_err(|error| AppError::System(error.to_string()))?;
         let (sender, messages) = channel();
         let workers = Workers::new(context.egui_ctx.clone(), sender);
+        let settings = SettingsFile::open(places.settings.clone());
+        let mut notes = Notes {
+            headline: settings.problem.clone().map(Note::Failed),
+            ..Notes::default()
+        };
+        let mut left = Vec::new();
+        let mut recovery = None;
+        if let Some(folder) = &places.recovery {
+            left = Recovery::left_in(folder);
+            match Recovery::begin(folder) {
+                Ok(begun) => recovery = Some(begun),
+                Err(sentence) => notes.headline = Some(Note::Failed(sentence)),
+            }
+        }
         let mut session = Session::default();
         session.load(source, &viewport.gpu(), &workers);
         Ok(Self {
@@ -74,11 +107,14 @@ impl Application {
             poses: JobQueue::default(),
             next_pose: 0,
             input: Input::default(),
-            question: None,
+            settings,
+            recovery,
+            question: (!left.is_empty()).then_some(Question::Recover(left)),
             after_saving: None,
-            notes: Notes::default(),
+            notes,
             last_change: Instant::now(),
             closing: false,
+            recovered_from: None,
             longest_frame: Duration::ZERO,
             view_rect: egui::Rect::ZERO,
             title: String::new(),
@@ -181,6 +217,15 @@ impl Application {
                     None => {}
                 },
                 Message::Written(stamp, result) => self.written(stamp, result),
+                Message::Autosaved(key, result) => {
+                    let failed = self
+                        .recovery
+                        .as_mut()
+                        .and_then(|recovery| recovery.written(key, result));
+                    if let Some(sentence) = failed {
+                        self.fail(sentence);
+                    }
+                }
                 Message::Chosen(purpose, path) => self.chosen(purpose, path),
             }
         }
@@ -197,10 +242,16 @@ impl Application {
             drawing,
             surface,
             displacements,
-            edit,
+            beginning,
             notes,
+            recovered,
+            project,
+            path,
             ..
         } = opened;
+        if let Some(path) = project.or(path).filter(|_| recovered.is_none()) {
+            self.settings.change(|settings| settings.remember(&path));
+        }
         let name = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
         self.workers.set_stage(Stage {
             loaded: Arc::clone(&loaded),
@@ -215,8 +266,36 @@ impl Application {
         self.editor.handle(Event::Opened {
             model: Arc::clone(&loaded.model),
             name,
-            edit,
+            beginning,
         });
+        if let Some(left) = recovered {
+            self.editor.handle(Event::Recovered);
+            self.keep_for_recovery();
+            self.recovered_from = Some(left);
+        }
+    }
+
+    /// Has unsaved work written where the next session finds it.
+    fn keep_for_recovery(&mut self) {
+        let (Some(recovery), Some(open)) = (&mut self.recovery, &self.session.open) else {
+            return;
+        };
+        let (key, unsaved) = (self.editor.snapshot_key(), self.editor.view().unsaved);
+        let Some(work) = recovery.note(key, unsaved, || self.editor.snapshot(), &open.loaded, &open.source) else {
+            // What was recovered is kept by this session now, or saved.
+            if recovery.has(key) || !unsaved {
+                self.recovered_from
+                    .take()
+                    .iter()
+                    .for_each(|left| recovery::remove(left));
+            }
+            return;
+        };
+        self.workers.spawn(
+            "autosave",
+            move || Message::Autosaved(key, work.write()),
+            move |sentence| Message::Autosaved(key, Err(sentence)),
+        );
     }
 
     pub(super) fn fail(&mut self, sentence: String) {
@@ -336,7 +415,7 @@ impl eframe::App for Application {
         let mut file_command = None;
         let title = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
         Panel::top("top").show(ui, |ui| {
-            file_command = top_bar::show(ui, &self.editor, &title, &mut commands)
+            file_command = top_bar::show(ui, &self.editor, &title, &self.settings.get().recent, &mut commands);
         });
         let device = self.viewport.software_device().map(str::to_owned);
         let busy = self.session.doing();
@@ -380,6 +459,12 @@ impl eframe::App for Application {
             context.request_repaint();
         }
         self.close_or_stay(&context);
+        self.keep_for_recovery();
+        if let Some(recovery) = &self.recovery
+            && let Some(wait) = recovery.wait(self.editor.snapshot_key(), self.editor.view().unsaved)
+        {
+            context.request_repaint_after(wait);
+        }
         self.entitle(&context);
         if self.session.doing().is_some() || !self.editor.view().jobs.is_empty() {
             context.request_repaint_after(Duration::from_millis(100));

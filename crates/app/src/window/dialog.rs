@@ -1,10 +1,12 @@
 //! Questions to the person: the system's file dialogs, and our own one before a source is written over.
 
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use eframe::egui::{self, Id, Modal, RichText};
 
 use super::message::{Message, Purpose};
+use super::recovery::Left;
 use super::session::{file_name, original_name};
 use super::workers::Workers;
 
@@ -27,8 +29,8 @@ pub fn choose(purpose: Purpose, near: Option<&Path>, workers: &Workers) {
     match purpose {
         Purpose::Open => {
             let answer = dialog
-                .set_title("Open a model")
-                .add_filter("Models", &MODELS)
+                .set_title("Open a model or a project")
+                .add_filter("Models and projects", &[&MODELS[..], &["pliant"]].concat())
                 .pick_file();
             workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
         }
@@ -36,6 +38,13 @@ pub fn choose(purpose: Purpose, near: Option<&Path>, workers: &Workers) {
             let answer = dialog
                 .set_title("Save the model as")
                 .add_filter("Models", &MODELS)
+                .save_file();
+            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
+        }
+        Purpose::SaveProject => {
+            let answer = dialog
+                .set_title("Save the project as")
+                .add_filter("Projects", &["pliant"])
                 .save_file();
             workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
         }
@@ -58,6 +67,8 @@ pub enum Question {
     Path(Purpose, String),
     /// Whether unsaved work may be lost.
     Discard(Then),
+    /// Whether what earlier sessions have left is to be opened.
+    Recover(Vec<Left>),
 }
 
 impl Question {
@@ -67,6 +78,8 @@ impl Question {
             Self::WriteOver(_) => "Save over the source?",
             Self::Path(Purpose::Open, _) => "Open a model",
             Self::Path(Purpose::SaveAs, _) => "Save the model as",
+            Self::Path(Purpose::SaveProject, _) => "Save the project as",
+            Self::Recover(_) => "Recover unsaved work?",
             Self::Path(Purpose::ExportEdit, _) => "Export the edit",
             Self::Discard(_) => "There is unsaved work",
         }
@@ -95,6 +108,10 @@ pub enum Answer {
     Path(Purpose, PathBuf),
     /// Go on and lose the unsaved work.
     Discard(Then),
+    /// Open what an earlier session has left.
+    Recover(PathBuf),
+    /// Take away what earlier sessions have left.
+    Forget(Vec<PathBuf>),
     /// Nothing after all.
     Cancel,
 }
@@ -108,6 +125,7 @@ pub fn ask(context: &egui::Context, question: &mut Question) -> Option<Answer> {
             Question::WriteOver(path) => write_over(ui, path, &mut answer),
             Question::Path(purpose, typed) => path(ui, *purpose, typed, &mut answer),
             Question::Discard(then) => discard(ui, then, &mut answer),
+            Question::Recover(left) => recover(ui, left, &mut answer),
         }
     });
     if answer.is_none() && response.should_close() {
@@ -143,12 +161,13 @@ fn path(ui: &mut egui::Ui, purpose: Purpose, typed: &mut String, answer: &mut Op
     let (heading, hint) = match purpose {
         Purpose::Open => (
             "Open a model",
-            "The path of a .glb, .gltf, .obj, .ply, .stl or .off file:",
+            "The path of a .glb, .gltf, .obj, .ply, .stl or .off file, or of a .pliant project:",
         ),
         Purpose::SaveAs => (
             "Save the model as",
             "The path to save under; its extension chooses the format:",
         ),
+        Purpose::SaveProject => ("Save the project as", "The path of the .pliant file:"),
         Purpose::ExportEdit => ("Export the edit", "The path of the .json file:"),
     };
     ui.heading(heading);
@@ -169,6 +188,45 @@ fn path(ui: &mut egui::Ui, purpose: Purpose, typed: &mut String, answer: &mut Op
             *answer = Some(Answer::Cancel);
         }
     });
+}
+
+fn recover(ui: &mut egui::Ui, left: &[Left], answer: &mut Option<Answer>) {
+    ui.heading("There is work that was not saved");
+    ui.label("Pliant ended before it could be saved. Open it and save it, or take it away.");
+    ui.add_space(8.0);
+    for (number, left) in left.iter().enumerate() {
+        ui.horizontal(|ui| {
+            let name = match number {
+                0 => RichText::new("Recover").strong(),
+                _ => RichText::new("Recover"),
+            };
+            if ui.button(name).clicked() {
+                *answer = Some(Answer::Recover(left.project.clone()));
+            }
+            ui.label(ago(left.written));
+        });
+    }
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if ui.button("Take away").clicked() {
+            *answer = Some(Answer::Forget(left.iter().map(|left| left.project.clone()).collect()));
+        }
+        if ui.button("Later").clicked() {
+            *answer = Some(Answer::Cancel);
+        }
+    });
+}
+
+/// "kept 3 minutes ago".
+fn ago(written: SystemTime) -> String {
+    let seconds = written.elapsed().map_or(0, |elapsed| elapsed.as_secs());
+    let (count, unit) = match seconds {
+        0..120 => return "kept a moment ago".to_owned(),
+        120..7200 => (seconds / 60, "minutes"),
+        7200..172_800 => (seconds / 3600, "hours"),
+        _ => (seconds / 86_400, "days"),
+    };
+    format!("kept {count} {unit} ago")
 }
 
 fn discard(ui: &mut egui::Ui, then: &Then, answer: &mut Option<Answer>) {

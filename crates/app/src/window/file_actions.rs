@@ -7,10 +7,12 @@ use pliant_editor::{Event, Revision};
 
 use super::application::Application;
 use super::dialog::{self, Answer, Question, Then};
-use super::message::{Purpose, Written};
+use super::message::{Purpose, Written, WrittenKind};
 use super::notes::Note;
-use super::session::KeepOriginal;
+use super::recovery;
+use super::session::{KeepOriginal, Source};
 use super::top_bar::FileCommand;
+use crate::engine::is_project;
 
 impl Application {
     pub(super) fn file_shortcuts(&mut self, context: &egui::Context) {
@@ -32,6 +34,7 @@ impl Application {
     pub(super) fn chosen(&mut self, purpose: Purpose, path: Option<PathBuf>) {
         match (purpose, path) {
             (Purpose::Open, Some(path)) => self.open(path),
+            (Purpose::SaveAs, Some(path)) if is_project(&path) => self.save_project_to(path),
             (Purpose::SaveAs, Some(path)) => {
                 let over_source = self.path() == Some(path.as_path()) && !self.may_write_over();
                 self.save_to(
@@ -43,6 +46,7 @@ impl Application {
                     },
                 );
             }
+            (Purpose::SaveProject, Some(path)) => self.save_project_to(path),
             (Purpose::ExportEdit, Some(path)) => match self.editor.edit_file() {
                 Ok(edit) => self.session.export(path, edit, &self.workers),
                 Err(error) => self.fail(error.to_string()),
@@ -57,6 +61,8 @@ impl Application {
             (Purpose::SaveAs, Some(path)) => path.display().to_string(),
             (Purpose::SaveAs, None) => "edited.glb".to_owned(),
             (Purpose::ExportEdit, Some(path)) => path.with_extension("edit.json").display().to_string(),
+            (Purpose::SaveProject, Some(path)) => path.with_extension("pliant").display().to_string(),
+            (Purpose::SaveProject, None) => "edited.pliant".to_owned(),
             (Purpose::ExportEdit, None) => "edit.json".to_owned(),
             (Purpose::Open, _) => String::new(),
         }
@@ -72,6 +78,11 @@ impl Application {
             FileCommand::OpenPath(path) => self.unless_unsaved(context, Then::Open(Some(path))),
             FileCommand::Save => self.save(),
             FileCommand::SaveAs => dialog::choose(Purpose::SaveAs, self.path(), &self.workers),
+            FileCommand::SaveProject => match self.session.open.as_ref().and_then(|open| open.project.clone()) {
+                Some(path) => self.save_project_to(path),
+                None => dialog::choose(Purpose::SaveProject, self.path(), &self.workers),
+            },
+            FileCommand::SaveProjectAs => dialog::choose(Purpose::SaveProject, self.path(), &self.workers),
             FileCommand::ExportEdit => dialog::choose(Purpose::ExportEdit, self.path(), &self.workers),
             FileCommand::Quit => self.unless_unsaved(context, Then::Close),
         }
@@ -82,6 +93,20 @@ impl Application {
             Some(path) if self.may_write_over() => self.save_to(path, KeepOriginal::No),
             Some(path) => self.question = Some(Question::WriteOver(path)),
             None => dialog::choose(Purpose::SaveAs, None, &self.workers),
+        }
+    }
+
+    /// Saves the project under `path`, which gets its extension if it has none.
+    pub fn save_project_to(&mut self, path: PathBuf) {
+        let path = if is_project(&path) {
+            path
+        } else {
+            let mut name = path.into_os_string();
+            name.push(".pliant");
+            PathBuf::from(name)
+        };
+        if let Some(snapshot) = self.editor.snapshot() {
+            self.session.save_project(path, snapshot, &self.workers);
         }
     }
 
@@ -115,6 +140,11 @@ impl Application {
             }
             Answer::Path(purpose, path) => self.chosen(purpose, Some(path)),
             Answer::Discard(then) => self.go_on(then),
+            Answer::Recover(project) => {
+                self.session
+                    .load(Source::Recovered(project), &self.viewport.gpu(), &self.workers);
+            }
+            Answer::Forget(projects) => projects.iter().for_each(|project| recovery::remove(project)),
             Answer::Cancel => self.after_saving = None,
         }
     }
@@ -123,8 +153,9 @@ impl Application {
         self.session.written(stamp, &result, &self.workers);
         match result {
             Ok(written) => {
-                if written.is_model {
+                if written.what != WrittenKind::Edit {
                     self.editor.handle(Event::Saved);
+                    self.settings.change(|settings| settings.remember(&written.path));
                 }
                 let mut sentence = format!("Saved {}.", written.path.display());
                 for warning in &written.warnings {

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{EditFile, JobDone, Revision};
+use pliant_editor::{Beginning, JobDone, Revision, SnapshotKey};
 use pliant_render::Surface;
 
+use super::project_file::MeshSource;
 use crate::drawing::{Drawing, Pose};
 use crate::engine::Loaded;
 
@@ -20,6 +21,8 @@ pub enum Message {
     Opened(Revision, Result<Box<Opened>, String>),
     /// A file was written, or why it was not.
     Written(Revision, Result<Written, String>),
+    /// The state of the document with this key was kept for a recovery, or why it was not.
+    Autosaved(SnapshotKey, Result<(), String>),
     /// A person chose a path in a dialog; `None` if they chose none.
     Chosen(Purpose, Option<PathBuf>),
 }
@@ -45,7 +48,13 @@ pub struct Opened {
     /// Its own shape: no vertex displaced.
     pub displacements: Arc<Vec<DVec3>>,
     /// Regions and handles to begin with.
-    pub edit: Option<EditFile>,
+    pub beginning: Option<Beginning>,
+    /// The project that it was opened from, or is to be saved to.
+    pub project: Option<PathBuf>,
+    /// Where the mesh as it was read stands; the built-in sample stands nowhere.
+    pub source: MeshSource,
+    /// Whether it is what a session that ended without saving has left.
+    pub recovered: Option<PathBuf>,
     /// What a person should know about the file, a sentence each.
     pub notes: Vec<String>,
 }
@@ -54,10 +63,21 @@ pub struct Opened {
 pub struct Written {
     /// Where.
     pub path: PathBuf,
-    /// Whether it is the model (and not an edit): then there is no unsaved work now.
-    pub is_model: bool,
+    /// What it is.
+    pub what: WrittenKind,
     /// What the file could not hold, a sentence each.
     pub warnings: Vec<String>,
+}
+
+/// What was written.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum WrittenKind {
+    /// The model; where the mesh as it was read stands now, if that has changed.
+    Model(Option<MeshSource>),
+    /// The project.
+    Project,
+    /// An edit for the command line: the work is not saved with it.
+    Edit,
 }
 
 /// What a path is chosen for.
@@ -67,6 +87,8 @@ pub enum Purpose {
     Open,
     /// To save the model under.
     SaveAs,
+    /// To save the project under.
+    SaveProject,
     /// To write the edit file to.
     ExportEdit,
 }

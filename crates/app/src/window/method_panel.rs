@@ -13,8 +13,8 @@ use super::outbox::Outbox;
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let method = editor.document().method();
     ui.horizontal(|ui| {
-        ui.label("Method");
-        ComboBox::from_id_salt("method")
+        let label = ui.label("Method");
+        let list = ComboBox::from_id_salt("method")
             .selected_text(method_title(method.name()))
             .width(ui.available_width())
             .show_ui(ui, |ui| {
@@ -31,6 +31,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                     }
                 }
             });
+        list.response.labelled_by(label.id);
     });
     ui.label(RichText::new(when_to_use(method.name())).weak().small());
     let options = method_options(method.name());

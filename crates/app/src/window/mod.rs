@@ -4,6 +4,7 @@
 mod application;
 mod command_button;
 mod dialog;
+mod fault;
 mod file_actions;
 mod input;
 mod message;
@@ -11,7 +12,11 @@ mod method_panel;
 mod notes;
 mod outbox;
 mod panels;
+mod places;
+mod project_file;
+mod recovery;
 mod session;
+mod settings;
 mod status;
 mod theme;
 mod top_bar;
@@ -25,6 +30,7 @@ use eframe::egui::{ViewportBuilder, vec2};
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 
 pub use application::Application;
+pub use places::Places;
 pub use session::{KeepOriginal, Source, original_name};
 
 use crate::error::AppError;
@@ -44,6 +50,10 @@ pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
             DISPLAYS.join(", ")
         )));
     }
+    let places = Places::of_person();
+    if let Some(folder) = &places.recovery {
+        fault::listen(folder.clone());
+    }
     let source = file.map_or(Source::Sample, Source::File);
     let options = eframe::NativeOptions {
         viewport: ViewportBuilder::default()
@@ -62,7 +72,7 @@ pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
     eframe::run_native(
         "Pliant",
         options,
-        Box::new(move |context| Ok(Box::new(Application::new(context, source)?))),
+        Box::new(move |context| Ok(Box::new(Application::with_places(context, source, &places)?))),
     )
     .map_err(|error| AppError::System(sentence(&error)))
 }

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{EditFile, JobQueue, Revision};
+use pliant_editor::{Beginning, EditFile, JobQueue, Revision, Snapshot};
 use pliant_mesh::WeldOptions;
 
-use super::message::{Message, Opened, Written};
+use super::message::{Message, Opened, Written, WrittenKind};
+use super::project_file::{self, MeshSource, saved_name};
 use super::viewport::Gpu;
 use super::workers::Workers;
 use crate::AppError;
@@ -18,9 +19,9 @@ use crate::files::{self, Staging};
 use crate::watch::Watch;
 
 /// The sample that is shown when no file is named.
-const SAMPLE: &[u8] = include_bytes!("../../../../assets/creature.glb");
+pub(super) const SAMPLE: &[u8] = include_bytes!("../../../../assets/creature.glb");
 /// Its name.
-const SAMPLE_NAME: &str = "creature.glb";
+pub(super) const SAMPLE_NAME: &str = "creature.glb";
 
 /// The open file and the jobs that read and write it.
 #[derive(Default)]
@@ -42,6 +43,10 @@ pub struct OpenFile {
     pub loaded: Arc<Loaded>,
     /// What the renderer takes of it.
     pub drawing: Arc<Drawing>,
+    /// Where the mesh as it was read stands now.
+    pub source: MeshSource,
+    /// The project that it was opened from or saved to.
+    pub project: Option<PathBuf>,
     /// Whether a person agreed to write over `path`, or it was written by us under a name of its own.
     pub may_write_over: bool,
 }
@@ -58,8 +63,10 @@ impl OpenFile {
 pub enum Source {
     /// The built-in sample.
     Sample,
-    /// A file.
+    /// A mesh or a project.
     File(PathBuf),
+    /// A project that a session has left which ended without saving.
+    Recovered(PathBuf),
 }
 
 /// What is to be written.
@@ -73,6 +80,12 @@ enum What {
         loaded: Arc<Loaded>,
         displacements: Arc<Vec<DVec3>>,
         keep_original: KeepOriginal,
+        source: MeshSource,
+    },
+    Project {
+        snapshot: Box<Snapshot>,
+        loaded: Arc<Loaded>,
+        source: MeshSource,
     },
     Edit(Box<EditFile>),
 }
@@ -110,6 +123,8 @@ impl Session {
             path: opened.path.clone(),
             loaded: Arc::clone(&opened.loaded),
             drawing: Arc::clone(&opened.drawing),
+            source: opened.source.clone(),
+            project: opened.project.clone(),
             may_write_over: false,
         });
     }
@@ -129,6 +144,18 @@ impl Session {
             loaded,
             displacements,
             keep_original,
+            source: open.source.clone(),
+        };
+        self.write(SaveRequest { path, what }, workers);
+    }
+
+    /// Writes a project, off the window's thread.
+    pub fn save_project(&mut self, path: PathBuf, snapshot: Snapshot, workers: &Workers) {
+        let Some(open) = &self.open else { return };
+        let what = What::Project {
+            snapshot: Box::new(snapshot),
+            loaded: Arc::clone(&open.loaded),
+            source: open.source.clone(),
         };
         self.write(SaveRequest { path, what }, workers);
     }
@@ -147,11 +174,18 @@ impl Session {
     /// Takes a save's end.
     pub fn written(&mut self, stamp: Revision, result: &Result<Written, String>, workers: &Workers) {
         self.saving.finish(stamp);
-        if let (Some(open), Ok(written)) = (&mut self.open, result)
-            && written.is_model
-        {
-            open.path = Some(written.path.clone());
-            open.may_write_over = true;
+        if let (Some(open), Ok(written)) = (&mut self.open, result) {
+            match &written.what {
+                WrittenKind::Model(source) => {
+                    open.path = Some(written.path.clone());
+                    open.may_write_over = true;
+                    if let Some(source) = source {
+                        open.source = source.clone();
+                    }
+                }
+                WrittenKind::Project => open.project = Some(written.path.clone()),
+                WrittenKind::Edit => {}
+            }
         }
         self.start_saving(workers);
     }
@@ -239,12 +273,37 @@ pub fn file_name(path: &Path) -> String {
 
 fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Opened>, AppError> {
     let weld = WeldOptions::default();
-    let (loaded, path) = match source {
+    let mut beginning = None;
+    let (mut project, mut recovered) = (None, None);
+    let (loaded, path, source) = match source {
         Source::Sample => (
             engine::load_bytes(SAMPLE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?,
             None,
+            MeshSource::Sample,
         ),
-        Source::File(path) => (engine::load(path, &weld, watch)?, Some(path.clone())),
+        Source::File(path) if !engine::is_project(path) => (
+            engine::load(path, &weld, watch)?,
+            Some(path.clone()),
+            MeshSource::File(path.clone()),
+        ),
+        Source::File(path) | Source::Recovered(path) => {
+            let opened = project_file::read(path, watch)?;
+            match source {
+                Source::Recovered(_) => recovered = Some(path.clone()),
+                _ => project = Some(path.clone()),
+            }
+            beginning = Some(Beginning::from(opened.project));
+            let mesh = match &opened.source {
+                MeshSource::File(mesh) => Some(saved_name(mesh).unwrap_or_else(|| mesh.clone())),
+                MeshSource::Sample | MeshSource::Gone => None,
+            };
+            // What a recovered session kept for itself goes with it: it stands nowhere that lasts.
+            let source = match opened.source {
+                MeshSource::File(_) if recovered.is_some() && is_in_folder_of(&opened.source, path) => MeshSource::Gone,
+                source => source,
+            };
+            (opened.loaded, mesh, source)
+        }
     };
     let progress = watch.begin("getting the picture ready");
     let mut notes: Vec<String> = loaded.scene.notes().to_vec();
@@ -264,9 +323,17 @@ fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Opened>, AppErr
         drawing: Arc::new(drawing),
         surface,
         displacements,
-        edit: None,
+        beginning,
+        project,
+        source,
+        recovered,
         notes,
     }))
+}
+
+/// Whether a mesh stands in the same folder as the project.
+fn is_in_folder_of(mesh: &MeshSource, project: &Path) -> bool {
+    matches!(mesh, MeshSource::File(mesh) if files::folder_of(mesh) == files::folder_of(project))
 }
 
 fn write(request: SaveRequest) -> Result<Written, AppError> {
@@ -281,7 +348,19 @@ fn write(request: SaveRequest) -> Result<Written, AppError> {
                 .commit()?;
             Ok(Written {
                 path,
-                is_model: false,
+                what: WrittenKind::Edit,
+                warnings: Vec::new(),
+            })
+        }
+        What::Project {
+            snapshot,
+            loaded,
+            source,
+        } => {
+            project_file::write(&snapshot, &loaded, &source, &path, &staging)?;
+            Ok(Written {
+                path,
+                what: WrittenKind::Project,
                 warnings: Vec::new(),
             })
         }
@@ -289,21 +368,32 @@ fn write(request: SaveRequest) -> Result<Written, AppError> {
             loaded,
             displacements,
             keep_original,
+            source,
         } => {
             let mut positions = Vec::new();
             loaded.model.drawn_positions(&displacements, &mut positions);
             let (staged, warnings) = engine::stage_save(&loaded, &positions, &path, &staging)?;
             let original = original_name(&path);
+            let is_source = matches!(&source, MeshSource::File(mesh) if is_same(mesh, &path));
+            let mut moved = is_source.then_some(MeshSource::Gone);
             if keep_original == KeepOriginal::Yes && !original.exists() {
                 keep(&loaded, &path, &original)?;
+                moved = moved.map(|_| MeshSource::File(original));
             }
             staged.commit()?;
             Ok(Written {
                 path,
-                is_model: true,
+                what: WrittenKind::Model(moved),
                 warnings,
             })
         }
+    }
+}
+
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (std::fs::canonicalize(a), std::fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
     }
 }
 

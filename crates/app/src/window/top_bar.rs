@@ -19,6 +19,10 @@ pub enum FileCommand {
     Save,
     /// Save under another name.
     SaveAs,
+    /// Save the project.
+    SaveProject,
+    /// Save the project under another name.
+    SaveProjectAs,
     /// Write the regions, handles and transforms as an edit for the command line.
     ExportEdit,
     /// Close the window.
@@ -27,7 +31,14 @@ pub enum FileCommand {
 
 impl FileCommand {
     /// The ones that have a key.
-    pub const WITH_SHORTCUTS: [Self; 5] = [Self::SaveAs, Self::Open, Self::Save, Self::ExportEdit, Self::Quit];
+    pub const WITH_SHORTCUTS: [Self; 6] = [
+        Self::SaveAs,
+        Self::SaveProject,
+        Self::Open,
+        Self::Save,
+        Self::ExportEdit,
+        Self::Quit,
+    ];
 
     /// The key.
     pub fn shortcut(&self) -> Option<KeyboardShortcut> {
@@ -38,15 +49,18 @@ impl FileCommand {
             Self::SaveAs => Some(KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::S)),
             Self::Quit => command(Key::Q),
             Self::ExportEdit => command(Key::E),
-            Self::OpenPath(_) => None,
+            Self::SaveProject => Some(KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::ALT, Key::S)),
+            Self::SaveProjectAs | Self::OpenPath(_) => None,
         }
     }
 
     fn name(&self) -> &'static str {
         match self {
             Self::Open | Self::OpenPath(_) => "Open…",
-            Self::Save => "Save",
-            Self::SaveAs => "Save as…",
+            Self::Save => "Save model",
+            Self::SaveAs => "Save model as…",
+            Self::SaveProject => "Save project",
+            Self::SaveProjectAs => "Save project as…",
             Self::ExportEdit => "Export edit…",
             Self::Quit => "Quit",
         }
@@ -54,10 +68,16 @@ impl FileCommand {
 }
 
 /// Shows the bar. Commands for the editor are added to `commands`; one for files is returned.
-pub fn show(ui: &mut egui::Ui, editor: &Editor, file_name: &str, commands: &mut Outbox) -> Option<FileCommand> {
+pub fn show(
+    ui: &mut egui::Ui,
+    editor: &Editor,
+    file_name: &str,
+    recent: &[PathBuf],
+    commands: &mut Outbox,
+) -> Option<FileCommand> {
     let mut chosen = None;
     MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("File", |ui| chosen = file_menu(ui, editor));
+        ui.menu_button("File", |ui| chosen = file_menu(ui, editor, recent));
         ui.menu_button("Edit", |ui| edit_menu(ui, editor, commands));
         ui.menu_button("View", |ui| view_menu(ui, editor, commands));
         let unsaved = if editor.view().unsaved { " •" } else { "" };
@@ -71,24 +91,45 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, file_name: &str, commands: &mut 
     chosen
 }
 
-fn file_menu(ui: &mut egui::Ui, editor: &Editor) -> Option<FileCommand> {
+fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &[PathBuf]) -> Option<FileCommand> {
     let mut chosen = None;
     let is_open = editor.view().model.is_some();
     for command in [
         FileCommand::Open,
         FileCommand::Save,
         FileCommand::SaveAs,
+        FileCommand::SaveProject,
+        FileCommand::SaveProjectAs,
         FileCommand::ExportEdit,
         FileCommand::Quit,
     ] {
+        if matches!(
+            command,
+            FileCommand::Save | FileCommand::SaveProject | FileCommand::ExportEdit | FileCommand::Quit
+        ) {
+            ui.separator();
+        }
         let always = matches!(command, FileCommand::Open | FileCommand::Quit);
         let mut button = egui::Button::new(command.name());
         if let Some(shortcut) = command.shortcut() {
             button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
         }
         if ui.add_enabled(always || is_open, button).clicked() {
-            chosen = Some(command);
+            chosen = Some(command.clone());
             ui.close();
+        }
+        if command == FileCommand::Open {
+            ui.add_enabled_ui(!recent.is_empty(), |ui| {
+                ui.menu_button("Open recent", |ui| {
+                    for path in recent {
+                        let shown = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+                        if ui.button(shown).on_hover_text(path.display().to_string()).clicked() {
+                            chosen = Some(FileCommand::OpenPath(path.clone()));
+                            ui.close();
+                        }
+                    }
+                });
+            });
         }
     }
     chosen

@@ -13,7 +13,7 @@ use crate::document::{Document, Handle, HandleId, Paint};
 use crate::editor::Editor;
 use crate::engine::Activity;
 use crate::transaction::Transaction;
-use crate::{Button, HandleTransform, Pointer, Reach};
+use crate::{Button, Pointer};
 
 /// The colours that handles get in turn: gold first, as in the survey's figures.
 const COLOURS: [[u8; 4]; 8] = [
@@ -137,15 +137,9 @@ fn handle_to_paint(editor: &mut Editor) -> HandleId {
     let document = &mut editor.document;
     let id = HandleId(document.next_handle);
     document.next_handle = document.next_handle.saturating_add(1);
-    document.handles.push(Handle {
-        id,
-        name: format!("handle {}", u32::from(id.0) + 1),
-        colour: handle_colour(id),
-        transform: HandleTransform::IDENTITY,
-        pivot: glam::DVec3::ZERO,
-        reach: Reach::default(),
-        soft: None,
-    });
+    document
+        .handles
+        .push(Handle::new(id, format!("handle {}", u32::from(id.0) + 1)));
     id
 }
 

@@ -72,7 +72,7 @@ impl Rig {
         editor.handle(Event::Opened {
             model: Arc::clone(&model),
             name: "a shape".to_owned(),
-            edit: None,
+            beginning: None,
         });
         Self { editor, jobs, model }
     }

@@ -84,14 +84,7 @@ impl Layout {
             return Err("has an unknown type".to_owned());
         };
         let component = component.0;
-        let lanes = match kind {
-            Type::Scalar => 1,
-            Type::Vec2 => 2,
-            Type::Vec3 => 3,
-            Type::Vec4 | Type::Mat2 => 4,
-            Type::Mat3 => 9,
-            Type::Mat4 => 16,
-        };
+        let lanes = lanes(kind);
         let count = usize::try_from(accessor.count.0).map_err(|_| "has too many elements")?;
         let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
         let size = lanes * component.size();
@@ -203,6 +196,25 @@ impl Layout {
             }
         }
         Ok(out)
+    }
+}
+
+/// Numbers in an element of an accessor; `None` of an unknown type.
+pub(super) fn lanes_of(accessor: &::gltf::json::Accessor) -> Option<usize> {
+    match accessor.type_ {
+        Checked::Valid(kind) => Some(lanes(kind)),
+        Checked::Invalid => None,
+    }
+}
+
+fn lanes(kind: Type) -> usize {
+    match kind {
+        Type::Scalar => 1,
+        Type::Vec2 => 2,
+        Type::Vec3 => 3,
+        Type::Vec4 | Type::Mat2 => 4,
+        Type::Mat3 => 9,
+        Type::Mat4 => 16,
     }
 }
 

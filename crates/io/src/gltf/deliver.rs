@@ -31,7 +31,7 @@ pub(super) fn in_its_kind(document: &Document, patched: Patched<'_>, save: &Save
     for (buffer, bytes) in patched.buffers.iter().enumerate() {
         let is_changed = matches!(bytes, Cow::Owned(_));
         match &document.buffers[buffer] {
-            Buffer::Bin(_) | Buffer::Absent => {}
+            Buffer::Bin(_) | Buffer::Absent | Buffer::Decoded(_) => {}
             Buffer::Data(_) => {
                 if let Some(at) = buffer_uri(buffer, json).filter(|_| is_changed) {
                     let old = json.string(at).unwrap_or_default();
@@ -99,10 +99,11 @@ pub(super) fn unpacked(document: &Document, patched: Patched<'_>, save: &Save<'_
     let list = json.member(json.root(), "buffers");
     let buffers_at: Vec<_> = list.into_iter().flat_map(|list| json.elements(list)).collect();
     for (buffer, bytes) in patched.buffers.iter().enumerate() {
-        let at = buffers_at[buffer];
+        // What was decoded is no buffer of the file.
+        let Some(&at) = buffers_at.get(buffer) else { break };
         let own = match &document.buffers[buffer] {
             Buffer::Data(_) if matches!(bytes, Cow::Borrowed(_)) => continue,
-            Buffer::Absent => continue,
+            Buffer::Absent | Buffer::Decoded(_) => continue,
             Buffer::Neighbour { path, .. } if save.placement == Placement::OtherFolder => {
                 neighbours.push(OutputFile {
                     name: inside(path)?,

@@ -5,9 +5,11 @@
 //! has f32, which moves scans at geographic coordinates by half a metre), attributes with whatever names, and scenes
 //! without nodes, which the crate refuses.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+use ::gltf::json::validation::USize64;
 use ::gltf::json::{self, Accessor, Material, Texture, texture::Sampler};
 
 use super::container::{self, Container};
@@ -44,6 +46,10 @@ pub(super) struct Document {
     pub materials_at: Vec<At>,
     /// What was missing but not needed, as sentences.
     pub notes: Vec<String>,
+    /// Compressed buffer views without bytes, and what is wrong with them.
+    pub undecoded_views: BTreeMap<usize, String>,
+    /// Compressed primitives whose accessors have no bytes, and what is wrong with them.
+    pub undecoded_primitives: Vec<(At, String)>,
 }
 
 /// A buffer's bytes and where they came from.
@@ -57,6 +63,8 @@ pub(super) enum Buffer {
     Neighbour { path: String, bytes: Vec<u8> },
     /// None at all: a placeholder that an extension fills.
     Absent,
+    /// What a compressed buffer view or accessor holds: no buffer of the file. These stand behind the file's own.
+    Decoded(Vec<u8>),
 }
 
 /// An image's bytes and where they came from.
@@ -71,6 +79,12 @@ pub(super) enum ImageFile {
     /// Nowhere that is read.
     Absent,
 }
+
+/// How many bytes of geometry a byte of the file may become.
+pub(super) const MOST_GROWTH: usize = 64;
+
+/// What compressed geometry may become in the smallest of files.
+const DECODED_ANYWAY: usize = 1 << 20;
 
 impl Document {
     /// Splits the container, parses the JSON and fetches the neighbours.
@@ -120,6 +134,8 @@ impl Document {
             images_at,
             materials_at,
             notes: Vec::new(),
+            undecoded_views: BTreeMap::new(),
+            undecoded_primitives: Vec::new(),
             json,
         };
         document.fetch_buffers(source)?;
@@ -131,7 +147,7 @@ impl Document {
     pub fn buffer(&self, buffer: usize) -> &[u8] {
         match self.buffers.get(buffer) {
             Some(Buffer::Bin(range)) => &self.file[range.clone()],
-            Some(Buffer::Data(bytes) | Buffer::Neighbour { bytes, .. }) => bytes,
+            Some(Buffer::Data(bytes) | Buffer::Neighbour { bytes, .. } | Buffer::Decoded(bytes)) => bytes,
             Some(Buffer::Absent) | None => &[],
         }
     }
@@ -158,13 +174,55 @@ impl Document {
     pub fn loaded_bytes(&self) -> usize {
         let of_buffers = self.buffers.iter().map(|buffer| match buffer {
             Buffer::Data(bytes) | Buffer::Neighbour { bytes, .. } => bytes.len(),
-            Buffer::Bin(_) | Buffer::Absent => 0,
+            Buffer::Bin(_) | Buffer::Absent | Buffer::Decoded(_) => 0,
         });
         let of_images = self.images.iter().map(|image| match image {
             ImageFile::Data(bytes) | ImageFile::Neighbour { bytes: Some(bytes), .. } => bytes.len(),
             _ => 0,
         });
         self.file.len() + of_buffers.sum::<usize>() + of_images.sum::<usize>()
+    }
+
+    /// How many bytes compressed geometry may become in all.
+    pub fn decoding_budget(&self) -> usize {
+        self.loaded_bytes().saturating_mul(MOST_GROWTH).max(DECODED_ANYWAY)
+    }
+
+    /// Lets a buffer view of the file point at bytes that were decoded from it.
+    pub fn redirect_view(&mut self, view: usize, bytes: Vec<u8>, stride: Option<usize>) {
+        let (buffer, length) = (self.buffers.len() as u32, bytes.len() as u64);
+        let Some(view) = self.views.get_mut(view) else { return };
+        view.buffer = json::Index::new(buffer);
+        view.byte_offset = None;
+        view.byte_length = USize64(length);
+        view.byte_stride = stride.map(json::buffer::Stride);
+        self.buffers.push(Buffer::Decoded(bytes));
+    }
+
+    /// Gives an accessor bytes of its own, elements tightly packed, in a buffer view that the file does not have.
+    pub fn fill_accessor(&mut self, accessor: usize, bytes: Vec<u8>) {
+        let Some(accessor) = self.accessors.get_mut(accessor) else {
+            return;
+        };
+        accessor.buffer_view = Some(json::Index::new(self.views.len() as u32));
+        accessor.byte_offset = None;
+        self.views.push(json::buffer::View {
+            buffer: json::Index::new(self.buffers.len() as u32),
+            byte_length: USize64(bytes.len() as u64),
+            byte_offset: None,
+            byte_stride: None,
+            name: None,
+            target: None,
+            extensions: None,
+            extras: Default::default(),
+        });
+        self.buffers.push(Buffer::Decoded(bytes));
+    }
+
+    /// Whether an accessor's bytes came out of a compressed primitive.
+    pub fn is_filled(&self, accessor: usize) -> bool {
+        let view = self.accessors.get(accessor).and_then(|accessor| accessor.buffer_view);
+        view.is_some_and(|view| view.value() >= self.views_at.len())
     }
 
     /// An object's member that is an index below `count`, by name; `what` names the object in an error.

@@ -9,11 +9,6 @@ use crate::{Format, ReadError};
 pub(super) enum Fault {
     /// Something is not as glTF asks.
     Malformed(String),
-    /// Something is sound but not read.
-    Unsupported {
-        feature: String,
-        remedy: &'static str,
-    },
     /// More is asked for than the bytes justify.
     TooLarge(String),
     /// A buffer's file can't be had.
@@ -30,11 +25,6 @@ impl Fault {
         let name = name.to_owned();
         match self {
             Self::Malformed(reason) => ReadError::Malformed { name, format, reason },
-            Self::Unsupported { feature, remedy } => ReadError::Unsupported {
-                name,
-                feature,
-                remedy: remedy.to_owned(),
-            },
             Self::TooLarge(what) => ReadError::TooLarge { name, what },
             Self::Neighbour { uri, reason } => ReadError::Neighbour { name, uri, reason },
             Self::Cancelled(cancelled) => ReadError::Cancelled(cancelled),

@@ -14,7 +14,7 @@ use pliant_mesh::{Cancel, Drawn, DrawnVertex, FileVertex, Progress};
 use rayon::prelude::*;
 
 use super::accessor::Layout;
-use super::document::Document;
+use super::document::{Document, MOST_GROWTH};
 use super::fault::Fault;
 use super::primitive::{Mode, Primitive};
 use super::tree::Placed;
@@ -47,8 +47,7 @@ pub(super) struct Pieces {
     pub pieces: Vec<Piece>,
 }
 
-/// How many bytes of drawn set a byte of the file may become, beyond a grace for small files with many instances.
-const MOST_GROWTH: usize = 64;
+/// How many bytes the drawn set may have beyond [`MOST_GROWTH`]: small files with many instances.
 const GRACE_BYTES: usize = 256 << 20;
 
 /// Vertices that a thread handles at a time.
@@ -83,7 +82,9 @@ pub(super) fn drawn(
                 continue;
             }
             let here = || format!("mesh {} primitive {number}", place.mesh);
-            primitive.refuse_compression(document)?;
+            primitive
+                .check_decoded(document)
+                .map_err(|what| format!("{} {what}", here()))?;
             let layout = Layout::of(document, position)?;
             if layout.lanes != 3 {
                 return Err(format!("{}: POSITION is not made of three numbers each", here()).into());

@@ -23,7 +23,7 @@ struct Token {
 }
 
 /// A value's place on the tape.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(super) struct At(u32);
 
 impl Json {
@@ -228,6 +228,36 @@ impl Edits {
         }
     }
 
+    /// Takes members out of an object, with their commas; to be asked for once an object.
+    pub fn remove_members(&mut self, json: &Json, object: At, keys: &[&str]) {
+        let members = json.members(object).map(|(name, value)| {
+            let is_removed = keys.iter().any(|key| json.is_string(name, key));
+            (json.span(name).start..json.span(value).end, is_removed)
+        });
+        self.remove(&members.collect::<Vec<_>>());
+    }
+
+    /// Takes an element out of an array, with its comma; to be asked for once an array.
+    pub fn remove_element(&mut self, json: &Json, array: At, place: usize) {
+        let elements = json.elements(array).enumerate();
+        let elements = elements.map(|(number, at)| (json.span(at), number == place));
+        self.remove(&elements.collect::<Vec<_>>());
+    }
+
+    /// Takes those of a list's parts out that are to be removed: with the comma before them, or, as long as none is
+    /// kept, with the one behind them.
+    fn remove(&mut self, parts: &[(Range<usize>, bool)]) {
+        let first_kept = parts.iter().position(|(_, is_removed)| !is_removed);
+        for (place, (own, _)) in parts.iter().enumerate().filter(|(_, (_, is_removed))| *is_removed) {
+            let span = match parts.get(place + 1) {
+                _ if first_kept.is_some_and(|kept| kept < place) => parts[place - 1].0.end..own.end,
+                Some((next, _)) => own.start..next.start,
+                None => own.clone(),
+            };
+            self.replace(span, "");
+        }
+    }
+
     /// Whether there is nothing to do.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -299,6 +329,31 @@ mod tests {
             out,
             "{ \"a\" : [1, 2.50, {\"b\":[5]},8,9],\n\"c\\\"\": \"x,]\", \"d\":{\"k\":7} , \"e\":0,\"f\":1}  "
         );
+    }
+
+    #[test]
+    fn a_member_is_taken_out_with_its_comma() {
+        let json = Json::parse(b"{\"a\":1, \"b\" : [7, 8 ,9] ,\"c\":{\"d\":0}}".to_vec()).unwrap();
+        let without = |edit: &dyn Fn(&mut Edits)| {
+            let mut edits = Edits::default();
+            edit(&mut edits);
+            String::from_utf8(edits.apply(json.text(), 0..json.text().len())).unwrap()
+        };
+        let remove_all = |keys: &[&str]| without(&|edits: &mut Edits| edits.remove_members(&json, json.root(), keys));
+        let remove = |key: &str| remove_all(&[key]);
+        assert_eq!(remove("a"), "{\"b\" : [7, 8 ,9] ,\"c\":{\"d\":0}}");
+        assert_eq!(remove("b"), "{\"a\":1 ,\"c\":{\"d\":0}}");
+        assert_eq!(remove("c"), "{\"a\":1, \"b\" : [7, 8 ,9]}");
+        assert_eq!(remove_all(&["a", "b"]), "{\"c\":{\"d\":0}}");
+        assert_eq!(remove_all(&["b", "c"]), "{\"a\":1}");
+        assert_eq!(remove_all(&["a", "c"]), "{\"b\" : [7, 8 ,9]}");
+        assert_eq!(remove_all(&["a", "b", "c"]), "{}");
+        let [b, c] = ["b", "c"].map(|key| json.member(json.root(), key).unwrap());
+        let emptied = without(&|edits: &mut Edits| edits.remove_members(&json, c, &["d"]));
+        assert!(emptied.ends_with("\"c\":{}}"));
+        for (place, left) in ["[8 ,9]", "[7 ,9]", "[7, 8]"].iter().enumerate() {
+            assert!(without(&|edits: &mut Edits| edits.remove_element(&json, b, place)).contains(left));
+        }
     }
 
     #[test]

@@ -130,10 +130,22 @@ pub(super) fn dress(document: &Document, material: usize, out: &mut Material) {
     }
 }
 
+/// Extensions that name an image of a kind that plain glTF does not have.
+const IMAGE_EXTENSIONS: [&str; 2] = ["EXT_texture_webp", "KHR_texture_basisu"];
+
 /// The image of a texture and how it is wrapped.
 pub(super) fn image_of(document: &Document, texture: usize) -> Option<(usize, [Wrap; 2])> {
     let texture = document.textures.get(texture)?;
-    let image = texture.source.value();
+    let others = texture.extensions.as_ref().map(|extensions| &extensions.others);
+    // The plain image comes first: an extension's is there for whoever reads it, and may be left out.
+    let image = Some(texture.source.value())
+        .filter(|&image| image < document.images.len())
+        .or_else(|| {
+            IMAGE_EXTENSIONS
+                .iter()
+                .find_map(|name| others?.get(*name)?.get("source")?.as_u64())
+                .map(|image| image as usize)
+        })?;
     let sampler = texture
         .sampler
         .and_then(|sampler| document.samplers.get(sampler.value()));

@@ -3,18 +3,22 @@
 mod accessor;
 mod changes;
 mod claims;
+mod compare;
 mod container;
 mod deliver;
 mod document;
+mod draco;
 mod fault;
 mod geometry;
 mod json;
 mod look;
 mod maps;
+mod meshopt;
 mod pack;
 mod patch;
 mod primitive;
 mod tree;
+mod unpack;
 mod uri;
 
 use pliant_mesh::Drawn;
@@ -27,7 +31,7 @@ use self::primitive::Primitive;
 use crate::moved::Moved;
 use crate::save::{Save, Saved};
 use crate::scene::{Source, Summary};
-use crate::{Appearance, Format, ReadError, SaveError};
+use crate::{Appearance, Difference, Format, ReadError, SaveError};
 
 /// A glTF as read, and how its drawn set is made up.
 #[derive(Debug)]
@@ -48,7 +52,9 @@ pub(crate) fn read(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn
 fn open(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn), Fault> {
     let mut document = Document::read(source, format)?;
     let mut notes = std::mem::take(&mut document.notes);
+    meshopt::decode(&mut document, source.cancel)?;
     let meshes = primitive::primitives(&document)?;
+    draco::decode(&mut document, &meshes, source.cancel)?;
     let placed = tree::placed_meshes(&document, &mut notes)?;
     let (drawn, pieces) = geometry::drawn(&document, &meshes, &placed, source.progress, source.cancel)?;
     Ok((
@@ -96,6 +102,11 @@ impl Stored {
                 .map(|primitive| primitive.target_count)
                 .sum(),
         }
+    }
+
+    /// What differs between this file and another, in the order of this one's text.
+    pub fn differences(&self, other: &Self) -> Vec<Difference> {
+        compare::differences(&self.document, &other.document)
     }
 
     pub fn appearance(&self) -> Appearance {

@@ -15,18 +15,20 @@ pub(super) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
     let mut warnings = patched.warnings;
     let mut edits = Edits::default();
     let mut bin: Vec<u8> = Vec::new();
-    let mut starts = Vec::new();
-    for (number, (buffer, bytes)) in document.buffers.iter().zip(&patched.buffers).enumerate() {
-        if matches!(buffer, Buffer::Absent) {
-            return Err(SaveError::CannotHold {
-                what: format!("buffer {number}, which has no bytes,"),
-                format: save.format,
-                remedy: "save as .gltf".to_owned(),
-            });
-        }
-        starts.push(append(&mut bin, bytes));
+    let mut homes = Vec::new();
+    let mut placeholders = Vec::new();
+    for (buffer, bytes) in document.buffers.iter().zip(&patched.buffers) {
+        homes.push(match buffer {
+            Buffer::Decoded(_) => break,
+            // What stands in for compressed bytes stays a buffer without any.
+            Buffer::Absent => {
+                placeholders.push(homes.len());
+                Home::Placeholder(placeholders.len())
+            }
+            _ => Home::Packed(append(&mut bin, bytes)),
+        });
     }
-    move_views(&json, &starts, &mut edits);
+    move_views(&json, &homes, &mut edits);
     let mut views = Vec::new();
     let view_count = elements(&json, "bufferViews").len();
     for (number, at) in elements(&json, "images").into_iter().enumerate() {
@@ -64,7 +66,7 @@ pub(super) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
         edits.replace(json.span(value), format!("{view}{mime}"));
     }
     append_section(&json, "bufferViews", &views, &mut edits);
-    set_buffer(&json, bin.len(), &mut edits);
+    set_buffers(&json, bin.len(), &placeholders, &mut edits);
     let text = edits.apply(json.text(), 0..json.text().len());
     let bin = (!bin.is_empty() || !document.buffers.is_empty()).then_some(&bin[..]);
     let bytes = container::join(without_padding(&text), bin, &[], &[]);
@@ -80,46 +82,66 @@ fn append(bin: &mut Vec<u8>, bytes: &[u8]) -> usize {
     start
 }
 
-/// Lets every buffer view point into the one buffer, whose parts begin at `starts`.
-fn move_views(json: &Json, starts: &[usize], edits: &mut Edits) {
-    for at in elements(json, "bufferViews") {
-        let number = |key: &str| json.member(at, key).and_then(|at| json.number(at));
-        let Some(start) = number("buffer").and_then(|buffer| starts.get(buffer as usize)) else {
-            continue;
-        };
-        if let Some(buffer) = json.member(at, "buffer").filter(|&buffer| json.raw(buffer) != b"0") {
-            edits.replace(json.span(buffer), "0");
-        }
-        if *start > 0 {
-            let offset = number("byteOffset").unwrap_or(0.0) as usize + start;
-            edits.set_member(json, at, "byteOffset", &offset.to_string());
+/// Where a buffer goes.
+#[derive(Clone, Copy)]
+enum Home {
+    /// Into the one buffer, from this byte on.
+    Packed(usize),
+    /// It stays a buffer of its own, of this number.
+    Placeholder(usize),
+}
+
+/// Lets every buffer view, and what it says of compressed bytes, point where its buffer went.
+fn move_views(json: &Json, homes: &[Home], edits: &mut Edits) {
+    for view in elements(json, "bufferViews") {
+        let extensions = json.member(view, "extensions");
+        let of_extensions = extensions.into_iter().flat_map(|at| json.members(at));
+        for at in std::iter::once(view).chain(of_extensions.map(|(_, extension)| extension)) {
+            let number = |key: &str| json.member(at, key).and_then(|at| json.number(at));
+            let Some(home) = number("buffer").and_then(|buffer| homes.get(buffer as usize)) else {
+                continue;
+            };
+            let (new, start) = match *home {
+                Home::Packed(start) => (0, start),
+                Home::Placeholder(new) => (new, 0),
+            };
+            let new = new.to_string();
+            if let Some(buffer) = json
+                .member(at, "buffer")
+                .filter(|&buffer| json.raw(buffer) != new.as_bytes())
+            {
+                edits.replace(json.span(buffer), new);
+            }
+            if start > 0 {
+                let offset = number("byteOffset").unwrap_or(0.0) as usize + start;
+                edits.set_member(json, at, "byteOffset", &offset.to_string());
+            }
         }
     }
 }
 
-/// Leaves one buffer without an address, the first one's other members kept.
-fn set_buffer(json: &Json, length: usize, edits: &mut Edits) {
+/// Leaves one buffer without an address, the first one's other members kept, and behind it the placeholders.
+fn set_buffers(json: &Json, length: usize, placeholders: &[usize], edits: &mut Edits) {
     let Some(list) = json.member(json.root(), "buffers") else {
         if length > 0 {
             edits.set_member(json, json.root(), "buffers", &format!("[{{\"byteLength\":{length}}}]"));
         }
         return;
     };
-    let kept = json
-        .elements(list)
-        .next()
-        .into_iter()
-        .flat_map(|first| json.members(first));
-    let kept = kept.filter(|&(key, _)| !matches!(json.string(key).as_deref(), Some("uri" | "byteLength")));
+    let old: Vec<At> = json.elements(list).collect();
     let text = |at: At| String::from_utf8_lossy(json.raw(at)).into_owned();
+    let first = (0..old.len()).find(|number| !placeholders.contains(number));
+    let kept = first.into_iter().flat_map(|first| json.members(old[first]));
+    let kept = kept.filter(|&(key, _)| !matches!(json.string(key).as_deref(), Some("uri" | "byteLength")));
     let mut members: Vec<String> = vec![format!("\"byteLength\":{length}")];
     members.extend(kept.map(|(key, value)| format!("{}:{}", text(key), text(value))));
-    let buffers = if length > 0 {
-        format!("[{{{}}}]", members.join(","))
-    } else {
-        "[]".to_owned()
-    };
-    edits.replace(json.span(list), buffers);
+    let mut buffers = Vec::new();
+    // The placeholders' numbers begin at 1, so the packed buffer stands there even if it is empty.
+    if length > 0 || !placeholders.is_empty() {
+        buffers.push(format!("{{{}}}", members.join(",")));
+    }
+    buffers.extend(placeholders.iter().map(|&number| text(old[number])));
+    edits.replace(json.span(list), format!("[{}]", buffers.join(",")));
 }
 
 fn append_section(json: &Json, key: &str, new: &[String], edits: &mut Edits) {

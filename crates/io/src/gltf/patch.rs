@@ -45,10 +45,10 @@ impl<'a> Patched<'a> {
 }
 
 /// Everything that is being put together.
-struct Patch<'a> {
-    document: &'a Document,
+pub(super) struct Patch<'a> {
+    pub document: &'a Document,
     out: Patched<'a>,
-    edits: Edits,
+    pub edits: Edits,
     /// Edits of each mesh copy's primitives: of clones only, as they apply to a copy of the text.
     clone_edits: BTreeMap<usize, Edits>,
     new_accessors: Vec<String>,
@@ -88,13 +88,14 @@ pub(super) fn patch<'a>(
         }
         for claim in &outcome.moved_out {
             let text = patch.new_accessor(accessor, claim, format)?;
-            let number = document.accessors.len() + patch.new_accessors.len();
+            let number = document.accessors_at.len() + patch.new_accessors.len();
             patch.new_accessors.push(text);
             for naming in &claim.namings {
                 patch.rename(meshes, &copies, naming, number);
             }
         }
     }
+    patch.unpack(meshes, &copies, &outcomes, format)?;
     patch.clone_meshes(&copies);
     patch.finish();
     patch.out.warnings = morph_warnings(document, meshes, pieces, changes);
@@ -129,10 +130,13 @@ impl Patch<'_> {
                     .any(|theirs| places[accessor].iter().any(|ours| ours.overlaps(theirs)))
                 && !wants_the_same(other)
         });
+        let is_decoded = places[accessor]
+            .iter()
+            .any(|place| matches!(document.buffers[place.buffer], Buffer::Decoded(_)));
         let laps_itself = places[accessor]
             .iter()
             .any(|place| place.count > 1 && place.stride < place.size);
-        if is_shared || laps_itself {
+        if is_shared || laps_itself || is_decoded {
             return None;
         }
         let entries = layout.sparse_elements(document);
@@ -188,39 +192,19 @@ impl Patch<'_> {
         let document = self.document;
         let json = &document.json;
         let old = document.accessors_at[accessor];
-        let cannot = |what: String| SaveError::CannotHold {
-            what,
-            format,
-            remedy: "save as .ply, or export the file again with plain f32 attributes".to_owned(),
-        };
+        let cannot = |what: String| cannot_hold(what, format);
         let layout = Layout::of(document, accessor).map_err(cannot)?;
         let lanes = claim.semantic.lanes();
         let elements = whole(document, &layout, claim.change);
         let home = layout.dense.as_ref().map(|dense| dense.buffer);
         let home = home.or_else(|| layout.sparse.as_ref().map(|sparse| sparse.values.buffer));
-        let home = home.or_else(|| {
-            document
-                .buffers
-                .iter()
-                .position(|buffer| !matches!(buffer, Buffer::Absent))
-        });
-        let Some(buffer) = home else {
-            return Err(cannot(format!("accessor {accessor}, which is in no buffer,")));
-        };
-        let bytes = self.out.buffers[buffer].to_mut();
-        let offset = bytes.len().next_multiple_of(4);
-        bytes.resize(offset, 0);
-        bytes.extend(
-            elements
-                .iter()
-                .flat_map(|element| &element[..lanes])
-                .flat_map(|number| number.to_le_bytes()),
+        let numbers = elements.iter().flat_map(|element| &element[..lanes]);
+        let view = self.new_view(
+            home,
+            numbers.flat_map(|number| number.to_le_bytes()),
+            ",\"target\":34962",
         );
-        let length = bytes.len() - offset;
-        let view = document.views.len() + self.new_views.len();
-        self.new_views.push(format!(
-            "{{\"buffer\":{buffer},\"byteOffset\":{offset},\"byteLength\":{length},\"target\":34962}}"
-        ));
+        let view = view.ok_or_else(|| cannot(format!("accessor {accessor}, which is in no buffer,")))?;
         let mut text = format!(
             "{{\"bufferView\":{view},\"componentType\":5126,\"count\":{},\"type\":\"VEC{lanes}\"",
             layout.count
@@ -242,6 +226,29 @@ impl Patch<'_> {
         Ok(text)
     }
 
+    /// Puts bytes behind a buffer's others (those of `home` where it can take them) and gives the number of a view of
+    /// them, which has `members` beside its place; `None` where the file has no buffer with bytes.
+    pub(super) fn new_view(
+        &mut self,
+        home: Option<usize>,
+        content: impl Iterator<Item = u8>,
+        members: &str,
+    ) -> Option<usize> {
+        let buffers = &self.document.buffers;
+        let can_take = |buffer: &usize| !matches!(buffers[*buffer], Buffer::Absent | Buffer::Decoded(_));
+        let buffer = home.filter(can_take).or_else(|| (0..buffers.len()).find(can_take))?;
+        let bytes = self.out.buffers[buffer].to_mut();
+        let offset = bytes.len().next_multiple_of(4);
+        bytes.resize(offset, 0);
+        bytes.extend(content);
+        let length = bytes.len() - offset;
+        let view = self.document.views_at.len() + self.new_views.len();
+        self.new_views.push(format!(
+            "{{\"buffer\":{buffer},\"byteOffset\":{offset},\"byteLength\":{length}{members}}}"
+        ));
+        Some(view)
+    }
+
     /// Lets a primitive's attribute name another accessor.
     fn rename(&mut self, meshes: &[Vec<Primitive>], copies: &[MeshCopy], naming: &Naming, accessor: usize) {
         let json = &self.document.json;
@@ -250,11 +257,16 @@ impl Patch<'_> {
         let Some(at) = json.path(primitive, &["attributes", naming.semantic.key()]) else {
             return;
         };
-        let edits = match copy.clone_for {
+        self.edits_of_copy(copies, naming.copy)
+            .replace(json.span(at), accessor.to_string());
+    }
+
+    /// The edits of a mesh's own text, or of the text that its clone gets.
+    pub(super) fn edits_of_copy(&mut self, copies: &[MeshCopy], number: usize) -> &mut Edits {
+        match copies[number].clone_for {
             None => &mut self.edits,
-            Some(_) => self.clone_edits.entry(naming.copy).or_default(),
-        };
-        edits.replace(json.span(at), accessor.to_string());
+            Some(_) => self.clone_edits.entry(number).or_default(),
+        }
     }
 
     /// Adds the clones behind the meshes and lets their nodes show them.
@@ -304,6 +316,15 @@ impl Patch<'_> {
                 .edits
                 .set_member(json, json.root(), section, &format!("[{}]", elements.join(","))),
         }
+    }
+}
+
+/// The refusal of something that no accessor of the file's can be.
+pub(super) fn cannot_hold(what: String, format: Format) -> SaveError {
+    SaveError::CannotHold {
+        what,
+        format,
+        remedy: "save as .ply, or export the file again with plain f32 attributes".to_owned(),
     }
 }
 

@@ -1,7 +1,6 @@
 //! Meshes' primitives as the file names them.
 
 use super::document::Document;
-use super::fault::Fault;
 use super::json::At;
 use super::maps::{MaterialMaps, UvTransform};
 
@@ -93,14 +92,11 @@ impl Primitive {
         key(self) == key(other) && (self.uv.is_none() || self.uv_transform == other.uv_transform)
     }
 
-    /// Refuses Draco on the primitive and meshopt on what it reads.
-    pub fn refuse_compression(&self, document: &Document) -> Result<(), Fault> {
-        let json = &document.json;
-        if json
-            .path(self.at, &["extensions", "KHR_draco_mesh_compression"])
-            .is_some()
-        {
-            return Err(compressed("Draco compression (KHR_draco_mesh_compression)"));
+    /// Refuses, in words, what is compressed and could not be decoded.
+    pub fn check_decoded(&self, document: &Document) -> Result<(), String> {
+        let undecoded = document.undecoded_primitives.iter().find(|(at, _)| *at == self.at);
+        if let Some((_, reason)) = undecoded {
+            return Err(format!("has {reason}"));
         }
         let read = [
             self.position,
@@ -118,23 +114,14 @@ impl Primitive {
                 .iter()
                 .flat_map(|s| [s.indices.buffer_view, s.values.buffer_view]);
             for view in accessor.buffer_view.into_iter().chain(sparse) {
-                let Some(&at) = document.views_at.get(view.value()) else {
-                    continue;
-                };
-                for name in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
-                    if json.path(at, &["extensions", name]).is_some() {
-                        return Err(compressed(&format!("meshopt compression ({name})")));
-                    }
+                if let Some(reason) = document.undecoded_views.get(&view.value()) {
+                    return Err(format!(
+                        "reads the compressed buffer view {}, which {reason}",
+                        view.value()
+                    ));
                 }
             }
         }
         Ok(())
-    }
-}
-
-fn compressed(feature: &str) -> Fault {
-    Fault::Unsupported {
-        feature: feature.to_owned(),
-        remedy: "export it again without compression",
     }
 }

@@ -1,0 +1,51 @@
+//! `pliant diff`: what differs between two files, in words.
+
+use std::fmt::Write as _;
+
+use pliant_io::{Difference, What};
+use pliant_mesh::WeldOptions;
+use serde_json::{Value, json};
+
+use super::arguments::DiffArguments;
+use super::{Console, on_threads, print};
+use crate::{AppError, engine};
+
+pub(super) fn run(arguments: &DiffArguments, console: &mut Console<'_>) -> Result<(), AppError> {
+    let watch = &console.watch;
+    let differences = on_threads(None, || {
+        let [first, second] =
+            [&arguments.first, &arguments.second].map(|path| engine::load(path, &WeldOptions::default(), watch));
+        let (first, second) = (first?, second?);
+        let drawn = [&first.model.drawn, &second.model.drawn];
+        Ok::<_, AppError>(first.scene.differences(drawn[0], &second.scene, drawn[1]))
+    })??;
+    let text = if arguments.json {
+        let all: Vec<Value> = differences.iter().map(as_json).collect();
+        format!("{:#}\n", json!({ "differences": all }))
+    } else if differences.is_empty() {
+        "no difference\n".to_owned()
+    } else {
+        let mut text = String::new();
+        for difference in &differences {
+            // A String takes whatever is written to it.
+            let _ = writeln!(text, "{difference}");
+        }
+        text
+    };
+    print(console.out, &text)
+}
+
+fn as_json(difference: &Difference) -> Value {
+    let mut told = json!({ "place": difference.place, "sentence": difference.to_string() });
+    if let What::Elements { elements, of, largest } = &difference.what {
+        told["elements"] = json!(elements);
+        told["of"] = json!(of);
+        // JSON has no infinity.
+        told["largest"] = if largest.is_finite() {
+            json!(largest)
+        } else {
+            Value::Null
+        };
+    }
+    told
+}

@@ -1,0 +1,40 @@
+//! A fault of our own on the window's thread: what a person has left to go on with is a report and a recovery file.
+//!
+//! A fault on another thread is caught there and said ([`super::workers`]); the window goes on.
+
+use std::backtrace::Backtrace;
+use std::fs;
+use std::panic::{PanicHookInfo, set_hook, take_hook};
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use super::recovery;
+use crate::version::VERSION;
+
+/// From now on a panic on this thread keeps the newest work and writes a report into `folder`.
+pub fn listen(folder: PathBuf) {
+    let before = take_hook();
+    let window = std::thread::current().id();
+    set_hook(Box::new(move |info| {
+        before(info);
+        if std::thread::current().id() == window {
+            let kept = recovery::write_latest();
+            // There is nobody left to tell.
+            let _ = report(info, kept.as_deref(), &folder);
+        }
+    }));
+}
+
+fn report(info: &PanicHookInfo<'_>, kept: Option<&Path>, folder: &Path) -> std::io::Result<()> {
+    fs::create_dir_all(folder)?;
+    let seconds = SystemTime::now()
+        .duration_since(SystemTime::UNIX_EPOCH)
+        .map_or(0, |since| since.as_secs());
+    let kept = kept.map_or("there was none".to_owned(), |path| path.display().to_string());
+    let text = format!(
+        "Pliant {VERSION} on {} stopped by a fault of its own.\n\n{info}\n\nUnsaved work: {kept}\n\n{}\n",
+        std::env::consts::OS,
+        Backtrace::force_capture()
+    );
+    fs::write(folder.join(format!("fault-{seconds}.txt")), text)
+}

@@ -1,0 +1,24 @@
+//! Where the program keeps what is its own: settings, and what a session that ends without saving leaves behind.
+
+use std::path::PathBuf;
+
+/// Folders of the program's own; `None` where the system names none, and in tests that must not touch a person's.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Places {
+    /// The file of settings.
+    pub settings: Option<PathBuf>,
+    /// The folder of sessions that may have to be recovered, and of reports of faults.
+    pub recovery: Option<PathBuf>,
+}
+
+impl Places {
+    /// The person's own.
+    pub fn of_person() -> Self {
+        Self {
+            settings: dirs::config_dir().map(|folder| folder.join("pliant").join("settings.json")),
+            recovery: dirs::state_dir()
+                .or_else(dirs::data_local_dir)
+                .map(|folder| folder.join("pliant").join("recovery")),
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! What is remembered from one session to the next, in a file of JSON that a person may edit.
+//!
+//! A file that can't be read is left alone and said; what it lacks has its default.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::files::{self, Staging};
+
+/// How many files are remembered.
+const RECENT: usize = 10;
+
+/// What is remembered.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Files and projects that were opened or saved, the newest first.
+    pub recent: Vec<PathBuf>,
+    /// Light or dark.
+    pub theme: ThemeChoice,
+    /// How large everything is, 1 as the system says.
+    pub ui_scale: f32,
+    /// The panel's width in points.
+    pub panel_width: f32,
+    /// The window's size in points.
+    pub window_size: Option<[f32; 2]>,
+    /// Whether the hints on the canvas were put away.
+    pub hints_seen: bool,
+    /// Keys of commands, by the commands' names, where they are others than the program's own.
+    pub keys: std::collections::BTreeMap<String, Vec<String>>,
+}
+
+/// The settings and the file they stand in; a change is written at once.
+#[derive(Debug, Default)]
+pub struct SettingsFile {
+    settings: Settings,
+    path: Option<PathBuf>,
+    /// What went wrong with the file, in a sentence.
+    pub problem: Option<String>,
+}
+
+impl SettingsFile {
+    /// The settings in this file; the defaults, kept nowhere, without one.
+    pub fn open(path: Option<PathBuf>) -> Self {
+        let (settings, problem) = path.as_deref().map_or_else(Default::default, Settings::read);
+        Self {
+            settings,
+            // A file that can't be read is the person's to mend.
+            path: path.filter(|_| problem.is_none()),
+            problem,
+        }
+    }
+
+    /// The settings.
+    pub fn get(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Changes them.
+    pub fn change(&mut self, change: impl FnOnce(&mut Settings)) {
+        let before = self.settings.clone();
+        change(&mut self.settings);
+        if let (true, Some(path)) = (before != self.settings, &self.path)
+            && let Err(sentence) = self.settings.write(path)
+        {
+            self.problem = Some(sentence);
+        }
+    }
+}
+
+/// Light or dark.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ThemeChoice {
+    /// A dim frame.
+    #[default]
+    Dark,
+    /// A bright one.
+    Light,
+    /// As the system is.
+    System,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            recent: Vec::new(),
+            theme: ThemeChoice::default(),
+            ui_scale: 1.0,
+            panel_width: 280.0,
+            window_size: None,
+            hints_seen: false,
+            keys: Default::default(),
+        }
+    }
+}
+
+impl Settings {
+    /// Reads the settings; the defaults where there is no such file, with a sentence where it can't be read.
+    pub fn read(path: &Path) -> (Self, Option<String>) {
+        if !path.exists() {
+            return (Self::default(), None);
+        }
+        let text = match files::read_text(path) {
+            Ok(text) => text,
+            Err(error) => return (Self::default(), Some(error.to_string())),
+        };
+        match serde_json::from_str::<Self>(&text) {
+            Ok(mut settings) => {
+                let scale = settings.ui_scale;
+                settings.ui_scale = if scale.is_finite() { scale.clamp(0.5, 3.0) } else { 1.0 };
+                settings.panel_width = settings.panel_width.clamp(200.0, 600.0);
+                (settings, None)
+            }
+            Err(error) => (
+                Self::default(),
+                Some(format!(
+                    "the settings in {} can't be read ({error}): mend or delete that file; the defaults hold for now",
+                    path.display()
+                )),
+            ),
+        }
+    }
+
+    /// Writes the settings.
+    ///
+    /// # Errors
+    /// What the disk says, in a sentence.
+    pub fn write(&self, path: &Path) -> Result<(), String> {
+        let folder = files::folder_of(path);
+        std::fs::create_dir_all(folder)
+            .map_err(|error| format!("{} can't be made ({error}): check its rights", folder.display()))?;
+        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
+        text.push('\n');
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        Staging::default()
+            .stage(folder, [(&*name, text.as_bytes())])
+            .and_then(files::Staged::commit)
+            .map_err(|error| error.to_string())
+    }
+
+    /// Puts a file at the head of the recent ones.
+    pub fn remember(&mut self, path: &Path) {
+        let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        self.recent.retain(|known| *known != path);
+        self.recent.insert(0, path);
+        self.recent.truncate(RECENT);
+    }
+}

@@ -1,0 +1,83 @@
+//! What a file is opened with: an edit, or a project that was saved.
+
+use pliant_mesh::Model;
+
+use crate::document::Document;
+use crate::{Camera, EditError, EditFile, Project, Setup};
+
+/// Regions, handles and options to begin with.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Beginning {
+    /// An edit, which fits any mesh.
+    Edit(Box<EditFile>),
+    /// A project, which belongs to one.
+    Project(Box<Project>),
+}
+
+impl Beginning {
+    /// Reads either from its JSON text: a project names its mesh, an edit has none.
+    ///
+    /// # Errors
+    /// Whatever the formats don't have is refused by its name.
+    pub fn parse(text: &str) -> Result<Self, EditError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if Project::is_project(text) {
+            Ok(Self::Project(Box::new(Project::parse(text)?)))
+        } else {
+            EditFile::parse(text).map(Self::from)
+        }
+    }
+
+    /// What the solver needs, on a model.
+    ///
+    /// # Errors
+    /// As [`EditFile::resolve`]; a project on another mesh than its own.
+    pub fn resolve(&self, model: &Model) -> Result<Setup, EditError> {
+        match self {
+            Self::Edit(edit) => edit.resolve(model),
+            Self::Project(project) => project.resolve(model),
+        }
+    }
+
+    /// Whether nothing would move.
+    pub fn changes_nothing(&self) -> bool {
+        match self {
+            Self::Edit(edit) => edit.changes_nothing(),
+            Self::Project(project) => project.changes_nothing(),
+        }
+    }
+
+    /// Chooses another method.
+    pub fn set_method(&mut self, method: pliant_deform::Method) {
+        match self {
+            Self::Edit(edit) => edit.method = method,
+            Self::Project(project) => project.set_method(&method),
+        }
+    }
+
+    pub(crate) fn document(&self, model: &Model) -> Result<Document, EditError> {
+        match self {
+            Self::Edit(edit) => crate::exchange::import(edit, model),
+            Self::Project(project) => project.document(model),
+        }
+    }
+
+    pub(crate) fn camera(&self) -> Option<Camera> {
+        match self {
+            Self::Edit(_) => None,
+            Self::Project(project) => project.camera(),
+        }
+    }
+}
+
+impl From<EditFile> for Beginning {
+    fn from(edit: EditFile) -> Self {
+        Self::Edit(Box::new(edit))
+    }
+}
+
+impl From<Project> for Beginning {
+    fn from(project: Project) -> Self {
+        Self::Project(Box::new(project))
+    }
+}

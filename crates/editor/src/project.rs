@@ -1,0 +1,541 @@
+//! A `.pliant` project: the document as it stands, which mesh it belongs to, and where the eye was.
+//!
+//! JSON, with a version. The mesh is named by its path (for finding it) and by a hash of its geometry (for knowing it):
+//! the hash takes what vertex numbers mean (positions, triangles and the file's order), so the kept original of a file
+//! that was saved over is known again whatever it is called. Regions are ranges of the file's drawn vertices; only
+//! fields of numbers stand as base64 ([`crate::project_field`]).
+
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::{CONTINUITY_RANGE, Loose, Method};
+use pliant_mesh::{Cancel, Model, SurfaceVertex};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
+use crate::camera::UpAxis;
+use crate::document::{Document, Handle, HandleId, MirrorPlane, Paint, PivotPlace, Twin};
+use crate::edit_error::EditError;
+use crate::edit_node::Node;
+use crate::engine::region_input;
+use crate::exchange::with_pivot;
+use crate::history::bits_equal;
+use crate::method_form::{method_to_value, read_method};
+use crate::project_field::{Field, Ranges, for_each_drawn, ranges_where};
+use crate::region::{Region, displaced};
+use crate::{Camera, HandleSetup, HandleTransform, Reach, Rest, SOFT_RANGE, STIFFNESS_RANGE, Setup};
+
+/// The version of the project format that is read and written.
+const PROJECT_VERSION: u64 = 1;
+
+/// A project, as stored.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Project {
+    version: u64,
+    mesh: MeshReference,
+    method: Value,
+    loose: StoredLoose,
+    /// Painted free.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    region: Ranges,
+    /// Painted fixed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    fixed: Ranges,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    handles: Vec<StoredHandle>,
+    #[serde(default)]
+    next_handle: u16,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    stiffness: Option<Field>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    continuity: Option<Field>,
+    /// The rest shape's displacements from the file's, once a shape was applied.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    rest: Option<Field>,
+    #[serde(default)]
+    applied: bool,
+    /// The present shape's displacements from the rest shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    shape: Option<Field>,
+    /// Whether that is what the handles' transforms mean; else it is computed on opening.
+    settled: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    camera: Option<StoredCamera>,
+}
+
+/// Which mesh a project belongs to.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshReference {
+    /// Its path, relative to the project's folder where it stands below that; `None` is the built-in sample.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<String>,
+    /// What [`geometry_hash`] says of it.
+    pub geometry: String,
+}
+
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum StoredLoose {
+    Follow,
+    Rest,
+}
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredHandle {
+    id: u16,
+    name: String,
+    colour: [u8; 4],
+    vertices: Ranges,
+    #[serde(default, skip_serializing_if = "is_empty_object")]
+    transform: Value,
+    pivot: [f64; 3],
+    #[serde(default)]
+    pivot_place: StoredPivotPlace,
+    reach: StoredReach,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    soft: Option<f64>,
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    visible: bool,
+    #[serde(default, skip_serializing_if = "is_no")]
+    locked: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    twin: Option<StoredTwin>,
+}
+
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum StoredPivotPlace {
+    #[default]
+    Centroid,
+    Border,
+    Picked,
+}
+
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum StoredReach {
+    Radii(f64),
+    Length(f64),
+}
+
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredTwin {
+    handle: u16,
+    axis: usize,
+    at: f64,
+}
+
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredCamera {
+    target: [f64; 3],
+    distance: f64,
+    yaw_rad: f64,
+    pitch_rad: f64,
+    fov_y_rad: f64,
+    up: StoredUp,
+    scale: f64,
+}
+
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum StoredUp {
+    Y,
+    Z,
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn is_yes(flag: &bool) -> bool {
+    *flag
+}
+
+fn is_no(flag: &bool) -> bool {
+    !flag
+}
+
+fn is_empty_object(value: &Value) -> bool {
+    value.as_object().is_none_or(serde_json::Map::is_empty)
+}
+
+/// `sha256:` and the digest of what vertex numbers mean: the drawn positions' bits, the triangles and the file's
+/// vertices behind the drawn ones.
+pub fn geometry_hash(model: &Model) -> String {
+    let mut hash = Sha256::new();
+    let drawn = &model.drawn;
+    for count in [drawn.positions.len(), drawn.triangles.len(), drawn.file_vertex_count] {
+        hash.update((count as u64).to_le_bytes());
+    }
+    for position in &drawn.positions {
+        hash.update(position.to_array().map(f64::to_le_bytes).as_flattened());
+    }
+    for triangle in &drawn.triangles {
+        hash.update(triangle.map(|vertex| vertex.0.to_le_bytes()).as_flattened());
+    }
+    for vertex in &drawn.file_vertex {
+        hash.update(vertex.0.to_le_bytes());
+    }
+    hexadecimal(hash)
+}
+
+fn hexadecimal(hash: Sha256) -> String {
+    let digest = hash.finalize();
+    let digits = digest.iter().map(|byte| format!("{byte:02x}"));
+    format!("sha256:{}", digits.collect::<String>())
+}
+
+impl Project {
+    /// Whether a text is meant as a project: it names its mesh.
+    pub(crate) fn is_project(text: &str) -> bool {
+        #[derive(Deserialize)]
+        struct Named {
+            mesh: Option<serde::de::IgnoredAny>,
+        }
+        serde_json::from_str::<Named>(text).is_ok_and(|named| named.mesh.is_some())
+    }
+
+    /// Reads a project's JSON text.
+    ///
+    /// # Errors
+    /// Whatever the format does not have, by name and line.
+    pub fn parse(text: &str) -> Result<Self, EditError> {
+        #[derive(Deserialize)]
+        struct Versioned {
+            version: Option<Value>,
+        }
+        let read = |error: serde_json::Error| EditError::Project(error.to_string());
+        // The version first: another one may have members that this one lacks.
+        let versioned: Versioned = serde_json::from_str(text).map_err(read)?;
+        match versioned.version {
+            Some(version) if version.as_u64() == Some(PROJECT_VERSION) => {}
+            Some(version) => return Err(EditError::ProjectVersion(version.to_string())),
+            None => return Err(EditError::Project("it has no `version`: add it".to_owned())),
+        }
+        serde_json::from_str(text).map_err(read)
+    }
+
+    /// The project as JSON text with a newline at its end.
+    pub fn to_json(&self) -> String {
+        // Plain data with text keys: there is nothing that could fail.
+        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
+        text.push('\n');
+        text
+    }
+
+    /// The document as it stands.
+    pub fn of(document: &Document, model: &Model, camera: Option<&Camera>, mesh: MeshReference) -> Self {
+        let painted = |paint: Paint| ranges_where(model, |vertex| document.paint[vertex.index()] == paint);
+        let displacements = |field: &Arc<Vec<DVec3>>| {
+            let field = Arc::clone(field);
+            Field::of(model, move |vertex| {
+                let value = field[vertex.index()];
+                (!bits_equal(value, DVec3::ZERO)).then_some(value.to_array())
+            })
+        };
+        let numbers = |field: &Option<Arc<Vec<f64>>>, default: f64| {
+            let field = field.as_ref()?;
+            Field::of(model, |vertex| {
+                let value = field[vertex.index()];
+                (value != default).then_some([value])
+            })
+        };
+        Self {
+            version: PROJECT_VERSION,
+            mesh,
+            method: method_to_value(&document.method),
+            loose: match document.loose {
+                Loose::Follow => StoredLoose::Follow,
+                Loose::Rest => StoredLoose::Rest,
+            },
+            region: painted(Paint::Free),
+            fixed: painted(Paint::Fixed),
+            handles: document
+                .handles
+                .iter()
+                .map(|handle| stored_handle(handle, painted(Paint::Handle(handle.id))))
+                .collect(),
+            next_handle: document.next_handle,
+            stiffness: numbers(&document.stiffness, 1.0),
+            continuity: numbers(&document.continuity, *CONTINUITY_RANGE.end()),
+            rest: document.applied.then(|| displacements(&document.rest)).flatten(),
+            applied: document.applied,
+            shape: displacements(&document.from_rest),
+            settled: document.settled,
+            camera: camera.map(StoredCamera::of),
+        }
+    }
+
+    /// Which mesh it belongs to.
+    pub fn mesh(&self) -> &MeshReference {
+        &self.mesh
+    }
+
+    /// A digest of the document in it, whichever path its mesh has and wherever the eye was.
+    pub fn document_hash(&self) -> String {
+        let document = Self {
+            camera: None,
+            mesh: MeshReference {
+                path: None,
+                ..self.mesh.clone()
+            },
+            ..self.clone()
+        };
+        hexadecimal(Sha256::new().chain_update(document.to_json()))
+    }
+
+    /// Where the eye was, if that can be looked from.
+    pub(crate) fn camera(&self) -> Option<Camera> {
+        self.camera.map(StoredCamera::camera).filter(Camera::is_usable)
+    }
+
+    pub(crate) fn set_method(&mut self, method: &Method) {
+        self.method = method_to_value(method);
+        // The shape is another method's.
+        self.settled = false;
+    }
+
+    /// Whether the shape is the file's.
+    pub(crate) fn changes_nothing(&self) -> bool {
+        let is_at_rest = |handle: &StoredHandle| is_empty_object(&handle.transform);
+        self.rest.is_none() && self.handles.iter().all(is_at_rest)
+    }
+
+    /// The document on its mesh.
+    ///
+    /// # Errors
+    /// Another mesh; whatever can't be.
+    pub(crate) fn document(&self, model: &Model) -> Result<Document, EditError> {
+        let found = geometry_hash(model);
+        if found != self.mesh.geometry {
+            return Err(EditError::OtherMesh {
+                name: "the one at hand".to_owned(),
+                found: shortened(&found),
+                expected: shortened(&self.mesh.geometry),
+            });
+        }
+        let mut document = Document::new(model.surface.positions.len());
+        document.method = read_method(&Node::new(&self.method, "method"))?;
+        document.loose = match self.loose {
+            StoredLoose::Follow => Loose::Follow,
+            StoredLoose::Rest => Loose::Rest,
+        };
+        let paint = Arc::make_mut(&mut document.paint);
+        let mut put = |ranges: &Ranges, name: &str, value: Paint| {
+            for_each_drawn(ranges, name, model, |vertex| {
+                if let Some(vertex) = vertex {
+                    paint[vertex.index()] = value;
+                }
+                Ok(())
+            })
+        };
+        put(&self.region, "region", Paint::Free)?;
+        put(&self.fixed, "fixed", Paint::Fixed)?;
+        for stored in &self.handles {
+            let id = HandleId(stored.id);
+            if document.handles.iter().any(|handle| handle.id == id) || stored.id >= self.next_handle {
+                return Err(EditError::Project(format!(
+                    "the handle `{}` has the number {}, which is another's or none: number them below `next_handle`",
+                    stored.name, stored.id
+                )));
+            }
+            put(
+                &stored.vertices,
+                &format!("handles: {}", stored.name),
+                Paint::Handle(id),
+            )?;
+            document.handles.push(stored.handle()?);
+        }
+        document.next_handle = self.next_handle;
+        let count = model.surface.positions.len();
+        let numbers = |field: &Option<Field>, name: &str, default: f64, range: RangeInclusive<f64>| {
+            let Some(field) = field else { return Ok(None) };
+            let mut numbers = vec![default; count];
+            let mut refused = None;
+            field.read(name, model, |vertex, [value]| {
+                if !range.contains(&value) {
+                    refused = Some(value);
+                }
+                numbers[vertex.index()] = value;
+            })?;
+            match refused {
+                Some(value) => Err(EditError::Project(format!(
+                    "`{name}` has {value}, and goes from {} to {}: save it again",
+                    range.start(),
+                    range.end()
+                ))),
+                None => Ok(Some(Arc::new(numbers))),
+            }
+        };
+        document.stiffness = numbers(&self.stiffness, "stiffness", 1.0, STIFFNESS_RANGE)?;
+        let highest = *CONTINUITY_RANGE.end();
+        document.continuity = numbers(&self.continuity, "continuity", highest, CONTINUITY_RANGE)?;
+        let displacements = |field: &Option<Field>, name: &str| -> Result<Option<Arc<Vec<DVec3>>>, EditError> {
+            let Some(field) = field else { return Ok(None) };
+            let mut displacements = vec![DVec3::ZERO; count];
+            field.read(name, model, |vertex: SurfaceVertex, value| {
+                displacements[vertex.index()] = DVec3::from_array(value);
+            })?;
+            Ok(Some(Arc::new(displacements)))
+        };
+        document.applied = self.applied;
+        if let Some(rest) = displacements(&self.rest, "rest")? {
+            document.applied = true;
+            document.rest = rest;
+        }
+        if let Some(shape) = displacements(&self.shape, "shape")? {
+            document.from_rest = shape;
+        }
+        document.refresh_from_file();
+        document.settled = self.settled || !document.handles.iter().any(Handle::is_displaced);
+        Ok(document)
+    }
+
+    /// What the solver needs: the document's regions, from its own rest shape.
+    pub(crate) fn resolve(&self, model: &Model) -> Result<Setup, EditError> {
+        let document = self.document(model)?;
+        let input = region_input(&Arc::new(model.clone()), &document);
+        let region = Region::measure(&input, &Cancel::new()).unwrap_or_else(|_| Region::still(document.paint.len()));
+        Ok(Setup {
+            roles: region.roles.to_vec(),
+            handles: region
+                .handles
+                .iter()
+                .filter_map(|&id| document.handle(id))
+                .map(|handle| HandleSetup {
+                    name: handle.name.clone(),
+                    transform: with_pivot(handle),
+                    pivot: handle.pivot,
+                })
+                .collect(),
+            stiffness: document
+                .stiffness()
+                .map_or_else(|| vec![1.0; document.paint.len()], <[f64]>::to_vec),
+            soft: region
+                .handles
+                .iter()
+                .map(|&id| document.handle(id).and_then(|handle| handle.soft))
+                .collect(),
+            continuity: document.continuity().map_or_else(Vec::new, <[f64]>::to_vec),
+            loose: document.loose,
+            method: document.method.clone(),
+            rest: document.applied.then(|| Rest {
+                displacements: Arc::clone(&document.rest),
+                surface: Arc::new(displaced(&model.surface, &document.rest)),
+            }),
+        })
+    }
+}
+
+fn shortened(hash: &str) -> String {
+    hash.chars().take(19).chain("…".chars()).collect()
+}
+
+fn stored_handle(handle: &Handle, vertices: Ranges) -> StoredHandle {
+    StoredHandle {
+        id: handle.id.0,
+        name: handle.name.clone(),
+        colour: handle.colour,
+        vertices,
+        transform: handle.transform.to_value(),
+        pivot: handle.pivot.to_array(),
+        pivot_place: match handle.pivot_place {
+            PivotPlace::Centroid => StoredPivotPlace::Centroid,
+            PivotPlace::Border => StoredPivotPlace::Border,
+            PivotPlace::Picked => StoredPivotPlace::Picked,
+        },
+        reach: match handle.reach {
+            Reach::Radii(radii) => StoredReach::Radii(radii),
+            Reach::Length(length) => StoredReach::Length(length),
+        },
+        soft: handle.soft,
+        visible: handle.visible,
+        locked: handle.locked,
+        twin: handle.twin.map(|twin| StoredTwin {
+            handle: twin.handle.0,
+            axis: twin.plane.axis,
+            at: twin.plane.at,
+        }),
+    }
+}
+
+impl StoredHandle {
+    fn handle(&self) -> Result<Handle, EditError> {
+        let (StoredReach::Radii(size) | StoredReach::Length(size)) = self.reach;
+        let refused_weight = self.soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight));
+        if !(size.is_finite() && size >= 0.0) || refused_weight || self.twin.is_some_and(|twin| twin.axis > 2) {
+            return Err(EditError::Project(format!(
+                "the handle `{}` has a reach, a weight or a twin that can't be: save it again",
+                self.name
+            )));
+        }
+        let id = HandleId(self.id);
+        Ok(Handle {
+            colour: self.colour,
+            transform: match is_empty_object(&self.transform) {
+                true => HandleTransform::IDENTITY,
+                false => HandleTransform::read(&Node::new(&self.transform, &format!("handles: {}", self.name)))?,
+            },
+            pivot: DVec3::from_array(self.pivot),
+            pivot_place: match self.pivot_place {
+                StoredPivotPlace::Centroid => PivotPlace::Centroid,
+                StoredPivotPlace::Border => PivotPlace::Border,
+                StoredPivotPlace::Picked => PivotPlace::Picked,
+            },
+            reach: match self.reach {
+                StoredReach::Radii(radii) => Reach::Radii(radii),
+                StoredReach::Length(length) => Reach::Length(length),
+            },
+            soft: self.soft,
+            visible: self.visible,
+            locked: self.locked,
+            twin: self.twin.map(|twin| Twin {
+                handle: HandleId(twin.handle),
+                plane: MirrorPlane {
+                    axis: twin.axis,
+                    at: twin.at,
+                },
+            }),
+            ..Handle::new(id, self.name.clone())
+        })
+    }
+}
+
+impl StoredCamera {
+    fn of(camera: &Camera) -> Self {
+        Self {
+            target: camera.target.to_array(),
+            distance: camera.distance,
+            yaw_rad: camera.yaw_rad,
+            pitch_rad: camera.pitch_rad,
+            fov_y_rad: camera.fov_y_rad,
+            up: match camera.up {
+                UpAxis::Y => StoredUp::Y,
+                UpAxis::Z => StoredUp::Z,
+            },
+            scale: camera.scale,
+        }
+    }
+
+    fn camera(self) -> Camera {
+        Camera {
+            target: DVec3::from_array(self.target),
+            distance: self.distance,
+            yaw_rad: self.yaw_rad,
+            pitch_rad: self.pitch_rad,
+            fov_y_rad: self.fov_y_rad,
+            up: match self.up {
+                StoredUp::Y => UpAxis::Y,
+                StoredUp::Z => UpAxis::Z,
+            },
+            scale: self.scale,
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! A field over the vertices as a project stores it: which vertices, as ranges of the file's drawn vertices, and their
+//! numbers as base64 of little-endian f64, since text would be three times as long and slow to read.
+//!
+//! Drawn vertices are the file's own order, so that a project stays readable when welding changes; twins that were
+//! welded share one value, which stands at the lowest of them.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use pliant_mesh::{Model, SurfaceVertex};
+use serde::{Deserialize, Serialize};
+
+use crate::edit_error::EditError;
+use crate::exchange::ranges_of;
+
+/// First and last drawn vertex of runs, ascending.
+pub(crate) type Ranges = Vec<[u32; 2]>;
+
+/// Values at some vertices.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Field {
+    vertices: Ranges,
+    f64_base64: String,
+}
+
+impl Field {
+    /// The values, `N` numbers each, of the vertices that `value` gives some for; `None` if it gives none.
+    pub(crate) fn of<const N: usize>(
+        model: &Model,
+        mut value: impl FnMut(SurfaceVertex) -> Option<[f64; N]>,
+    ) -> Option<Self> {
+        let mut is_stored = vec![false; model.drawn.positions.len()];
+        let mut bytes = Vec::new();
+        let mut is_seen = vec![false; model.surface.positions.len()];
+        for (drawn, vertex) in model.surface_of_drawn.iter().enumerate() {
+            let Some(vertex) = *vertex else { continue };
+            if std::mem::replace(&mut is_seen[vertex.index()], true) {
+                continue;
+            }
+            if let Some(numbers) = value(vertex) {
+                is_stored[drawn] = true;
+                bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+            }
+        }
+        (!bytes.is_empty()).then(|| Self {
+            vertices: ranges_of(&is_stored),
+            f64_base64: STANDARD.encode(bytes),
+        })
+    }
+
+    /// Gives every stored vertex and its numbers to `take`.
+    ///
+    /// # Errors
+    /// A vertex that the file does not have, too many or too few numbers, or one that is not finite.
+    pub(crate) fn read<const N: usize>(
+        &self,
+        name: &str,
+        model: &Model,
+        mut take: impl FnMut(SurfaceVertex, [f64; N]),
+    ) -> Result<(), EditError> {
+        let bytes = STANDARD
+            .decode(&self.f64_base64)
+            .map_err(|error| EditError::Project(format!("`{name}` is no base64 ({error}): save it again")))?;
+        let mut numbers = bytes
+            .chunks_exact(8)
+            .map(|bytes| bytes.try_into().map_or(f64::NAN, f64::from_le_bytes));
+        let stored: u64 = self
+            .vertices
+            .iter()
+            .map(|[a, b]| u64::from(b.saturating_sub(*a)) + 1)
+            .sum();
+        if bytes.len() as u64 != stored * (8 * N) as u64 {
+            return Err(EditError::Project(format!(
+                "`{name}` has {} bytes for {stored} vertices, and each takes {}: save it again",
+                bytes.len(),
+                8 * N
+            )));
+        }
+        for_each_drawn(&self.vertices, name, model, |vertex| {
+            let values = std::array::from_fn(|_| numbers.next().unwrap_or(f64::NAN));
+            match vertex {
+                _ if values.iter().any(|number: &f64| !number.is_finite()) => Err(EditError::Project(format!(
+                    "`{name}` has a number that is not finite: save it again"
+                ))),
+                Some(vertex) => {
+                    take(vertex, values);
+                    Ok(())
+                }
+                None => Ok(()),
+            }
+        })
+    }
+}
+
+/// Every drawn vertex whose surface vertex is chosen.
+pub(crate) fn ranges_where(model: &Model, is_chosen: impl Fn(SurfaceVertex) -> bool) -> Ranges {
+    let chosen: Vec<bool> = model
+        .surface_of_drawn
+        .iter()
+        .map(|vertex| vertex.is_some_and(&is_chosen))
+        .collect();
+    ranges_of(&chosen)
+}
+
+/// Calls `visit` for the surface vertex behind each drawn vertex of the ranges.
+pub(crate) fn for_each_drawn(
+    ranges: &[[u32; 2]],
+    name: &str,
+    model: &Model,
+    mut visit: impl FnMut(Option<SurfaceVertex>) -> Result<(), EditError>,
+) -> Result<(), EditError> {
+    let count = model.surface_of_drawn.len();
+    for &[first, last] in ranges {
+        if first > last || last as usize >= count {
+            return Err(EditError::Project(format!(
+                "`{name}` names the vertices {first} to {last}, and the mesh has {count}: save it again"
+            )));
+        }
+        for vertex in &model.surface_of_drawn[first as usize..=last as usize] {
+            visit(*vertex)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,60 @@
+//! KTX2 with Basis Universal in it, as glTF's `KHR_texture_basisu` allows: one image of ETC1S or UASTC blocks.
+//!
+//! The header is checked here before the reader sees it, since that allocates what the header says.
+
+use basisu::{DecodeFlags, SourceFormat, TargetFormat, Transcoder};
+
+use crate::image::LONGEST_SIDE_PX;
+use crate::{ImageError, Rgba8};
+
+const LEVELS_AT: usize = 80;
+const LEVEL_BYTES: usize = 24;
+
+/// Bytes of a block of 4 by 4 pixels.
+const BLOCK_BYTES: u64 = 16;
+
+/// The first level of a KTX2 file.
+pub(crate) fn decode(encoded: &[u8]) -> Result<Rgba8, ImageError> {
+    let failed = |reason: &str| ImageError {
+        reason: format!("KTX2: {reason}"),
+    };
+    let [width, height] = checked_size(encoded).map_err(failed)?;
+    let image = Transcoder::new(encoded).map_err(|_| failed("it holds no whole Basis Universal image"))?;
+    if !matches!(image.source_format(), SourceFormat::Etc1s | SourceFormat::UastcLdr) || image.is_video() {
+        return Err(failed("it holds neither ETC1S nor UASTC"));
+    }
+    let pixels = image
+        .transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE)
+        .map_err(|error| failed(&format!("{error:?}")))?;
+    Ok(Rgba8 { width, height, pixels })
+}
+
+/// The image's size in pixels, if the file is one image and has the bytes that its levels tell of.
+fn checked_size(encoded: &[u8]) -> Result<[u32; 2], &'static str> {
+    let word = |at: usize| Some(u32::from_le_bytes(*encoded.get(at..)?.first_chunk()?));
+    let long = |at: usize| Some(u64::from_le_bytes(*encoded.get(at..)?.first_chunk()?));
+    let header = (|| Some([word(20)?, word(24)?, word(28)?, word(32)?, word(36)?, word(40)?]))();
+    let Some([width, height, depth, layers, faces, levels]) = header else {
+        return Err("its header is cut short");
+    };
+    if !(1..=LONGEST_SIDE_PX).contains(&width) || !(1..=LONGEST_SIDE_PX).contains(&height) {
+        return Err("it has no pixels, or more than are read");
+    }
+    if depth > 0 || layers > 1 || faces != 1 || !(1..=16).contains(&levels) {
+        return Err("it is more than one image");
+    }
+    for level in 0..levels {
+        let at = LEVELS_AT + level as usize * LEVEL_BYTES;
+        let (Some(offset), Some(length), Some(unpacked)) = (long(at), long(at + 8), long(at + 16)) else {
+            return Err("its header is cut short");
+        };
+        let blocks = |side: u32| u64::from((side >> level).max(1).div_ceil(4));
+        let is_there = offset
+            .checked_add(length)
+            .is_some_and(|end| end <= encoded.len() as u64);
+        if !is_there || unpacked > blocks(width) * blocks(height) * BLOCK_BYTES {
+            return Err("its levels are not what its header tells");
+        }
+    }
+    Ok([width, height])
+}

@@ -1,0 +1,298 @@
+//! Compressed glTF: meshopt and Draco are read as what they were made from, come back byte for byte, and an edit writes
+//! out no more than it must.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
+
+mod gltf_maker;
+
+use glam::DVec3;
+use gltf_maker::{
+    Folder, Maker, Shape, assert_near, bent, grid, moved, open, refusal, saved_glb, sphere, split, try_open, try_save,
+};
+use meshoptimizer_rs::Workspace;
+use meshoptimizer_rs::codec::{
+    IndexEncoding, VertexEncoding, encode_filter_oct, encode_index_buffer, encode_vertex_buffer,
+};
+use pliant_io::{Format, Placement};
+use serde_json::{Value, json};
+
+/// A file of `shape` in which every view is compressed and stands in for a buffer without bytes.
+fn with_meshopt(shape: &Shape, extension: &str, version: u8) -> Maker {
+    let plain = Maker::of(shape);
+    let mut out = plain.clone();
+    out.bin.clear();
+    let mut workspace = Workspace::default();
+    let mut offset = 0;
+    for (number, view) in plain.root["bufferViews"].as_array().unwrap().iter().enumerate() {
+        let whole = |key: &str| view[key].as_u64().unwrap() as usize;
+        let bytes = &plain.bin[whole("byteOffset")..][..whole("byteLength")];
+        let accessor = &plain.root["accessors"][number];
+        let count = accessor["count"].as_u64().unwrap() as usize;
+        let stride = bytes.len() / count;
+        let (mode, packed) = if accessor["type"] == "SCALAR" {
+            let indices: Vec<u32> = bytes
+                .chunks(4)
+                .map(|b| u32::from_le_bytes(b.try_into().unwrap()))
+                .collect();
+            let encoding = IndexEncoding::default();
+            let packed = encode_index_buffer(&indices, encoding, &mut workspace);
+            ("TRIANGLES", packed.unwrap())
+        } else {
+            let encoding = VertexEncoding::new(version, 2).unwrap();
+            (
+                "ATTRIBUTES",
+                encode_vertex_buffer(bytes, count, stride, encoding, &mut workspace).unwrap(),
+            )
+        };
+        let start = out.bin.len();
+        out.bin.extend(&packed);
+        out.bin.resize(out.bin.len().next_multiple_of(4), 0);
+        let mut view = json!({
+            "buffer": 1, "byteOffset": offset, "byteLength": bytes.len(),
+            "extensions": { extension: {
+                "buffer": 0, "byteOffset": start, "byteLength": packed.len(), "byteStride": stride, "count": count, "mode": mode,
+            } },
+        });
+        if mode == "ATTRIBUTES" {
+            view["byteStride"] = stride.into();
+        }
+        out.root["bufferViews"][number] = view;
+        offset += bytes.len();
+    }
+    out.root["buffers"] = json!([
+        { "byteLength": out.bin.len() }, { "byteLength": offset, "extensions": { extension: { "fallback": true } } },
+    ]);
+    out.root["extensionsUsed"] = json!([extension]);
+    out.root["extensionsRequired"] = json!([extension]);
+    out
+}
+
+/// Corners as positions, each triangle turned so that its least corner comes first.
+fn triangles(opened: &pliant_io::Opened) -> Vec<[[u64; 3]; 3]> {
+    let drawn = &opened.drawn;
+    let of_triangle = |corners: &[pliant_mesh::DrawnVertex; 3]| {
+        let mut corners = corners.map(|v| drawn.positions[v.index()].to_array().map(f64::to_bits));
+        let least = (0..3).min_by_key(|&k| corners[k]).unwrap();
+        corners.rotate_left(least);
+        corners
+    };
+    drawn.triangles.iter().map(of_triangle).collect()
+}
+
+fn json_of(glb: &[u8]) -> Value {
+    serde_json::from_str(&split(glb).0).unwrap()
+}
+
+#[test]
+fn meshopt_reads_as_what_it_was_made_from() {
+    for shape in [grid(4), sphere(9)] {
+        let plain = open(&Maker::of(&shape).glb());
+        for (extension, version) in [
+            ("EXT_meshopt_compression", 0),
+            ("KHR_meshopt_compression", 0),
+            ("KHR_meshopt_compression", 1),
+        ] {
+            let compressed = with_meshopt(&shape, extension, version).glb();
+            let opened = open(&compressed);
+            assert_eq!(opened.drawn.positions, plain.drawn.positions);
+            assert_eq!(triangles(&opened), triangles(&plain), "{extension} {version}");
+            let looks = [opened.scene.appearance(), plain.scene.appearance()];
+            assert_eq!(looks[0].normals, looks[1].normals);
+            assert_eq!(looks[0].uvs, looks[1].uvs);
+        }
+    }
+}
+
+#[test]
+fn an_edit_of_meshopt_adds_what_changed_and_leaves_the_rest_compressed() {
+    let maker = with_meshopt(&sphere(9), "EXT_meshopt_compression", 0);
+    let before = maker.glb();
+    let opened = open(&before);
+    assert!(saved_glb(&opened, &opened.drawn.positions) == before);
+    let positions = moved(&opened, |v| v % 2 == 0, bent);
+    let after = saved_glb(&opened, &positions);
+    let again = open(&after);
+    assert_near(&again.drawn.positions, &positions, 4.0);
+    assert_eq!(again.scene.appearance().uvs, opened.scene.appearance().uvs);
+    let (old, new) = (json_of(&before), json_of(&after));
+    let views = old["bufferViews"].as_array().unwrap().len();
+    assert_eq!(
+        old["bufferViews"].as_array().unwrap(),
+        &new["bufferViews"].as_array().unwrap()[..views]
+    );
+    assert_eq!(old["extensionsRequired"], new["extensionsRequired"]);
+    for (accessor, changes) in [(0, true), (1, true), (2, true), (3, false), (4, false)] {
+        assert_eq!(
+            old["accessors"][accessor] != new["accessors"][accessor],
+            changes,
+            "{accessor}"
+        );
+    }
+    let (old_bin, new_bin) = (split(&before).1, split(&after).1);
+    assert!(new_bin.starts_with(&old_bin), "new bytes stand behind the others");
+    // What was edited once is edited again in place.
+    let twice = moved(&again, |v| v % 3 == 0, bent);
+    let third = saved_glb(&again, &twice);
+    assert_eq!(split(&third).1.len(), new_bin.len());
+    assert_near(&open(&third).drawn.positions, &twice, 4.0);
+}
+
+#[test]
+fn meshopt_is_packed_and_unpacked_with_its_placeholder() {
+    let maker = with_meshopt(&grid(4), "EXT_meshopt_compression", 0);
+    let opened = open(&maker.glb());
+    for positions in [opened.drawn.positions.clone(), moved(&opened, |_| true, bent)] {
+        let gltf = try_save(&opened, &positions, "out.gltf", Placement::OtherFolder).unwrap();
+        let folder = Folder(
+            gltf.files
+                .iter()
+                .map(|file| (file.name.clone(), file.bytes.clone()))
+                .collect(),
+        );
+        let unpacked = try_open(&gltf.files[0].bytes, Format::Gltf, &folder).unwrap();
+        assert_near(&unpacked.drawn.positions, &positions, 4.0);
+        let packed = try_save(
+            &unpacked,
+            &unpacked.drawn.positions,
+            "again.glb",
+            Placement::OtherFolder,
+        )
+        .unwrap();
+        let again = open(&packed.files[0].bytes);
+        assert_eq!(again.drawn.positions, unpacked.drawn.positions);
+        assert_eq!(again.drawn.triangles, opened.drawn.triangles);
+    }
+}
+
+#[test]
+fn a_filter_is_applied_behind_the_codec() {
+    let shape = sphere(9);
+    let mut maker = Maker::of(&shape);
+    let lanes: Vec<f32> = shape.normals.iter().flat_map(|&[x, y, z]| [x, y, z, 0.0]).collect();
+    let mut workspace = Workspace::default();
+    let count = shape.normals.len();
+    let filtered = encode_filter_oct(count, 8, 16, &lanes, &mut workspace).unwrap();
+    let packed = encode_vertex_buffer(&filtered, count, 8, VertexEncoding::new(0, 2).unwrap(), &mut workspace).unwrap();
+    let start = maker.view(&packed);
+    let place = maker.root["bufferViews"][start]["byteOffset"].clone();
+    maker.root["bufferViews"][start] = json!({
+        "buffer": 1, "byteOffset": 0, "byteLength": 8 * count, "byteStride": 8,
+        "extensions": { "EXT_meshopt_compression": {
+            "buffer": 0, "byteOffset": place, "byteLength": packed.len(), "byteStride": 8, "count": count,
+            "mode": "ATTRIBUTES", "filter": "OCTAHEDRAL",
+        } },
+    });
+    maker.root["accessors"][1] =
+        json!({ "bufferView": start, "componentType": 5122, "normalized": true, "count": count, "type": "VEC3" });
+    let buffers = maker.root["buffers"].as_array_mut().unwrap();
+    buffers.push(json!({ "byteLength": 8 * count }));
+    let normals = open(&maker.glb()).scene.appearance().normals.unwrap();
+    for (found, wanted) in normals.iter().zip(&shape.normals) {
+        let off = (0..3).map(|k| (found[k] - wanted[k]).abs()).fold(0.0, f32::max);
+        assert!(off < 1e-3, "{found:?} {wanted:?}");
+    }
+}
+
+const DRACO: [&[u8]; 2] = [
+    include_bytes!("corpus/curved-square-edgebreaker.drc"),
+    include_bytes!("corpus/curved-square-sequential.drc"),
+];
+
+/// The curved square of [`grid`], compressed; shown by `nodes` meshes of its own.
+fn with_draco(data: &[u8], meshes: usize) -> Maker {
+    let mut maker = Maker::default();
+    for mesh in 0..meshes {
+        let view = maker.view(data);
+        let first = 4 * mesh;
+        for (kind, component, count) in [
+            ("VEC3", 5126, 16),
+            ("VEC3", 5126, 16),
+            ("VEC2", 5126, 16),
+            ("SCALAR", 5123, 54),
+        ] {
+            maker.accessor(json!({ "componentType": component, "count": count, "type": kind }));
+        }
+        maker.root["accessors"][first]["min"] = json!([0.0, 0.0, -1.0]);
+        maker.root["accessors"][first]["max"] = json!([1.0, 1.0, 1.0]);
+        let attributes = json!({ "POSITION": first, "NORMAL": first + 1, "TEXCOORD_0": first + 2 });
+        maker.mesh_of(vec![json!({
+            "attributes": attributes, "indices": first + 3,
+            "extensions": { "KHR_draco_mesh_compression": {
+                "bufferView": view, "attributes": { "POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2 },
+            } },
+        })]);
+        maker.node(json!({ "mesh": mesh }));
+    }
+    maker.root["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
+    maker.root["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    maker
+}
+
+#[test]
+fn draco_reads_as_what_it_was_made_from() {
+    let wanted = grid(3);
+    for data in DRACO {
+        let opened = open(&with_draco(data, 1).glb());
+        let looks = opened.scene.appearance();
+        assert_eq!(opened.drawn.triangles.len(), wanted.triangles.len());
+        // The codec renumbers vertices and quantises to 11 bits or more: each has its original near it.
+        for (v, position) in opened.drawn.positions.iter().enumerate() {
+            let near = |k: &usize| DVec3::from(wanted.positions[*k].map(f64::from)).distance(*position) < 2e-3;
+            let twin = (0..16).find(near).expect("a vertex that is not the square's");
+            let close = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.02);
+            assert!(close(&looks.normals.as_ref().unwrap()[v], &wanted.normals[twin]));
+            assert!(close(&looks.uvs.as_ref().unwrap()[v], &wanted.uvs[twin]));
+        }
+    }
+}
+
+#[test]
+fn an_edit_of_draco_writes_its_mesh_out_and_no_other() {
+    for data in DRACO {
+        for meshes in [1, 2] {
+            let before = with_draco(data, meshes).glb();
+            let opened = open(&before);
+            assert!(saved_glb(&opened, &opened.drawn.positions) == before);
+            let positions = moved(&opened, |v| v < 16 && v % 2 == 0, bent);
+            let after = saved_glb(&opened, &positions);
+            let again = open(&after);
+            assert_near(&again.drawn.positions, &positions, 4.0);
+            assert_eq!(again.drawn.triangles, opened.drawn.triangles);
+            assert_eq!(again.scene.appearance().uvs, opened.scene.appearance().uvs);
+            let new = json_of(&after);
+            assert!(new["meshes"][0]["primitives"][0].get("extensions").is_none());
+            assert_eq!(new.get("extensionsRequired").is_some(), meshes == 2, "{new}");
+            assert_eq!(new["meshes"].get(1), json_of(&before)["meshes"].get(1));
+            // Plain now, so that the next edit changes bytes in place.
+            let twice = moved(&again, |v| v < 16, bent);
+            let third = saved_glb(&again, &twice);
+            assert_eq!(split(&third).1.len(), split(&after).1.len());
+            assert_near(&open(&third).drawn.positions, &twice, 4.0);
+        }
+    }
+}
+
+#[test]
+fn nodes_that_share_a_draco_mesh_part_company() {
+    let mut maker = with_draco(DRACO[0], 1);
+    maker.node(json!({ "mesh": 0, "translation": [5, 0, 0] }));
+    let opened = open(&maker.glb());
+    let positions = moved(&opened, |v| v >= 16, bent);
+    let again = open(&saved_glb(&opened, &positions));
+    assert_near(&again.drawn.positions, &positions, 8.0);
+}
+
+#[test]
+fn broken_compressed_data_is_refused_in_a_sentence() {
+    let mut draco = with_draco(DRACO[0], 1);
+    draco.bin[60..].fill(0xa5);
+    assert!(refusal(&draco.glb()).contains("mesh 0 primitive 0 has Draco data"));
+    let mut draco = with_draco(DRACO[0], 1);
+    draco.root["accessors"][3]["count"] = 57.into();
+    assert!(refusal(&draco.glb()).contains("18 triangles where accessor 3 has 57 corners"));
+    let mut meshopt = with_meshopt(&grid(3), "EXT_meshopt_compression", 0);
+    meshopt.bin[..40].fill(0);
+    assert!(refusal(&meshopt.glb()).contains("compressed buffer view 0, which is broken"));
+    let mut meshopt = with_meshopt(&grid(3), "EXT_meshopt_compression", 0);
+    meshopt.root["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["count"] = 4_000_000_000_u64.into();
+    assert!(refusal(&meshopt.glb()).contains("more than a file of its size can hold"));
+}

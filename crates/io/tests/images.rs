@@ -1,0 +1,73 @@
+//! Images of every kind that is read, told by their first bytes; what is broken is refused in a sentence.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
+
+use std::io::Cursor;
+
+use image::{ImageFormat, RgbaImage};
+use pliant_io::decode_image;
+
+/// Red rises to the right, green downwards; the left half is opaque.
+fn ramp(x: u32, y: u32) -> [u8; 4] {
+    [(x * 16) as u8, (y * 16) as u8, 128, if x < 8 { 255 } else { 64 }]
+}
+
+/// Each kind with the pixels that it must give.
+fn encoded() -> Vec<(&'static str, Vec<u8>, RgbaImage)> {
+    let picture = RgbaImage::from_fn(16, 16, |x, y| image::Rgba(ramp(x, y)));
+    let written = |format| {
+        let mut out = Cursor::new(Vec::new());
+        picture.write_to(&mut out, format).unwrap();
+        out.into_inner()
+    };
+    // Basis Universal is lossy: its pixels are those of the reference transcoder.
+    let reference = |png: &[u8]| image::load_from_memory(png).unwrap().into_rgba8();
+    vec![
+        ("PNG", written(ImageFormat::Png), picture.clone()),
+        ("WebP", written(ImageFormat::WebP), picture.clone()),
+        (
+            "KTX2, ETC1S",
+            include_bytes!("corpus/ramp-etc1s.ktx2").to_vec(),
+            reference(include_bytes!("corpus/ramp-etc1s.png")),
+        ),
+        (
+            "KTX2, UASTC",
+            include_bytes!("corpus/ramp-uastc.ktx2").to_vec(),
+            reference(include_bytes!("corpus/ramp-uastc.png")),
+        ),
+    ]
+}
+
+#[test]
+fn every_kind_gives_its_pixels() {
+    for (name, bytes, wanted) in encoded() {
+        let decoded = decode_image(&bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!((decoded.width, decoded.height), (16, 16), "{name}");
+        assert!(decoded.pixels == *wanted.as_raw(), "{name}");
+    }
+}
+
+#[test]
+fn broken_images_are_refused_in_a_sentence_and_never_panic() {
+    let mut random = 1_u64;
+    let mut next = move |below: usize| {
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (random >> 33) as usize % below
+    };
+    for (name, bytes, _) in encoded() {
+        for length in (0..bytes.len()).step_by(7) {
+            if let Err(error) = decode_image(&bytes[..length]) {
+                assert!(!error.to_string().contains('\n'), "{name}");
+            }
+        }
+        for _ in 0..400 {
+            let mut broken = bytes.clone();
+            for _ in 0..=next(4) {
+                let at = next(broken.len());
+                broken[at] = next(256) as u8;
+            }
+            let _ = decode_image(&broken);
+        }
+    }
+}

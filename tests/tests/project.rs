@@ -1,0 +1,131 @@
+//! A `.pliant` project on the command line.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "tests fail by panicking")]
+
+use std::ffi::OsStr;
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_app::engine::Loaded;
+use pliant_editor::{Command, Editor, Event, HandleTransform, InlineExecutor, MeshReference, geometry_hash};
+use pliant_mesh::shapes;
+use pliant_tests::{Ended, Folder, open, run};
+
+fn apply(file: &Path, edit: &Path, output: &Path) -> Ended {
+    run([
+        "apply".as_ref(),
+        file.as_os_str(),
+        OsStr::new("--edit"),
+        edit.as_os_str(),
+        "--output".as_ref(),
+        output.as_os_str(),
+    ])
+}
+
+/// An editor with the bar open and its end a handle, from an edit.
+fn editor(loaded: &Loaded) -> (Editor, InlineExecutor) {
+    let jobs = InlineExecutor::new();
+    let mut editor = Editor::new(Box::new(jobs.clone()));
+    let edit = pliant_editor::EditFile::parse(
+        r#"{"version": 1, "method": {"name": "bilaplacian"},
+            "fixed": {"slab": {"axis": "longest", "from": 0.0, "to": 0.1}},
+            "handles": [{"name": "end", "select": {"slab": {"axis": "longest", "from": 0.9, "to": 1.0}}}]}"#,
+    )
+    .unwrap();
+    editor.handle(Event::Opened {
+        model: Arc::clone(&loaded.model),
+        name: "bar".to_owned(),
+        beginning: Some(edit.into()),
+    });
+    drain(&mut editor, &jobs);
+    (editor, jobs)
+}
+
+fn drain(editor: &mut Editor, jobs: &InlineExecutor) {
+    while let Some(done) = jobs.run_next() {
+        editor.handle(Event::JobDone(done));
+    }
+}
+
+fn move_end(editor: &mut Editor, jobs: &InlineExecutor, by: DVec3) {
+    let handle = editor.document().handles()[0].clone();
+    let transform = HandleTransform::IDENTITY;
+    let HandleTransform::Trs { rotation, scale, .. } = transform else {
+        unreachable!()
+    };
+    let transform = HandleTransform::Trs {
+        translation: by,
+        rotation,
+        scale,
+        pivot: None,
+    };
+    editor.handle(Event::Command(Command::SetHandleTransform(handle.id, transform)));
+    drain(editor, jobs);
+}
+
+#[test]
+fn a_project_bends_its_mesh_to_the_shape_that_was_on_the_screen_with_what_was_applied() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("bar.off", &shapes::bar(12, 3, 3));
+    let loaded = open(&file);
+    let (mut editor, jobs) = editor(&loaded);
+    move_end(&mut editor, &jobs, DVec3::new(0.0, 0.4, 0.0));
+    editor.handle(Event::Command(Command::Apply));
+    drain(&mut editor, &jobs);
+    move_end(&mut editor, &jobs, DVec3::new(0.1, 0.0, 0.3));
+    let mesh = MeshReference {
+        path: Some("bar.off".to_owned()),
+        geometry: geometry_hash(&loaded.model),
+    };
+    let text = editor.snapshot().unwrap().project(mesh).to_json();
+    let project = folder.write("bar.pliant", &text);
+    let output = folder.at("out.off");
+    apply(&file, &project, &output).done();
+    let mut shown = Vec::new();
+    loaded.model.drawn_positions(editor.view().displacements, &mut shown);
+    let bent = open(&output);
+    let size = loaded.model.bounds().unwrap().diagonal();
+    for (a, b) in bent.model.drawn.positions.iter().zip(&shown) {
+        assert!(a.distance(*b) < 1e-6 * size, "{a} {b}");
+    }
+    let rest = DVec3::new(0.1, 0.4, 0.3);
+    let farthest = editor
+        .document()
+        .from_file()
+        .iter()
+        .map(|d| d.length())
+        .fold(0.0, f64::max);
+    assert!((farthest - rest.length()).abs() < 0.2, "both bends are in it");
+
+    // At rest, and nothing applied: the file's own bytes.
+    let (fresh, _) = self::editor(&loaded);
+    let mesh = MeshReference {
+        path: None,
+        geometry: geometry_hash(&loaded.model),
+    };
+    let text = fresh.snapshot().unwrap().project(mesh).to_json();
+    let project = folder.write("rest.pliant", &text);
+    let output = folder.at("same.off");
+    apply(&file, &project, &output).done();
+    assert_eq!(std::fs::read(&file).unwrap(), std::fs::read(&output).unwrap());
+}
+
+#[test]
+fn a_project_on_another_mesh_and_a_project_as_the_mesh_are_refused() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("bar.off", &shapes::bar(12, 3, 3));
+    let other = folder.write_mesh("other.off", &shapes::bar(13, 3, 3));
+    let loaded = open(&file);
+    let (editor, _) = editor(&loaded);
+    let mesh = MeshReference {
+        path: None,
+        geometry: geometry_hash(&loaded.model),
+    };
+    let project = folder.write("bar.pliant", editor.snapshot().unwrap().project(mesh).to_json());
+    let output = folder.at("out.off");
+    apply(&other, &project, &output).refused(1, &["bar.pliant", "another mesh"]);
+    apply(&project, &project, &output).refused(1, &["bar.pliant", "--edit"]);
+    let broken = folder.write("broken.pliant", "{\"mesh\": {}, \"version\": 1}");
+    apply(&file, &broken, &output).refused(1, &["broken.pliant", "project"]);
+    assert!(!output.exists());
+}
