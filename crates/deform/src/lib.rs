@@ -35,5 +35,5 @@ pub use method::Method;
 pub use operators::Laplacian;
 pub use primo::Primo;
 pub use problem::{Loose, Problem, Role};
-pub use shell::{Bilaplacian, Discretisation, HandleBases, ShellOrder};
+pub use shell::{Bilaplacian, Discretisation, HandleBases, ShellOrder, Triangulation};
 pub use sparse::Ordering;

@@ -13,7 +13,13 @@
 //! millionth of their component's mean. Stiffness scales each *face* by the mean of its corners, which keeps that law;
 //! scaling edges would break it.
 
+pub(crate) mod eigen;
 pub(crate) mod face_terms;
+mod flips;
+mod intrinsic;
+pub(crate) mod net;
+mod principal;
+mod tufted;
 
 use std::collections::BTreeMap;
 
@@ -22,6 +28,7 @@ use rayon::prelude::*;
 
 use crate::Discretisation;
 use crate::operators::face_terms::{FaceTerms, Metric};
+use crate::operators::net::{Graph, Net};
 
 /// Rows or faces that one task takes: fixed, so that results don't depend on the number of threads.
 pub(crate) const CHUNK: usize = 1024;
@@ -65,23 +72,23 @@ impl Laplacian {
         rows: &[u32],
         discretisation: Discretisation,
     ) -> Self {
-        Self::with_faces_scaled(surface, topology, stiffness, rows, discretisation, &|_| 1.0)
+        let net = Net::of_surface(surface, topology);
+        Self::on(&net, stiffness, rows, discretisation, &|_, _| 1.0)
     }
 
-    /// As [`Laplacian::discretised`], with the weights of each face, not its areas, times what `factor` gives for its
-    /// corners, from 0.
-    pub(crate) fn with_faces_scaled(
-        surface: &Surface,
-        topology: &Topology,
+    /// The operator on any triangles, the weights of each, not its areas, times what `factor` gives for its corners and
+    /// lengths, from 0.
+    pub(crate) fn on(
+        net: &Net,
         stiffness: &[f64],
         rows: &[u32],
         discretisation: Discretisation,
-        factor: &(dyn Fn([SurfaceVertex; 3]) -> f64 + Sync),
+        factor: &(dyn Fn([SurfaceVertex; 3], [f64; 3]) -> f64 + Sync),
     ) -> Self {
-        let mut local_of = vec![ABSENT; surface.positions.len()];
+        let mut local_of = vec![ABSENT; net.vertex_count()];
         for &row in rows {
             local_of[row as usize] = 0;
-            for neighbour in topology.neighbours(SurfaceVertex(row)) {
+            for neighbour in net.neighbours(SurfaceVertex(row)) {
                 local_of[neighbour.index()] = 0;
             }
         }
@@ -98,8 +105,7 @@ impl Laplacian {
         for (local, &vertex) in vertices.iter().enumerate() {
             if next_row.next_if_eq(&&vertex).is_some() {
                 neighbours.extend(
-                    topology
-                        .neighbours(SurfaceVertex(vertex))
+                    net.neighbours(SurfaceVertex(vertex))
                         .iter()
                         .map(|n| local_of[n.index()]),
                 );
@@ -112,32 +118,27 @@ impl Laplacian {
             neighbours,
             ..Self::default()
         };
-        let metric = Metric::of(surface, discretisation);
+        let metric = Metric::of(net, discretisation);
+        let share = net.share();
         let face = |face: u32| {
-            let corners = surface.triangles[face as usize];
-            let mut terms = metric.face(surface, stiffness, corners);
-            let factor = factor(corners);
+            let (corners, lengths) = (net.corners(face), net.lengths(face));
+            let mut terms = metric.face(stiffness, corners, lengths);
+            let factor = share * factor(corners, lengths);
             terms.half_cotangents = terms.half_cotangents.map(|weight| factor * weight);
+            terms.areas = terms.areas.map(|area| share * area);
             terms
         };
-        operator.fill(surface, topology, &local_of, metric.common_area(), face);
+        operator.fill(net, &local_of, metric.common_area(), face);
         operator
     }
 
     /// Cotangents per face first, then gathered per row: both sides of an edge add up the same numbers in the same
     /// order, so the weights are symmetric to the last bit.
-    fn fill(
-        &mut self,
-        surface: &Surface,
-        topology: &Topology,
-        local_of: &[u32],
-        common_area: Option<f64>,
-        face: impl Fn(u32) -> FaceTerms + Sync,
-    ) {
-        let mut needed = vec![false; surface.triangles.len()];
+    fn fill(&mut self, net: &Net, local_of: &[u32], common_area: Option<f64>, face: impl Fn(u32) -> FaceTerms + Sync) {
+        let mut needed = vec![false; net.face_count()];
         for (local, &vertex) in self.vertices.iter().enumerate() {
             if self.is_full(local) {
-                for &face in topology.faces(SurfaceVertex(vertex)) {
+                for &face in net.faces(SurfaceVertex(vertex)) {
                     needed[face as usize] = true;
                 }
             }
@@ -151,8 +152,8 @@ impl Laplacian {
             .with_min_len(CHUNK)
             .map(|&number| face(number))
             .collect();
-        self.mollified_faces = terms.iter().filter(|terms| terms.mollified).count();
-        let mut slot_of_face = vec![ABSENT; surface.triangles.len()];
+        self.mollified_faces = net.mollified_faces() + terms.iter().filter(|terms| terms.mollified).count();
+        let mut slot_of_face = vec![ABSENT; net.face_count()];
         for (slot, &face) in faces.iter().enumerate() {
             slot_of_face[face as usize] = slot as u32;
         }
@@ -173,19 +174,17 @@ impl Laplacian {
                 if neighbours.is_empty() {
                     return;
                 }
-                for &face in topology.faces(vertex) {
+                for &face in net.faces(vertex) {
                     let terms = &terms[slot_of_face[face as usize] as usize];
-                    let corners = surface.triangles[face as usize];
-                    for corner in 0..3 {
-                        if corners[corner] == vertex {
-                            *area += terms.areas[corner];
-                            continue;
-                        }
-                        // The edge from `vertex` to this corner lies opposite the third corner.
-                        let third = (0..3).find(|&other| other != corner && corners[other] != vertex);
-                        let place = neighbours.binary_search(&local_of[corners[corner].index()]);
-                        if let (Some(third), Ok(place)) = (third, place) {
-                            row[place] += terms.half_cotangents[third];
+                    let corners = net.corners(face);
+                    for own in (0..3).filter(|&corner| corners[corner] == vertex) {
+                        *area += terms.areas[own];
+                        // The edge from here to another corner lies opposite the third one. An intrinsic triangle may
+                        // have this vertex twice, and an edge from it to itself is none.
+                        for other in (0..3).filter(|&corner| corners[corner] != vertex) {
+                            if let Ok(place) = neighbours.binary_search(&local_of[corners[other].index()]) {
+                                row[place] += terms.half_cotangents[3 - own - other];
+                            }
                         }
                     }
                 }
@@ -198,7 +197,7 @@ impl Laplacian {
             })
             .collect();
         self.weights = weights;
-        self.floor_areas(topology, &mut areas);
+        self.floor_areas(net.topology(), &mut areas);
         self.inverse_areas = areas
             .iter()
             .map(|&area| if area > 0.0 { area.recip() } else { 0.0 })

@@ -8,11 +8,14 @@
 
 use pliant_mesh::SurfaceVertex;
 
+use crate::operators::net::{Graph, Net};
 use crate::{BindError, CONTINUITY_RANGE, Loose, Method, Problem, Role};
 
 /// The vertices by what happens to them, all lists ascending.
 #[derive(Debug)]
-pub(crate) struct Partition {
+pub(crate) struct Partition<'a> {
+    /// The triangles that the method's operator is made on.
+    pub net: Net<'a>,
     /// Free vertices that some handle influences, and those of soft handles.
     pub solved: Vec<u32>,
     /// The vertices of each handle.
@@ -31,10 +34,11 @@ pub(crate) struct Partition {
     pub warnings: Vec<String>,
 }
 
-impl Partition {
+impl<'a> Partition<'a> {
     /// Checks the problem's tables and sorts its vertices.
-    pub fn of(problem: &Problem) -> Result<Self, BindError> {
+    pub fn of(problem: &Problem<'a>) -> Result<Self, BindError> {
         check(problem)?;
+        let net = Net::of_problem(problem);
         let mut handles = vec![Vec::new(); problem.handle_count];
         let component_count = problem.topology.components().len();
         let mut held = vec![false; component_count];
@@ -72,8 +76,10 @@ impl Partition {
                 vec![None; problem.handle_count]
             }
         };
+        warnings.extend(net.warning().map(str::to_owned));
         Ok(Self {
-            solved: influenced(problem, &handles, &soft),
+            solved: influenced(problem, &net, &handles, &soft),
+            net,
             handles,
             soft,
             driven: indices(&|c| driven[c]),
@@ -85,6 +91,7 @@ impl Partition {
     }
 }
 
+/// Whether every table fits the surface and every number is one that it may be.
 fn check(problem: &Problem) -> Result<(), BindError> {
     let expected = problem.surface.positions.len();
     for (table, found) in [
@@ -128,8 +135,7 @@ fn check(problem: &Problem) -> Result<(), BindError> {
 
 /// The free vertices that handles reach in the graph of Lⁿ, ascending: by walks of which no n successive vertices are
 /// constrained. A soft handle's vertices count as free, and are among them.
-fn influenced(problem: &Problem, handles: &[Vec<u32>], soft: &[Option<f64>]) -> Vec<u32> {
-    let topology = problem.topology;
+fn influenced(problem: &Problem, net: &Net, handles: &[Vec<u32>], soft: &[Option<f64>]) -> Vec<u32> {
     let power = match problem.method {
         // Across a constrained vertex too, whose cell turns with all its neighbours.
         Method::Arap(_) | Method::Primo(_) => 2,
@@ -148,7 +154,7 @@ fn influenced(problem: &Problem, handles: &[Vec<u32>], soft: &[Option<f64>]) -> 
     }
     while let Some(vertex) = queue.pop() {
         let beyond = left[vertex as usize] - 1;
-        for &next in topology.neighbours(SurfaceVertex(vertex)) {
+        for &next in net.neighbours(SurfaceVertex(vertex)) {
             let allowed = if is_free(next.index()) { power } else { beyond };
             if allowed > left[next.index()] {
                 left[next.index()] = allowed;

@@ -5,6 +5,8 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
+use crate::operators::eigen::jacobi;
+
 /// A rigid motion about a point: `p ↦ centre + rotation * (p − centre) + shift`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct RigidMotion {
@@ -61,7 +63,7 @@ pub(crate) fn best_rotation(covariance: &DMat3) -> DQuat {
         [y, s(0, 1) + s(1, 0), s(1, 1) - s(0, 0) - s(2, 2), s(1, 2) + s(2, 1)],
         [z, s(2, 0) + s(0, 2), s(1, 2) + s(2, 1), s(2, 2) - s(0, 0) - s(1, 1)],
     ];
-    let vectors = jacobi_eigenvectors(&mut n);
+    let vectors = jacobi(&mut n);
     let best = (0..4).fold(0, |best, k| if n[k][k] > n[best][best] { k } else { best });
     let q = DQuat::from_xyzw(vectors[1][best], vectors[2][best], vectors[3][best], vectors[0][best]);
     if q.length_squared() > 0.5 {
@@ -69,40 +71,6 @@ pub(crate) fn best_rotation(covariance: &DMat3) -> DQuat {
     } else {
         DQuat::IDENTITY
     }
-}
-
-/// Diagonalises a symmetric matrix by Jacobi rotations; the columns of the result are its eigenvectors.
-fn jacobi_eigenvectors(matrix: &mut [[f64; 4]; 4]) -> [[f64; 4]; 4] {
-    let mut vectors = [
-        [1.0, 0.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0, 0.0],
-        [0.0, 0.0, 1.0, 0.0],
-        [0.0, 0.0, 0.0, 1.0],
-    ];
-    for _sweep in 0..16 {
-        for p in 0..3 {
-            for q in p + 1..4 {
-                if matrix[p][q].abs() < 1e-300 {
-                    continue;
-                }
-                let theta = (matrix[q][q] - matrix[p][p]) / (2.0 * matrix[p][q]);
-                let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-                let c = t.hypot(1.0).recip();
-                let s = t * c;
-                for k in 0..4 {
-                    let (a, b) = (matrix[k][p], matrix[k][q]);
-                    (matrix[k][p], matrix[k][q]) = (c * a - s * b, s * a + c * b);
-                }
-                for k in 0..4 {
-                    let (a, b) = (matrix[p][k], matrix[q][k]);
-                    (matrix[p][k], matrix[q][k]) = (c * a - s * b, s * a + c * b);
-                    let (a, b) = (vectors[k][p], vectors[k][q]);
-                    (vectors[k][p], vectors[k][q]) = (c * a - s * b, s * a + c * b);
-                }
-            }
-        }
-    }
-    vectors
 }
 
 #[cfg(test)]

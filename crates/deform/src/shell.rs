@@ -11,4 +11,4 @@ mod refine;
 mod springs;
 
 pub use bases::HandleBases;
-pub use bilaplacian::{Bilaplacian, Discretisation, ShellOrder};
+pub use bilaplacian::{Bilaplacian, Discretisation, ShellOrder, Triangulation};

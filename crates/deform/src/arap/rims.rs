@@ -9,12 +9,11 @@
 //! Stiffness is in w_fe: a face's by the mean of its corners.
 
 use glam::{DMat3, DVec3};
-use pliant_mesh::Surface;
+use pliant_mesh::{Surface, edge_lengths};
 use rayon::prelude::*;
 
 use super::domain::Domain;
 use super::shape::{Scratch, Shape, fit_cells};
-use crate::Discretisation;
 use crate::operators::CHUNK;
 use crate::operators::face_terms::Metric;
 
@@ -50,15 +49,15 @@ impl Face {
 impl Rims {
     /// The terms of `domain`'s faces.
     pub fn new(surface: &Surface, stiffness: &[f64], domain: &Domain) -> Self {
-        let metric = Metric::of(surface, Discretisation::default());
+        let metric = Metric::cotangent_area();
         let faces: Vec<Face> = domain
             .faces
             .par_iter()
             .with_min_len(CHUNK)
             .map(|&face| {
                 let corners = surface.triangles[face as usize];
-                let [h0, h1, h2] = metric.face(surface, stiffness, corners).half_cotangents;
                 let [a, b, c] = corners.map(|corner| surface.positions[corner.index()]);
+                let [h0, h1, h2] = metric.face(stiffness, corners, edge_lengths([a, b, c])).half_cotangents;
                 let (e1, e2) = (b - a, c - a);
                 // h2|e1|² + h1|e2|² + h0|e2 − e1|² = |U (e1 e2)ᵀ|².
                 let u11 = (h2 + h0).max(0.0).sqrt();

@@ -1,13 +1,14 @@
 //! What one triangle adds to the Laplacian and to its corners' areas, by discretisation (survey, section 5.1).
 
-use pliant_mesh::{Surface, SurfaceVertex, area_of_lengths, cotangents, edge_lengths, mixed_corner_areas};
+use pliant_mesh::{SurfaceVertex, area_of_lengths, cotangents, mixed_corner_areas};
 use rayon::prelude::*;
 
 use crate::Discretisation;
 use crate::operators::CHUNK;
+use crate::operators::net::Net;
 
 /// By how much two edges of a triangle are made to exceed the third, in units of the longest.
-const MOLLIFICATION: f64 = 1e-5;
+pub(crate) const MOLLIFICATION: f64 = 1e-5;
 
 /// ½ cot 60°: an equilateral triangle's weight on each of its edges.
 const HALF_COTANGENT_60: f64 = 0.288_675_134_594_812_9;
@@ -22,7 +23,7 @@ pub(crate) struct FaceTerms {
     pub mollified: bool,
 }
 
-/// A discretisation on a surface.
+/// A discretisation on triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Metric {
     discretisation: Discretisation,
@@ -31,17 +32,26 @@ pub(crate) struct Metric {
 }
 
 impl Metric {
-    pub fn of(surface: &Surface, discretisation: Discretisation) -> Self {
-        let total = match discretisation {
-            Discretisation::CotangentArea => 0.0,
-            Discretisation::Uniform | Discretisation::Cotangent => total_area(surface),
-        };
+    /// Cotangents and the vertices' own areas: the default, which knows nothing of the whole.
+    pub fn cotangent_area() -> Self {
+        Self {
+            discretisation: Discretisation::CotangentArea,
+            mean_face_area: 1.0,
+            mean_vertex_area: 1.0,
+        }
+    }
+
+    pub fn of(net: &Net, discretisation: Discretisation) -> Self {
+        if discretisation == Discretisation::CotangentArea {
+            return Self::cotangent_area();
+        }
+        let total = total_area(net);
         // A surface of no area at all still has a shape to solve on.
         let mean = |count: usize| if total > 0.0 { total / count as f64 } else { 1.0 };
         Self {
             discretisation,
-            mean_face_area: mean(surface.triangles.len()),
-            mean_vertex_area: mean(surface.positions.len()),
+            mean_face_area: mean(net.face_count()) * net.share(),
+            mean_vertex_area: mean(net.vertex_count()) * net.share(),
         }
     }
 
@@ -50,8 +60,8 @@ impl Metric {
         (self.discretisation == Discretisation::Cotangent).then_some(self.mean_vertex_area)
     }
 
-    /// The terms of the triangle `corners`; `stiffness` has one entry a surface vertex.
-    pub fn face(&self, surface: &Surface, stiffness: &[f64], corners: [SurfaceVertex; 3]) -> FaceTerms {
+    /// The terms of a triangle by corners and lengths; `stiffness` has one entry a surface vertex.
+    pub fn face(&self, stiffness: &[f64], corners: [SurfaceVertex; 3], lengths: [f64; 3]) -> FaceTerms {
         let stiffness = corners.iter().map(|corner| stiffness[corner.index()]).sum::<f64>() / 3.0;
         if self.discretisation == Discretisation::Uniform {
             return FaceTerms {
@@ -60,7 +70,6 @@ impl Metric {
                 mollified: false,
             };
         }
-        let lengths = edge_lengths(corners.map(|corner| surface.positions[corner.index()]));
         let sum = lengths[0] + lengths[1] + lengths[2];
         let longest = lengths[0].max(lengths[1]).max(lengths[2]);
         let excess = MOLLIFICATION * longest - (sum - 2.0 * longest);
@@ -78,15 +87,14 @@ impl Metric {
     }
 }
 
-/// Summed in chunks of a fixed size, so that the number of threads doesn't show.
-fn total_area(surface: &Surface) -> f64 {
-    let partial: Vec<f64> = surface
-        .triangles
-        .par_chunks(CHUNK)
-        .map(|faces| {
-            faces
-                .iter()
-                .map(|corners| area_of_lengths(edge_lengths(corners.map(|corner| surface.positions[corner.index()]))))
+/// Of all triangles, summed in chunks of a fixed size, so that the number of threads doesn't show.
+fn total_area(net: &Net) -> f64 {
+    let count = net.face_count();
+    let partial: Vec<f64> = (0..count.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|chunk| {
+            (chunk * CHUNK..((chunk + 1) * CHUNK).min(count))
+                .map(|face| area_of_lengths(net.lengths(face as u32)))
                 .sum()
         })
         .collect();

@@ -20,6 +20,12 @@ pub struct Bilaplacian {
     pub order: ShellOrder,
     /// How the Laplacian is discretised. Default: cotangents and vertex areas.
     pub discretisation: Discretisation,
+    /// Which triangles it is made on. Default: the surface's own.
+    pub triangulation: Triangulation,
+    /// From 0, as the surface lies in space, to 1, as if it were stretched along the principal axes of the part that may
+    /// move until that varied alike along all of them, though by no more than a factor 10: stiffer along what is long
+    /// (Botsch & Kobbelt 2004). Default 0.
+    pub anisotropy: f64,
 }
 
 /// The order n of the shell: its surfaces join what is held with continuity Cⁿ⁻¹ (Botsch & Kobbelt 2004).
@@ -47,6 +53,33 @@ pub enum Discretisation {
     CotangentArea,
 }
 
+/// The triangles that the Laplacian is made on; their vertices are the surface's.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub enum Triangulation {
+    /// The surface's.
+    #[default]
+    AsIs,
+    /// The surface's, with edges flipped within it until no weight is negative, except at edges with more or less than
+    /// two triangles (Fisher et al. 2006).
+    IntrinsicDelaunay,
+    /// The surface's tufted cover, flipped: no weight is negative on any triangles (Sharp & Crane 2020).
+    Tufted,
+}
+
+impl Triangulation {
+    /// Every triangulation, the default first.
+    pub const ALL: [Self; 3] = [Self::AsIs, Self::IntrinsicDelaunay, Self::Tufted];
+
+    /// Its name in an edit.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::AsIs => "as-is",
+            Self::IntrinsicDelaunay => "intrinsic-delaunay",
+            Self::Tufted => "tufted",
+        }
+    }
+}
+
 impl Bilaplacian {
     /// The power of L in the system: the order, or 1 where nothing but stretching is left.
     pub fn operator_power(&self) -> u32 {
@@ -61,6 +94,8 @@ impl Default for Bilaplacian {
             bending: 1.0,
             order: ShellOrder::default(),
             discretisation: Discretisation::default(),
+            triangulation: Triangulation::default(),
+            anisotropy: 0.0,
         }
     }
 }

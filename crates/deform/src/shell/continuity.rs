@@ -9,14 +9,16 @@
 //! Between two whole numbers stands a spring against the turn (or the curvature), of stiffness t / (1 − t) per
 //! diagonal: a damping that knows the size of its cell, so that the resolution does not show.
 
-use pliant_mesh::{SurfaceVertex, area_of_lengths, edge_lengths};
+use pliant_mesh::{SurfaceVertex, area_of_lengths};
 
+use crate::operators::net::Net;
 use crate::shell::operator::ShellOperator;
 use crate::{Bilaplacian, Laplacian, Problem, Role};
 
 /// Damps the operator at constrained vertices as [`crate::Holds::continuity`] says; `rows` are its full rows.
 pub(super) fn join(
     operator: &mut ShellOperator,
+    net: &Net,
     problem: &Problem,
     options: &Bilaplacian,
     rows: &[u32],
@@ -32,17 +34,14 @@ pub(super) fn join(
         Role::Fixed | Role::Handle(_) => Some(continuity[vertex as usize]),
     };
     if operator.power == 3 {
-        let beyond = |corners: [SurfaceVertex; 3]| {
+        let beyond = |corners: [SurfaceVertex; 3], lengths: [f64; 3]| {
             let [Some(a), Some(b), Some(c)] = corners.map(|corner| of(corner.0)) else {
                 return 1.0;
             };
-            let positions = corners.map(|corner| problem.surface.positions[corner.index()]);
-            let size = area_of_lengths(edge_lengths(positions)).sqrt();
-            damping(a.min(b).min(c) - 1.0, size / diagonal)
+            damping(a.min(b).min(c) - 1.0, area_of_lengths(lengths).sqrt() / diagonal)
         };
-        operator.middle = Some(Laplacian::with_faces_scaled(
-            problem.surface,
-            problem.topology,
+        operator.middle = Some(Laplacian::on(
+            net,
             problem.stiffness,
             rows,
             options.discretisation,

@@ -5,6 +5,7 @@ use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
 use rayon::prelude::*;
 
 use crate::handle::{Handle, Motion};
+use crate::operators::net::{Graph, Net};
 use crate::partition::Partition;
 use crate::shell::continuity::join;
 use crate::shell::factored::{Shell, ShellError};
@@ -36,23 +37,17 @@ impl Plate {
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
-        let solved = &partition.solved;
+        let (net, solved) = (&partition.net, &partition.solved);
         let component_of = |vertex: u32| problem.topology.component(SurfaceVertex(vertex));
         let refuse = |error: ShellError| error.into_bind_error(component_of, solved.len());
-        let order = ordering.restricted(problem.topology, solved);
+        let order = ordering.restricted_on(net, solved);
         cancel.check()?;
         progress.set(0.1);
-        let rows = bent_rows(problem, solved, handles);
-        let laplacian = Laplacian::discretised(
-            problem.surface,
-            problem.topology,
-            problem.stiffness,
-            &rows,
-            options.discretisation,
-        );
+        let rows = bent_rows(net, solved, handles);
+        let laplacian = Laplacian::on(net, problem.stiffness, &rows, options.discretisation, &|_, _| 1.0);
         let diagonal = bounding_box(&problem.surface.positions).map_or(0.0, |bounds| bounds.diagonal());
         let mut operator = ShellOperator::new(laplacian, options, diagonal);
-        join(&mut operator, problem, options, &rows, diagonal);
+        join(&mut operator, net, problem, options, &rows, diagonal);
         let prescribed = prescribe(&mut operator, problem, partition, handles);
         cancel.check()?;
         progress.set(0.2);
@@ -295,11 +290,11 @@ fn solve_handle(
 
 /// The vertices where L d can differ from zero: solved ones, handles and their neighbours, ascending. Their rows are
 /// enough at every order: further out all inner factors are zero, as they should be.
-fn bent_rows(problem: &Problem, solved: &[u32], handles: &[Handle]) -> Vec<u32> {
-    let mut bent = vec![false; problem.surface.positions.len()];
+fn bent_rows(net: &Net, solved: &[u32], handles: &[Handle]) -> Vec<u32> {
+    let mut bent = vec![false; net.vertex_count()];
     for &vertex in solved.iter().chain(handles.iter().flat_map(|handle| &handle.vertices)) {
         bent[vertex as usize] = true;
-        for neighbour in problem.topology.neighbours(SurfaceVertex(vertex)) {
+        for neighbour in net.neighbours(SurfaceVertex(vertex)) {
             bent[neighbour.index()] = true;
         }
     }

@@ -13,6 +13,7 @@ use pliant_mesh::{Cancel, Cancelled, Progress, Topology};
 use rayon::prelude::*;
 
 use crate::operators::CHUNK;
+use crate::operators::net::Graph;
 use crate::sparse::etree::{elimination_tree, postorder};
 use crate::sparse::reach::Reach;
 
@@ -53,6 +54,12 @@ impl Ordering {
     /// The vertices `solved` (ascending) in an order to eliminate them: this order restricted to them and put into
     /// postorder, which leaves the fill as it is.
     pub fn restricted(&self, topology: &Topology, solved: &[u32]) -> Vec<u32> {
+        self.restricted_on(topology, solved)
+    }
+
+    /// As [`Ordering::restricted`], for a system on another graph over the same vertices, whose elimination it is put
+    /// into postorder for. Near the mesh's own graph it saves nearly as much fill.
+    pub(crate) fn restricted_on(&self, graph: &impl Graph, solved: &[u32]) -> Vec<u32> {
         let mut order = solved.to_vec();
         order.sort_unstable_by_key(|&vertex| self.rank[vertex as usize]);
         let mut column_of = vec![u32::MAX; self.rank.len()];
@@ -61,7 +68,7 @@ impl Ordering {
         }
         let mut reach = Reach::new(self.rank.len(), self.power);
         let parent = elimination_tree(order.len(), |column, sink| {
-            for &vertex in reach.around(topology, order[column as usize]) {
+            for &vertex in reach.around(graph, order[column as usize]) {
                 sink(column_of[vertex as usize]);
             }
         });

@@ -1,6 +1,8 @@
 //! The vertices within a number of edges: the graph of a power of the Laplacian, row by row.
 
-use pliant_mesh::{SurfaceVertex, Topology};
+use pliant_mesh::SurfaceVertex;
+
+use crate::operators::net::Graph;
 
 /// Scratch room for walks over one surface.
 pub(crate) struct Reach {
@@ -22,7 +24,7 @@ impl Reach {
     }
 
     /// The vertices within `power` edges of `vertex`, each once, without it; nearer ones first.
-    pub fn around(&mut self, topology: &Topology, vertex: u32) -> &[u32] {
+    pub fn around(&mut self, graph: &impl Graph, vertex: u32) -> &[u32] {
         if self.stamp == u32::MAX {
             self.stamps.fill(0);
             self.stamp = 0;
@@ -34,7 +36,7 @@ impl Reach {
         let mut ring = 0..1;
         for _ in 0..self.power {
             for place in ring.clone() {
-                for &next in topology.neighbours(SurfaceVertex(self.found[place])) {
+                for &next in graph.neighbours(SurfaceVertex(self.found[place])) {
                     if std::mem::replace(&mut self.stamps[next.index()], self.stamp) != self.stamp {
                         self.found.push(next.0);
                     }

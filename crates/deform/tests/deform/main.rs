@@ -1,9 +1,11 @@
 //! The solver's laws, on every class of mesh.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+mod anisotropy;
 mod arap;
 mod components;
 mod continuity;
+mod energies;
 mod laws;
 mod operators;
 mod ordering;

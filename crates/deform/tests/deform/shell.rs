@@ -1,7 +1,7 @@
 //! The linear shell's options: what each order, coefficient and discretisation does to the shape.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Bilaplacian, BindError, Discretisation, Method, Role, ShellOrder};
+use pliant_deform::{Bilaplacian, BindError, Discretisation, Method, Role, ShellOrder, Triangulation};
 use pliant_mesh::{Drawn, shapes};
 
 use crate::rig::{Scene, apart, back_substitute, step, turned};
@@ -64,6 +64,32 @@ fn each_order_converges_to_its_polynomial() {
         });
         let fine = errors[2] < 1e-7 || (errors[1] < 0.65 * errors[0] && errors[2] < 0.65 * errors[1]);
         assert!(errors[2] < 0.03 && fine, "{order:?}: {errors:?}");
+    }
+}
+
+/// The order's error against its polynomial between the middles of the n rows that hold each end: n values in a row that
+/// lie on the clamped polynomial are n zeros of the strip's, and to second order one of n-th order in their middle.
+#[test]
+fn each_order_converges_with_second_order_between_the_middles_of_what_holds_it() {
+    let exact: [fn(f64) -> f64; 2] = [
+        |s| s * s * (3.0 - 2.0 * s),
+        |s| s * s * s * (10.0 - 15.0 * s + 6.0 * s * s),
+    ];
+    for (order, exact) in [ShellOrder::ThinPlate, ShellOrder::CurvatureVariation]
+        .into_iter()
+        .zip(exact)
+    {
+        let errors = [12, 24, 48].map(|cells| {
+            let (heights, pitch) = strip(cells, of_order(order));
+            let beyond = 0.5 * (order.number() - 1) as f64 * pitch;
+            let errors = heights.iter().enumerate().map(|(i, z)| {
+                let s = (i as f64 * pitch + beyond) / (1.0 + 2.0 * beyond);
+                (z - exact(s)).abs()
+            });
+            errors.fold(0.0, f64::max)
+        });
+        let falls = |pair: &[f64]| pair[1] < 0.32 * pair[0] && pair[1] > 0.15 * pair[0];
+        assert!(errors.windows(2).all(falls), "{order:?}: {errors:?}");
     }
 }
 
@@ -141,7 +167,7 @@ fn without_bending_the_shell_is_a_membrane_of_any_stretching() {
     assert!(membrane.windows(2).all(|z| z[1] > z[0]));
 }
 
-/// Every combination of the options.
+/// Every combination of the options, with what makes other triangles where everything else is as usual.
 fn methods() -> Vec<Method> {
     let mut methods = Vec::new();
     for order in ShellOrder::ALL {
@@ -149,6 +175,18 @@ fn methods() -> Vec<Method> {
             for stretching in [0.0, 30.0] {
                 methods.push(shell(order, stretching, 1.0, discretisation));
             }
+        }
+        for (triangulation, anisotropy) in [
+            (Triangulation::IntrinsicDelaunay, 0.0),
+            (Triangulation::Tufted, 0.0),
+            (Triangulation::AsIs, 0.7),
+            (Triangulation::Tufted, 1.0),
+        ] {
+            let mut options = Bilaplacian::default();
+            options.order = order;
+            options.triangulation = triangulation;
+            options.anisotropy = anisotropy;
+            methods.push(Method::Bilaplacian(options));
         }
     }
     methods

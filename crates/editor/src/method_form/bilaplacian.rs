@@ -1,6 +1,6 @@
 //! The linear shell's options in an edit.
 
-use pliant_deform::{Bilaplacian, Discretisation, ShellOrder};
+use pliant_deform::{Bilaplacian, Discretisation, ShellOrder, Triangulation};
 use serde_json::{Map, Value, json};
 
 use super::{MethodOption, OptionKind};
@@ -45,6 +45,24 @@ pub(super) const OPTIONS: &[MethodOption] = &[
             default: "cotangent-area",
         },
     },
+    MethodOption {
+        name: "triangulation",
+        says: "triangles of the Laplacian: \"as-is\", or without negative weights \"intrinsic-delaunay\" or, also on \
+               non-manifold meshes, \"tufted\"; default \"as-is\"",
+        takes: OptionKind::Named {
+            choices: &["as-is", "intrinsic-delaunay", "tufted"],
+            default: "as-is",
+        },
+    },
+    MethodOption {
+        name: "anisotropy",
+        says: "stiffer along what is long: 0 not at all, 1 as if the part that may move were as wide as long; default 0",
+        takes: OptionKind::Number {
+            range: [0.0, 1.0],
+            default: 0.0,
+            unit: "",
+        },
+    },
 ];
 
 pub(super) fn read(members: &Members<'_>, options: &mut Bilaplacian) -> Result<(), EditError> {
@@ -76,6 +94,20 @@ pub(super) fn read(members: &Members<'_>, options: &mut Bilaplacian) -> Result<(
             .find(|discretisation| discretisation.name() == text)
             .ok_or_else(|| node.unknown_name(text, &names))?;
     }
+    if let Some(node) = members.get("triangulation") {
+        let text = node.string("a triangulation's name")?;
+        let names = Triangulation::ALL.map(Triangulation::name);
+        options.triangulation = *Triangulation::ALL
+            .iter()
+            .find(|triangulation| triangulation.name() == text)
+            .ok_or_else(|| node.unknown_name(text, &names))?;
+    }
+    if let Some(node) = members.get("anisotropy") {
+        options.anisotropy = match node.number()? {
+            number if (0.0..=1.0).contains(&number) => number,
+            _ => return Err(node.out_of_range("a number from 0 to 1")),
+        };
+    }
     Ok(())
 }
 
@@ -94,6 +126,12 @@ pub(super) fn write(options: &Bilaplacian, members: &mut Map<String, Value>) {
     if options.discretisation != default.discretisation {
         members.insert("discretisation".to_owned(), json!(options.discretisation.name()));
     }
+    if options.triangulation != default.triangulation {
+        members.insert("triangulation".to_owned(), json!(options.triangulation.name()));
+    }
+    if options.anisotropy != default.anisotropy {
+        members.insert("anisotropy".to_owned(), json!(options.anisotropy));
+    }
 }
 
 #[cfg(test)]
@@ -108,7 +146,8 @@ mod tests {
     #[test]
     fn every_option_of_the_shell_is_read_and_written_again() {
         let value = json!({
-            "name": "bilaplacian", "order": 3, "stretching": 2.5, "bending": 0.5, "discretisation": "uniform"
+            "name": "bilaplacian", "order": 3, "stretching": 2.5, "bending": 0.5, "discretisation": "uniform",
+            "triangulation": "tufted", "anisotropy": 0.25
         });
         let method = read(&value).unwrap();
         let Method::Bilaplacian(options) = &method else {
@@ -153,6 +192,9 @@ mod tests {
             ("bending", json!(null)),
             ("discretisation", json!("cotangents")),
             ("discretisation", json!(1)),
+            ("triangulation", json!("delaunay")),
+            ("anisotropy", json!(1.5)),
+            ("anisotropy", json!(-0.5)),
             ("ordre", json!(2)),
         ] {
             let refused = read(&json!({ "name": "bilaplacian", option: value })).unwrap_err();
