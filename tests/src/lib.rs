@@ -9,6 +9,8 @@
     reason = "the rig is a part of tests: it fails by panicking, says what it skips, and its names are its words"
 )]
 
+pub mod trials;
+
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::fs;

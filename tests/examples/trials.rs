@@ -1,0 +1,49 @@
+//! Seeded trials on every scan, with counts: `trials COUNT [FIRST]`.
+#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that reports")]
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use pliant_deform::Method;
+use pliant_tests::trials::{Outcome, Trial, scans};
+
+fn main() {
+    let mut words = std::env::args()
+        .skip(1)
+        .map(|word| word.parse().unwrap());
+    let (count, first): (u64, u64) = (words.next().unwrap_or(1000), words.next().unwrap_or(0));
+    let mut subjects = scans();
+    let mut counts = BTreeMap::<String, [usize; 3]>::new();
+    for seed in first..first + count {
+        let place = (seed % subjects.len() as u64) as usize;
+        let trial = Trial::new(seed, &subjects[place].model);
+        let kind = match &trial.method {
+            Method::Bilaplacian(options) => format!("bilaplacian order {}", options.order.number()),
+            method => method.name().to_owned(),
+        };
+        let name = subjects[place].name.clone();
+        let subject = &mut subjects[place];
+        let column = match catch_unwind(AssertUnwindSafe(|| trial.run(subject))) {
+            Ok(Outcome::Bent) => 0,
+            Ok(Outcome::Refused(sentence)) => {
+                println!("trial {seed}, {name}, {:?}: {sentence}", trial.method);
+                1
+            }
+            Err(_) => {
+                println!("trial {seed}, {name}, {:?}: BROKEN", trial.method);
+                2
+            }
+        };
+        counts.entry(kind).or_default()[column] += 1;
+    }
+    println!("{:<24}{:>8}{:>9}{:>8}", "method", "bent", "refused", "broken");
+    let mut sum = [0; 3];
+    for (kind, [bent, refused, broken]) in &counts {
+        println!("{kind:<24}{bent:>8}{refused:>9}{broken:>8}");
+        for (sum, count) in sum.iter_mut().zip([bent, refused, broken]) {
+            *sum += count;
+        }
+    }
+    println!("{:<24}{:>8}{:>9}{:>8}", "all", sum[0], sum[1], sum[2]);
+    assert_eq!(sum[2], 0, "{} trials broke", sum[2]);
+}

@@ -1,0 +1,334 @@
+//! Seeded trials of everything that a problem can ask for, on any mesh: options, roles, stiffness, transforms by chance.
+//!
+//! A trial ends in one of two ways: a shape that is finite and meets its constraints, or a refusal that names a vertex.
+
+use std::collections::BTreeMap;
+
+use glam::{DAffine3, DQuat, DVec3};
+use pliant_deform::{
+    Bilaplacian, BindError, Discretisation, Holds, Loose, Method, Ordering, Problem, Role, ShellOrder, SolveError,
+    Triangulation,
+};
+use pliant_mesh::{Cancel, Model, Progress};
+
+/// Steps that a method may take towards its targets; nonlinear ones need not converge in them.
+const STEPS: u32 = 12;
+
+/// How a trial ended.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Outcome {
+    /// A shape with all that is asked of it.
+    Bent,
+    /// A refusal in words, which names a vertex.
+    Refused(String),
+}
+
+/// A mesh with the orderings that its trials have needed.
+pub struct Subject {
+    pub name: String,
+    pub model: std::sync::Arc<Model>,
+    orderings: BTreeMap<u32, Ordering>,
+}
+
+impl Subject {
+    pub fn new(name: impl Into<String>, model: std::sync::Arc<Model>) -> Self {
+        let orderings = BTreeMap::new();
+        Self {
+            name: name.into(),
+            model,
+            orderings,
+        }
+    }
+
+    fn ordering(&mut self, power: u32) -> &Ordering {
+        let topology = &self.model.topology;
+        self.orderings
+            .entry(power)
+            .or_insert_with(|| Ordering::of(topology, power, &Progress::new(), &Cancel::new()).unwrap())
+    }
+}
+
+/// Every mesh of the folder of scans.
+pub fn scans() -> Vec<Subject> {
+    let Some(folder) = crate::datum("scans") else {
+        return Vec::new();
+    };
+    let mut files: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    files.sort();
+    let opened = files.into_iter().filter_map(|path| {
+        let loaded = crate::try_open(&path).ok()?;
+        Some(Subject::new(path.file_name()?.to_string_lossy(), loaded.model))
+    });
+    opened
+        .filter(|subject| !subject.model.surface.triangles.is_empty())
+        .collect()
+}
+
+/// What a trial is on a mesh: everything but the mesh.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    pub method: Method,
+    roles: Vec<Role>,
+    stiffness: Vec<f64>,
+    soft: Vec<Option<f64>>,
+    continuity: Vec<f64>,
+    loose: Loose,
+    targets: Vec<DAffine3>,
+}
+
+impl Trial {
+    /// The trial number `seed` on `model`; always the same.
+    pub fn new(seed: u64, model: &Model) -> Self {
+        let chance = &mut Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x5DEE_CE66);
+        let count = model.surface.positions.len();
+        let diagonal = model.bounds().unwrap().diagonal();
+        let method = method(chance);
+        let ball = |chance: &mut Chance, radius: f64| {
+            let centre = model.surface.positions[chance.below(count)];
+            let radius = radius * diagonal;
+            move |p: DVec3| p.distance(centre) <= radius
+        };
+        let mut roles = vec![Role::Free; count];
+        let mut assign = |role: Role, within: &dyn Fn(DVec3) -> bool| {
+            for (own, &position) in roles.iter_mut().zip(&model.surface.positions) {
+                if within(position) {
+                    *own = role;
+                }
+            }
+        };
+        // A region of its own, mostly, as a person would have it, and a few patches that are held.
+        if chance.share() < 0.8 {
+            let radius = chance.between(0.02, 0.35);
+            let region = ball(chance, radius);
+            assign(Role::Fixed, &|p| !region(p));
+        }
+        for _ in 0..chance.below(3) {
+            let radius = chance.between(0.0, 0.2);
+            assign(Role::Fixed, &ball(chance, radius));
+        }
+        let wanted = 1 + chance.below(3) as u16;
+        for handle in 0..wanted {
+            let radius = if chance.share() < 0.2 {
+                0.0
+            } else {
+                chance.between(0.005, 0.15)
+            };
+            assign(Role::Handle(handle), &ball(chance, radius));
+        }
+        // A handle that a later one has covered goes.
+        let mut numbers: Vec<Option<u16>> = vec![None; usize::from(wanted)];
+        let mut next = 0;
+        for role in &mut roles {
+            if let Role::Handle(handle) = role {
+                let number = numbers[usize::from(*handle)].get_or_insert_with(|| {
+                    next += 1;
+                    next - 1
+                });
+                *role = Role::Handle(*number);
+            }
+        }
+        let mut stiffness = vec![1.0; count];
+        if chance.share() < 0.4 {
+            for _ in 0..1 + chance.below(3) {
+                let (radius, value) = (chance.between(0.02, 0.3), 10_f64.powf(chance.between(-3.0, 3.0)));
+                let patch = ball(chance, radius);
+                for (own, &position) in stiffness.iter_mut().zip(&model.surface.positions) {
+                    if patch(position) {
+                        *own = value;
+                    }
+                }
+            }
+        }
+        let soft = (0..next)
+            .map(|_| (chance.share() < 0.25).then(|| 10_f64.powf(chance.between(-4.0, 5.0))))
+            .collect();
+        let mut continuity = Vec::new();
+        if chance.share() < 0.3 {
+            let values = [0.0, 0.5, 1.0, 1.7, 2.0];
+            let (near, far) = (values[chance.below(5)], values[chance.below(5)]);
+            let radius = chance.between(0.1, 0.5);
+            let patch = ball(chance, radius);
+            continuity = model
+                .surface
+                .positions
+                .iter()
+                .map(|&p| if patch(p) { near } else { far })
+                .collect();
+        }
+        let centre = model.bounds().unwrap().centre();
+        let targets = (0..next).map(|_| transform(chance, centre, diagonal)).collect();
+        Self {
+            method,
+            roles,
+            stiffness,
+            soft,
+            continuity,
+            loose: if chance.share() < 0.5 {
+                Loose::Follow
+            } else {
+                Loose::Rest
+            },
+            targets,
+        }
+    }
+
+    /// Binds and steps; panics where neither a sound shape nor a refusal that names a vertex comes of it.
+    pub fn run(&self, subject: &mut Subject) -> Outcome {
+        let model = std::sync::Arc::clone(&subject.model);
+        let problem = Problem {
+            surface: &model.surface,
+            topology: &model.topology,
+            roles: &self.roles,
+            handle_count: self.targets.len(),
+            stiffness: &self.stiffness,
+            holds: Holds {
+                soft: &self.soft,
+                continuity: &self.continuity,
+            },
+            loose: self.loose,
+            method: &self.method,
+            revision: 0,
+        };
+        let ordering = subject.ordering(self.method.operator_power());
+        let mut bound = match problem.bind(ordering, &Progress::new(), &Cancel::new()) {
+            Ok(bound) => bound,
+            Err(error) => {
+                let (BindError::NotPositiveDefinite { vertex, .. } | BindError::Inaccurate { vertex, .. }) = &error
+                else {
+                    panic!("{error}")
+                };
+                let sentence = error.to_string();
+                assert!(
+                    (*vertex as usize) < self.roles.len() && sentence.contains(&vertex.to_string()),
+                    "{sentence}"
+                );
+                return Outcome::Refused(sentence);
+            }
+        };
+        bound.set_targets(&self.targets).unwrap();
+        let mut displacements = vec![DVec3::NAN; bound.vertex_count()];
+        for _ in 0..STEPS {
+            match bound.step(&mut displacements) {
+                Ok(step) => {
+                    assert!(
+                        step.energy >= 0.0 && step.energy.is_finite(),
+                        "an energy of {}",
+                        step.energy
+                    );
+                    if step.finished {
+                        break;
+                    }
+                }
+                Err(error @ (SolveError::Inaccurate { .. } | SolveError::NotFinite { .. })) => {
+                    assert!(displacements.iter().all(|d| *d == DVec3::ZERO));
+                    return Outcome::Refused(error.to_string());
+                }
+                Err(error) => panic!("{error}"),
+            }
+        }
+        self.check(&model, &displacements);
+        Outcome::Bent
+    }
+
+    fn check(&self, model: &Model, displacements: &[DVec3]) {
+        let holds_softly = matches!(self.method, Method::Bilaplacian(_));
+        let size = model.bounds().unwrap().diagonal();
+        for ((role, rest), displacement) in self.roles.iter().zip(&model.surface.positions).zip(displacements) {
+            assert!(displacement.is_finite(), "{displacement}");
+            match *role {
+                Role::Fixed => assert_eq!(*displacement, DVec3::ZERO, "what is fixed has moved"),
+                Role::Handle(handle) if self.soft[usize::from(handle)].is_none() || !holds_softly => {
+                    let wanted = self.targets[usize::from(handle)].transform_point3(*rest) - *rest;
+                    let apart = displacement.distance(wanted);
+                    assert!(
+                        apart < 1e-9 * (size + wanted.length() + rest.length()),
+                        "a handle is {apart} off"
+                    );
+                }
+                Role::Handle(_) | Role::Free => {}
+            }
+        }
+    }
+}
+
+fn method(chance: &mut Chance) -> Method {
+    let share = chance.share();
+    if share > 0.7 {
+        // Any other method, with its defaults.
+        let others = Method::NAMES.len() - 1;
+        return Method::from_name(Method::NAMES[1 + chance.below(others)]).unwrap();
+    }
+    let mut options = Bilaplacian::default();
+    options.order = [
+        ShellOrder::ThinPlate,
+        ShellOrder::ThinPlate,
+        ShellOrder::Membrane,
+        ShellOrder::CurvatureVariation,
+    ][chance.below(4)];
+    if chance.share() < 0.4 {
+        options.stretching = 10_f64.powf(chance.between(-3.0, 5.0));
+        options.bending = if chance.share() < 0.2 {
+            0.0
+        } else {
+            10_f64.powf(chance.between(-3.0, 3.0))
+        };
+    }
+    if chance.share() < 0.4 {
+        options.discretisation = Discretisation::ALL[chance.below(3)];
+    }
+    if chance.share() < 0.4 {
+        options.triangulation = Triangulation::ALL[chance.below(3)];
+    }
+    if chance.share() < 0.4 {
+        options.anisotropy = chance.share();
+    }
+    Method::Bilaplacian(options)
+}
+
+fn transform(chance: &mut Chance, centre: DVec3, diagonal: f64) -> DAffine3 {
+    let direction = |chance: &mut Chance| {
+        let mut axis = || chance.between(-1.0, 1.0);
+        DVec3::new(axis(), axis(), axis()).normalize_or(DVec3::X)
+    };
+    let shift = direction(chance) * chance.between(0.0, 1.0) * diagonal;
+    let turn = DQuat::from_axis_angle(direction(chance), chance.between(-3.1, 3.1));
+    let scale = match chance.below(8) {
+        0 => DVec3::new(1.0, -0.5, 2.0),
+        1 => DVec3::ZERO,
+        2 => DVec3::splat(30.0),
+        _ => DVec3::ONE,
+    };
+    DAffine3::from_translation(centre + shift)
+        * DAffine3::from_scale_rotation_translation(scale, turn, DVec3::ZERO)
+        * DAffine3::from_translation(-centre)
+}
+
+/// Numbers that look like chance (Steele, Lea & Flood 2014, splitmix64) and are the same everywhere.
+pub struct Chance(pub u64);
+
+impl Chance {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// From 0 to below 1.
+    pub fn share(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + self.share() * (high - low)
+    }
+
+    /// From 0 to below `count`, which is not 0.
+    pub fn below(&mut self, count: usize) -> usize {
+        (self.next() % count as u64) as usize
+    }
+}

@@ -1,0 +1,22 @@
+//! The first of the seeded trials on every scan: options, methods and handles by chance.
+//!
+//! `cargo run --release -p pliant-tests --example trials -- 1000` goes on from here.
+
+use pliant_tests::trials::{Outcome, Trial, scans};
+
+#[test]
+fn sixty_trials_end_in_a_sound_shape_or_in_a_refusal_with_a_place() {
+    let mut subjects = scans();
+    let count = subjects.len() as u64;
+    let (mut bent, mut refused) = (0, Vec::new());
+    for seed in 0..if count > 0 { 60 } else { 0 } {
+        let subject = &mut subjects[(seed % count) as usize];
+        let trial = Trial::new(seed, &subject.model);
+        match trial.run(subject) {
+            Outcome::Bent => bent += 1,
+            Outcome::Refused(sentence) => refused.push(format!("{} {:?}: {sentence}", subject.name, trial.method)),
+        }
+    }
+    // Refusing everything is no way to pass.
+    assert!(count == 0 || bent > 50, "{bent} {refused:#?}");
+}
