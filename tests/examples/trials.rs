@@ -8,9 +8,7 @@ use pliant_deform::Method;
 use pliant_tests::trials::{Outcome, Trial, scans};
 
 fn main() {
-    let mut words = std::env::args()
-        .skip(1)
-        .map(|word| word.parse().unwrap());
+    let mut words = std::env::args().skip(1).map(|word| word.parse().unwrap());
     let (count, first): (u64, u64) = (words.next().unwrap_or(1000), words.next().unwrap_or(0));
     let mut subjects = scans();
     let mut counts = BTreeMap::<String, [usize; 3]>::new();

@@ -6,8 +6,7 @@ use std::collections::BTreeMap;
 
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{
-    Bilaplacian, BindError, Discretisation, Holds, Loose, Method, Ordering, Problem, Role, ShellOrder, SolveError,
-    Triangulation,
+    Bilaplacian, Discretisation, Holds, Loose, Method, Ordering, Problem, Role, ShellOrder, SolveError, Triangulation,
 };
 use pliant_mesh::{Cancel, Model, Progress};
 
@@ -196,13 +195,12 @@ impl Trial {
         let mut bound = match problem.bind(ordering, &Progress::new(), &Cancel::new()) {
             Ok(bound) => bound,
             Err(error) => {
-                let (BindError::NotPositiveDefinite { vertex, .. } | BindError::Inaccurate { vertex, .. }) = &error
-                else {
-                    panic!("{error}")
-                };
                 let sentence = error.to_string();
+                let Some(vertex) = error.vertex() else {
+                    panic!("{sentence}")
+                };
                 assert!(
-                    (*vertex as usize) < self.roles.len() && sentence.contains(&vertex.to_string()),
+                    (vertex as usize) < self.roles.len() && sentence.contains(&vertex.to_string()),
                     "{sentence}"
                 );
                 return Outcome::Refused(sentence);

@@ -9,10 +9,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
-use pliant_deform::{Bound, Method, Ordering, Problem};
+use pliant_deform::{Bound, Method, Ordering, Problem, SolveError};
 use pliant_editor::{Beginning, Setup};
 use pliant_io::{Format, Save, Scene};
-use pliant_mesh::{Cancel, Model, Progress, WeldOptions, vertex_normals};
+use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 
 use crate::AppError;
 use crate::files::{self, Neighbours, Staged, Staging};
@@ -101,9 +101,9 @@ pub fn bind(
     };
     problem
         .bind(ordering, progress, cancel)
-        .map_err(|source| AppError::Bind {
+        .map_err(|error| AppError::Bind {
             file: file.to_owned(),
-            source,
+            source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
         })
 }
 
@@ -273,9 +273,9 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
     )?;
     let bind_ms = ms_since(start);
 
-    let refuse = |source| AppError::Solve {
+    let refuse = |error: SolveError| AppError::Solve {
         file: apply.file.to_owned(),
-        source,
+        source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
     };
     let progress = watch.begin("bending");
     let count = apply.frames.unwrap_or(1);

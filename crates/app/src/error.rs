@@ -47,7 +47,7 @@ pub enum AppError {
     /// A project where a mesh is asked for.
     #[error("{} is a project, and FILE must be a mesh: give the mesh, and the project as --edit", .0.display())]
     ProjectAsFile(PathBuf),
-    /// The problem could not be factored.
+    /// The problem could not be factored. Its vertices are the file's.
     #[error("{}: {source}", .file.display())]
     Bind {
         /// The file that was to be bent.
@@ -55,7 +55,7 @@ pub enum AppError {
         /// What stands in the way.
         source: pliant_deform::BindError,
     },
-    /// A step could not be done.
+    /// A step could not be done. Its vertices are the file's.
     #[error("{}: {source}", .file.display())]
     Solve {
         /// The file that was to be bent.

@@ -2,7 +2,7 @@
 
 use pliant_mesh::Cancelled;
 
-/// A problem could not be bound.
+/// A problem could not be bound. Vertices are the surface's, until they are [`BindError::renumbered`].
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BindError {
@@ -21,7 +21,7 @@ pub enum BindError {
     },
     /// A vertex belongs to a handle that does not exist.
     #[error(
-        "surface vertex {vertex} belongs to handle {handle}, but there are {handle_count} handles: add the handle or free the vertex"
+        "vertex {vertex} belongs to handle {handle}, but there are {handle_count} handles: add the handle or free the vertex"
     )]
     UnknownHandle {
         /// The vertex.
@@ -38,7 +38,7 @@ pub enum BindError {
         handle: usize,
     },
     /// A stiffness that is no stiffness.
-    #[error("the stiffness {value} of surface vertex {vertex} is not a number above 0: paint it again")]
+    #[error("the stiffness {value} of vertex {vertex} is not a number above 0: paint it again")]
     Stiffness {
         /// The vertex.
         vertex: u32,
@@ -54,7 +54,7 @@ pub enum BindError {
         value: f64,
     },
     /// A continuity that is none.
-    #[error("the continuity {value} of surface vertex {vertex} is not a number from 0 to 2: paint it again")]
+    #[error("the continuity {value} of vertex {vertex} is not a number from 0 to 2: paint it again")]
     Continuity {
         /// The vertex.
         vertex: u32,
@@ -76,14 +76,14 @@ pub enum BindError {
         expected_power: u32,
     },
     /// A rest position that is not finite.
-    #[error("surface vertex {vertex} has no finite position: weld the surface again")]
+    #[error("vertex {vertex} has no finite position: weld the surface again")]
     Position {
         /// The vertex.
         vertex: u32,
     },
     /// The system is not positive definite, even with a little regularisation.
     #[error(
-        "the shell of component {component} cannot be factored at surface vertex {vertex}: fix vertices around it, repair the triangles there or lower the method's order"
+        "component {component} cannot be solved for at vertex {vertex}: fix vertices around it or repair the triangles there"
     )]
     NotPositiveDefinite {
         /// The component, as `cli.md` numbers them.
@@ -93,7 +93,7 @@ pub enum BindError {
     },
     /// The factor does not reproduce a constant.
     #[error(
-        "the shell of component {component} is solved only to {error:.1e} near surface vertex {vertex}: fix vertices around it, repair the triangles there or lower the method's order"
+        "component {component} is solved only to {error:.1e} near vertex {vertex}: fix vertices around it or repair the triangles there"
     )]
     Inaccurate {
         /// The component, as `cli.md` numbers them.
@@ -103,12 +103,63 @@ pub enum BindError {
         /// By how much a constant is missed.
         error: f64,
     },
+    /// A shell of an order above 1 was refused, which one of a lower order need not be.
+    #[error("{refused}, or lower the method's `order` from {order}")]
+    Order {
+        /// The shell's order.
+        order: u32,
+        /// What stands in its way.
+        refused: Box<BindError>,
+    },
     /// The factor does not fit.
     #[error("the factor of {free_count} free vertices does not fit into memory: make the region smaller")]
     OutOfMemory {
         /// How many vertices are solved for.
         free_count: usize,
     },
+}
+
+impl BindError {
+    /// The vertex that stands in the way.
+    pub fn vertex(&self) -> Option<u32> {
+        match self {
+            Self::UnknownHandle { vertex, .. }
+            | Self::Stiffness { vertex, .. }
+            | Self::Continuity { vertex, .. }
+            | Self::Position { vertex }
+            | Self::NotPositiveDefinite { vertex, .. }
+            | Self::Inaccurate { vertex, .. } => Some(*vertex),
+            Self::Order { refused, .. } => refused.vertex(),
+            _ => None,
+        }
+    }
+
+    /// The error with the vertex that a person knows in place of the surface's.
+    #[must_use]
+    pub fn renumbered(mut self, known: impl Fn(u32) -> u32) -> Self {
+        match &mut self {
+            Self::UnknownHandle { vertex, .. }
+            | Self::Stiffness { vertex, .. }
+            | Self::Continuity { vertex, .. }
+            | Self::Position { vertex }
+            | Self::NotPositiveDefinite { vertex, .. }
+            | Self::Inaccurate { vertex, .. } => *vertex = known(*vertex),
+            Self::Order { refused, .. } => **refused = refused.as_ref().clone().renumbered(known),
+            _ => {}
+        }
+        self
+    }
+}
+
+impl SolveError {
+    /// As [`BindError::renumbered`].
+    #[must_use]
+    pub fn renumbered(mut self, known: impl Fn(u32) -> u32) -> Self {
+        if let Self::NotFinite { vertex } = &mut self {
+            *vertex = known(*vertex);
+        }
+        self
+    }
 }
 
 /// A step could not be done; the displacements are all zero then.
@@ -144,7 +195,7 @@ pub enum SolveError {
         error: f64,
     },
     /// A displacement came out as no number.
-    #[error("the displacement of surface vertex {vertex} is not finite: move the handles less far")]
+    #[error("the displacement of vertex {vertex} is not finite: move the handles less far")]
     NotFinite {
         /// The first such vertex.
         vertex: u32,

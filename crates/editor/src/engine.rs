@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{BindError, Bound, Holds, Ordering, Problem, SolveError, Step};
-use pliant_mesh::{Bvh, Cancel, Model, Progress};
+use pliant_mesh::{Bvh, Cancel, Model, Progress, SurfaceVertex};
 
 use crate::document::{Document, HandleId, sum_of_shapes};
 use crate::job_queue::{JobQueue, Running};
@@ -366,13 +366,17 @@ impl Engine {
             match problem.bind(&ordering, progress, cancel) {
                 Ok(bound) => JobOutcome::Bound(Box::new(bound)),
                 Err(BindError::Cancelled(_)) => JobOutcome::Cancelled,
-                Err(error) => JobOutcome::Failed(error.to_string()),
+                Err(error) => JobOutcome::Failed(
+                    error
+                        .renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0)
+                        .to_string(),
+                ),
             }
         }))
     }
 
     fn solve_work(&self, document: &Document) -> Option<Work> {
-        let bound = self.bound.clone()?;
+        let (bound, model) = (self.bound.clone()?, self.model.clone()?);
         let targets = targets(document, &self.region.handles)?;
         let from_rest = Arc::clone(&document.from_rest);
         let rest = document.applied.then(|| Arc::clone(&document.rest));
@@ -383,7 +387,11 @@ impl Engine {
             let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
             let mut displacements = from_rest.to_vec();
             match steps(&mut bound, &targets, &mut displacements, cancel) {
-                Err(error) => JobOutcome::Failed(error.to_string()),
+                Err(error) => JobOutcome::Failed(
+                    error
+                        .renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0)
+                        .to_string(),
+                ),
                 Ok(step) => {
                     let from_rest = Arc::new(displacements);
                     let from_file = sum_of_shapes(rest.as_ref(), &from_rest);

@@ -117,7 +117,7 @@ impl EditFile {
                     first: self.handles[usize::from(other)].name.clone(),
                     second: entry.name.clone(),
                     shared: shared.iter().filter(|&&(_, o)| o == other).count(),
-                    file_vertex: first_file_vertex(model, vertex),
+                    file_vertex: model.first_file_vertex(vertex).0,
                 });
             }
             if count == 0.0 {
@@ -172,13 +172,4 @@ impl EditFile {
         }
         Ok(continuity)
     }
-}
-
-fn first_file_vertex(model: &Model, vertex: SurfaceVertex) -> u32 {
-    let behind = model.surface_of_drawn.iter().zip(&model.drawn.file_vertex);
-    behind
-        .filter(|(surface_vertex, _)| **surface_vertex == Some(vertex))
-        .map(|(_, file)| file.0)
-        .min()
-        .unwrap_or(0)
 }

@@ -73,6 +73,16 @@ impl Model {
         bounding_box(&self.surface.positions)
     }
 
+    /// The lowest of the file's vertices behind a surface vertex.
+    pub fn first_file_vertex(&self, vertex: SurfaceVertex) -> FileVertex {
+        let behind = self.surface_of_drawn.iter().zip(&self.drawn.file_vertex);
+        behind
+            .filter(|(surface_vertex, _)| **surface_vertex == Some(vertex))
+            .map(|(_, file_vertex)| *file_vertex)
+            .min()
+            .unwrap_or_default()
+    }
+
     /// The table from the file's vertices to the surface's.
     pub fn surface_of_file(&self) -> SurfaceOfFile {
         SurfaceOfFile::of_drawn(&self.drawn, &self.surface_of_drawn)

@@ -39,7 +39,7 @@ impl Plate {
     ) -> Result<Self, BindError> {
         let (net, solved) = (&partition.net, &partition.solved);
         let component_of = |vertex: u32| problem.topology.component(SurfaceVertex(vertex));
-        let refuse = |error: ShellError| error.into_bind_error(component_of, solved.len());
+        let refuse = |error: ShellError| of_order(options, error.into_bind_error(component_of, solved.len()));
         let order = ordering.restricted_on(net, solved);
         cancel.check()?;
         progress.set(0.1);
@@ -68,11 +68,13 @@ impl Plate {
         for column in &columns {
             if column.error.is_nan() || column.error > TOLERANCE {
                 let vertex = column.worst_vertex;
-                return Err(BindError::Inaccurate {
-                    component: component_of(vertex),
+                let (component, error) = (component_of(vertex), column.error);
+                let refused = BindError::Inaccurate {
+                    component,
                     vertex,
-                    error: column.error,
-                });
+                    error,
+                };
+                return Err(of_order(options, refused));
             }
         }
         let mut energy_blocks = vec![[[0.0; 4]; 4]; handles.len() * handles.len()];
@@ -218,6 +220,18 @@ fn prescribe(
         prescribed.push(places.into_iter().zip(coordinates).collect());
     }
     prescribed
+}
+
+/// The refusal with a lower order as a further remedy, where there is one.
+fn of_order(options: &Bilaplacian, refused: BindError) -> BindError {
+    let order = options.operator_power();
+    match refused {
+        BindError::NotPositiveDefinite { .. } | BindError::Inaccurate { .. } if order > 1 => BindError::Order {
+            order,
+            refused: Box::new(refused),
+        },
+        _ => refused,
+    }
 }
 
 /// What is said of triangles too flat for cotangents.

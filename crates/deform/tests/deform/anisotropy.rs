@@ -126,13 +126,15 @@ fn unevenness(anisotropy: f64) -> f64 {
         .with(Role::Handle(0), |p| p.z > 30.5);
     scene.method = method(ShellOrder::ThinPlate, anisotropy);
     let centre = DVec3::new(2.0, 2.0, 0.0);
-    let twist = DAffine3::from_translation(centre)
-        * DAffine3::from_rotation_z(ANGLE_RAD)
-        * DAffine3::from_translation(-centre);
+    let twist =
+        DAffine3::from_translation(centre) * DAffine3::from_rotation_z(ANGLE_RAD) * DAffine3::from_translation(-centre);
     let displacements = scene.moved(&[twist]);
     let mut sums = [[0.0_f64; 2]; 33];
     for (p, d) in scene.positions().iter().zip(&displacements) {
-        let (before, after) = (p.truncate() - centre.truncate(), (*p + *d).truncate() - centre.truncate());
+        let (before, after) = (
+            p.truncate() - centre.truncate(),
+            (*p + *d).truncate() - centre.truncate(),
+        );
         let [sine, cosine] = &mut sums[p.z.round() as usize];
         *sine += before.perp_dot(after);
         *cosine += before.dot(after);
@@ -147,7 +149,10 @@ fn unevenness(anisotropy: f64) -> f64 {
 #[test]
 fn a_twisted_bar_is_twisted_the_more_evenly_the_more_anisotropic() {
     let unevenness = [0.0, 0.25, 0.5, 0.75, 1.0].map(unevenness);
-    assert!(unevenness.windows(2).all(|pair| pair[1] < 0.95 * pair[0]), "{unevenness:?}");
+    assert!(
+        unevenness.windows(2).all(|pair| pair[1] < 0.95 * pair[0]),
+        "{unevenness:?}"
+    );
     assert!(unevenness[0] > 0.3 && unevenness[4] < 0.2, "{unevenness:?}");
 }
 

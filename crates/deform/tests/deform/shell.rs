@@ -201,12 +201,17 @@ fn refused(scene: &Scene, error: &BindError, label: &str) {
         options.order == ShellOrder::CurvatureVariation || label.starts_with("broken") || label.starts_with("soup"),
         "{label}: {error}"
     );
-    match error {
-        BindError::Inaccurate { vertex, .. } | BindError::NotPositiveDefinite { vertex, .. } => {
-            assert!((*vertex as usize) < scene.roles.len());
-        }
-        other => panic!("{label}: {other}"),
-    }
+    assert!(
+        error
+            .vertex()
+            .is_some_and(|vertex| (vertex as usize) < scene.roles.len()),
+        "{label}: {error}"
+    );
+    assert_eq!(
+        error.to_string().contains("`order`"),
+        scene.method.operator_power() > 1,
+        "{label}: {error}"
+    );
 }
 
 #[test]
