@@ -15,6 +15,7 @@ mod error;
 mod follow;
 mod handle;
 mod holds;
+mod lanes;
 mod lbfgs;
 mod method;
 mod operators;

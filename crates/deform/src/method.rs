@@ -41,7 +41,8 @@ impl Method {
     pub fn operator_power(&self) -> u32 {
         match self {
             Self::Bilaplacian(options) => options.operator_power(),
-            Self::Arap(_) | Self::Primo(_) => 1,
+            Self::Arap(options) => options.operator_power(),
+            Self::Primo(_) => 1,
         }
     }
 }

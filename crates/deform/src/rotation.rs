@@ -11,18 +11,18 @@ use glam::{DMat3, DQuat, DVec3};
 use crate::rigid_fit::best_rotation;
 
 /// Newton steps before a start is given up.
-const STEPS: u32 = 6;
+pub(crate) const STEPS: u32 = 6;
 
 /// The skew part that counts as none, in units of tr(B).
-const STATIONARY: f64 = 1e-14;
+pub(crate) const STATIONARY: f64 = 1e-14;
 
 /// A turn, in radians, from which no further step is needed: convergence is quadratic at least, and what is left of it
 /// enters the energy squared once more. As a descent settles its turns get smaller, and the rotations exact.
-const SMALL_RAD: f64 = 3e-3;
+pub(crate) const SMALL_RAD: f64 = 3e-3;
 
 /// What is added to H, in units of its trace: a cell whose edges lie on one line leaves the turn about it open, and
 /// keeps the one it had.
-const OPEN: f64 = 1e-12;
+pub(crate) const OPEN: f64 = 1e-12;
 
 /// The best rotation for `s`, from the guess `start`; `start` itself where `s` is zero or not finite.
 #[inline]
@@ -33,8 +33,9 @@ pub(crate) fn fit(s: &DMat3, start: DQuat) -> DQuat {
     fit_anew(s, start)
 }
 
+/// As [`fit`], where Newton's method from `start` did not get there.
 #[cold]
-fn fit_anew(s: &DMat3, start: DQuat) -> DQuat {
+pub(crate) fn fit_anew(s: &DMat3, start: DQuat) -> DQuat {
     let size = s.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     if !(size > 0.0 && s.is_finite()) {
         return start;

@@ -9,6 +9,7 @@ pub(crate) mod matrix;
 mod multifrontal;
 mod ordering;
 pub(crate) mod reach;
+pub(crate) mod substitution;
 mod triangular;
 
 pub use ordering::Ordering;

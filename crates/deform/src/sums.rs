@@ -9,7 +9,7 @@ use crate::operators::CHUNK;
 pub(crate) type Field = Vec<[f64; 3]>;
 
 /// Chunks that a task takes at least: shorter fields are not worth a thread's waking.
-const CHUNKS_A_TASK: usize = 8;
+pub(crate) const CHUNKS_A_TASK: usize = 8;
 
 /// a · b.
 pub(crate) fn dot(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {

@@ -1,12 +1,12 @@
 //! One step down.
 
-use glam::DVec3;
 use rayon::prelude::*;
 
-use super::shape::Shape;
+use super::history::Field;
+use super::shape::{Guesses, Shape};
 use super::{ArapSolver, State};
 use crate::operators::CHUNK;
-use crate::sums::{Field, dot};
+use crate::sums::CHUNKS_A_TASK;
 
 /// A step must lower the energy by this share of what its slope promises.
 const SUFFICIENT: f64 = 1e-4;
@@ -24,41 +24,66 @@ impl ArapSolver {
     /// that the last step improved by less than that too. A plain local/global step always descends, in exact
     /// arithmetic: where even that fails, rounding is all that is left.
     pub(super) fn descend(&mut self) {
+        self.map_gradient();
         loop {
-            let preconditioner = &self.preconditioner;
-            let uphill = self
-                .memory
-                .direction(&self.current.gradient, |x| preconditioner.apply(x));
-            let slope = -dot(&uphill, &self.current.gradient);
+            let factors = self.history.factors();
+            let [along, _] = self.history.direction(&factors, &mut self.direction);
+            let slope = -along * self.unit * self.unit;
             let before = self.current.energy;
-            if slope < 0.0 && self.search(&uphill, slope) {
+            if slope < 0.0 && self.search(slope) {
                 let (gained, enough) = (
                     before - self.current.energy,
-                    self.options.tolerance * self.current.energy + NOTHING * self.energy.scale(),
+                    self.options.tolerance * self.current.energy + NOTHING * self.cells.scale,
                 );
                 if -0.5 * slope <= enough && gained <= enough {
                     self.state = State::Converged;
                 }
                 return;
             }
-            if self.memory.is_empty() {
+            if self.history.is_empty() {
                 self.state = State::Converged;
                 return;
             }
-            self.memory.clear();
+            self.history.clear();
         }
     }
 
-    /// Moves against `uphill`, by its whole length if that lowers the energy enough; says whether any length did.
-    fn search(&mut self, uphill: &Field, slope: f64) -> bool {
+    /// The gradient in the memory's units, where displacements are measured in `unit`, and the plain step for it.
+    fn map_gradient(&mut self) {
+        let factor = self.unit.recip();
+        let gradient = &self.current.gradient;
+        self.history.gradient.resize(gradient.len(), [0.0; 4]);
+        self.history
+            .gradient
+            .par_chunks_mut(CHUNK)
+            .zip(gradient.par_chunks(CHUNK))
+            .with_min_len(CHUNKS_A_TASK)
+            .for_each(|(own, gradient)| {
+                for (own, gradient) in own.iter_mut().zip(gradient) {
+                    for k in 0..4 {
+                        own[k] = (gradient[k] * factor) as f32;
+                    }
+                }
+            });
+        self.history.mapped.resize(gradient.len(), [0.0; 4]);
+        self.preconditioner
+            .map(gradient, factor, &mut self.history.mapped, &mut self.map_room);
+    }
+
+    /// Moves against the direction, by its whole length if that lowers the energy enough; says whether any length did.
+    fn search(&mut self, slope: f64) -> bool {
         let before = self.current.energy;
         let mut length = 1.0;
         for _ in 0..TRIALS {
-            moved(&self.current, uphill, -length, &mut self.trial);
-            self.energy.evaluate(&mut self.trial, &mut self.scratch);
+            moved(&self.current, &self.direction, -length * self.unit, &mut self.trial);
+            let guesses = Guesses::Given(&self.current.rotations);
+            self.cells.evaluate(&mut self.trial, guesses, &mut self.scratch);
             let after = self.trial.energy;
             if after <= before + SUFFICIENT * length * slope && after < before {
-                self.accept(-length, uphill);
+                let (old, new) = (&self.current.gradient, &self.trial.gradient);
+                self.history
+                    .stepped(length, &self.direction, old, new, self.unit.recip());
+                std::mem::swap(&mut self.current, &mut self.trial);
                 return true;
             }
             // The least of the parabola through both energies and the slope.
@@ -71,36 +96,22 @@ impl ArapSolver {
         }
         false
     }
-
-    fn accept(&mut self, length: f64, direction: &Field) {
-        let difference = |k: usize| {
-            let (new, old) = (self.trial.gradient[k], self.current.gradient[k]);
-            [new[0] - old[0], new[1] - old[1], new[2] - old[2]]
-        };
-        let change: Field = (0..direction.len())
-            .into_par_iter()
-            .with_min_len(4 * CHUNK)
-            .map(difference)
-            .collect();
-        let step = direction
-            .par_iter()
-            .with_min_len(4 * CHUNK)
-            .map(|value| value.map(|v| v * length))
-            .collect();
-        self.memory.push(step, change);
-        std::mem::swap(&mut self.current, &mut self.trial);
-    }
 }
 
 /// Makes `trial` the shape at `length` along `direction` from `from`, still to be evaluated.
 fn moved(from: &Shape, direction: &Field, length: f64, trial: &mut Shape) {
-    trial.rotations.copy_from_slice(&from.rotations);
     let (solved, constrained) = trial.displacements.split_at_mut(direction.len());
     constrained.copy_from_slice(&from.displacements[direction.len()..]);
     solved
-        .par_iter_mut()
-        .zip(&from.displacements)
-        .zip(direction)
-        .with_min_len(4 * CHUNK)
-        .for_each(|((own, &from), &step)| *own = from + DVec3::from_array(step) * length);
+        .par_chunks_mut(CHUNK)
+        .zip(from.displacements[..direction.len()].par_chunks(CHUNK))
+        .zip(direction.par_chunks(CHUNK))
+        .with_min_len(CHUNKS_A_TASK)
+        .for_each(|((own, from), direction)| {
+            for ((own, from), step) in own.iter_mut().zip(from).zip(direction) {
+                for k in 0..3 {
+                    own[k] = from[k] + f64::from(step[k]) * length;
+                }
+            }
+        });
 }

@@ -6,16 +6,33 @@
 pub struct Arap {
     /// Which edges a vertex's cell consists of.
     pub energy: ArapEnergy,
+    /// κ of the smooth energy (see [`ArapEnergy::Smooth`]), without unit and independent of the mesh's size and density:
+    /// within [`Arap::SMOOTHNESS`]. Other energies have no use for it.
+    pub smoothness: f64,
     /// Iteration ends where a step lowers the energy by less than this share of it; above 0.
     pub tolerance: f64,
     /// Iteration ends after so many steps towards one set of targets, converged or not; at least 1.
     pub max_iterations: u32,
 }
 
+impl Arap {
+    /// From hardly smoother than the rims alone to nearly a plate that keeps its curvature.
+    pub const SMOOTHNESS: std::ops::RangeInclusive<f64> = 1e-6..=10.0;
+
+    /// The power of the Laplacian whose graph the system has.
+    pub fn operator_power(&self) -> u32 {
+        match self.energy {
+            ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => 1,
+            ArapEnergy::Smooth => 2,
+        }
+    }
+}
+
 impl Default for Arap {
     fn default() -> Self {
         Self {
             energy: ArapEnergy::default(),
+            smoothness: 0.01,
             tolerance: 1e-4,
             max_iterations: 500,
         }
@@ -31,17 +48,21 @@ pub enum ArapEnergy {
     /// All edges of its vertex's triangles (Chao et al. 2010), with plain cotangents; never negative.
     #[default]
     SpokesAndRims,
+    /// Spokes and rims, and the curvature turning along with each cell: the second order of Levi & Gotsman (2015) and
+    /// Oehri et al. (2025). No spikes at handles of a single vertex; twists spread evenly.
+    Smooth,
 }
 
 impl ArapEnergy {
     /// All, in the order in which they are shown.
-    pub const ALL: [Self; 2] = [Self::Spokes, Self::SpokesAndRims];
+    pub const ALL: [Self; 3] = [Self::Spokes, Self::SpokesAndRims, Self::Smooth];
 
     /// Its name in the edit.
     pub fn name(self) -> &'static str {
         match self {
             Self::Spokes => "spokes",
             Self::SpokesAndRims => "spokes-and-rims",
+            Self::Smooth => "smooth",
         }
     }
 }

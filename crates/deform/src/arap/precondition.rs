@@ -3,16 +3,35 @@
 use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
+use super::cells::Quad;
 use super::domain::Domain;
 use super::matrix::System;
 use crate::operators::CHUNK;
 use crate::sparse::cholesky::{Factor, FactorError};
+use crate::sparse::substitution::{Real, Room, Row, Substitution};
+use crate::sums::CHUNKS_A_TASK;
 
-/// The inverse of the Laplacian on the solved vertices, or nearly so.
+/// The inverse of the system on the solved vertices, or nearly so.
+///
+/// It is kept in single precision where that is accurate enough to descend by: it is half the bytes to read, and what it
+/// rounds the next step corrects. Gradients and positions stay double.
 #[derive(Debug)]
 pub(crate) struct Preconditioner {
-    factor: Factor,
+    solver: Solver,
     scale: Vec<f64>,
+}
+
+#[derive(Debug)]
+enum Solver {
+    Single(Substitution<f32>),
+    Double(Substitution<f64>),
+}
+
+/// Room for applying it, kept from one step to the next.
+#[derive(Debug, Default)]
+pub(crate) struct MapRoom {
+    single: (Vec<Row<f32>>, Room<f32>),
+    double: (Vec<Row<f64>>, Room<f64>),
 }
 
 /// Why there is none.
@@ -34,18 +53,17 @@ const SHIFTS: [f64; 5] = [0.0, 1e-13, 1e-11, 1e-9, 1e-7];
 const TOLERANCE: f64 = 1e-2;
 
 impl Preconditioner {
-    /// Factors and checks the system.
-    pub fn of(system: &System, cancel: &Cancel) -> Result<Self, PreconditionError> {
+    /// Factors and checks the system; gives each handle's weights besides (see [`Preconditioner::weights`]).
+    pub fn of(
+        system: &System,
+        weights: &WeightInput<'_>,
+        cancel: &Cancel,
+    ) -> Result<(Self, Vec<f64>), PreconditionError> {
         let mut failed = None;
         for shift in SHIFTS {
             cancel.check().map_err(|_| PreconditionError::Cancelled)?;
             match Factor::of(&system.matrix, shift, cancel) {
-                Ok(factor) => {
-                    let scale = system.matrix.scale.clone();
-                    let preconditioner = Self { factor, scale };
-                    preconditioner.check(system)?;
-                    return Ok(preconditioner);
-                }
+                Ok(factor) => return Self::checked(&factor, system, weights, cancel),
                 Err(FactorError::Pivot(column)) => failed = failed.or(Some(column)),
                 Err(FactorError::Memory) => return Err(PreconditionError::Memory),
                 Err(FactorError::Cancelled) => return Err(PreconditionError::Cancelled),
@@ -54,62 +72,140 @@ impl Preconditioner {
         Err(PreconditionError::Pivot(failed.unwrap_or_default()))
     }
 
-    fn check(&self, system: &System) -> Result<(), PreconditionError> {
-        let mut ones = self.extended(system, |_| 1.0);
-        for (vertex, value) in ones.drain(..).enumerate() {
-            let error = (value - 1.0).abs();
-            if error.is_nan() || error > TOLERANCE {
-                return Err(PreconditionError::Inaccurate(vertex, error));
-            }
+    fn checked(
+        factor: &Factor,
+        system: &System,
+        weights: &WeightInput<'_>,
+        cancel: &Cancel,
+    ) -> Result<(Self, Vec<f64>), PreconditionError> {
+        let scale = system.matrix.scale.clone();
+        let double = Self {
+            solver: Solver::Double(factor.substitution()),
+            scale: scale.clone(),
+        };
+        let (vertex, error) = double.miss(system);
+        if error > TOLERANCE {
+            return Err(PreconditionError::Inaccurate(vertex, error));
         }
-        Ok(())
+        let weights = double.weights(system, weights);
+        cancel.check().map_err(|_| PreconditionError::Cancelled)?;
+        let single = Self {
+            solver: Solver::Single(factor.substitution()),
+            scale,
+        };
+        let (_, error) = single.miss(system);
+        Ok((if error > TOLERANCE { double } else { single }, weights))
+    }
+
+    /// By how much a constant is missed, and where most.
+    fn miss(&self, system: &System) -> (usize, f64) {
+        let ones = self.extended(system, [|_: u32| 1.0; 1]);
+        let error = |row: &Quad| {
+            let error = (row[0] - 1.0).abs();
+            if error.is_nan() { f64::INFINITY } else { error }
+        };
+        let errors = ones.iter().map(error).enumerate();
+        errors.fold((0, 0.0), |worst, next| if next.1 > worst.1 { next } else { worst })
     }
 
     /// How many numbers the factor stores.
     pub fn stored(&self) -> usize {
-        self.factor.stored()
-    }
-
-    /// x ← (−L)⁻¹ x.
-    pub fn apply<const K: usize>(&self, x: &mut [[f64; K]]) {
-        let rescale = |x: &mut [[f64; K]]| {
-            x.par_iter_mut()
-                .zip(&self.scale)
-                .with_min_len(4 * CHUNK)
-                .for_each(|(x, &scale)| *x = x.map(|value| value * scale));
-        };
-        rescale(x);
-        self.factor.solve(x);
-        rescale(x);
-    }
-
-    /// The harmonic function on the solved vertices with the values `of_constrained` on the constrained local ones.
-    fn extended(&self, system: &System, of_constrained: impl Fn(u32) -> f64) -> Vec<f64> {
-        let mut x = vec![[0.0]; self.scale.len()];
-        for &(vertex, other, weight) in &system.constrained {
-            x[vertex as usize][0] += weight * of_constrained(other);
+        match &self.solver {
+            Solver::Single(solver) => solver.stored(),
+            Solver::Double(solver) => solver.stored(),
         }
-        self.apply(&mut x);
-        x.into_iter().map(|[value]| value).collect()
     }
 
-    /// Each handle's harmonic weight on each cell, row-major: 1 on its own vertices, 0 on other constrained ones.
-    /// `handle_of` says which handle a local vertex belongs to; where `unheld` says that nothing is fixed around a
-    /// local vertex, its weights sum to 1.
-    pub fn weights(
+    /// `mapped` ← the inverse of the system times `factor` times `field`, which ends in single precision.
+    pub fn map(&self, field: &[Quad], factor: f64, mapped: &mut [Row<f32>], room: &mut MapRoom) {
+        match &self.solver {
+            Solver::Single(solver) => {
+                let (x, room) = &mut room.single;
+                self.solve(solver, field, factor, x, room);
+                narrowed(x, &self.scale, mapped);
+            }
+            Solver::Double(solver) => {
+                let (x, room) = &mut room.double;
+                self.solve(solver, field, factor, x, room);
+                narrowed(x, &self.scale, mapped);
+            }
+        }
+    }
+
+    fn solve<T: Real>(
         &self,
-        system: &System,
-        domain: &Domain,
-        handle_count: usize,
-        handle_of: impl Fn(u32) -> Option<usize>,
-        unheld: impl Fn(u32) -> bool,
-    ) -> Vec<f64> {
+        solver: &Substitution<T>,
+        field: &[Quad],
+        factor: f64,
+        x: &mut Vec<Row<T>>,
+        room: &mut Room<T>,
+    ) {
+        x.resize(field.len(), Row::default());
+        x.par_chunks_mut(CHUNK)
+            .zip(field.par_chunks(CHUNK))
+            .zip(self.scale.par_chunks(CHUNK))
+            .with_min_len(CHUNKS_A_TASK)
+            .for_each(|((x, field), scale)| {
+                for ((x, value), &scale) in x.iter_mut().zip(field).zip(scale) {
+                    for k in 0..4 {
+                        x[k] = T::of(value[k] * (scale * factor));
+                    }
+                }
+            });
+        solver.solve(x, room);
+    }
+
+    /// Up to four functions on the solved vertices for which the system's forces vanish, with the values
+    /// `of_constrained` on the constrained local ones.
+    fn extended<const K: usize>(&self, system: &System, of_constrained: [impl Fn(u32) -> f64; K]) -> Vec<Quad> {
+        let mut pulls = vec![[0.0; 4]; self.scale.len()];
+        for (k, values) in of_constrained.iter().enumerate().take(4) {
+            for (own, pull) in pulls.iter_mut().zip(system.pull(values)) {
+                own[k] = pull;
+            }
+        }
+        let mut room = MapRoom::default();
+        let widened = |rows: Vec<Quad>| {
+            let rows = rows.into_iter().zip(&self.scale);
+            rows.map(|(row, &scale)| row.map(|value| value * scale)).collect()
+        };
+        match &self.solver {
+            Solver::Double(solver) => {
+                let (x, room) = &mut room.double;
+                self.solve(solver, &pulls, 1.0, x, room);
+                widened(std::mem::take(x))
+            }
+            Solver::Single(solver) => {
+                let (x, room) = &mut room.single;
+                self.solve(solver, &pulls, 1.0, x, room);
+                widened(x.iter().map(|row| row.map(f64::from)).collect())
+            }
+        }
+    }
+
+    /// Each handle's weight on each cell, row-major: 1 on its own vertices, 0 on other constrained ones, harmonic in the
+    /// system's sense between. Where nothing is fixed around a vertex they sum to 1.
+    fn weights(&self, system: &System, input: &WeightInput<'_>) -> Vec<f64> {
+        let WeightInput {
+            domain,
+            handle_count,
+            handle_of,
+            unheld,
+        } = *input;
         let mut weights = vec![0.0; domain.cell_count * handle_count];
-        for handle in 0..handle_count {
-            let values = self.extended(system, |other| f64::from(handle_of(other) == Some(handle)));
-            for (vertex, value) in values.into_iter().enumerate() {
-                // Negative cotangents may carry it a little outside.
-                weights[vertex * handle_count + handle] = value.clamp(0.0, 1.0);
+        let handles: Vec<usize> = (0..handle_count).collect();
+        for group in handles.chunks(4) {
+            // Four right-hand sides a solve, the last group's spare ones empty.
+            let of = |k: usize| {
+                let handle = group.get(k).copied();
+                move |other: u32| f64::from(u8::from(handle.is_some() && handle_of(other) == handle))
+            };
+            let values = self.extended(system, [of(0), of(1), of(2), of(3)]);
+            for (vertex, values) in values.iter().enumerate() {
+                for (&handle, value) in group.iter().zip(values) {
+                    // Negative cotangents and bending may carry it outside.
+                    weights[vertex * handle_count + handle] = value.clamp(0.0, 1.0);
+                }
             }
         }
         for vertex in domain.solved_count..domain.cell_count {
@@ -127,4 +223,31 @@ impl Preconditioner {
         }
         weights
     }
+}
+
+/// What the handles' weights depend on besides the system.
+#[derive(Clone, Copy)]
+pub(crate) struct WeightInput<'a> {
+    pub domain: &'a Domain,
+    pub handle_count: usize,
+    /// Which handle a local vertex belongs to.
+    pub handle_of: &'a dyn Fn(u32) -> Option<usize>,
+    /// Whether nothing is fixed around a local vertex.
+    pub unheld: &'a dyn Fn(u32) -> bool,
+}
+
+/// `mapped` ← S x in single precision.
+fn narrowed<T: Real>(x: &[Row<T>], scale: &[f64], mapped: &mut [Row<f32>]) {
+    mapped
+        .par_chunks_mut(CHUNK)
+        .zip(x.par_chunks(CHUNK))
+        .zip(scale.par_chunks(CHUNK))
+        .with_min_len(CHUNKS_A_TASK)
+        .for_each(|((mapped, x), scale)| {
+            for ((mapped, x), &scale) in mapped.iter_mut().zip(x).zip(scale) {
+                for k in 0..4 {
+                    mapped[k] = (x[k].wide() * scale) as f32;
+                }
+            }
+        });
 }

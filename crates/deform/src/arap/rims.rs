@@ -1,203 +1,135 @@
 //! The energy over spokes and rims (Chao et al. 2010): a vertex's cell is all edges of its triangles.
 //!
 //! E = ½ Σ_i Σ_f∋i ⅓ Σ_e∈f w_fe |e' − R_i e|², with w_fe half the cotangent opposite e in f, plain, negative ones
-//! included: each triangle's inner sum is a squared norm of the 3×2 matrix Y − R_i T, where T = (e1 e2) Uᵀ, Y the same of
-//! the deformed edges and UᵀU the triangle's 2×2 form, so nothing is ever negative. It is evaluated just so, as a sum
-//! of squares: near a rigid motion it keeps its digits, where Σ|e'|² − 2 tr(RᵀS) would cancel. With the ⅓ the
+//! included: each triangle's inner sum is a squared norm whatever its shape, so nothing is ever negative. With the ⅓ the
 //! majorising quadratic's matrix is the Laplacian itself.
 //!
+//! A triangle's part of S is Σ_c p'_c g_cᵀ over its corners, with g_b = w_ab (b − a) + w_bc (b − c) and so on round.
 //! Stiffness is in w_fe: a face's by the mean of its corners.
 
-use glam::{DMat3, DVec3};
-use pliant_mesh::{Surface, edge_lengths};
+use glam::DVec3;
+use pliant_mesh::{Surface, SurfaceVertex, Topology, edge_lengths};
 use rayon::prelude::*;
 
-use super::domain::Domain;
-use super::shape::{Scratch, Shape, fit_cells};
+use super::cells::{Cells, Entry, Solved, add_square};
+use super::domain::{ABSENT, Domain};
 use crate::operators::CHUNK;
 use crate::operators::face_terms::Metric;
 
-/// The energy's terms on a domain.
-#[derive(Debug)]
-pub(crate) struct Rims {
-    faces: Vec<Face>,
-    /// Of each cell: where its entries of `corners` start.
-    offsets: Vec<u32>,
-    /// 3 · face + corner.
-    corners: Vec<u32>,
-}
-
-#[derive(Clone, Copy, Debug)]
 struct Face {
     corners: [u32; 3],
-    /// U's entries 11, 12, 22: the upper triangle.
-    form: [f64; 3],
-    /// T's columns.
-    rest: [DVec3; 2],
+    /// w_fe of the edge opposite each corner.
+    weights: [f64; 3],
+    edges: [DVec3; 3],
 }
 
 impl Face {
-    /// Y − T's columns: the form of the edges' displacements.
-    #[inline]
-    fn strained(&self, displacements: &[DVec3]) -> [DVec3; 2] {
-        let [a, b, c] = self.corners.map(|corner| displacements[corner as usize]);
-        let (e1, e2) = (b - a, c - a);
-        [e1 * self.form[0] + e2 * self.form[1], e2 * self.form[2]]
+    /// g of a corner.
+    fn towards(&self, corner: usize) -> DVec3 {
+        let [next, last] = [(corner + 1) % 3, (corner + 2) % 3];
+        // Edge k runs from corner k + 1 to corner k + 2.
+        self.edges[next] * self.weights[next] - self.edges[last] * self.weights[last]
+    }
+
+    fn square(&self) -> f64 {
+        let weighted = |k: usize| self.weights[k] * self.edges[k].length_squared();
+        weighted(0) + weighted(1) + weighted(2)
     }
 }
 
-impl Rims {
-    /// The terms of `domain`'s faces.
-    pub fn new(surface: &Surface, stiffness: &[f64], domain: &Domain) -> Self {
-        let metric = Metric::cotangent_area();
-        let faces: Vec<Face> = domain
-            .faces
-            .par_iter()
-            .with_min_len(CHUNK)
-            .map(|&face| {
-                let corners = surface.triangles[face as usize];
-                let [a, b, c] = corners.map(|corner| surface.positions[corner.index()]);
-                let [h0, h1, h2] = metric.face(stiffness, corners, edge_lengths([a, b, c])).half_cotangents;
-                let (e1, e2) = (b - a, c - a);
-                // h2|e1|² + h1|e2|² + h0|e2 − e1|² = |U (e1 e2)ᵀ|².
-                let u11 = (h2 + h0).max(0.0).sqrt();
-                let u12 = if u11 > 0.0 { -h0 / u11 } else { 0.0 };
-                let u22 = (h1 + h0 - u12 * u12).max(0.0).sqrt();
-                Face {
-                    corners: corners.map(|corner| domain.local_of[corner.index()]),
-                    form: [u11, u12, u22],
-                    rest: [e1 * u11 + e2 * u12, e2 * u22],
+/// The stencils of `domain`'s cells.
+pub(crate) fn cells(surface: &Surface, topology: &Topology, stiffness: &[f64], domain: &Domain) -> Cells {
+    let metric = Metric::cotangent_area();
+    let faces: Vec<Face> = domain
+        .faces
+        .par_iter()
+        .with_min_len(CHUNK)
+        .map(|&face| {
+            let corners = surface.triangles[face as usize];
+            let [a, b, c] = corners.map(|corner| surface.positions[corner.index()]);
+            Face {
+                corners: corners.map(|corner| domain.local_of[corner.index()]),
+                weights: metric.face(stiffness, corners, edge_lengths([a, b, c])).half_cotangents,
+                edges: [c - b, a - c, b - a],
+            }
+        })
+        .collect();
+    let mut slots = vec![ABSENT; surface.triangles.len()];
+    for (slot, &face) in domain.faces.iter().enumerate() {
+        slots[face as usize] = slot as u32;
+    }
+    let parts: Vec<Cells> = (0..domain.cell_count.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|chunk| {
+            let mut part = Cells::default();
+            let mut entries = Vec::new();
+            for cell in chunk * CHUNK..((chunk + 1) * CHUNK).min(domain.cell_count) {
+                let vertex = SurfaceVertex(domain.vertices[cell]);
+                let local = |other: &SurfaceVertex| domain.local_of[other.index()];
+                entries.clear();
+                entries.extend(topology.neighbours(vertex).iter().map(|other| Entry {
+                    end: local(other),
+                    ..Entry::default()
+                }));
+                let around = topology
+                    .faces(vertex)
+                    .iter()
+                    .map(|&face| &faces[slots[face as usize] as usize]);
+                let mut rest = [0.0; 6];
+                for face in around {
+                    add(face, cell as u32, &mut entries, &mut rest);
                 }
-            })
-            .collect();
-        let mut offsets = vec![0; domain.cell_count + 1];
-        let of_cells = |face: &Face| {
-            face.corners
-                .into_iter()
-                .filter(|&corner| (corner as usize) < domain.cell_count)
-        };
-        for corner in faces.iter().flat_map(of_cells) {
-            offsets[corner as usize + 1] += 1;
-        }
-        for cell in 0..domain.cell_count {
-            offsets[cell + 1] += offsets[cell];
-        }
-        let mut next = offsets.clone();
-        let mut corners = vec![0; offsets[domain.cell_count] as usize];
-        for (number, face) in faces.iter().enumerate() {
-            for (corner, &vertex) in face.corners.iter().enumerate() {
-                if (vertex as usize) < domain.cell_count {
-                    corners[next[vertex as usize] as usize] = (3 * number + corner) as u32;
-                    next[vertex as usize] += 1;
-                }
+                let solved = if cell < domain.solved_count {
+                    Solved::Yes
+                } else {
+                    Solved::No
+                };
+                part.push(&entries, rest, solved);
+            }
+            part
+        })
+        .collect();
+    let mut cells = Cells::default();
+    for part in parts {
+        cells.append(part);
+    }
+    cells.constant = constant(&faces, domain);
+    cells.scale = 0.5 * faces.iter().map(Face::square).sum::<f64>();
+    cells
+}
+
+/// Adds a triangle's part to a cell's entries and to its rest matrix.
+fn add(face: &Face, cell: u32, entries: &mut [Entry], rest: &mut [f64; 6]) {
+    for own in (0..3).filter(|&own| face.corners[own] == cell) {
+        for other in (0..3).filter(|&other| face.corners[other] != cell) {
+            let end = face.corners[other];
+            if let Some(entry) = entries.iter_mut().find(|entry| entry.end == end) {
+                entry.towards += face.towards(other) / 3.0;
+                entry.back += face.towards(own) / 3.0;
+                entry.weight += face.weights[3 - own - other];
             }
         }
-        Self {
-            faces,
-            offsets,
-            corners,
+        for edge in 0..3 {
+            add_square(rest, face.weights[edge] / 3.0, face.edges[edge]);
         }
-    }
-
-    fn around(&self, cell: usize) -> &[u32] {
-        &self.corners[self.offsets[cell] as usize..self.offsets[cell + 1] as usize]
-    }
-
-    /// ½ Σ_f Σ_e w_fe |e|².
-    pub fn scale(&self) -> f64 {
-        let square = |face: &Face| face.rest[0].length_squared() + face.rest[1].length_squared();
-        0.5 * self.faces.iter().map(square).sum::<f64>()
-    }
-
-    /// As [`super::shape::Energy::evaluate`].
-    pub fn evaluate(&self, shape: &mut Shape, scratch: &mut Scratch) {
-        let Shape {
-            displacements,
-            rotations,
-            gradient,
-            energy,
-        } = shape;
-        let Scratch {
-            turns,
-            covariances,
-            pulls,
-        } = scratch;
-        covariances.resize(self.faces.len(), DMat3::ZERO);
-        covariances
-            .par_chunks_mut(CHUNK)
-            .zip(self.faces.par_chunks(CHUNK))
-            .for_each(|(covariances, faces)| {
-                for (covariance, face) in covariances.iter_mut().zip(faces) {
-                    *covariance = face.covariance(displacements);
-                }
-            });
-        fit_cells(rotations, turns, |cell| {
-            let mut sum = DMat3::ZERO;
-            for &corner in self.around(cell) {
-                sum += covariances[corner as usize / 3];
-            }
-            sum
-        });
-        pulls.resize(self.faces.len(), [DVec3::ZERO; 2]);
-        let partial: Vec<f64> = pulls
-            .par_chunks_mut(CHUNK)
-            .zip(self.faces.par_chunks(CHUNK))
-            .map(|(pulls, faces)| {
-                let mut sum = 0.0;
-                for (pull, face) in pulls.iter_mut().zip(faces) {
-                    let (edges, square) = face.pull(displacements, turns);
-                    *pull = edges;
-                    sum += square;
-                }
-                sum
-            })
-            .collect();
-        *energy = partial.iter().sum::<f64>() / 6.0;
-        gradient
-            .par_iter_mut()
-            .with_min_len(CHUNK)
-            .enumerate()
-            .for_each(|(vertex, gradient)| {
-                let mut sum = DVec3::ZERO;
-                for &corner in self.around(vertex) {
-                    let [first, second] = pulls[corner as usize / 3];
-                    match corner % 3 {
-                        0 => sum -= first + second,
-                        1 => sum += first,
-                        _ => sum += second,
-                    }
-                }
-                *gradient = (sum / 3.0).to_array();
-            });
     }
 }
 
-impl Face {
-    /// Y Tᵀ.
-    #[inline]
-    fn covariance(&self, displacements: &[DVec3]) -> DMat3 {
-        let [d1, d2] = self.strained(displacements);
-        let [t1, t2] = self.rest;
-        let (y1, y2) = (t1 + d1, t2 + d2);
-        DMat3::from_cols(y1 * t1.x + y2 * t2.x, y1 * t1.y + y2 * t2.y, y1 * t1.z + y2 * t2.z)
-    }
-
-    /// Σ (Y − R_i T) U over the corners with a cell (and so a turn), and Σ |Y − R_i T|².
-    #[inline]
-    fn pull(&self, displacements: &[DVec3], turns: &[DMat3]) -> ([DVec3; 2], f64) {
-        let [d1, d2] = self.strained(displacements);
-        let [t1, t2] = self.rest;
-        let (y1, y2) = (t1 + d1, t2 + d2);
-        let (mut g1, mut g2, mut square) = (DVec3::ZERO, DVec3::ZERO, 0.0);
-        for &corner in &self.corners {
-            if let Some(turn) = turns.get(corner as usize) {
-                let (r1, r2) = (y1 - *turn * t1, y2 - *turn * t2);
-                g1 += r1;
-                g2 += r2;
-                square += r1.length_squared() + r2.length_squared();
+/// What the cells' quarter sums leave out or count twice: the truth is half of each triangle's edges, a third of it for
+/// each corner that has a cell.
+fn constant(faces: &[Face], domain: &Domain) -> Vec<(u32, u32, f64)> {
+    let mut pairs = Vec::new();
+    let has_cell = |corner: u32| f64::from(u8::from((corner as usize) < domain.cell_count));
+    for face in faces {
+        let count: f64 = face.corners.map(has_cell).iter().sum();
+        for k in 0..3 {
+            let (a, b) = (face.corners[(k + 1) % 3], face.corners[(k + 2) % 3]);
+            let is_constrained = a.min(b) as usize >= domain.solved_count;
+            let share = count / 6.0 - 0.25 * (has_cell(a) + has_cell(b));
+            if is_constrained && a != b && share.abs() > 1e-9 {
+                pairs.push((a, b, face.weights[k] * share));
             }
         }
-        let [u11, u12, u22] = self.form;
-        ([g1 * u11, g1 * u12 + g2 * u22], square)
     }
+    pairs
 }

@@ -5,35 +5,14 @@
 //! solvable where all of a vertex's weights are. With the ½ the majorising quadratic's matrix is the Laplacian of these
 //! weights.
 
-use glam::{DMat3, DVec3};
 use pliant_mesh::Surface;
-use rayon::prelude::*;
 
+use super::cells::{Cells, Entry, Solved, add_square};
 use super::domain::Domain;
-use super::shape::{Scratch, Shape, fit_cells};
 use crate::Laplacian;
-use crate::operators::CHUNK;
 
 /// The least weight of an edge, in units of the mean of its two ends' largest.
 const FLOOR: f64 = 1e-6;
-
-/// The energy's terms on a domain.
-#[derive(Debug)]
-pub(crate) struct Spokes {
-    /// Of each cell: where its entries of `ends` start.
-    offsets: Vec<u32>,
-    ends: Vec<End>,
-}
-
-/// An edge seen from a cell.
-#[derive(Clone, Copy, Debug)]
-struct End {
-    /// The other vertex.
-    vertex: u32,
-    weight: f64,
-    /// From the cell's vertex to the other.
-    rest: DVec3,
-}
 
 /// The floored weight of the edge from `local` to its `place`-th neighbour.
 pub(crate) fn floored(laplacian: &Laplacian, largest: &[f64], local: usize, place: usize) -> f64 {
@@ -49,89 +28,36 @@ pub(crate) fn largest_weights(laplacian: &Laplacian) -> Vec<f64> {
         .collect()
 }
 
-impl Spokes {
-    /// The terms of `domain`'s cells; `laplacian` has full rows for them and for their neighbours.
-    pub fn new(surface: &Surface, laplacian: &Laplacian, domain: &Domain) -> Self {
-        let largest = largest_weights(laplacian);
-        let mut offsets = vec![0];
-        let mut ends = Vec::new();
-        for &vertex in &domain.vertices[..domain.cell_count] {
-            let own = surface.positions[vertex as usize];
-            if let Some(local) = laplacian.local(vertex) {
-                for (place, &neighbour) in laplacian.neighbours(local).iter().enumerate() {
-                    let other = laplacian.vertices()[neighbour as usize];
-                    let number = domain.local_of[other as usize];
-                    ends.push(End {
-                        vertex: number,
-                        weight: floored(laplacian, &largest, local, place),
-                        rest: surface.positions[other as usize] - own,
-                    });
-                }
-            }
-            offsets.push(ends.len() as u32);
-        }
-        Self { offsets, ends }
-    }
-
-    fn around(&self, cell: usize) -> &[End] {
-        &self.ends[self.offsets[cell] as usize..self.offsets[cell + 1] as usize]
-    }
-
-    /// ½ Σ_ij w_ij |e_ij|².
-    pub fn scale(&self) -> f64 {
-        0.5 * self
-            .ends
-            .iter()
-            .map(|end| end.weight * end.rest.length_squared())
-            .sum::<f64>()
-    }
-
-    /// As [`super::shape::Energy::evaluate`].
-    pub fn evaluate(&self, shape: &mut Shape, scratch: &mut Scratch) {
-        let Shape {
-            displacements,
-            rotations,
-            gradient,
-            energy,
-        } = shape;
-        let turns = &mut scratch.turns;
-        let deformed = |cell: usize, end: &End| end.rest + (displacements[end.vertex as usize] - displacements[cell]);
-        fit_cells(rotations, turns, |cell| {
-            let mut sum = DMat3::ZERO;
-            for end in self.around(cell) {
-                let (edge, rest) = (deformed(cell, end) * end.weight, end.rest);
-                sum += DMat3::from_cols(edge * rest.x, edge * rest.y, edge * rest.z);
-            }
-            sum
-        });
-        let solved_count = gradient.len();
-        let partial: Vec<f64> = gradient
-            .par_chunks_mut(CHUNK)
-            .enumerate()
-            .map(|(chunk, gradient)| {
-                let mut sum = 0.0;
-                for (place, gradient) in gradient.iter_mut().enumerate() {
-                    let cell = chunk * CHUNK + place;
-                    let mut pull = DVec3::ZERO;
-                    for end in self.around(cell) {
-                        let edge = deformed(cell, end);
-                        let own = edge - turns[cell] * end.rest;
-                        sum += end.weight * own.length_squared();
-                        pull -= own * end.weight;
-                        // A solved vertex's neighbours all have cells.
-                        pull -= (edge - turns[end.vertex as usize] * end.rest) * end.weight;
-                    }
-                    *gradient = (0.5 * pull).to_array();
-                }
-                sum
-            })
-            .collect();
-        let mut sum = partial.iter().sum::<f64>();
-        for cell in solved_count..rotations.len() {
-            for end in self.around(cell) {
-                sum += end.weight * (deformed(cell, end) - turns[cell] * end.rest).length_squared();
+/// The stencils of `domain`'s cells; `laplacian` has full rows for them and for their neighbours.
+pub(crate) fn cells(surface: &Surface, laplacian: &Laplacian, domain: &Domain) -> Cells {
+    let largest = largest_weights(laplacian);
+    let mut cells = Cells::default();
+    let mut entries = Vec::new();
+    for (cell, &vertex) in domain.vertices[..domain.cell_count].iter().enumerate() {
+        let own = surface.positions[vertex as usize];
+        entries.clear();
+        let mut rest = [0.0; 6];
+        if let Some(local) = laplacian.local(vertex) {
+            for (place, &neighbour) in laplacian.neighbours(local).iter().enumerate() {
+                let other = laplacian.vertices()[neighbour as usize];
+                let weight = floored(laplacian, &largest, local, place);
+                let edge = surface.positions[other as usize] - own;
+                entries.push(Entry {
+                    end: domain.local_of[other as usize],
+                    towards: edge * (0.5 * weight),
+                    back: edge * (-0.5 * weight),
+                    weight,
+                });
+                add_square(&mut rest, 0.5 * weight, edge);
+                cells.scale += 0.5 * weight * edge.length_squared();
             }
         }
-        *energy = 0.25 * sum;
+        let solved = if cell < domain.solved_count {
+            Solved::Yes
+        } else {
+            Solved::No
+        };
+        cells.push(&entries, rest, solved);
     }
+    cells
 }

@@ -3,6 +3,8 @@
 use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 
+use super::cells::{quad, vector};
+use super::shape::Guesses;
 use super::{ArapSolver, State, domain};
 use crate::blend::{Screw, carried};
 use crate::handle::Motion;
@@ -25,13 +27,14 @@ impl ArapSolver {
             .map(|(handle, (old, new))| handle.onwards(old, new))
             .collect();
         self.motions.copy_from_slice(motions);
+        self.history.drop_pending();
         if !was_at_rest {
             self.carry(&onwards, Origin::Current);
             std::mem::swap(&mut self.current, &mut self.trial);
         }
         self.carry(&from_rest, Origin::Rest);
         if was_at_rest || self.trial.energy < self.current.energy || !self.current.energy.is_finite() {
-            self.memory.clear();
+            self.history.clear();
             std::mem::swap(&mut self.current, &mut self.trial);
         }
         self.state = State::Descending;
@@ -50,27 +53,32 @@ impl ArapSolver {
         let count = screws.len();
         trial
             .rotations
-            .par_iter_mut()
-            .zip(&mut trial.displacements[..cell_count])
-            .with_min_len(CHUNK)
+            .par_chunks_mut(CHUNK)
+            .zip(trial.displacements[..cell_count].par_chunks_mut(CHUNK))
             .enumerate()
-            .for_each(|(cell, (rotation, displacement))| {
-                let (before, turned) = match origin {
-                    Origin::Rest => (DVec3::ZERO, DQuat::IDENTITY),
-                    Origin::Current => (current.displacements[cell], current.rotations[cell]),
-                };
-                let carried = carried(rest[cell] + before, screws, &weights[cell * count..(cell + 1) * count]);
-                *displacement = before + carried.displacement;
-                *rotation = (carried.turn * turned).normalize();
+            .for_each(|(chunk, (rotations, displacements))| {
+                for (place, (rotation, displacement)) in rotations.iter_mut().zip(displacements).enumerate() {
+                    let cell = chunk * CHUNK + place;
+                    let (before, turned) = match origin {
+                        Origin::Rest => (DVec3::ZERO, DQuat::IDENTITY),
+                        Origin::Current => (
+                            vector(current.displacements[cell]),
+                            DQuat::from_array(current.rotations[cell]),
+                        ),
+                    };
+                    let carried = carried(rest[cell] + before, screws, &weights[cell * count..(cell + 1) * count]);
+                    *displacement = quad(before + carried.displacement, 0.0);
+                    *rotation = (carried.turn * turned).normalize().to_array();
+                }
             });
         // What is constrained goes exactly where it must.
-        trial.displacements[self.domain.solved_count..].fill(DVec3::ZERO);
+        trial.displacements[self.domain.solved_count..].fill([0.0; 4]);
         for (own, motion) in self.prescribed.iter().zip(&self.motions) {
             for vertex in own.iter().filter(|vertex| vertex.local != domain::ABSENT) {
-                trial.displacements[vertex.local as usize] = motion.displace(vertex.coordinates);
+                trial.displacements[vertex.local as usize] = quad(motion.displace(vertex.coordinates), 0.0);
             }
         }
-        self.energy.evaluate(&mut self.trial, &mut self.scratch);
+        self.cells.evaluate(&mut self.trial, Guesses::Own, &mut self.scratch);
     }
 }
 

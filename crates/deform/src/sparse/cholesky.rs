@@ -17,6 +17,7 @@ use pliant_mesh::Cancel;
 
 use crate::sparse::forest::Forest;
 use crate::sparse::matrix::ScaledMatrix;
+use crate::sparse::substitution::{Real, Substitution};
 use crate::sparse::{multifrontal, triangular};
 
 /// A factor of the scaled matrix.
@@ -60,6 +61,11 @@ impl Factor {
     /// Factors again, for other values on the same pattern.
     pub fn fill(&mut self, plate: &ScaledMatrix, shift: f64, cancel: &Cancel) -> Result<(), FactorError> {
         multifrontal::factor(plate, shift, &self.symbolic, &self.forest, &mut self.values, cancel)
+    }
+
+    /// Its values laid out for solving again and again.
+    pub fn substitution<T: Real>(&self) -> Substitution<T> {
+        Substitution::new(&self.symbolic, &self.forest, &self.values)
     }
 
     /// How many numbers the factor stores.

@@ -10,10 +10,19 @@ use crate::edit_node::Members;
 pub(super) const OPTIONS: &[MethodOption] = &[
     MethodOption {
         name: "energy",
-        says: "a vertex's cell: \"spokes\", its edges, or \"spokes-and-rims\", its triangles' edges; default \"spokes-and-rims\"",
+        says: "a vertex's cell: \"spokes\", its edges, \"spokes-and-rims\", its triangles' edges, or \"smooth\", those and their curvature; default \"spokes-and-rims\"",
         takes: OptionKind::Named {
-            choices: &["spokes", "spokes-and-rims"],
+            choices: &["spokes", "spokes-and-rims", "smooth"],
             default: "spokes-and-rims",
+        },
+    },
+    MethodOption {
+        name: "smoothness",
+        says: "how much the energy \"smooth\" resists bending, whatever the mesh's size and density, 1e-6 to 10; default 0.01",
+        takes: OptionKind::Number {
+            range: [*Arap::SMOOTHNESS.start(), *Arap::SMOOTHNESS.end()],
+            default: 0.01,
+            unit: "",
         },
     },
     MethodOption {
@@ -44,6 +53,12 @@ pub(super) fn read(members: &Members<'_>, options: &mut Arap) -> Result<(), Edit
             .find(|energy| energy.name() == text)
             .ok_or_else(|| node.unknown_name(text, &names))?;
     }
+    if let Some(node) = members.get("smoothness") {
+        options.smoothness = match node.number()? {
+            number if Arap::SMOOTHNESS.contains(&number) => number,
+            _ => return Err(node.out_of_range("a number from 1e-6 to 10")),
+        };
+    }
     if let Some(node) = members.get("tolerance") {
         options.tolerance = match node.number()? {
             number if (1e-12..=0.1).contains(&number) => number,
@@ -65,6 +80,9 @@ pub(super) fn write(options: &Arap, members: &mut Map<String, Value>) {
     if options.energy != default.energy {
         members.insert("energy".to_owned(), json!(options.energy.name()));
     }
+    if options.smoothness != default.smoothness {
+        members.insert("smoothness".to_owned(), json!(options.smoothness));
+    }
     if options.tolerance != default.tolerance {
         members.insert("tolerance".to_owned(), json!(options.tolerance));
     }
@@ -83,7 +101,8 @@ mod tests {
 
     #[test]
     fn every_option_of_arap_is_read_and_written_again_or_refused_by_name() {
-        let value = json!({ "name": "arap", "energy": "spokes", "tolerance": 1e-6, "max_iterations": 40 });
+        let value =
+            json!({ "name": "arap", "energy": "smooth", "smoothness": 0.5, "tolerance": 1e-6, "max_iterations": 40 });
         let method = read(&value).unwrap();
         assert_eq!(method_to_value(&method), value);
         assert_eq!(method_options("arap").len() + 1, value.as_object().unwrap().len());
@@ -92,6 +111,8 @@ mod tests {
         for (option, value) in [
             ("energy", json!("rims")),
             ("energy", json!(2)),
+            ("smoothness", json!(0)),
+            ("smoothness", json!(11)),
             ("tolerance", json!(0)),
             ("tolerance", json!(0.2)),
             ("tolerance", json!("little")),

@@ -1,0 +1,137 @@
+//! An ARAP energy as one stencil a cell, whatever its edges are.
+//!
+//! With displacements d, D_v = d_v − d_i over a cell's ring and B_i = Σ_v D_v G_ivᵀ, a cell's matrix is S_i = S⁰_i + B_i
+//! and its energy
+//!
+//! E_i = ¼ Σ_v w_iv |D_v|² − ⟨R_i − 1, S_i⟩,
+//!
+//! which is ½ Σ w |e' − R_i e|² multiplied out so that nothing but differences of displacements and R_i − 1 enter: it is
+//! zero at rest to the last bit and keeps its digits near it. Its gradient is
+//!
+//! dE/dd_i = −Σ_v w_iv D_v + (R_i − 1) Σ_v G_iv − Σ_v (R_v − 1) G_vi,
+//!
+//! so a solver meets two gathers over the ring: positions for the matrices, turns for the gradient. `rims` and `spokes`
+//! say what G, S⁰ and w are; the edges that both ends' sums miscount are all constrained, and stand in `constant`.
+
+use glam::DVec3;
+
+/// Four numbers: a vector and one more.
+pub(crate) type Quad = [f64; 4];
+
+/// The stencils of a domain's cells.
+#[derive(Debug, Default)]
+pub(crate) struct Cells {
+    /// Of each cell: where its entries start; one more at the end.
+    pub offsets: Vec<u32>,
+    /// The local vertices around the cells.
+    pub ends: Vec<u32>,
+    /// G_iv and w_iv of each entry.
+    pub towards: Vec<Quad>,
+    /// G_vi and w_iv of each entry of a solved cell.
+    pub back: Vec<Quad>,
+    /// Σ_v G_iv of each solved cell.
+    pub own: Vec<Quad>,
+    /// S⁰'s entries xx, xy, xz, yy, yz, zz of each cell.
+    pub rest: Vec<[f64; 6]>,
+    /// Pairs of constrained vertices whose squared difference enters the energy besides, and by what factor.
+    pub constant: Vec<(u32, u32, f64)>,
+    /// The bending term of each cell, or none: the rest shape's Σ_v w_iv e_iv, and its factor.
+    pub bending: Vec<Quad>,
+    /// ½ Σ w |e|² of the rest shape.
+    pub scale: f64,
+}
+
+impl Cells {
+    /// The entries of a cell.
+    #[inline(always)]
+    pub fn around(&self, cell: usize) -> std::ops::Range<usize> {
+        self.offsets[cell] as usize..self.offsets[cell + 1] as usize
+    }
+
+    /// How many cells there are.
+    pub fn count(&self) -> usize {
+        self.rest.len()
+    }
+
+    /// Appends the cell with these entries: the end, its rest edge e_iv, G_iv, G_vi and w_iv; `is_solved` ones come
+    /// first.
+    pub fn push(&mut self, entries: &[Entry], rest: [f64; 6], solved: Solved) {
+        if self.offsets.is_empty() {
+            self.offsets.push(0);
+        }
+        for entry in entries {
+            self.ends.push(entry.end);
+            self.towards.push(quad(entry.towards, entry.weight));
+            if solved == Solved::Yes {
+                self.back.push(quad(entry.back, entry.weight));
+            }
+        }
+        if solved == Solved::Yes {
+            let own = entries.iter().map(|entry| entry.towards).sum();
+            self.own.push(quad(own, 0.0));
+        }
+        self.rest.push(rest);
+        self.offsets.push(self.ends.len() as u32);
+    }
+
+    /// Appends another part's cells.
+    pub fn append(&mut self, part: Self) {
+        if self.offsets.is_empty() {
+            self.offsets.push(0);
+        }
+        let start = self.ends.len() as u32;
+        self.offsets
+            .extend(part.offsets.iter().skip(1).map(|&offset| start + offset));
+        self.ends.extend(part.ends);
+        self.towards.extend(part.towards);
+        self.back.extend(part.back);
+        self.own.extend(part.own);
+        self.rest.extend(part.rest);
+        self.bending.extend(part.bending);
+        self.scale += part.scale;
+    }
+}
+
+/// Whether a cell's vertex is solved for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Solved {
+    /// It is.
+    Yes,
+    /// It is constrained.
+    No,
+}
+
+/// An edge of a cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Entry {
+    /// The other local vertex.
+    pub end: u32,
+    /// G_iv.
+    pub towards: DVec3,
+    /// G_vi.
+    pub back: DVec3,
+    /// w_iv.
+    pub weight: f64,
+}
+
+/// Adds `weight` e eᵀ to a symmetric matrix.
+pub(crate) fn add_square(sum: &mut [f64; 6], weight: f64, e: DVec3) {
+    for (own, product) in sum
+        .iter_mut()
+        .zip([e.x * e.x, e.x * e.y, e.x * e.z, e.y * e.y, e.y * e.z, e.z * e.z])
+    {
+        *own += weight * product;
+    }
+}
+
+/// A vector and one more number.
+#[inline(always)]
+pub(crate) fn quad(v: DVec3, fourth: f64) -> Quad {
+    [v.x, v.y, v.z, fourth]
+}
+
+/// The vector of a quad.
+#[inline(always)]
+pub(crate) fn vector(q: Quad) -> DVec3 {
+    DVec3::new(q[0], q[1], q[2])
+}
