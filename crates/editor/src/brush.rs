@@ -7,7 +7,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
-use pliant_mesh::SurfaceVertex;
+use pliant_mesh::{DistanceSearch, SurfaceVertex};
 
 use crate::picking::{Pick, Picking};
 
@@ -17,56 +17,98 @@ pub const BRUSH_RADIUS_PX: std::ops::RangeInclusive<f64> = 2.0..=400.0;
 const SPACING: f64 = 0.25;
 const RING_SEGMENTS: usize = 48;
 
+/// How the brush measures what lies within its radius.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum BrushMetric {
+    /// What the disc on the screen covers, as far as it hangs together and faces the eye.
+    #[default]
+    Screen,
+    /// What is no farther along the surface: into folds and round edges, seen or not.
+    Surface,
+}
+
+/// How large the brush is, and how that is meant.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct BrushSize {
+    pub(crate) radius_px: f64,
+    pub(crate) metric: BrushMetric,
+}
+
 /// Finds the vertices under the brush; keeps its memory between dabs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Brush {
     /// The number of the dab in which a vertex was seen last.
     seen: Vec<u32>,
     dab: u32,
-    stack: Vec<SurfaceVertex>,
+    stack: Vec<(SurfaceVertex, f64)>,
+    search: DistanceSearch,
 }
 
 impl Brush {
-    /// Calls `visit` for every vertex under the brush as it goes from one point of the viewport to another; vertices
-    /// may be visited more than once.
+    /// Calls `visit` for every vertex under the brush as it goes from one point of the viewport to another, with its
+    /// distance from the brush's middle as a share of the radius; vertices may be visited more than once.
     pub(crate) fn stroke(
         &mut self,
         picking: &Picking<'_>,
         from_px: DVec2,
         to_px: DVec2,
-        radius_px: f64,
-        mut visit: impl FnMut(SurfaceVertex),
+        size: &BrushSize,
+        mut visit: impl FnMut(SurfaceVertex, f64),
     ) {
-        let steps = ((to_px - from_px).length() / (radius_px * SPACING).max(1.0))
+        let steps = ((to_px - from_px).length() / (size.radius_px * SPACING).max(1.0))
             .ceil()
             .max(1.0) as u32;
-        for step in 1..=steps {
+        let picks = (1..=steps).filter_map(|step| {
             let position_px = from_px.lerp(to_px, f64::from(step) / f64::from(steps));
-            self.dab(picking, position_px, radius_px, &mut visit);
+            picking.at(position_px)
+        });
+        match size.metric {
+            BrushMetric::Screen => picks.for_each(|pick| self.dab(picking, &pick, size.radius_px, &mut visit)),
+            BrushMetric::Surface => {
+                let picks: Vec<Pick> = picks.collect();
+                self.along_surface(picking, &picks, size.radius_px, &mut visit);
+            }
         }
     }
 
-    /// Calls `visit` once for every vertex under the brush at a point of the viewport.
-    pub(crate) fn dab(
-        &mut self,
-        picking: &Picking<'_>,
-        position_px: DVec2,
-        radius_px: f64,
-        visit: &mut impl FnMut(SurfaceVertex),
-    ) {
-        let Some(pick) = picking.at(position_px) else { return };
+    /// Calls `visit` once for every vertex under the brush around a point of the surface.
+    fn dab(&mut self, picking: &Picking<'_>, pick: &Pick, radius_px: f64, visit: &mut impl FnMut(SurfaceVertex, f64)) {
         let radius = radius_px * picking.camera.world_per_px(pick.point, picking.viewport_px);
         self.begin(picking.model.surface.positions.len());
         // However small the brush and large the triangles, something is painted: the nearest corner.
-        visit(pick.vertex);
+        visit(pick.vertex, 0.0);
         for vertex in picking.model.surface.triangles[pick.triangle as usize] {
-            self.reach(picking, &pick, radius, vertex);
+            self.reach(picking, pick, radius, vertex);
         }
-        while let Some(vertex) = self.stack.pop() {
-            visit(vertex);
+        while let Some((vertex, share)) = self.stack.pop() {
+            visit(vertex, share);
             for &neighbour in picking.model.topology.neighbours(vertex) {
-                self.reach(picking, &pick, radius, neighbour);
+                self.reach(picking, pick, radius, neighbour);
             }
+        }
+    }
+
+    /// The same around all points of a movement at once, along the surface: one search, however many they are.
+    fn along_surface(
+        &mut self,
+        picking: &Picking<'_>,
+        picks: &[Pick],
+        radius_px: f64,
+        visit: &mut impl FnMut(SurfaceVertex, f64),
+    ) {
+        let Some(middle) = picks.last() else { return };
+        let radius = radius_px * picking.camera.world_per_px(middle.point, picking.viewport_px);
+        let mut seeds: Vec<(SurfaceVertex, f64)> = Vec::with_capacity(3 * picks.len());
+        for pick in picks {
+            visit(pick.vertex, 0.0);
+            let corners = picking.surface.triangles[pick.triangle as usize];
+            seeds.extend(corners.map(|v| (v, picking.surface.positions[v.index()].distance(pick.point))));
+        }
+        let reached = self
+            .search
+            .within(picking.surface, &picking.model.topology, &seeds, radius);
+        for &(vertex, distance) in reached {
+            visit(vertex, distance / radius);
         }
     }
 
@@ -86,14 +128,15 @@ impl Brush {
         }
         *seen = self.dab;
         let position = picking.position(vertex);
-        if position.distance_squared(pick.point) <= radius * radius && faces(picking, vertex, position, pick.front) {
-            self.stack.push(vertex);
+        let distance = position.distance(pick.point);
+        if distance <= radius && faces(picking, vertex, position, pick.front) {
+            self.stack.push((vertex, distance / radius));
         }
     }
 }
 
 /// Whether any triangle at the vertex shows the eye the side that was met.
-fn faces(picking: &Picking<'_>, vertex: SurfaceVertex, position: DVec3, front: bool) -> bool {
+pub(crate) fn faces(picking: &Picking<'_>, vertex: SurfaceVertex, position: DVec3, front: bool) -> bool {
     let sight = position - picking.camera.eye();
     picking.model.topology.faces(vertex).iter().any(|&face| {
         let [a, b, c] = picking.corners(face);

@@ -5,7 +5,10 @@
 
 use pliant_deform::{Loose, Method};
 
-use crate::{HandleId, HandleTransform, Key, Modifiers, Shading, ToolMode};
+use crate::{
+    BrushMetric, Depth, GizmoOrientation, HandleId, HandleTransform, Key, Modifiers, PivotPlace, RegionAction, Shading,
+    StiffnessBrush, StrokeShape, ToolMode,
+};
 
 /// Something to be done, with all it needs to know.
 #[derive(Clone, PartialEq, Debug)]
@@ -58,6 +61,12 @@ pub enum Command {
     FrameAll,
     /// Frames the selected handle and its region.
     FrameSelected,
+    /// Comes close to a vertex, by the file's number.
+    FrameFileVertex(u32),
+    /// Looks from where one looked before.
+    CameraBack,
+    /// Looks from where one looked before going back.
+    CameraForth,
     /// Looks from a named side.
     View(crate::NamedView),
     /// Which axis points up on the screen.
@@ -70,6 +79,46 @@ pub enum Command {
     ToggleRegions,
     /// What the gizmo offers.
     SetGizmo(crate::GizmoMode),
+    /// Along which axes the gizmo stands.
+    SetOrientation(GizmoOrientation),
+    /// How the left button takes vertices.
+    SetStrokeShape(StrokeShape),
+    /// How deep a lasso or a box goes.
+    SetDepth(Depth),
+    /// How the brush measures its radius.
+    SetBrushMetric(BrushMetric),
+    /// The stiffness brush's action and numbers, clamped to what they may be.
+    SetStiffnessBrush(StiffnessBrush),
+    /// Makes the whole surface equally stiff.
+    ClearStiffness,
+    /// Changes the region in hand as a whole.
+    Region(RegionAction),
+    /// Widens the selected handle's reach with the pointer.
+    Widen,
+    /// Adds a handle to those that are selected, or takes it from them.
+    ToggleSelected(HandleId),
+    /// Gives a handle a colour, sRGB with alpha.
+    SetHandleColour(HandleId, [u8; 4]),
+    /// Shows or hides a handle's colour and gizmo.
+    ToggleHandleVisible(HandleId),
+    /// Keeps a handle from being moved, painted and deleted, or lets it.
+    ToggleHandleLocked(HandleId),
+    /// Chooses where a handle's pivot stands. The surface stays as it is.
+    SetPivotPlace(HandleId, PivotPlace),
+    /// The next click on the surface puts the selected handle's pivot there.
+    PickPivot,
+    /// Puts a handle's pivot at a point of the present shape. The surface stays as it is.
+    SetPivot(HandleId, glam::DVec3),
+    /// Splits the selected handle in two across its longest side: a vertex can only be in one.
+    DuplicateHandle,
+    /// Makes the selected handle's mirror image a handle that does the same, across axis 0, 1, 2 for x, y, z.
+    MakeTwin(usize),
+    /// Lets the selected handle and its twin go their own ways.
+    Untwin,
+    /// Takes the selected handle's vertices and its region back to the file's shape.
+    ResetRegion,
+    /// Goes back or forth to the state after so many steps of the history.
+    GoToStep(usize),
     /// Starts moving the selected handle with the pointer.
     Move,
     /// Starts turning the selected handle with the pointer.
@@ -216,6 +265,180 @@ impl Command {
             &[character('5')],
         ),
         listed(
+            Command::SetTool(ToolMode::PaintStiffness),
+            "Paint stiffness",
+            "Paints how firmly the surface keeps its shape.",
+            &[character('6')],
+        ),
+        listed(
+            Command::SetStrokeShape(StrokeShape::Brush),
+            "Brush",
+            "Paints with a round brush.",
+            &[character('b')],
+        ),
+        listed(
+            Command::SetStrokeShape(StrokeShape::Lasso),
+            "Lasso",
+            "Paints what a line drawn freely encloses.",
+            &[character('l')],
+        ),
+        listed(
+            Command::SetStrokeShape(StrokeShape::Box),
+            "Box",
+            "Paints what a box encloses.",
+            &[character('k')],
+        ),
+        listed(
+            Command::SetStrokeShape(StrokeShape::Component),
+            "Whole part",
+            "Paints the whole part of the surface that is clicked.",
+            &[character('j')],
+        ),
+        listed(
+            Command::Region(RegionAction::Grow),
+            "Grow",
+            "Takes in the vertices around the region in hand.",
+            &[Shortcut::with(Modifiers::CTRL, Key::Character('='))],
+        ),
+        listed(
+            Command::Region(RegionAction::Shrink),
+            "Shrink",
+            "Gives up the vertices at the border of the region in hand.",
+            &[Shortcut::with(Modifiers::CTRL, Key::Character('-'))],
+        ),
+        listed(
+            Command::Region(RegionAction::SmoothBorder),
+            "Smooth border",
+            "Straightens the border of the region in hand.",
+            &[],
+        ),
+        listed(
+            Command::Region(RegionAction::FillParts),
+            "Fill parts",
+            "Takes in every part of the surface that the region in hand touches.",
+            &[],
+        ),
+        listed(
+            Command::Region(RegionAction::Invert),
+            "Invert",
+            "Makes the region in hand what it was not.",
+            &[Shortcut::with(Modifiers::CTRL, Key::Character('i'))],
+        ),
+        listed(
+            Command::Region(RegionAction::EverythingBut),
+            "Everything but",
+            "Holds still all that is not in hand; with what is held still in hand, frees all else.",
+            &[],
+        ),
+        listed(
+            Command::Region(RegionAction::Mirror(0)),
+            "Mirror across x",
+            "Takes in the mirror image of the region in hand, left and right.",
+            &[],
+        ),
+        listed(
+            Command::Region(RegionAction::Mirror(1)),
+            "Mirror across y",
+            "Takes in the mirror image of the region in hand, above and below.",
+            &[],
+        ),
+        listed(
+            Command::Region(RegionAction::Mirror(2)),
+            "Mirror across z",
+            "Takes in the mirror image of the region in hand, before and behind.",
+            &[],
+        ),
+        listed(
+            Command::Region(RegionAction::ToFree),
+            "Make it the region",
+            "Lets what is in hand bend.",
+            &[],
+        ),
+        listed(
+            Command::Region(RegionAction::ToFixed),
+            "Make it fixed",
+            "Holds what is in hand still.",
+            &[],
+        ),
+        listed(
+            Command::Region(RegionAction::ToHandle),
+            "Make it a handle",
+            "Makes what is in hand a handle of its own.",
+            &[],
+        ),
+        listed(
+            Command::ClearStiffness,
+            "Clear stiffness",
+            "Makes the whole surface equally stiff.",
+            &[],
+        ),
+        listed(
+            Command::Widen,
+            "Widen reach",
+            "Follows the pointer: how far the surface comes along with the selected handle.",
+            &[character('e')],
+        ),
+        listed(
+            Command::SetOrientation(GizmoOrientation::World),
+            "World axes",
+            "The gizmo stands along the world's axes.",
+            &[],
+        ),
+        listed(
+            Command::SetOrientation(GizmoOrientation::Local),
+            "Own axes",
+            "The gizmo turns along with its handle.",
+            &[],
+        ),
+        listed(
+            Command::SetOrientation(GizmoOrientation::View),
+            "Screen axes",
+            "The gizmo stands along the screen.",
+            &[],
+        ),
+        listed(
+            Command::PickPivot,
+            "Pick pivot",
+            "The next click on the surface is the point that the handle turns about.",
+            &[Shortcut::with(Modifiers::SHIFT, Key::Character('p'))],
+        ),
+        listed(
+            Command::DuplicateHandle,
+            "Duplicate handle",
+            "Splits the selected handle in two along its longest side.",
+            &[Shortcut::with(Modifiers::SHIFT, Key::Character('d'))],
+        ),
+        listed(
+            Command::MakeTwin(0),
+            "Twin across x",
+            "Makes the handle's mirror image a handle that does the same: drag left, right follows.",
+            &[Shortcut::with(Modifiers::SHIFT, Key::Character('m'))],
+        ),
+        listed(
+            Command::MakeTwin(1),
+            "Twin across y",
+            "Makes the handle's mirror image, above and below, a handle that does the same.",
+            &[],
+        ),
+        listed(
+            Command::MakeTwin(2),
+            "Twin across z",
+            "Makes the handle's mirror image, before and behind, a handle that does the same.",
+            &[],
+        ),
+        listed(
+            Command::Untwin,
+            "Part twins",
+            "Lets the selected handle and its twin go their own ways.",
+            &[],
+        ),
+        listed(
+            Command::ResetRegion,
+            "Reset region",
+            "Takes the selected handle and its region back to the file's shape, and nothing else.",
+            &[],
+        ),
+        listed(
             Command::NewHandle,
             "New handle",
             "The next stroke of the handle brush makes a handle of its own.",
@@ -292,6 +515,18 @@ impl Command {
             "Frame selected",
             "Shows the selected handle, or the whole surface where none is selected.",
             &[character('.')],
+        ),
+        listed(
+            Command::CameraBack,
+            "View before",
+            "Looks from where you looked before.",
+            &[Shortcut::with(Modifiers::ALT, Key::Character('['))],
+        ),
+        listed(
+            Command::CameraForth,
+            "View after",
+            "Looks from where you looked before you went back.",
+            &[Shortcut::with(Modifiers::ALT, Key::Character(']'))],
         ),
         listed(
             Command::GrowBrush,

@@ -24,7 +24,7 @@ impl Editor {
                 .handles
                 .iter()
                 .zip(&document.handles)
-                .any(|(a, b)| (a.id, a.colour) != (b.id, b.colour));
+                .any(|(a, b)| (a.id, a.colour, a.visible) != (b.id, b.colour, b.visible));
         let moved = !same(&known.handles, &document.handles, |a, b| a.affine() == b.affine());
         let reshaped = !Arc::ptr_eq(&known.from_file, &document.from_file);
         // While a stroke goes on the problem changes with every event; it counts once, at the end.
@@ -49,11 +49,25 @@ impl Editor {
         if self.selected.is_some_and(|id| self.document.handle(id).is_none()) {
             self.selected = self.document.handles.last().map(|handle| handle.id);
         }
+        let document = &self.document;
+        self.companions
+            .retain(|&id| document.handle(id).is_some() && self.selected != Some(id));
         self.engine.pump(&self.document, activity);
-        if repainted || recoloured || !Arc::ptr_eq(&self.known_roles, &self.engine.region.roles) {
+        let restiffened = self.mode == crate::ToolMode::PaintStiffness
+            && !same_field(&self.known_stiffness, &self.document.stiffness);
+        let shows_stiffness = self.mode == crate::ToolMode::PaintStiffness;
+        let reshown = std::mem::replace(&mut self.showed_stiffness, shows_stiffness) != shows_stiffness;
+        self.known_stiffness = self.document.stiffness.clone();
+        if restiffened
+            || reshown
+            || repainted
+            || recoloured
+            || !Arc::ptr_eq(&self.known_roles, &self.engine.region.roles)
+        {
             self.known_roles = Arc::clone(&self.engine.region.roles);
             self.regions_revision += 1;
         }
+        self.note_camera();
         if self.known_camera != self.camera {
             self.known_camera = self.camera;
             self.camera_revision += 1;

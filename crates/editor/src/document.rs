@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use pliant_deform::{Loose, Method};
 
 use crate::tool::handle_colour;
@@ -89,6 +89,43 @@ pub struct MirrorPlane {
 }
 
 impl MirrorPlane {
+    /// What a handle on the other side does when one on this side does `transform`.
+    pub(crate) fn mirrored_transform(&self, transform: HandleTransform) -> HandleTransform {
+        let mut flip = DVec3::ONE;
+        flip[self.axis] = -1.0;
+        match transform {
+            HandleTransform::Trs {
+                translation,
+                rotation,
+                scale,
+                pivot,
+            } => {
+                // A rotation's axis turns the other way round in a mirror.
+                let axis = -(rotation.xyz() * flip);
+                let rotation = if rotation.xyz() == DVec3::ZERO {
+                    rotation
+                } else {
+                    DQuat::from_xyzw(axis.x, axis.y, axis.z, rotation.w)
+                };
+                HandleTransform::Trs {
+                    translation: translation * flip,
+                    rotation,
+                    scale,
+                    pivot: pivot.map(|pivot| self.mirrored(pivot)),
+                }
+            }
+            HandleTransform::Matrix(matrix) => {
+                let mut shift = DVec3::ZERO;
+                shift[self.axis] = 2.0 * self.at;
+                let mirror = DAffine3 {
+                    matrix3: DMat3::from_diagonal(flip),
+                    translation: shift,
+                };
+                HandleTransform::Matrix(mirror * matrix * mirror)
+            }
+        }
+    }
+
     /// The point on the other side.
     pub fn mirrored(&self, point: DVec3) -> DVec3 {
         let mut other = point;
@@ -189,6 +226,15 @@ impl Document {
     /// The handle with this number.
     pub fn handle(&self, id: HandleId) -> Option<&Handle> {
         self.handles.iter().find(|handle| handle.id == id)
+    }
+
+    /// A new handle without vertices, the last of the list.
+    pub(crate) fn add_handle(&mut self) -> HandleId {
+        let id = HandleId(self.next_handle);
+        self.next_handle = self.next_handle.saturating_add(1);
+        self.handles
+            .push(Handle::new(id, format!("handle {}", u32::from(id.0) + 1)));
+        id
     }
 
     pub(crate) fn handle_mut(&mut self, id: HandleId) -> Option<&mut Handle> {

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pliant_deform::Role;
-use pliant_mesh::Model;
+use pliant_mesh::{Model, SurfaceVertex};
 
-use crate::brush::Brush;
+use crate::brush::{Brush, BrushSize};
+use crate::camera_history::CameraHistory;
 use crate::document::{Document, HandleId};
 use crate::engine::{Arrival, Engine, Finality, moved_alone};
 use crate::history::{HISTORY_BYTES, History};
@@ -16,8 +17,9 @@ use crate::picking::{Pick, Picking};
 use crate::tool::{Tool, ToolMode};
 use crate::transaction::Transaction;
 use crate::{
-    BRUSH_RADIUS_PX, Beginning, Button, Camera, Command, Cursor, Event, Executor, GizmoMode, HandleTransform, JobDone,
-    JobKind, Key, Modifiers, Pointer, Revision, SceneView, Shading,
+    BRUSH_RADIUS_PX, Beginning, BrushMetric, Button, Camera, Command, Cursor, Depth, Event, Executor, GizmoMode,
+    GizmoOrientation, HandleTransform, JobDone, JobKind, Key, Modifiers, Pointer, Revision, SceneView, Shading,
+    StiffnessBrush, StrokeShape,
 };
 
 /// The program without a window.
@@ -30,11 +32,14 @@ pub struct Editor {
     pub(crate) known: Document,
     pub(crate) known_roles: Arc<Vec<Role>>,
     pub(crate) known_camera: Camera,
+    pub(crate) known_stiffness: Option<Arc<Vec<f64>>>,
+    pub(crate) showed_stiffness: bool,
     /// Whether paint has changed during the stroke that goes on.
     pub(crate) repainted: bool,
     pub(crate) regions_revision: u64,
     pub(crate) camera_revision: u64,
     pub(crate) camera: Camera,
+    pub(crate) camera_history: CameraHistory,
     pub(crate) viewport_px: DVec2,
     /// Whether nobody has moved the camera since everything was framed.
     pub(crate) is_framed: bool,
@@ -44,6 +49,18 @@ pub struct Editor {
     pub(crate) brush: Brush,
     pub(crate) brush_radius_px: f64,
     pub(crate) gizmo_mode: GizmoMode,
+    pub(crate) orientation: GizmoOrientation,
+    pub(crate) stroke_shape: StrokeShape,
+    pub(crate) depth: Depth,
+    pub(crate) brush_metric: BrushMetric,
+    pub(crate) stiffness_brush: StiffnessBrush,
+    /// How hard a pen presses; 1 for a mouse.
+    pub(crate) pressure: f64,
+    reports_pressure: bool,
+    /// Whether the next click puts the selected handle's pivot.
+    pub(crate) wants_pivot: bool,
+    /// Handles that are selected along with `selected`.
+    pub(crate) companions: Vec<HandleId>,
     pub(crate) selected: Option<HandleId>,
     pub(crate) wants_new_handle: bool,
     pub(crate) shading: Shading,
@@ -68,12 +85,15 @@ impl Editor {
             known: document.clone(),
             known_roles: Arc::default(),
             known_camera: Camera::default(),
+            known_stiffness: None,
+            showed_stiffness: false,
             repainted: false,
             document,
             file_name: String::new(),
             regions_revision: 0,
             camera_revision: 0,
             camera: Camera::default(),
+            camera_history: CameraHistory::default(),
             viewport_px: DVec2::new(1280.0, 800.0),
             is_framed: true,
             tool: Tool::Idle,
@@ -82,6 +102,15 @@ impl Editor {
             brush: Brush::default(),
             brush_radius_px: 30.0,
             gizmo_mode: GizmoMode::default(),
+            orientation: GizmoOrientation::default(),
+            stroke_shape: StrokeShape::default(),
+            depth: Depth::default(),
+            brush_metric: BrushMetric::default(),
+            stiffness_brush: StiffnessBrush::default(),
+            pressure: 1.0,
+            reports_pressure: false,
+            wants_pivot: false,
+            companions: Vec::new(),
             selected: None,
             wants_new_handle: false,
             shading: Shading::default(),
@@ -132,9 +161,21 @@ impl Editor {
             regions: self.shows_regions,
             tool: self.mode,
             cursor: self.cursor(),
+            outline_px: match &self.tool {
+                Tool::Outline(outline) => outline.outline_px(),
+                _ => Vec::new(),
+            },
+            stroke_shape: self.stroke_shape,
+            depth: self.depth,
+            brush_metric: self.brush_metric,
+            stiffness_brush: self.stiffness_brush,
+            pressure: self.reports_pressure.then_some(self.pressure),
+            orientation: self.orientation,
+            wants_pivot: self.wants_pivot,
             brush_radius_px: self.brush_radius_px,
             handles: &self.document.handles,
             selected: self.selected,
+            companions: &self.companions,
             status: self.status(),
             problem: self.problem.as_deref(),
             jobs: self.engine.running(),
@@ -196,6 +237,7 @@ impl Editor {
             model: self.engine.model.as_deref()?,
             displacements: &self.document.from_file,
             bvh: self.engine.bvh.as_deref()?,
+            surface: self.engine.picked.as_deref()?,
             camera: &self.camera,
             viewport_px: self.viewport_px,
         })
@@ -235,15 +277,27 @@ impl Editor {
         let Some(handle) = self.document.handle_mut(id) else {
             return;
         };
-        if handle.transform == transform {
+        if handle.transform == transform || handle.locked {
             return;
         }
+        let twin = handle.twin;
         handle.transform = transform;
         self.document.settled = false;
         if !self.engine.is_bound()
             && let Some(model) = self.engine.model.clone()
         {
             moved_alone(&mut self.document, &model, id);
+        }
+        if let Some(twin) = twin
+            && let Some(other) = self.document.handle_mut(twin.handle)
+            && !other.locked
+        {
+            other.transform = twin.plane.mirrored_transform(transform);
+            if !self.engine.is_bound()
+                && let Some(model) = self.engine.model.clone()
+            {
+                moved_alone(&mut self.document, &model, twin.handle);
+            }
         }
     }
 
@@ -294,6 +348,12 @@ impl Editor {
                     self.is_framed = false;
                 }
             }
+            Event::Pressure(pressure) => {
+                self.reports_pressure |= pressure.is_some();
+                self.pressure = pressure
+                    .filter(|pressure| pressure.is_finite())
+                    .map_or(1.0, |p| p.clamp(0.0, 1.0));
+            }
             Event::Key(key, modifiers) => self.key(key, modifiers),
             Event::Command(command) => self.execute(command),
             Event::Adjust(command) => self.adjust(command),
@@ -330,6 +390,7 @@ impl Editor {
         if key == Key::Escape {
             self.problem = None;
             self.wants_new_handle = false;
+            self.wants_pivot = false;
         } else if let Some(command) = Command::of_key(key, modifiers) {
             self.execute(command);
         }
@@ -356,7 +417,9 @@ impl Editor {
         self.held.clear();
         self.problem = None;
         self.selected = None;
+        self.companions.clear();
         self.wants_new_handle = false;
+        self.wants_pivot = false;
         self.file_name = name;
         self.document = match beginning.as_ref().map(|beginning| beginning.document(&model)) {
             None => Document::new(model.surface.positions.len()),
@@ -376,6 +439,7 @@ impl Editor {
                 1.0
             };
         }
+        self.camera_history = CameraHistory::default();
         self.engine.open(model);
         self.known = self.document.clone();
         self.shape_counter += 1;
@@ -429,6 +493,25 @@ impl Editor {
         }
     }
 
+    pub(crate) fn brush_size(&self) -> BrushSize {
+        BrushSize {
+            radius_px: self.brush_radius_px,
+            metric: self.brush_metric,
+        }
+    }
+
+    /// Every vertex that hangs together with this one.
+    pub(crate) fn part_of(&self, vertex: SurfaceVertex) -> Vec<SurfaceVertex> {
+        let Some(model) = &self.engine.model else {
+            return Vec::new();
+        };
+        let part = model.topology.component(vertex);
+        (0..self.document.paint.len() as u32)
+            .map(SurfaceVertex)
+            .filter(|&vertex| model.topology.component(vertex) == part)
+            .collect()
+    }
+
     pub(crate) fn set_brush_radius(&mut self, radius_px: f64) {
         if radius_px.is_finite() {
             self.brush_radius_px = radius_px.clamp(*BRUSH_RADIUS_PX.start(), *BRUSH_RADIUS_PX.end());
@@ -438,8 +521,8 @@ impl Editor {
     fn cursor(&self) -> Cursor {
         match &self.tool {
             Tool::Navigate(_) => Cursor::Grabbing,
-            Tool::Transform(_) => Cursor::Move,
-            Tool::Paint(_) => Cursor::Brush,
+            Tool::Transform(_) | Tool::Widen(_) => Cursor::Move,
+            Tool::Paint(_) | Tool::Stiffness(_) | Tool::Outline(_) => Cursor::Brush,
             Tool::Idle if self.overlay.hovered.is_some() => Cursor::Grab,
             Tool::Idle if self.overlay.is_over_surface && self.mode != ToolMode::Select => Cursor::Brush,
             Tool::Idle | Tool::Adjust(_) => Cursor::Arrow,

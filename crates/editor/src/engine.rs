@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{BindError, Bound, Holds, Ordering, Problem, SolveError, Step};
-use pliant_mesh::{Bvh, Cancel, Model, Progress, SurfaceVertex};
+use pliant_mesh::{Bvh, Cancel, Model, Progress, Surface, SurfaceVertex};
 
 use crate::document::{Document, HandleId, sum_of_shapes};
 use crate::job_queue::{JobQueue, Running};
@@ -52,6 +52,8 @@ pub(crate) struct Engine {
     /// Solves that were asked for before this are dropped.
     solve_floor: Revision,
     pub(crate) bvh: Option<Arc<Bvh>>,
+    /// The surface in the shape of `bvh`.
+    pub(crate) picked: Option<Arc<Surface>>,
     bvh_revision: Revision,
     ordering: Option<Arc<Ordering>>,
     pub(crate) region: Region,
@@ -96,6 +98,7 @@ impl Engine {
             shape_revision: Revision(0),
             solve_floor: Revision(0),
             bvh: None,
+            picked: None,
             bvh_revision: Revision(0),
             ordering: None,
             region: Region::still(0),
@@ -121,6 +124,7 @@ impl Engine {
         self.model = Some(model);
         self.model_revision = self.next_revision();
         (self.bvh, self.ordering, self.bound) = (None, None, None);
+        self.picked = None;
         self.warnings.clear();
         self.problem_changed();
         self.region_revision = Revision(0);
@@ -244,8 +248,9 @@ impl Engine {
                     return Arrival::Problem(sentence);
                 }
             }
-            JobOutcome::Pick(bvh) if wanted => {
+            JobOutcome::Pick(bvh, surface) if wanted => {
                 self.bvh = Some(bvh);
+                self.picked = Some(surface);
                 self.bvh_revision = stamp;
                 return Arrival::Picking;
             }
@@ -319,14 +324,15 @@ impl Engine {
                 return JobOutcome::Cancelled;
             }
             let surface = displaced(&model.surface, &displacements);
-            JobOutcome::Pick(Arc::new(match bvh {
+            let bvh = match bvh {
                 None => Bvh::build(&surface.positions, &surface.triangles),
                 Some(bvh) => {
                     let mut bvh = Arc::unwrap_or_clone(bvh);
                     bvh.refit(&surface.positions);
                     bvh
                 }
-            }))
+            };
+            JobOutcome::Pick(Arc::new(bvh), Arc::new(surface))
         }))
     }
 

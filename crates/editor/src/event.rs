@@ -40,6 +40,8 @@ pub enum Event {
         /// The ratio of the fingers' distances since the last event.
         factor: f64,
     },
+    /// How hard the pen presses, 0 to 1; `None` for what reports no force.
+    Pressure(Option<f64>),
     /// A key went down (repeats of a held key included). Characters come in lower case, one event a key.
     Key(Key, Modifiers),
     /// Something a menu, a button or the command palette asks for.

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use pliant_mesh::SurfaceVertex;
 
+use crate::camera_history::CameraStep;
 use crate::command::{Command, Reach};
 use crate::constraint::Constraint;
 use crate::document::{Handle, HandleId, Paint};
 use crate::editor::Editor;
 use crate::exchange::without_pivot;
-use crate::tool::{Tool, TransformDrag, TransformKind};
+use crate::tool::{Tool, TransformDrag, TransformKind, Widen};
 use crate::{HandleTransform, SOFT_RANGE, STIFFNESS_RANGE};
 
 /// The factor by which a key sizes the brush.
@@ -22,10 +23,23 @@ impl Editor {
         let selected = self.selected.and_then(|id| self.document.handle(id));
         match command {
             Command::Undo => self.history.undo_name().is_some(),
-            Command::Redo => self.history.redo_name().is_some(),
-            Command::DeleteHandle | Command::Deselect | Command::Move | Command::Turn | Command::Scale => {
-                selected.is_some()
+            Command::GoToStep(steps) => *steps <= self.history.names().0.len(),
+            Command::Region(_) => self.can_act_on_region(),
+            Command::ClearStiffness => self.document.stiffness.is_some(),
+            Command::DuplicateHandle | Command::PickPivot | Command::Widen | Command::ResetRegion => {
+                selected.is_some_and(|handle| !handle.locked)
             }
+            Command::MakeTwin(_) => selected.is_some_and(|handle| handle.twin.is_none() && !handle.locked),
+            Command::Untwin => selected.is_some_and(|handle| handle.twin.is_some()),
+            Command::ToggleSelected(id)
+            | Command::SetHandleColour(id, _)
+            | Command::ToggleHandleVisible(id)
+            | Command::ToggleHandleLocked(id)
+            | Command::SetPivotPlace(id, _)
+            | Command::SetPivot(id, _) => self.document.handle(*id).is_some(),
+            Command::Redo => self.history.redo_name().is_some(),
+            Command::DeleteHandle => selected.is_some_and(|handle| !handle.locked),
+            Command::Deselect | Command::Move | Command::Turn | Command::Scale => selected.is_some(),
             Command::ResetHandle => selected.is_some_and(Handle::is_displaced),
             Command::NextHandle => !self.document.handles.is_empty(),
             Command::SelectHandle(id)
@@ -46,7 +60,10 @@ impl Editor {
             | Command::SetLoose(_)
             | Command::SetStiffness(_)
             | Command::FrameAll
-            | Command::FrameSelected => open,
+            | Command::FrameSelected
+            | Command::FrameFileVertex(_) => open,
+            Command::CameraBack => !self.camera_history.behind.is_empty(),
+            Command::CameraForth => !self.camera_history.ahead.is_empty(),
             Command::SetTool(_)
             | Command::SetBrushRadius(_)
             | Command::GrowBrush
@@ -56,6 +73,11 @@ impl Editor {
             | Command::SetShading(_)
             | Command::ToggleWireframe
             | Command::ToggleRegions
+            | Command::SetOrientation(_)
+            | Command::SetStrokeShape(_)
+            | Command::SetDepth(_)
+            | Command::SetBrushMetric(_)
+            | Command::SetStiffnessBrush(_)
             | Command::SetGizmo(_) => true,
         }
     }
@@ -70,7 +92,7 @@ impl Editor {
             self.abort_tool();
             self.problem = None;
             // Undo during a drag takes back the drag, and nothing before it.
-            if !was_idle && matches!(command, Command::Undo | Command::Redo) {
+            if !was_idle && matches!(command, Command::Undo | Command::Redo | Command::GoToStep(_)) {
                 return;
             }
         }
@@ -94,8 +116,15 @@ impl Editor {
                 self.wants_new_handle = true;
                 self.selected = None;
             }
-            Command::SelectHandle(id) => self.selected = Some(id),
-            Command::Deselect => self.selected = None,
+            Command::SelectHandle(id) => {
+                self.companions.clear();
+                self.selected = Some(id);
+            }
+            Command::Deselect => {
+                self.companions.clear();
+                self.selected = None;
+            }
+            Command::ToggleSelected(id) => self.toggle_selected(id),
             Command::NextHandle => self.select_next(),
             Command::DeleteHandle => self.delete_selected(),
             Command::ResetHandle => {
@@ -150,6 +179,9 @@ impl Editor {
             Command::ShrinkBrush => self.set_brush_radius(self.brush_radius_px / BRUSH_STEP),
             Command::FrameAll => self.frame_all(),
             Command::FrameSelected => self.frame_selected(),
+            Command::FrameFileVertex(vertex) => self.frame_file_vertex(vertex),
+            Command::CameraBack => self.camera_step(CameraStep::Back),
+            Command::CameraForth => self.camera_step(CameraStep::Forth),
             Command::View(view) => {
                 self.camera.look_from(view);
                 self.is_framed = false;
@@ -159,6 +191,50 @@ impl Editor {
             Command::ToggleWireframe => self.wireframe = !self.wireframe,
             Command::ToggleRegions => self.shows_regions = !self.shows_regions,
             Command::SetGizmo(mode) => self.gizmo_mode = mode,
+            Command::SetOrientation(orientation) => self.orientation = orientation,
+            Command::SetStrokeShape(shape) => {
+                self.abort_tool();
+                self.stroke_shape = shape;
+                if self.mode == crate::ToolMode::Select {
+                    self.mode = crate::ToolMode::PaintHandle;
+                }
+            }
+            Command::SetDepth(depth) => self.depth = depth,
+            Command::SetBrushMetric(metric) => self.brush_metric = metric,
+            Command::SetStiffnessBrush(brush) => self.stiffness_brush = brush.clamped().unwrap_or(self.stiffness_brush),
+            Command::ClearStiffness => {
+                self.change("Clear stiffness", |document| {
+                    document.settled &= !document.is_displaced();
+                    document.stiffness = None;
+                });
+            }
+            Command::Region(action) => self.act_on_region(action),
+            Command::Widen => {
+                if let Some(widen) = Widen::begin(self) {
+                    self.tool = Tool::Widen(Box::new(widen));
+                }
+            }
+            Command::SetHandleColour(id, colour) => {
+                self.change_handle("Change colour", id, |handle| handle.colour = colour);
+            }
+            Command::ToggleHandleVisible(id) => {
+                self.change_handle("Show or hide handle", id, |handle| handle.visible = !handle.visible);
+            }
+            Command::ToggleHandleLocked(id) => {
+                self.change_handle("Lock or unlock handle", id, |handle| handle.locked = !handle.locked);
+            }
+            Command::SetPivotPlace(id, place) => self.set_pivot_place(id, place),
+            Command::SetPivot(id, point) => self.set_pivot(id, point),
+            Command::PickPivot => self.wants_pivot = true,
+            Command::DuplicateHandle => self.split_selected(),
+            Command::MakeTwin(axis) => self.make_twin(axis),
+            Command::Untwin => self.untwin(),
+            Command::ResetRegion => self.reset_region(),
+            Command::GoToStep(steps) => {
+                self.engine.drop_solves();
+                while self.history.names().1 > steps && self.history.undo(&mut self.document).is_some() {}
+                while self.history.names().1 < steps && self.history.redo(&mut self.document).is_some() {}
+            }
             Command::Move => self.begin_transform(TransformKind::Move),
             Command::Turn => self.begin_transform(TransformKind::Turn),
             Command::Scale => self.begin_transform(TransformKind::Scale),
@@ -206,6 +282,9 @@ impl Editor {
                 }
             }
             document.handles.retain(|handle| handle.id != id);
+            for handle in &mut document.handles {
+                handle.twin = handle.twin.filter(|twin| twin.handle != id);
+            }
         });
     }
 
@@ -335,6 +414,21 @@ fn concerns_document(command: &Command) -> bool {
             | Command::Move
             | Command::Turn
             | Command::Scale
+            | Command::Widen
+            | Command::Region(_)
+            | Command::ClearStiffness
+            | Command::SetHandleColour(..)
+            | Command::ToggleHandleVisible(_)
+            | Command::ToggleHandleLocked(_)
+            | Command::SetPivotPlace(..)
+            | Command::SetPivot(..)
+            | Command::PickPivot
+            | Command::DuplicateHandle
+            | Command::MakeTwin(_)
+            | Command::Untwin
+            | Command::ResetRegion
+            | Command::GoToStep(_)
+            | Command::ToggleSelected(_)
             | Command::SelectHandle(_)
             | Command::Deselect
             | Command::NextHandle

@@ -23,6 +23,35 @@ pub enum GizmoMode {
     Scale,
 }
 
+/// Along which axes the gizmo stands.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum GizmoOrientation {
+    /// The world's.
+    #[default]
+    World,
+    /// The handle's own, turned along with it.
+    Local,
+    /// The screen's: to the right, up, towards the eye.
+    View,
+}
+
+/// How a gizmo is turned.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct GizmoAxes {
+    /// The axes of arrows, squares and rings.
+    pub basis: DQuat,
+    /// The handle's own, along which it scales.
+    pub own: DQuat,
+}
+
+impl GizmoAxes {
+    /// The world's axes for everything.
+    pub const WORLD: Self = Self {
+        basis: DQuat::IDENTITY,
+        own: DQuat::IDENTITY,
+    };
+}
+
 /// What can be grabbed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub enum GizmoPart {
@@ -70,13 +99,13 @@ const HEAD_SEGMENTS: usize = 12;
 const AXIS_COLOURS: [[u8; 3]; 3] = [[226, 62, 72], [106, 176, 48], [58, 122, 228]];
 const AXIS_BRIGHT: [[u8; 3]; 3] = [[255, 136, 140], [172, 236, 112], [140, 188, 255]];
 
-/// The gizmo of a handle whose pivot is at `centre` and whose own axes are turned by `rotation`.
+/// The gizmo of a handle whose pivot is at `centre`, turned as `axes` says.
 ///
 /// Lengths are those of the screen: `viewport_px` is its size, and the shapes keep theirs wherever the eye is.
 pub fn gizmo_shapes(
     mode: GizmoMode,
     centre: DVec3,
-    rotation: DQuat,
+    axes: GizmoAxes,
     camera: &Camera,
     viewport_px: DVec2,
     highlighted: Option<GizmoPart>,
@@ -111,14 +140,14 @@ pub fn gizmo_shapes(
             add(
                 GizmoPart::Ring(axis),
                 Some(axis),
-                ring(centre, axis_vector(axis), RING_PX * px, to_eye),
+                ring(centre, axes.basis * axis_vector(axis), RING_PX * px, to_eye),
                 Vec::new(),
             );
         }
     }
     for axis in 0..3 {
         if shows(GizmoMode::Move) {
-            let direction = axis_vector(axis);
+            let direction = axes.basis * axis_vector(axis);
             let tip = centre + direction * (ARROW_PX * px);
             let base = centre + direction * ((ARROW_PX - ARROW_HEAD_PX) * px);
             let start = centre + direction * (2.0 * CENTRE_PX * px);
@@ -128,7 +157,10 @@ pub fn gizmo_shapes(
                 vec![[start, base]],
                 cone(base, tip, ARROW_WIDTH_PX * px),
             );
-            let (u, v) = (axis_vector((axis + 1) % 3), axis_vector((axis + 2) % 3));
+            let (u, v) = (
+                axes.basis * axis_vector((axis + 1) % 3),
+                axes.basis * axis_vector((axis + 2) % 3),
+            );
             add(
                 GizmoPart::Square(axis),
                 Some(axis),
@@ -137,7 +169,7 @@ pub fn gizmo_shapes(
             );
         }
         if shows(GizmoMode::Scale) {
-            let direction = rotation * axis_vector(axis);
+            let direction = axes.own * axis_vector(axis);
             let middle = centre + direction * (BOX_PX * px);
             let start = if mode == GizmoMode::Scale {
                 2.0 * CENTRE_PX
@@ -148,7 +180,7 @@ pub fn gizmo_shapes(
                 GizmoPart::Box(axis),
                 Some(axis),
                 vec![[centre + direction * (start * px), middle]],
-                cube(middle, rotation, BOX_HALF_PX * px),
+                cube(middle, axes.own, BOX_HALF_PX * px),
             );
         }
     }
@@ -289,9 +321,9 @@ fn distance_to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
 mod tests {
-    use glam::{DQuat, DVec2, DVec3};
+    use glam::{DVec2, DVec3};
 
-    use super::{GizmoMode, GizmoPart, gizmo_shapes, hit_gizmo};
+    use super::{GizmoAxes, GizmoMode, GizmoPart, gizmo_shapes, hit_gizmo};
     use crate::camera::Camera;
 
     const VIEWPORT_PX: DVec2 = DVec2::new(900.0, 700.0);
@@ -312,7 +344,7 @@ mod tests {
             let shapes = gizmo_shapes(
                 GizmoMode::Move,
                 camera.target,
-                DQuat::IDENTITY,
+                GizmoAxes::WORLD,
                 &camera,
                 VIEWPORT_PX,
                 None,
@@ -332,7 +364,7 @@ mod tests {
     fn every_part_is_grabbed_where_it_is_drawn() {
         let camera = camera(4.0);
         for mode in [GizmoMode::Move, GizmoMode::Turn, GizmoMode::Scale] {
-            let shapes = gizmo_shapes(mode, camera.target, DQuat::IDENTITY, &camera, VIEWPORT_PX, None);
+            let shapes = gizmo_shapes(mode, camera.target, GizmoAxes::WORLD, &camera, VIEWPORT_PX, None);
             for shape in &shapes {
                 let mut points = Vec::new();
                 points.extend(shape.triangles.iter().map(|[a, b, c]| (*a + *b + *c) / 3.0));
@@ -347,7 +379,7 @@ mod tests {
         let shapes = gizmo_shapes(
             GizmoMode::All,
             camera.target,
-            DQuat::IDENTITY,
+            GizmoAxes::WORLD,
             &camera,
             VIEWPORT_PX,
             None,

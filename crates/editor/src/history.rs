@@ -25,8 +25,8 @@ pub(crate) enum Change {
     Paint(Sparse<Paint>),
     /// The list of handles and the next one's number.
     Handles(Vec<Handle>, u16),
-    /// The stiffness field.
-    Stiffness(Option<Arc<Vec<f64>>>),
+    /// The stiffness at some vertices, and whether there is a field at all: without, it is 1 everywhere.
+    Stiffness(Sparse<f64>, bool),
     /// The continuity field.
     Continuity(Option<Arc<Vec<f64>>>),
     /// Method and loose components.
@@ -102,11 +102,10 @@ impl Step {
             .map(|change| match change {
                 Change::Paint(sparse) => sparse.bytes(),
                 Change::Rest(sparse, _) => sparse.bytes(),
-                Change::Stiffness(Some(field)) | Change::Continuity(Some(field)) => field.len() * size_of::<f64>(),
+                Change::Stiffness(sparse, _) => sparse.bytes(),
+                Change::Continuity(Some(field)) => field.len() * size_of::<f64>(),
                 Change::Handles(handles, _) => handles.len() * size_of::<Handle>(),
-                Change::Stiffness(None) | Change::Continuity(None) | Change::Options(..) | Change::Settled(_) => {
-                    size_of::<Change>()
-                }
+                Change::Continuity(None) | Change::Options(..) | Change::Settled(_) => size_of::<Change>(),
             })
             .sum();
         size_of::<Self>() + self.name.len() + changes + self.shape.bytes()
@@ -270,7 +269,16 @@ fn swap(change: &mut Change, document: &mut Document) {
             std::mem::swap(handles, &mut document.handles);
             std::mem::swap(next_handle, &mut document.next_handle);
         }
-        Change::Stiffness(stiffness) => std::mem::swap(stiffness, &mut document.stiffness),
+        Change::Stiffness(sparse, is_field) => {
+            let was_field = document.stiffness.is_some();
+            let count = document.paint.len();
+            let field = document.stiffness.get_or_insert_with(|| Arc::new(vec![1.0; count]));
+            sparse.swap(Arc::make_mut(field).as_mut_slice());
+            if !*is_field {
+                document.stiffness = None;
+            }
+            *is_field = was_field;
+        }
         Change::Continuity(continuity) => std::mem::swap(continuity, &mut document.continuity),
         Change::Options(method, loose) => {
             std::mem::swap(method, &mut document.method);

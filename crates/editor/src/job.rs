@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::{Bound, Ordering};
-use pliant_mesh::{Bvh, Cancel, Progress};
+use pliant_mesh::{Bvh, Cancel, Progress, Surface};
 
 use crate::Region;
 
@@ -104,8 +104,8 @@ pub struct JobDone {
 
 /// What came of a job.
 pub enum JobOutcome {
-    /// The picking structure of a shape.
-    Pick(Arc<Bvh>),
+    /// The picking structure of a shape, and the surface in it.
+    Pick(Arc<Bvh>, Arc<Surface>),
     /// The mesh's ordering.
     Ordered(Arc<Ordering>),
     /// The region that the handles reach.
@@ -123,7 +123,7 @@ pub enum JobOutcome {
 impl std::fmt::Debug for JobOutcome {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::Pick(_) => "Pick",
+            Self::Pick(..) => "Pick",
             Self::Ordered(_) => "Ordered",
             Self::Region(_) => "Region",
             Self::Bound(_) => "Bound",

@@ -1,13 +1,13 @@
 //! What lies over the surface: the brush's ring and the selected handle's gizmo.
 
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 
 use crate::brush::ring;
 use crate::camera::Camera;
 use crate::editor::Editor;
 use crate::gizmo::{GizmoPart, GizmoShape, gizmo_shapes, hit_gizmo};
 use crate::tool::Tool;
-use crate::{HandleTransform, ToolMode};
+use crate::{StrokeShape, ToolMode};
 
 /// The overlay as it is shown.
 #[derive(Debug, Default)]
@@ -31,21 +31,17 @@ impl Editor {
     /// Computes the overlay anew; its revision grows if it looks different.
     pub(crate) fn refresh_overlay(&mut self) {
         let idle = matches!(self.tool, Tool::Idle);
-        let painting = matches!(self.tool, Tool::Paint(_));
+        let painting = matches!(self.tool, Tool::Paint(_) | Tool::Stiffness(_) | Tool::Outline(_));
         let position_px = self.pointer.map(|pointer| pointer.position_px);
         let gizmo_of = |highlighted| {
             let handle = self.selected.and_then(|id| self.document.handle(id))?;
-            if painting {
+            if painting || !handle.visible || handle.locked {
                 return None;
             }
-            let rotation = match handle.transform {
-                HandleTransform::Trs { rotation, .. } => rotation,
-                HandleTransform::Matrix(_) => DQuat::IDENTITY,
-            };
             Some(gizmo_shapes(
                 self.gizmo_mode,
                 handle.centre(),
-                rotation,
+                self.gizmo_axes(handle),
                 &self.camera,
                 self.viewport_px,
                 highlighted,
@@ -68,7 +64,7 @@ impl Editor {
             && let Some(pick) = picking.at(position_px)
         {
             is_over_surface = true;
-            if self.mode != ToolMode::Select {
+            if self.mode != ToolMode::Select && self.stroke_shape == StrokeShape::Brush && !self.wants_pivot {
                 outline = ring(&picking, position_px, &pick, self.brush_radius_px);
             }
         }

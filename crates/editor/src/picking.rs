@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use pliant_mesh::{Bvh, Model, SurfaceVertex};
+use pliant_mesh::{Bvh, Model, Surface, SurfaceVertex};
 
 use crate::camera::{Camera, Ray};
 
@@ -29,6 +29,8 @@ pub(crate) struct Picking<'a> {
     /// Displacements of the surface from the file's shape.
     pub(crate) displacements: &'a Arc<Vec<DVec3>>,
     pub(crate) bvh: &'a Bvh,
+    /// The surface in the shape that rays are answered from.
+    pub(crate) surface: &'a Surface,
     pub(crate) camera: &'a Camera,
     pub(crate) viewport_px: DVec2,
 }
@@ -42,6 +44,18 @@ impl Picking<'_> {
     /// The present corners of a triangle.
     pub(crate) fn corners(&self, triangle: u32) -> [DVec3; 3] {
         self.model.surface.triangles[triangle as usize].map(|vertex| self.position(vertex))
+    }
+
+    /// Whether nothing stands between the eye and a vertex at `position`, and the surface there faces it.
+    pub(crate) fn is_seen(&self, vertex: SurfaceVertex, position: DVec3, eye: DVec3) -> bool {
+        if !crate::brush::faces(self, vertex, position, true) {
+            return false;
+        }
+        let sight = position - eye;
+        // A hair before the vertex's own triangles.
+        self.bvh.ray(eye, sight).is_none_or(|hit| {
+            hit.distance >= 1.0 - 1e-4 || self.model.surface.triangles[hit.triangle as usize].contains(&vertex)
+        })
     }
 
     /// The first point of the surface under a point of the viewport.

@@ -176,7 +176,7 @@ pub(crate) fn displaced(surface: &Surface, displacements: &[DVec3]) -> Surface {
 }
 
 /// A reach in world units.
-fn reach_length(reach: Reach, surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
+pub(crate) fn reach_length(reach: Reach, surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
     match reach {
         Reach::Length(length) => length,
         Reach::Radii(radii) => radii * handle_radius(surface, topology, members),

@@ -7,7 +7,10 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use pliant_mesh::Model;
 
-use crate::{Camera, GizmoShape, Handle, HandleId, JobKind, ToolMode};
+use crate::{
+    BrushMetric, Camera, Depth, GizmoOrientation, GizmoShape, Handle, HandleId, JobKind, StiffnessBrush, StrokeShape,
+    ToolMode,
+};
 
 /// Everything the 3D view and the panels around it show.
 #[derive(Debug)]
@@ -43,12 +46,30 @@ pub struct SceneView<'a> {
     pub tool: ToolMode,
     /// What the pointer should look like.
     pub cursor: Cursor,
+    /// The lasso or box that is being drawn, a closed line in points of the view; empty where none is.
+    pub outline_px: Vec<DVec2>,
+    /// How the left button takes vertices.
+    pub stroke_shape: StrokeShape,
+    /// How deep a lasso or a box goes.
+    pub depth: Depth,
+    /// How the brush measures its radius.
+    pub brush_metric: BrushMetric,
+    /// The stiffness brush.
+    pub stiffness_brush: StiffnessBrush,
+    /// How hard a pen presses, 0 to 1; `None` where the system has never said.
+    pub pressure: Option<f64>,
+    /// Along which axes the gizmo stands.
+    pub orientation: GizmoOrientation,
+    /// Whether the next click puts the pivot.
+    pub wants_pivot: bool,
     /// The brush's radius in points.
     pub brush_radius_px: f64,
     /// The handles, in the order in which they were made.
     pub handles: &'a [Handle],
     /// The selected handle.
     pub selected: Option<HandleId>,
+    /// Handles that are selected along with it.
+    pub companions: &'a [HandleId],
     /// What the program is doing and what one can do next, in one line.
     pub status: String,
     /// The last thing that went wrong, in one sentence, until the next command that works.

@@ -16,6 +16,9 @@ impl Editor {
         let now = match &self.tool {
             Tool::Navigate(navigate) => format!("{}: Esc takes it back", navigate.status()),
             Tool::Paint(stroke) => format!("{}: Esc takes it back", self.painting(stroke.paint())),
+            Tool::Stiffness(_) => "Painting stiffness: Esc takes it back".to_owned(),
+            Tool::Outline(outline) => outline.status(),
+            Tool::Widen(widen) => widen.status(self),
             Tool::Transform(drag) => drag.status(self),
             Tool::Idle | Tool::Adjust(_) => self.idle(),
         };
@@ -48,8 +51,12 @@ impl Editor {
                 ToolMode::PaintHandle => "Paint what you want to move",
                 ToolMode::PaintFree => "Paint what may bend, then a handle (1)",
                 ToolMode::PaintFixed => "Paint what is held still, then a handle (1)",
-                ToolMode::Erase | ToolMode::Select => "Press 1 and paint what you want to move",
+                ToolMode::Erase | ToolMode::Select | ToolMode::PaintStiffness => {
+                    "Press 1 and paint what you want to move"
+                }
             }
+        } else if self.wants_pivot {
+            "Click the point that the handle turns about"
         } else if self.wants_new_handle {
             "Paint the new handle"
         } else if self.selected.is_none() {

@@ -71,8 +71,16 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
     if before.handles != after.handles {
         changes.push(Change::Handles(before.handles.clone(), before.next_handle));
     }
-    if before.stiffness != after.stiffness {
-        changes.push(Change::Stiffness(before.stiffness.clone()));
+    let is_same_field = match (&before.stiffness, &after.stiffness) {
+        (Some(before), Some(after)) => Arc::ptr_eq(before, after),
+        (None, None) => true,
+        _ => false,
+    };
+    if !is_same_field {
+        let sparse = stiffened(before, after);
+        if !sparse.indices.is_empty() || before.stiffness.is_some() != after.stiffness.is_some() {
+            changes.push(Change::Stiffness(sparse, before.stiffness.is_some()));
+        }
     }
     if before.continuity != after.continuity {
         changes.push(Change::Continuity(before.continuity.clone()));
@@ -90,6 +98,20 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
         changes.push(Change::Settled(before.settled));
     }
     changes
+}
+
+/// Where the stiffness was another, and what it was; none is 1 everywhere.
+fn stiffened(before: &Document, after: &Document) -> Sparse<f64> {
+    let at = |document: &Document, vertex: usize| document.stiffness.as_ref().map_or(1.0, |field| field[vertex]);
+    let mut sparse = Sparse::default();
+    for vertex in 0..before.paint.len() {
+        let old = at(before, vertex);
+        if old.to_bits() != at(after, vertex).to_bits() {
+            sparse.indices.push(vertex as u32);
+            sparse.values.push(old);
+        }
+    }
+    sparse
 }
 
 fn painted(before: &[Paint], after: &[Paint]) -> Sparse<Paint> {

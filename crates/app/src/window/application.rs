@@ -11,10 +11,13 @@ use glam::{DVec2, DVec3};
 use pliant_editor::{Command, Cursor, Editor, Event, JobQueue, Revision};
 
 use super::dialog::{self, Question, Then};
+use super::hints;
 use super::input::{Attention, Input};
+use super::log::Log;
 use super::message::{Message, Opened, Posed};
 use super::notes::{Note, Notes};
 use super::outbox::Outbox;
+use super::palette::{Found, Outcome, Palette};
 use super::panels;
 use super::places::Places;
 use super::recovery::{self, Recovery};
@@ -42,6 +45,10 @@ pub struct Application {
     input: Input,
     pub(super) settings: SettingsFile,
     recovery: Option<Recovery>,
+    pub(super) palette: Option<Palette>,
+    /// Whether this is a person's window, where the first steps are shown.
+    shows_hints: bool,
+    pub(super) log: Log,
     pub(super) question: Option<Question>,
     /// What to do once the save that was asked for first has ended.
     pub(super) after_saving: Option<Then>,
@@ -73,7 +80,6 @@ impl Application {
         source: Source,
         places: &Places,
     ) -> Result<Self, AppError> {
-        theme::apply(&context.egui_ctx);
         let Some(state) = context.wgpu_render_state.clone() else {
             return Err(AppError::System(
                 "the window has no graphics device: install a Vulkan driver".to_owned(),
@@ -83,6 +89,7 @@ impl Application {
         let (sender, messages) = channel();
         let workers = Workers::new(context.egui_ctx.clone(), sender);
         let settings = SettingsFile::open(places.settings.clone());
+        theme::apply(&context.egui_ctx, settings.get());
         let mut notes = Notes {
             headline: settings.problem.clone().map(Note::Failed),
             ..Notes::default()
@@ -108,6 +115,9 @@ impl Application {
             next_pose: 0,
             input: Input::default(),
             settings,
+            palette: None,
+            shows_hints: places.settings.is_some(),
+            log: Log::default(),
             recovery,
             question: (!left.is_empty()).then_some(Question::Recover(left)),
             after_saving: None,
@@ -333,6 +343,19 @@ impl Application {
         );
     }
 
+    fn show_palette(&mut self, context: &egui::Context) {
+        let Some(palette) = &mut self.palette else { return };
+        if let Outcome::Chosen(found) = palette.show(context, &self.editor) {
+            self.palette = None;
+            match found {
+                Some(Found::Editor(command)) => self.command(command),
+                Some(Found::File(command)) => self.file_command(context, command),
+                None => {}
+            }
+            context.request_repaint();
+        }
+    }
+
     /// Names the open file, or the question that waits, in the window's title.
     fn entitle(&mut self, context: &egui::Context) {
         let about = match (&self.question, &self.session.open) {
@@ -368,9 +391,9 @@ impl Application {
         let attention = Attention {
             rect,
             pointer: ui.input(|input| input.pointer.latest_pos()).unwrap_or(rect.center()),
-            pointer_over: response.contains_pointer() && self.question.is_none(),
+            pointer_over: response.contains_pointer() && self.question.is_none() && self.palette.is_none(),
             follows_pointer: self.editor.view().cursor == Cursor::Move,
-            keys: self.question.is_none() && !ui.ctx().egui_wants_keyboard_input(),
+            keys: self.question.is_none() && self.palette.is_none() && !ui.ctx().egui_wants_keyboard_input(),
         };
         let events = self.input.events(ui.ctx(), attention);
         if !events.is_empty() {
@@ -399,6 +422,19 @@ impl Application {
                 REST.saturating_sub(self.last_change.elapsed())
                     .max(Duration::from_millis(10)),
             );
+        }
+        let outline_px = self.editor.view().outline_px;
+        if outline_px.len() > 1 {
+            let point = |px: &DVec2| rect.min + egui::vec2(px.x as f32, px.y as f32);
+            let mut line: Vec<egui::Pos2> = outline_px.iter().map(point).collect();
+            line.push(line[0]);
+            let shadow = egui::Stroke::new(3.0, egui::Color32::from_black_alpha(120));
+            ui.painter().add(egui::Shape::line(line.clone(), shadow));
+            ui.painter()
+                .add(egui::Shape::line(line, egui::Stroke::new(1.5, theme::ACCENT)));
+        }
+        if self.shows_hints && !self.settings.get().hints_seen && hints::show(ui, rect, &self.editor) {
+            self.settings.change(|settings| settings.hints_seen = true);
         }
         Ok(())
     }
@@ -434,9 +470,14 @@ impl eframe::App for Application {
         if stop {
             self.session.cancel_load();
         }
-        Panel::right("panel")
-            .default_size(250.0)
+        let panel = Panel::right("panel")
+            .default_size(self.settings.get().panel_width)
+            .min_size(220.0)
             .show(ui, |ui| panels::show(ui, &self.editor, &self.notes, &mut commands));
+        let width = panel.response.rect.width();
+        if (width - self.settings.get().panel_width).abs() > 1.0 && !context.input(|input| input.pointer.any_down()) {
+            self.settings.change(|settings| settings.panel_width = width);
+        }
         let painted = CentralPanel::no_frame().show(ui, |ui| self.view(ui)).inner;
         if let Err(error) = painted {
             self.fail(error.to_string());
@@ -450,6 +491,14 @@ impl eframe::App for Application {
         if let Some(command) = file_command {
             self.file_command(&context, command);
         }
+        self.show_palette(&context);
+        for sentence in [
+            self.headline().map(str::to_owned),
+            self.editor.view().problem.map(str::to_owned),
+        ] {
+            self.log.say(sentence.as_deref().unwrap_or_default());
+        }
+        self.log.show(&context);
         if let Some(answer) = self
             .question
             .as_mut()

@@ -9,8 +9,10 @@ use super::application::Application;
 use super::dialog::{self, Answer, Question, Then};
 use super::message::{Purpose, Written, WrittenKind};
 use super::notes::Note;
+use super::palette::Palette;
 use super::recovery;
 use super::session::{KeepOriginal, Source};
+use super::theme;
 use super::top_bar::FileCommand;
 use crate::engine::is_project;
 
@@ -84,6 +86,20 @@ impl Application {
             },
             FileCommand::SaveProjectAs => dialog::choose(Purpose::SaveProject, self.path(), &self.workers),
             FileCommand::ExportEdit => dialog::choose(Purpose::ExportEdit, self.path(), &self.workers),
+            FileCommand::Palette => self.palette = Some(Palette::default()),
+            FileCommand::Log => self.log.open = true,
+            FileCommand::NextTheme => {
+                self.settings.change(|settings| settings.theme = settings.theme.next());
+                theme::apply(context, self.settings.get());
+            }
+            FileCommand::Scale(tenths) => {
+                self.settings.change(|settings| {
+                    let scale = (settings.ui_scale * 10.0).round() + f32::from(tenths);
+                    settings.ui_scale = (scale / 10.0).clamp(0.5, 3.0);
+                });
+                theme::apply(context, self.settings.get());
+            }
+            FileCommand::Hints => self.settings.change(|settings| settings.hints_seen = false),
             FileCommand::Quit => self.unless_unsaved(context, Then::Close),
         }
     }

@@ -86,6 +86,7 @@ impl Input {
                     out.push(Event::PointerReleased(pointer(pos, modifiers), ours));
                 }
             }
+            egui::Event::Touch { force, .. } => out.push(Event::Pressure(force.map(f64::from))),
             egui::Event::PointerGone if self.held.is_empty() && self.inside => {
                 self.inside = false;
                 out.push(Event::PointerLeft);

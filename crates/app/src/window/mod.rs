@@ -2,15 +2,23 @@
 //! and the clock are here; egui meets the renderer in `viewport.rs` alone.
 
 mod application;
+mod brush_panel;
 mod command_button;
 mod dialog;
 mod fault;
 mod file_actions;
+mod file_panel;
+mod handles_panel;
+mod hints;
+mod history_panel;
+mod icon;
 mod input;
+mod log;
 mod message;
 mod method_panel;
 mod notes;
 mod outbox;
+mod palette;
 mod panels;
 mod places;
 mod project_file;

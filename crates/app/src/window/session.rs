@@ -307,7 +307,6 @@ fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Opened>, AppErr
     };
     let progress = watch.begin("getting the picture ready");
     let mut notes: Vec<String> = loaded.scene.notes().to_vec();
-    notes.extend(loaded.model.findings.sentences());
     let (drawing, image_notes) = Drawing::new(&loaded.model, loaded.scene.appearance());
     notes.extend(image_notes);
     progress.set(0.7);

@@ -82,6 +82,17 @@ pub enum ThemeChoice {
     System,
 }
 
+impl ThemeChoice {
+    /// The one that a person comes to next.
+    pub fn next(self) -> Self {
+        match self {
+            Self::Dark => Self::Light,
+            Self::Light => Self::System,
+            Self::System => Self::Dark,
+        }
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self {

@@ -1,26 +1,57 @@
-//! The window's colours and spacing: a dim, neutral frame that leaves the eye to the surface.
+//! The window's colours and spacing: a neutral frame, dim or bright, that leaves the eye to the surface.
 
-use eframe::egui::{self, Color32, CornerRadius, Stroke, Visuals};
+use eframe::egui::{self, Color32, CornerRadius, Stroke, Theme, ThemePreference, Visuals};
+
+use super::settings::{Settings, ThemeChoice};
 
 /// What the program asks the eye to notice: the selected handle, the active tool.
 pub const ACCENT: Color32 = Color32::from_rgb(226, 172, 72);
-/// Bars and panels.
-const PANEL: Color32 = Color32::from_rgb(43, 45, 49);
-/// Fields one types into.
-const FIELD: Color32 = Color32::from_rgb(30, 32, 35);
 
-/// Dresses the context.
-pub fn apply(context: &egui::Context) {
+/// Dresses the context as the settings say.
+pub fn apply(context: &egui::Context, settings: &Settings) {
+    context.set_visuals_of(Theme::Dark, dark());
+    context.set_visuals_of(Theme::Light, light());
+    context.set_theme(match settings.theme {
+        ThemeChoice::Dark => ThemePreference::Dark,
+        ThemeChoice::Light => ThemePreference::Light,
+        ThemeChoice::System => ThemePreference::System,
+    });
+    context.set_zoom_factor(settings.ui_scale);
+    context.all_styles_mut(|style| {
+        style.spacing.item_spacing = egui::vec2(8.0, 6.0);
+        style.spacing.button_padding = egui::vec2(9.0, 4.0);
+        style.spacing.slider_width = 120.0;
+    });
+}
+
+fn dark() -> Visuals {
     let mut visuals = Visuals::dark();
-    visuals.panel_fill = PANEL;
+    visuals.panel_fill = Color32::from_rgb(43, 45, 49);
     visuals.window_fill = Color32::from_rgb(50, 52, 57);
-    visuals.extreme_bg_color = FIELD;
+    visuals.extreme_bg_color = Color32::from_rgb(30, 32, 35);
     visuals.selection.bg_fill = Color32::from_rgb(122, 92, 38);
     visuals.selection.stroke = Stroke::new(1.0, Color32::from_rgb(255, 226, 164));
     visuals.hyperlink_color = ACCENT;
-    visuals.window_corner_radius = CornerRadius::same(8);
     visuals.widgets.noninteractive.fg_stroke.color = Color32::from_gray(208);
     visuals.widgets.inactive.fg_stroke.color = Color32::from_gray(218);
+    rounded(visuals)
+}
+
+fn light() -> Visuals {
+    let mut visuals = Visuals::light();
+    visuals.panel_fill = Color32::from_rgb(236, 236, 238);
+    visuals.window_fill = Color32::from_rgb(246, 246, 247);
+    visuals.extreme_bg_color = Color32::WHITE;
+    visuals.selection.bg_fill = Color32::from_rgb(244, 214, 150);
+    visuals.selection.stroke = Stroke::new(1.0, Color32::from_rgb(92, 62, 8));
+    visuals.hyperlink_color = Color32::from_rgb(158, 104, 10);
+    visuals.widgets.noninteractive.fg_stroke.color = Color32::from_gray(40);
+    visuals.widgets.inactive.fg_stroke.color = Color32::from_gray(30);
+    rounded(visuals)
+}
+
+fn rounded(mut visuals: Visuals) -> Visuals {
+    visuals.window_corner_radius = CornerRadius::same(8);
     for widget in [
         &mut visuals.widgets.inactive,
         &mut visuals.widgets.hovered,
@@ -28,11 +59,5 @@ pub fn apply(context: &egui::Context) {
     ] {
         widget.corner_radius = CornerRadius::same(5);
     }
-    context.set_theme(egui::Theme::Dark);
-    context.set_visuals(visuals);
-    context.all_styles_mut(|style| {
-        style.spacing.item_spacing = egui::vec2(8.0, 6.0);
-        style.spacing.button_padding = egui::vec2(9.0, 4.0);
-        style.spacing.slider_width = 120.0;
-    });
+    visuals
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use eframe::egui::{self, Key, KeyboardShortcut, MenuBar, Modifiers, RichText};
-use pliant_editor::{Command, Editor, NamedView, Shading, ToolMode, UpAxis};
+use pliant_editor::{Command, Editor, NamedView, RegionAction, Shading, ToolMode, UpAxis};
 
 use super::command_button::{command_button, command_choice};
 use super::outbox::Outbox;
@@ -25,18 +25,31 @@ pub enum FileCommand {
     SaveProjectAs,
     /// Write the regions, handles and transforms as an edit for the command line.
     ExportEdit,
+    /// Find a command by its name.
+    Palette,
+    /// Show what was said.
+    Log,
+    /// Light, dark, or as the system is.
+    NextTheme,
+    /// Everything larger (above 0) or smaller, in tenths.
+    Scale(i8),
+    /// Show the first steps again.
+    Hints,
     /// Close the window.
     Quit,
 }
 
 impl FileCommand {
     /// The ones that have a key.
-    pub const WITH_SHORTCUTS: [Self; 6] = [
+    pub const WITH_SHORTCUTS: [Self; 9] = [
         Self::SaveAs,
         Self::SaveProject,
         Self::Open,
         Self::Save,
         Self::ExportEdit,
+        Self::Palette,
+        Self::Scale(1),
+        Self::Scale(-1),
         Self::Quit,
     ];
 
@@ -50,17 +63,41 @@ impl FileCommand {
             Self::Quit => command(Key::Q),
             Self::ExportEdit => command(Key::E),
             Self::SaveProject => Some(KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::ALT, Key::S)),
-            Self::SaveProjectAs | Self::OpenPath(_) => None,
+            Self::Palette => Some(KeyboardShortcut::new(Modifiers::NONE, Key::F1)),
+            Self::Scale(1..) => command(Key::Num9),
+            Self::Scale(_) => command(Key::Num0),
+            Self::SaveProjectAs | Self::Log | Self::NextTheme | Self::Hints | Self::OpenPath(_) => None,
         }
     }
 
-    fn name(&self) -> &'static str {
+    /// All that need no path, in the order of the menu.
+    pub const LISTED: [Self; 11] = [
+        Self::Open,
+        Self::Save,
+        Self::SaveAs,
+        Self::SaveProject,
+        Self::SaveProjectAs,
+        Self::ExportEdit,
+        Self::Palette,
+        Self::Log,
+        Self::NextTheme,
+        Self::Hints,
+        Self::Quit,
+    ];
+
+    /// What a menu calls it.
+    pub fn name(&self) -> &'static str {
         match self {
             Self::Open | Self::OpenPath(_) => "Open…",
             Self::Save => "Save model",
             Self::SaveAs => "Save model as…",
             Self::SaveProject => "Save project",
             Self::SaveProjectAs => "Save project as…",
+            Self::Palette => "Find a command…",
+            Self::Log => "Log…",
+            Self::NextTheme => "Light or dark",
+            Self::Scale(_) => "Size of everything",
+            Self::Hints => "Hints on the canvas",
             Self::ExportEdit => "Export edit…",
             Self::Quit => "Quit",
         }
@@ -79,7 +116,11 @@ pub fn show(
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| chosen = file_menu(ui, editor, recent));
         ui.menu_button("Edit", |ui| edit_menu(ui, editor, commands));
-        ui.menu_button("View", |ui| view_menu(ui, editor, commands));
+        ui.menu_button("Region", |ui| region_menu(ui, editor, commands));
+        ui.menu_button("View", |ui| {
+            view_menu(ui, editor, commands);
+            window_menu(ui, &mut chosen);
+        });
         let unsaved = if editor.view().unsaved { " •" } else { "" };
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.label(RichText::new(format!("{file_name}{unsaved}")).weak());
@@ -160,6 +201,58 @@ fn edit_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     }
 }
 
+fn region_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let groups: [&[RegionAction]; 4] = [
+        &[
+            RegionAction::Grow,
+            RegionAction::Shrink,
+            RegionAction::SmoothBorder,
+            RegionAction::FillParts,
+        ],
+        &[RegionAction::Invert, RegionAction::EverythingBut],
+        &[
+            RegionAction::Mirror(0),
+            RegionAction::Mirror(1),
+            RegionAction::Mirror(2),
+        ],
+        &[RegionAction::ToHandle, RegionAction::ToFree, RegionAction::ToFixed],
+    ];
+    for (number, group) in groups.into_iter().enumerate() {
+        if number > 0 {
+            ui.separator();
+        }
+        for action in group {
+            let command = Command::Region(*action);
+            if command_button(ui, editor, &command) {
+                commands.push(command);
+                ui.close();
+            }
+        }
+    }
+}
+
+/// How the window itself looks, and what it can tell.
+fn window_menu(ui: &mut egui::Ui, chosen: &mut Option<FileCommand>) {
+    ui.separator();
+    for (command, name) in [
+        (FileCommand::Palette, None),
+        (FileCommand::Log, None),
+        (FileCommand::NextTheme, None),
+        (FileCommand::Scale(1), Some("Larger")),
+        (FileCommand::Scale(-1), Some("Smaller")),
+        (FileCommand::Hints, None),
+    ] {
+        let mut button = egui::Button::new(name.unwrap_or(command.name()));
+        if let Some(shortcut) = command.shortcut() {
+            button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+        }
+        if ui.add(button).clicked() {
+            *chosen = Some(command);
+            ui.close();
+        }
+    }
+}
+
 fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     for command in [Command::FrameAll, Command::FrameSelected] {
         if command_button(ui, editor, &command) {
@@ -197,6 +290,7 @@ fn tools(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         ToolMode::PaintHandle,
         ToolMode::PaintFree,
         ToolMode::PaintFixed,
+        ToolMode::PaintStiffness,
         ToolMode::Erase,
         ToolMode::Select,
     ] {

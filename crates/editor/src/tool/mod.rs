@@ -5,15 +5,24 @@
 
 mod adjust;
 mod navigate;
+mod outline;
 mod paint;
+mod stiffness;
 mod transform;
+mod widen;
 
 use glam::DVec2;
 
 pub(crate) use adjust::Adjust;
 pub(crate) use navigate::Navigate;
-pub(crate) use paint::{PaintStroke, handle_colour};
+pub(crate) use outline::OutlineStroke;
+pub use outline::{Depth, StrokeShape};
+pub use paint::HANDLE_COLOURS;
+pub(crate) use paint::{PaintStroke, border_middle, handle_colour, tidy_handles};
+pub(crate) use stiffness::StiffnessStroke;
+pub use stiffness::{StiffnessAction, StiffnessBrush};
 pub(crate) use transform::{TransformDrag, TransformKind};
+pub(crate) use widen::Widen;
 
 use crate::constraint::Constraint;
 use crate::document::Paint;
@@ -34,6 +43,8 @@ pub enum ToolMode {
     PaintFixed,
     /// Takes paint away.
     Erase,
+    /// Paints how stiff the surface is.
+    PaintStiffness,
     /// Selects a handle and drags it.
     Select,
 }
@@ -50,6 +61,12 @@ pub(crate) enum Tool {
     Paint(Box<PaintStroke>),
     /// Moving, turning or scaling a handle.
     Transform(Box<TransformDrag>),
+    /// Painting stiffness.
+    Stiffness(Box<StiffnessStroke>),
+    /// Drawing a lasso or a box.
+    Outline(Box<OutlineStroke>),
+    /// Widening a handle's reach.
+    Widen(Box<Widen>),
     /// Following a widget that is being dragged.
     Adjust(Box<Adjust>),
 }
@@ -57,8 +74,8 @@ pub(crate) enum Tool {
 impl Tool {
     pub(crate) fn activity(&self) -> Activity {
         match self {
-            Self::Idle | Self::Navigate(_) | Self::Adjust(_) => Activity::Still,
-            Self::Paint(_) => Activity::Painting,
+            Self::Idle | Self::Navigate(_) | Self::Adjust(_) | Self::Widen(_) => Activity::Still,
+            Self::Paint(_) | Self::Stiffness(_) | Self::Outline(_) => Activity::Painting,
             Self::Transform(_) => Activity::Dragging,
         }
     }
@@ -69,6 +86,9 @@ impl Tool {
             Self::Adjust(adjust) => Self::Adjust(adjust),
             Self::Navigate(navigate) => navigate.moved(editor, pointer),
             Self::Paint(stroke) => stroke.moved(editor, pointer),
+            Self::Stiffness(stroke) => stroke.moved(editor, pointer),
+            Self::Outline(stroke) => stroke.moved(pointer),
+            Self::Widen(widen) => widen.moved(editor, pointer),
             Self::Transform(drag) => drag.moved(editor, pointer),
         }
     }
@@ -77,6 +97,7 @@ impl Tool {
         match (self, button) {
             (Self::Idle, _) => begin(editor, pointer, button),
             (Self::Transform(drag), _) => drag.pressed(editor, pointer, button),
+            (Self::Widen(widen), _) => widen.pressed(editor, pointer, button),
             (Self::Adjust(adjust), _) => {
                 adjust.commit(editor);
                 begin(editor, pointer, button)
@@ -92,6 +113,9 @@ impl Tool {
             Self::Adjust(adjust) => Self::Adjust(adjust),
             Self::Navigate(navigate) => navigate.released(button),
             Self::Paint(stroke) => stroke.released(editor, pointer, button),
+            Self::Stiffness(stroke) => stroke.released(editor, pointer, button),
+            Self::Outline(stroke) => stroke.released(editor, pointer, button),
+            Self::Widen(widen) => Self::Widen(widen),
             Self::Transform(drag) => drag.released(editor, pointer, button),
         }
     }
@@ -101,6 +125,7 @@ impl Tool {
         match self {
             Self::Idle => (Self::Idle, false),
             Self::Transform(drag) => drag.key(editor, key, modifiers),
+            Self::Widen(widen) => (widen.key(editor, key), true),
             tool if key == Key::Escape => (tool.abort(editor), true),
             tool => (tool, false),
         }
@@ -112,6 +137,9 @@ impl Tool {
             Self::Idle => {}
             Self::Navigate(navigate) => navigate.abort(editor),
             Self::Paint(stroke) => stroke.abort(editor),
+            Self::Stiffness(stroke) => stroke.abort(editor),
+            Self::Outline(stroke) => stroke.abort(editor),
+            Self::Widen(widen) => widen.abort(editor),
             Self::Transform(drag) => drag.abort(editor),
             Self::Adjust(adjust) => adjust.abort(editor),
         }
@@ -135,17 +163,53 @@ fn begin(editor: &mut Editor, pointer: Pointer, button: Button) -> Tool {
     {
         return drag;
     }
+    let shape = editor.stroke_shape;
+    if editor.mode != ToolMode::Select && matches!(shape, StrokeShape::Lasso | StrokeShape::Box) {
+        if editor.mode == ToolMode::PaintStiffness {
+            editor.problem = Some("Stiffness is painted with the brush: press B for it.".to_owned());
+            return Tool::Idle;
+        }
+        editor.problem = None;
+        let outline = OutlineStroke::begin(editor, pointer, shape);
+        return outline.map_or(Tool::Idle, |outline| Tool::Outline(Box::new(outline)));
+    }
     let Some(pick) = editor.pick(position_px) else {
         return Tool::Navigate(Navigate::begin(editor, pointer, button));
     };
     editor.problem = None;
+    if std::mem::take(&mut editor.wants_pivot) {
+        if let Some(id) = editor.selected {
+            editor.set_pivot(id, pick.point);
+        }
+        return Tool::Idle;
+    }
+    if editor.mode == ToolMode::PaintStiffness {
+        return Tool::Stiffness(Box::new(StiffnessStroke::begin(editor, pointer)));
+    }
     if editor.mode != ToolMode::Select {
-        return Tool::Paint(Box::new(PaintStroke::begin(editor, pointer)));
+        let stroke = match shape {
+            StrokeShape::Component => PaintStroke::begin_without_dab(editor, pointer),
+            _ => PaintStroke::begin(editor, pointer),
+        };
+        let Some(stroke) = stroke else { return Tool::Idle };
+        if shape == StrokeShape::Component {
+            let part = editor.part_of(pick.vertex);
+            stroke.finish_with(editor, part);
+            return Tool::Idle;
+        }
+        return Tool::Paint(Box::new(stroke));
     }
     let Some(Paint::Handle(handle)) = editor.document.paint().get(pick.vertex.index()).copied() else {
         return Tool::Navigate(Navigate::begin(editor, pointer, button));
     };
-    editor.selected = Some(handle);
+    if modifiers.ctrl {
+        editor.toggle_selected(handle);
+        return Tool::Idle;
+    }
+    if !editor.companions.contains(&handle) {
+        editor.companions.clear();
+    }
+    editor.select(handle);
     match TransformDrag::begin(editor, TransformKind::Move, Constraint::Free, position_px) {
         Some(drag) => Tool::Transform(Box::new(drag.held(button, None))),
         None => Tool::Idle,

@@ -5,18 +5,18 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
-use pliant_mesh::SurfaceVertex;
+use glam::{DVec2, DVec3};
+use pliant_mesh::{Model, SurfaceVertex};
 
 use super::{Tool, ToolMode};
-use crate::document::{Document, Handle, HandleId, Paint};
+use crate::document::{Document, HandleId, Paint, PivotPlace};
 use crate::editor::Editor;
 use crate::engine::Activity;
 use crate::transaction::Transaction;
 use crate::{Button, Pointer};
 
 /// The colours that handles get in turn: gold first, as in the survey's figures.
-const COLOURS: [[u8; 4]; 8] = [
+pub const HANDLE_COLOURS: [[u8; 4]; 8] = [
     [232, 184, 48, 255],
     [222, 96, 72, 255],
     [120, 190, 88, 255],
@@ -36,18 +36,38 @@ pub(crate) struct PaintStroke {
 }
 
 impl PaintStroke {
-    /// Begins a stroke with a first dab under the pointer. What was being bound is not wanted any more.
-    pub(crate) fn begin(editor: &mut Editor, pointer: Pointer) -> Self {
+    /// Begins a stroke with a first dab under the pointer. What was being bound is not wanted any more. `None`, with a
+    /// sentence, where the handle is locked.
+    pub(crate) fn begin(editor: &mut Editor, pointer: Pointer) -> Option<Self> {
+        let mut stroke = Self::begin_without_dab(editor, pointer)?;
+        stroke.dab(editor, pointer.position_px);
+        Some(stroke)
+    }
+
+    /// The same without a dab.
+    pub(crate) fn begin_without_dab(editor: &mut Editor, pointer: Pointer) -> Option<Self> {
         debug_assert_eq!(editor.tool.activity(), Activity::Still);
+        let is_erasing = pointer.modifiers.ctrl || matches!(editor.mode, ToolMode::Erase | ToolMode::Select);
+        if !is_erasing
+            && editor.mode == ToolMode::PaintHandle
+            && !editor.wants_new_handle
+            && let Some(handle) = editor.selected.and_then(|id| editor.document.handle(id))
+            && handle.locked
+        {
+            let name = &handle.name;
+            editor.problem = Some(format!(
+                "{name} is locked: unlock it in the list, or press N for a new handle."
+            ));
+            return None;
+        }
         editor.engine.stop_binding();
         editor.engine.drop_solves();
         let transaction = editor.begin("Paint");
         let (paint, name) = match editor.mode {
-            _ if pointer.modifiers.ctrl => (Paint::Bare, "Erase".to_owned()),
-            ToolMode::Erase | ToolMode::Select => (Paint::Bare, "Erase".to_owned()),
+            _ if is_erasing => (Paint::Bare, "Erase".to_owned()),
             ToolMode::PaintFree => (Paint::Free, "Paint region".to_owned()),
             ToolMode::PaintFixed => (Paint::Fixed, "Paint fixed".to_owned()),
-            ToolMode::PaintHandle => {
+            _ => {
                 let id = handle_to_paint(editor);
                 let name = editor
                     .document
@@ -62,8 +82,7 @@ impl PaintStroke {
             last_px: pointer.position_px,
         };
         stroke.transaction.rename(name);
-        stroke.dab(editor, pointer.position_px);
-        stroke
+        Some(stroke)
     }
 
     pub(crate) fn moved(mut self: Box<Self>, editor: &mut Editor, pointer: Pointer) -> Tool {
@@ -78,7 +97,22 @@ impl PaintStroke {
         if pointer.position_px != self.last_px {
             self.dab(editor, pointer.position_px);
         }
-        let Self { transaction, paint, .. } = *self;
+        self.finish(editor);
+        Tool::Idle
+    }
+
+    /// Paints these vertices and ends.
+    pub(crate) fn finish_with(mut self, editor: &mut Editor, vertices: Vec<SurfaceVertex>) {
+        let changed = vertices
+            .into_iter()
+            .filter(|vertex| editor.document.paint[vertex.index()] != self.paint)
+            .collect();
+        self.take(editor, changed);
+        self.finish(editor);
+    }
+
+    fn finish(self, editor: &mut Editor) {
+        let Self { transaction, paint, .. } = self;
         tidy_handles(editor, transaction.before());
         if let Paint::Handle(id) = paint
             && editor.document.handle(id).is_some()
@@ -87,7 +121,6 @@ impl PaintStroke {
             editor.wants_new_handle = false;
         }
         transaction.commit(&editor.document, &mut editor.history);
-        Tool::Idle
     }
 
     pub(crate) fn abort(self, editor: &mut Editor) {
@@ -105,21 +138,34 @@ impl PaintStroke {
         let mut changed = Vec::new();
         if let Some(picking) = editor.picking() {
             let paint = editor.document.paint();
-            let visit = |vertex: SurfaceVertex| {
+            let visit = |vertex: SurfaceVertex, _| {
                 if paint[vertex.index()] != self.paint {
                     changed.push(vertex);
                 }
             };
-            brush.stroke(&picking, self.last_px, to_px, editor.brush_radius_px, visit);
+            brush.stroke(&picking, self.last_px, to_px, &editor.brush_size(), visit);
         }
         editor.brush = brush;
         self.last_px = to_px;
+        self.take(editor, changed);
+    }
+
+    /// Gives vertices the stroke's paint; those of locked handles keep theirs.
+    fn take(&mut self, editor: &mut Editor, mut changed: Vec<SurfaceVertex>) {
+        let document = &mut editor.document;
+        if document.handles.iter().any(|handle| handle.locked) {
+            let is_locked = |paint: Paint| match paint {
+                Paint::Handle(id) => document.handle(id).is_some_and(|handle| handle.locked),
+                _ => false,
+            };
+            changed.retain(|vertex| !is_locked(document.paint[vertex.index()]));
+        }
         if changed.is_empty() {
             return;
         }
-        editor.document.apply_shape();
+        document.apply_shape();
         editor.repainted = true;
-        let painted = Arc::make_mut(&mut editor.document.paint);
+        let painted = Arc::make_mut(&mut document.paint);
         for vertex in changed {
             painted[vertex.index()] = self.paint;
         }
@@ -134,18 +180,12 @@ fn handle_to_paint(editor: &mut Editor) -> HandleId {
     {
         return id;
     }
-    let document = &mut editor.document;
-    let id = HandleId(document.next_handle);
-    document.next_handle = document.next_handle.saturating_add(1);
-    document
-        .handles
-        .push(Handle::new(id, format!("handle {}", u32::from(id.0) + 1)));
-    id
+    editor.document.add_handle()
 }
 
 /// The colour that a handle gets when it is made.
 pub(crate) fn handle_colour(id: HandleId) -> [u8; 4] {
-    COLOURS[usize::from(id.0) % COLOURS.len()]
+    HANDLE_COLOURS[usize::from(id.0) % HANDLE_COLOURS.len()]
 }
 
 /// After regions have changed: handles without a vertex go, and the pivot of each handle whose vertices are others
@@ -166,7 +206,7 @@ pub(crate) fn tidy_handles(editor: &mut Editor, before: &Document) {
         .map(|handle| usize::from(handle.id.0) + 1)
         .max()
         .unwrap_or(0);
-    let mut sums = vec![(glam::DVec3::ZERO, 0.0, false); largest];
+    let mut sums = vec![(DVec3::ZERO, 0.0, false); largest];
     for (vertex, (&paint, &former)) in document.paint.iter().zip(before.paint.iter()).enumerate() {
         if let Paint::Handle(HandleId(id)) = paint {
             let (sum, count, _) = &mut sums[usize::from(id)];
@@ -183,11 +223,42 @@ pub(crate) fn tidy_handles(editor: &mut Editor, before: &Document) {
             }
         }
     }
+    let (paint, rest) = (Arc::clone(&document.paint), Arc::clone(&document.rest));
+    let positions_of_rest = |vertex: usize| model.surface.positions[vertex] + rest[vertex];
     document.handles.retain_mut(|handle| {
         let (sum, count, changed) = sums[usize::from(handle.id.0)];
         if changed && count > 0.0 {
-            handle.pivot = sum / count;
+            handle.pivot = match handle.pivot_place {
+                PivotPlace::Centroid => sum / count,
+                PivotPlace::Border => {
+                    border_middle(handle.id, &paint, &model, &positions_of_rest).unwrap_or(sum / count)
+                }
+                PivotPlace::Picked => handle.pivot,
+            };
         }
         count > 0.0
     });
+    let left: Vec<HandleId> = document.handles.iter().map(|handle| handle.id).collect();
+    for handle in &mut document.handles {
+        handle.twin = handle.twin.filter(|twin| left.contains(&twin.handle));
+    }
+}
+
+/// The mean of a handle's vertices that stand beside others; `None` where it covers whole parts.
+pub(crate) fn border_middle(
+    id: HandleId,
+    paint: &[Paint],
+    model: &Model,
+    position: &impl Fn(usize) -> DVec3,
+) -> Option<DVec3> {
+    let own = Paint::Handle(id);
+    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+    for vertex in (0..paint.len()).filter(|&vertex| paint[vertex] == own) {
+        let neighbours = model.topology.neighbours(SurfaceVertex(vertex as u32));
+        if neighbours.iter().any(|neighbour| paint[neighbour.index()] != own) {
+            sum += position(vertex);
+            count += 1.0;
+        }
+    }
+    (count > 0.0).then(|| sum / count)
 }

@@ -60,6 +60,19 @@ pub(crate) struct TransformDrag {
     /// The turn so far, which may exceed a full circle.
     turned_rad: f64,
     number: NumberEntry,
+    /// The gizmo's axes when it began.
+    basis: DQuat,
+    /// Handles that go along, as they were when it began.
+    companions: Vec<Companion>,
+}
+
+/// A handle that goes along.
+#[derive(Clone, Copy, Debug)]
+struct Companion {
+    id: HandleId,
+    start: HandleTransform,
+    pivot: DVec3,
+    centre: DVec3,
 }
 
 impl TransformDrag {
@@ -71,6 +84,23 @@ impl TransformDrag {
         start_px: DVec2,
     ) -> Option<Self> {
         let handle = editor.document.handle(editor.selected?)?.clone();
+        if handle.locked {
+            editor.problem = Some(format!("{} is locked: unlock it in the list to move it.", handle.name));
+            return None;
+        }
+        let companions = editor
+            .companions
+            .iter()
+            .filter(|&&id| id != handle.id && handle.twin.is_none_or(|twin| twin.handle != id))
+            .filter_map(|&id| editor.document.handle(id))
+            .map(|companion| Companion {
+                id: companion.id,
+                start: companion.transform,
+                pivot: companion.pivot,
+                centre: companion.centre(),
+            })
+            .collect();
+        let basis = editor.gizmo_axes(&handle).basis;
         let verb = kind.verb();
         let transaction = editor.begin(format!("{verb} {}", handle.name));
         Some(Self {
@@ -88,6 +118,8 @@ impl TransformDrag {
             is_armed: true,
             turned_rad: 0.0,
             number: NumberEntry::default(),
+            basis,
+            companions,
         })
     }
 
@@ -240,37 +272,59 @@ impl TransformDrag {
         if !self.is_armed {
             return;
         }
-        let transform = match self.kind {
-            TransformKind::Move => self.start.moved_by(self.translation(editor)),
+        match self.kind {
+            TransformKind::Move => {
+                let way = self.translation(editor);
+                editor.put_handle(self.handle, self.start.moved_by(way));
+                for other in &self.companions {
+                    editor.put_handle(other.id, other.start.moved_by(way));
+                }
+            }
             TransformKind::Turn => {
                 let angle_rad = self.number.value().map_or(self.turned_rad, f64::to_radians);
-                self.start
-                    .turned_by(rotation(self.turn_axis(editor), angle_rad), self.pivot)
+                let turn = rotation(self.turn_axis(editor), angle_rad);
+                editor.put_handle(self.handle, self.start.turned_by(turn, self.pivot));
+                for other in &self.companions {
+                    let way = turn * (other.centre - self.centre) - (other.centre - self.centre);
+                    editor.put_handle(other.id, other.start.turned_by(turn, other.pivot).moved_by(way));
+                }
             }
-            TransformKind::Scale => self.start.scaled_by(self.scale(editor), self.pivot),
-        };
-        editor.put_handle(self.handle, transform);
+            TransformKind::Scale => {
+                let (factors, own) = (self.scale(editor), self.own_rotation());
+                editor.put_handle(self.handle, self.start.scaled_by(factors, self.pivot));
+                for other in &self.companions {
+                    let arm = other.centre - self.centre;
+                    let way = own * (factors * (own.inverse() * arm)) - arm;
+                    editor.put_handle(other.id, other.start.scaled_by(factors, other.pivot).moved_by(way));
+                }
+            }
+        }
+    }
+
+    /// An axis of the gizmo.
+    fn axis(&self, axis: usize) -> DVec3 {
+        self.basis * axis_vector(axis)
     }
 
     /// How far the handle goes, in world units.
     fn translation(&self, editor: &Editor) -> DVec3 {
         if let Some(length) = self.number.value() {
             return match self.constraint {
-                Constraint::Free => DVec3::X * length,
-                Constraint::Axis(axis) => axis_vector(axis) * length,
-                Constraint::Plane(axis) => (DVec3::ONE - axis_vector(axis)) * length,
+                Constraint::Free => self.axis(0) * length,
+                Constraint::Axis(axis) => self.axis(axis) * length,
+                Constraint::Plane(axis) => self.basis * ((DVec3::ONE - axis_vector(axis)) * length),
             };
         }
         let [from, to] = [self.start_px, self.last_px].map(|px| editor.camera.ray(px, editor.viewport_px));
         match self.constraint {
             Constraint::Axis(axis) => {
-                let axis = axis_vector(axis);
+                let axis = self.axis(axis);
                 let way = along_axis(from, self.centre, axis).zip(along_axis(to, self.centre, axis));
                 way.map_or(DVec3::ZERO, |(from, to)| axis * (to - from))
             }
             Constraint::Free | Constraint::Plane(_) => {
                 let normal = match self.constraint {
-                    Constraint::Plane(axis) => axis_vector(axis),
+                    Constraint::Plane(axis) => self.axis(axis),
                     _ => editor.camera.forward(),
                 };
                 let way = on_plane(from, self.centre, normal).zip(on_plane(to, self.centre, normal));
@@ -278,7 +332,9 @@ impl TransformDrag {
                     let way = to - from;
                     match self.constraint {
                         // Exactly within the plane, so that the other coordinate keeps its bits.
-                        Constraint::Plane(axis) => way * (DVec3::ONE - axis_vector(axis)),
+                        Constraint::Plane(axis) if self.basis == DQuat::IDENTITY => {
+                            way * (DVec3::ONE - axis_vector(axis))
+                        }
                         _ => way,
                     }
                 })
@@ -289,7 +345,7 @@ impl TransformDrag {
     fn turn_axis(&self, editor: &Editor) -> DVec3 {
         match self.constraint {
             Constraint::Free => -editor.camera.forward(),
-            Constraint::Axis(axis) | Constraint::Plane(axis) => axis_vector(axis),
+            Constraint::Axis(axis) | Constraint::Plane(axis) => self.axis(axis),
         }
     }
 

@@ -1,0 +1,212 @@
+//! The pictures of the walk-through in `docs/first-edit.md`, taken from the whole application without a display.
+//!
+//! `cargo run --release -p pliant-app --example walkthrough -- FOLDER` goes the way that the page describes, on the
+//! built-in sample, and writes a picture of each step to FOLDER.
+
+#![allow(
+    clippy::expect_used,
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a tool of the documentation fails by panicking and says what it wrote"
+)]
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use glam::DVec3;
+use pliant_app::window::{Application, KeepOriginal, Places, Source};
+use pliant_deform::Method;
+use pliant_editor::{Command, RegionAction, StiffnessBrush, StrokeShape, ToolMode};
+
+struct Walk {
+    harness: Harness<'static, Application>,
+    folder: PathBuf,
+    number: usize,
+}
+
+impl Walk {
+    fn settle(&mut self) {
+        let start = Instant::now();
+        self.harness.step();
+        while !self.harness.state().is_settled() {
+            assert!(start.elapsed() < Duration::from_secs(120), "it never settles");
+            std::thread::sleep(Duration::from_millis(5));
+            self.harness.step();
+        }
+        // The smooth picture of a view at rest, and widgets' animations.
+        std::thread::sleep(Duration::from_millis(350));
+        self.harness.run_steps(8);
+    }
+
+    fn shoot(&mut self, name: &str) {
+        self.settle();
+        self.picture(name);
+    }
+
+    fn picture(&mut self, name: &str) {
+        self.number += 1;
+        let path = self.folder.join(format!("{:02}-{name}.png", self.number));
+        let image = self.harness.render().expect("the device draws");
+        image.save(&path).expect("the folder takes it");
+        println!("{}", path.display());
+    }
+
+    /// Where the view shows the vertex that `choose` picks.
+    fn point(&self, choose: impl Fn(&[DVec3]) -> DVec3) -> Pos2 {
+        let view = self.harness.state().editor().view();
+        let model = view.model.unwrap();
+        let positions: Vec<DVec3> = model
+            .surface
+            .positions
+            .iter()
+            .zip(view.displacements.iter())
+            .map(|(&p, &d)| p + d)
+            .collect();
+        let seen = view.camera.project(choose(&positions), view.viewport_px).unwrap();
+        self.harness.state().view_rect().min + vec2(seen.x as f32, seen.y as f32)
+    }
+
+    fn pointer(&mut self, at: Pos2, pressed: Option<bool>) {
+        self.harness.event(Event::PointerMoved(at));
+        if let Some(pressed) = pressed {
+            self.harness.event(Event::PointerButton {
+                pos: at,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::NONE,
+            });
+        }
+        self.harness.step();
+    }
+
+    fn stroke(&mut self, way: &[Pos2]) {
+        self.pointer(way[0], None);
+        self.pointer(way[0], Some(true));
+        for &at in &way[1..] {
+            self.pointer(at, None);
+        }
+        self.pointer(way[way.len() - 1], Some(false));
+        self.settle();
+    }
+
+    fn keys(&mut self, keys: &[Key]) {
+        for &key in keys {
+            self.harness.key_press_modifiers(Modifiers::NONE, key);
+            self.harness.step();
+        }
+    }
+
+    fn command(&mut self, command: Command) {
+        self.harness.state_mut().command(command);
+        self.harness.step();
+    }
+}
+
+fn highest(positions: &[DVec3]) -> DVec3 {
+    *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap()
+}
+
+fn main() {
+    let folder = PathBuf::from(std::env::args_os().nth(1).expect("give a folder"));
+    std::fs::create_dir_all(&folder).unwrap();
+    let own = tempfile::tempdir().unwrap();
+    let places = Places {
+        settings: Some(own.path().join("settings.json")),
+        recovery: None,
+    };
+    let harness = Harness::builder()
+        .with_size(vec2(1280.0, 800.0))
+        .with_max_steps(64)
+        .wgpu()
+        .build_eframe(move |context| {
+            Application::with_places(context, Source::Sample, &places).expect("there is a graphics device")
+        });
+    let mut walk = Walk {
+        harness,
+        folder,
+        number: 0,
+    };
+    walk.shoot("opened");
+
+    let top = walk.point(highest);
+    walk.command(Command::SetBrushRadius(26.0));
+    let strokes: Vec<Pos2> = (0..5).map(|step| top + vec2(-6.0 + 4.0 * step as f32, 14.0)).collect();
+    walk.stroke(&strokes);
+    walk.shoot("handle");
+
+    walk.keys(&[Key::G, Key::X, Key::Num0, Key::Period, Key::Num2, Key::Enter]);
+    walk.keys(&[Key::R, Key::Z, Key::Minus, Key::Num3, Key::Num0, Key::Enter]);
+    walk.shoot("dragged");
+
+    walk.command(Command::SetTool(ToolMode::PaintStiffness));
+    walk.command(Command::SetStiffnessBrush(StiffnessBrush {
+        value: 100.0,
+        ..StiffnessBrush::default()
+    }));
+    let body = walk.point(|positions| {
+        let mean = positions.iter().sum::<DVec3>() / positions.len() as f64;
+        *positions
+            .iter()
+            .max_by(|a, b| {
+                (a.z - (a.x - mean.x).abs() - (a.y - mean.y).abs())
+                    .total_cmp(&(b.z - (b.x - mean.x).abs() - (b.y - mean.y).abs()))
+            })
+            .unwrap()
+    });
+    walk.command(Command::SetBrushRadius(50.0));
+    walk.stroke(&[body, body + vec2(30.0, 12.0), body + vec2(60.0, 0.0)]);
+    walk.shoot("stiffness");
+
+    walk.command(Command::SetTool(ToolMode::PaintFixed));
+    walk.command(Command::SetStrokeShape(StrokeShape::Lasso));
+    let rect = walk.harness.state().view_rect();
+    let lasso: Vec<Pos2> = (0..24)
+        .map(|step| {
+            let angle = step as f32 / 24.0 * std::f32::consts::TAU;
+            pos2(rect.center().x, rect.bottom() - 170.0) + vec2(190.0 * angle.cos(), 90.0 * angle.sin())
+        })
+        .collect();
+    walk.pointer(lasso[0], None);
+    walk.pointer(lasso[0], Some(true));
+    for &at in &lasso[1..20] {
+        walk.pointer(at, None);
+    }
+    walk.picture("lasso");
+    walk.pointer(lasso[20], Some(false));
+    walk.shoot("fixed");
+
+    walk.command(Command::SetStrokeShape(StrokeShape::Brush));
+    walk.command(Command::SetTool(ToolMode::PaintHandle));
+    walk.command(Command::Region(RegionAction::Grow));
+    walk.command(Command::SetMethod(Method::from_name("arap").unwrap()));
+    walk.settle();
+    walk.keys(&[Key::R, Key::Z, Key::Num4, Key::Num0, Key::Enter]);
+    walk.shoot("another-method");
+
+    walk.harness.key_press(Key::F1);
+    walk.harness.run_steps(3);
+    walk.harness.event(Event::Text("mir".to_owned()));
+    walk.harness.run_steps(4);
+    walk.picture("palette");
+    walk.harness.key_press(Key::Escape);
+    walk.harness.run_steps(3);
+
+    walk.harness.get_by_label("Region").click();
+    walk.harness.run_steps(4);
+    walk.picture("region-menu");
+    walk.harness.key_press(Key::Escape);
+    walk.harness.run_steps(3);
+
+    let saved = own.path().join("edited.glb");
+    walk.harness.state_mut().save_to(saved.clone(), KeepOriginal::No);
+    walk.shoot("saved");
+    assert!(Path::new(&saved).exists());
+
+    walk.harness.get_by_label("View").click();
+    walk.harness.run_steps(4);
+    walk.harness.get_by_label("Light or dark").click();
+    walk.shoot("light");
+}

@@ -1,0 +1,56 @@
+//! The first steps, on the canvas, until a person puts them away or has done them.
+
+use eframe::egui::{self, Align2, Color32, RichText};
+use pliant_editor::Editor;
+
+/// Shows the step that comes next in the view's lower left corner; true when it is to be put away for good.
+pub fn show(ui: &egui::Ui, view_rect: egui::Rect, editor: &Editor) -> bool {
+    let view = editor.view();
+    if view.model.is_none() {
+        return false;
+    }
+    let (number, title, words) = if view.handles.is_empty() {
+        (
+            1,
+            "Paint a handle",
+            "Hold the left button over what you want to move. Turn the view with Alt or beside the model.",
+        )
+    } else if !editor.document().is_displaced() && !editor.document().is_applied() {
+        (
+            2,
+            "Drag it",
+            "Pull an arrow or a ring, or press G, R or S; x, y, z and numbers work as you expect.",
+        )
+    } else {
+        (
+            3,
+            "Save",
+            "Ctrl+S saves the model, the original is kept beside it. F1 finds every command by its name.",
+        )
+    };
+    let mut put_away = false;
+    egui::Area::new(egui::Id::unique("hint"))
+        .fixed_pos(view_rect.left_bottom() + egui::vec2(16.0, -16.0))
+        .pivot(Align2::LEFT_BOTTOM)
+        .show(ui.ctx(), |ui| {
+            egui::Frame::popup(ui.style())
+                .fill(ui.visuals().window_fill.gamma_multiply(0.94))
+                .inner_margin(12.0)
+                .show(ui, |ui| {
+                    ui.set_max_width(300.0);
+                    ui.horizontal(|ui| {
+                        ui.label(RichText::new(format!("{number} of 3")).weak().small());
+                        ui.label(RichText::new(title).strong().color(accent(ui)));
+                    });
+                    ui.label(words);
+                    if ui.small_button("Got it, hide these hints").clicked() {
+                        put_away = true;
+                    }
+                });
+        });
+    put_away
+}
+
+fn accent(ui: &egui::Ui) -> Color32 {
+    ui.visuals().hyperlink_color
+}

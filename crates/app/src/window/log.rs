@@ -1,0 +1,65 @@
+//! What was said in this session, in order, to be read again and copied.
+
+use std::time::SystemTime;
+
+use eframe::egui::{self, RichText, ScrollArea};
+
+/// Sentences that are kept.
+const MOST: usize = 500;
+
+/// The log.
+#[derive(Debug, Default)]
+pub struct Log {
+    lines: Vec<String>,
+    /// Whether its window is open.
+    pub open: bool,
+}
+
+impl Log {
+    /// Adds a sentence, unless it is the one that was said last.
+    pub fn say(&mut self, sentence: &str) {
+        let is_again = self.lines.last().is_some_and(|line| line.ends_with(sentence));
+        if is_again || sentence.is_empty() {
+            return;
+        }
+        let seconds = SystemTime::now()
+            .duration_since(SystemTime::UNIX_EPOCH)
+            .map_or(0, |since| since.as_secs());
+        let (hours, minutes) = (seconds / 3600 % 24, seconds / 60 % 60);
+        self.lines.push(format!("{hours:02}:{minutes:02} UTC  {sentence}"));
+        if self.lines.len() > MOST {
+            self.lines.remove(0);
+        }
+    }
+
+    /// Shows its window, if that is open.
+    pub fn show(&mut self, context: &egui::Context) {
+        let mut open = self.open;
+        egui::Window::new("Log")
+            .open(&mut open)
+            .default_width(520.0)
+            .show(context, |ui| {
+                if ui.button("Copy all").clicked() {
+                    ui.ctx().copy_text(self.lines.join("\n"));
+                }
+                ui.separator();
+                ScrollArea::vertical()
+                    .max_height(300.0)
+                    .auto_shrink(false)
+                    .stick_to_bottom(true)
+                    .show(ui, |ui| {
+                        if self.lines.is_empty() {
+                            ui.label(RichText::new("Nothing was said yet.").weak());
+                        }
+                        for line in &self.lines {
+                            ui.add(
+                                egui::Label::new(RichText::new(line).monospace().small())
+                                    .wrap()
+                                    .selectable(true),
+                            );
+                        }
+                    });
+            });
+        self.open = open;
+    }
+}

@@ -1,0 +1,150 @@
+//! The command palette: every command by its name, found by typing a part of it.
+
+use eframe::egui::{self, Id, Key, Modal, RichText, ScrollArea};
+use pliant_editor::{Command, Editor, Listed};
+
+use super::top_bar::FileCommand;
+
+/// The open palette.
+#[derive(Debug, Default)]
+pub struct Palette {
+    typed: String,
+    chosen: usize,
+}
+
+/// What the palette offers.
+#[derive(Clone, Debug)]
+pub enum Found {
+    /// A command of the editor.
+    Editor(Command),
+    /// A command of the window.
+    File(FileCommand),
+}
+
+/// What came of a frame of the palette.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// It stays open.
+    Open,
+    /// It closes, and this is to be done.
+    Chosen(Option<Found>),
+}
+
+struct Entry {
+    name: String,
+    tooltip: String,
+    shortcut: String,
+    found: Found,
+    enabled: bool,
+}
+
+impl Palette {
+    /// Shows it over everything.
+    pub fn show(&mut self, context: &egui::Context, editor: &Editor) -> Outcome {
+        let mut outcome = Outcome::Open;
+        let modal = Modal::new(Id::unique("palette")).show(context, |ui| {
+            ui.set_width(440.0);
+            let (up, down, enter) = ui.input(|input| {
+                (
+                    input.key_pressed(Key::ArrowUp),
+                    input.key_pressed(Key::ArrowDown),
+                    input.key_pressed(Key::Enter),
+                )
+            });
+            let field = egui::TextEdit::singleline(&mut self.typed)
+                .hint_text("Type what you want to do")
+                .desired_width(f32::INFINITY);
+            let field = ui.add(field);
+            field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Command"));
+            field.request_focus();
+            if field.changed() {
+                self.chosen = 0;
+            }
+            let entries = entries(context, editor, &self.typed);
+            self.chosen = (self.chosen + usize::from(down))
+                .saturating_sub(usize::from(up))
+                .min(entries.len().saturating_sub(1));
+            ui.add_space(4.0);
+            ScrollArea::vertical()
+                .max_height(320.0)
+                .auto_shrink(false)
+                .show(ui, |ui| {
+                    if entries.is_empty() {
+                        ui.label(RichText::new("No command is called so.").weak());
+                    }
+                    for (number, entry) in entries.iter().enumerate() {
+                        let button = egui::Button::selectable(number == self.chosen, &entry.name)
+                            .right_text(RichText::new(&entry.shortcut).weak())
+                            .min_size(egui::vec2(ui.available_width(), 0.0));
+                        let button = ui.add_enabled(entry.enabled, button).on_hover_text(&entry.tooltip);
+                        if number == self.chosen && (up || down) {
+                            button.scroll_to_me(None);
+                        }
+                        if button.clicked() || (enter && number == self.chosen && entry.enabled) {
+                            outcome = Outcome::Chosen(Some(entry.found.clone()));
+                        }
+                    }
+                });
+        });
+        match outcome {
+            Outcome::Open if modal.should_close() => Outcome::Chosen(None),
+            outcome => outcome,
+        }
+    }
+}
+
+/// What matches, the best first: what begins with what was typed, then what has it, then what has its letters in order.
+fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> {
+    let typed = typed.trim().to_lowercase();
+    let listed = Command::LISTED.iter().map(|listed: &Listed| Entry {
+        name: listed.name.to_owned(),
+        tooltip: listed.tooltip.to_owned(),
+        shortcut: listed.shortcuts.first().map(|s| s.label()).unwrap_or_default(),
+        found: Found::Editor(listed.command.clone()),
+        enabled: editor.is_enabled(&listed.command),
+    });
+    let files = FileCommand::LISTED.iter().map(|command| Entry {
+        name: command.name().trim_end_matches('…').to_owned(),
+        tooltip: String::new(),
+        shortcut: command
+            .shortcut()
+            .map(|shortcut| context.format_shortcut(&shortcut))
+            .unwrap_or_default(),
+        found: Found::File(command.clone()),
+        enabled: true,
+    });
+    let mut found: Vec<(u8, Entry)> = listed
+        .chain(files)
+        .filter_map(|entry| Some((rank(&entry.name.to_lowercase(), &typed)?, entry)))
+        .collect();
+    found.sort_by_key(|(rank, _)| *rank);
+    found.into_iter().map(|(_, entry)| entry).collect()
+}
+
+fn rank(name: &str, typed: &str) -> Option<u8> {
+    if name.starts_with(typed) {
+        return Some(0);
+    }
+    if name.contains(typed) {
+        return Some(1);
+    }
+    let mut letters = name.chars();
+    typed
+        .chars()
+        .all(|letter| letters.any(|other| other == letter))
+        .then_some(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rank;
+
+    #[test]
+    fn what_begins_so_comes_before_what_has_it_and_letters_in_order_come_last() {
+        assert_eq!(rank("reset handle", "res"), Some(0));
+        assert_eq!(rank("delete handle", "han"), Some(1));
+        assert_eq!(rank("delete handle", "dh"), Some(2));
+        assert_eq!(rank("delete handle", "xq"), None);
+        assert_eq!(rank("anything", ""), Some(0));
+    }
+}
