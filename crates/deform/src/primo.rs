@@ -19,6 +19,7 @@
 
 mod descent;
 mod factored;
+mod hierarchy;
 mod joints;
 mod options;
 mod pose;
@@ -34,7 +35,8 @@ use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
 
 pub use self::options::Primo;
 
-use self::factored::{Factored, Springs};
+use self::factored::Springs;
+use self::hierarchy::Preconditioner;
 use self::joints::{Joints, Material};
 use self::pose::Pose;
 use self::prisms::Prisms;
@@ -56,7 +58,7 @@ pub(crate) struct PrimoSolver {
     vertices: Vertices,
     colours: Colours,
     springs: Springs,
-    preconditioner: Factored,
+    preconditioner: Preconditioner,
     /// Handles' harmonic weights, one row a solved prism.
     weights: Vec<f64>,
     /// The handles in coordinates relative to the first one's centre.
@@ -139,7 +141,7 @@ impl PrimoSolver {
         cancel.check()?;
         progress.set(0.4);
         let at_rest = Pose::at_rest(joints.count(), world_grounds.len());
-        let preconditioner = Factored::at(&joints, &at_rest, cancel).map_err(refused)?;
+        let preconditioner = Preconditioner::of(&joints, cancel).map_err(refused)?;
         progress.set(1.0);
         let world_rest = |vertex: u32| surface.positions[vertex as usize];
         Ok(Self {

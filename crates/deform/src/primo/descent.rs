@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::hierarchy::Preconditioner;
 use super::{PrimoSolver, State};
 use crate::operators::CHUNK;
 use crate::sums::{Field, dot};
@@ -16,7 +17,7 @@ const TRIALS: u32 = 12;
 /// takes about as long as eight steps. On the survey's bar at a thickness of 0.005 a step with each (plain Gauss–Newton)
 /// came within 1% of the least energy after 5, one with each tenth after 25 and the rest pose's alone after 133 steps,
 /// in 1.9, 1.5 and 6.2 s; at 0.05 after 1, 1 and 2 steps.
-const RENEWAL: u32 = 12;
+const RENEWAL: u32 = 20;
 
 /// Energies below this share of the surface's area are rounding.
 const NOTHING: f64 = 1e-26;
@@ -29,14 +30,16 @@ impl PrimoSolver {
     pub(super) fn descend(&mut self) {
         if self.age == RENEWAL {
             self.age = 0;
-            self.preconditioner.renew(&self.joints, &self.current);
+            if let Preconditioner::Direct(factored) = &mut self.preconditioner {
+                factored.renew(&self.joints, &self.current);
+            }
         }
         self.age += 1;
         loop {
-            let preconditioner = &self.preconditioner;
+            let (preconditioner, joints) = (&self.preconditioner, &self.joints);
             let uphill = self
                 .memory
-                .direction(&self.current.gradient, |x| preconditioner.apply(x));
+                .direction(&self.current.gradient, |x| preconditioner.apply(joints, x));
             let slope = -dot(&uphill, &self.current.gradient);
             let before = self.current.energy;
             if slope < 0.0 && self.search(&uphill, slope) {

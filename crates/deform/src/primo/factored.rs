@@ -47,27 +47,12 @@ impl Factored {
         self.factor.stored()
     }
 
-    /// x ← (H⁻¹)_ωω x: velocities' turning parts for torques, forces being none.
-    pub fn apply(&self, x: &mut [[f64; 3]]) {
-        let mut column = vec![[0.0]; self.scale.len()];
-        for ((x, column), scale) in x
-            .iter()
-            .zip(column.chunks_exact_mut(DOF))
-            .zip(self.scale.chunks_exact(DOF))
-        {
-            for k in 0..3 {
-                column[k] = [x[k] * scale[k]];
-            }
-        }
+    /// x ← H⁻¹ x.
+    pub fn solve(&self, x: &mut [[f64; DOF]]) {
+        let mut column: Vec<[f64; 1]> = x.as_flattened().iter().zip(&self.scale).map(|(x, s)| [x * s]).collect();
         self.factor.solve(&mut column);
-        for ((x, column), scale) in x
-            .iter_mut()
-            .zip(column.chunks_exact(DOF))
-            .zip(self.scale.chunks_exact(DOF))
-        {
-            for k in 0..3 {
-                x[k] = column[k][0] * scale[k];
-            }
+        for ((x, [value]), scale) in x.as_flattened_mut().iter_mut().zip(column).zip(&self.scale) {
+            *x = value * scale;
         }
     }
 }

@@ -30,6 +30,8 @@ pub(crate) struct Joints {
     sides: Vec<Side>,
     /// The rest centre of each body, relative to the origin: prisms', then the fixed ground's and the handles'.
     pub centres: Vec<DVec3>,
+    /// The solved prisms by rising triangle.
+    order: Vec<u32>,
     /// The sum of the solved prisms' areas.
     pub area: f64,
 }
@@ -92,10 +94,13 @@ impl Joints {
             sides.extend(row);
             offsets.push(sides.len() as u32);
         }
+        let mut order: Vec<u32> = (0..prisms.count() as u32).collect();
+        order.sort_unstable_by_key(|&prism| prisms.faces[prism as usize]);
         let mut joints = Self {
             offsets,
             sides,
             centres,
+            order,
             area: prisms.faces.iter().map(|&face| area(surface, face)).sum(),
         };
         joints.pin(prisms, material);
@@ -110,6 +115,73 @@ impl Joints {
     /// The joints of one prism.
     pub fn sides(&self, prism: usize) -> &[Side] {
         &self.sides[self.offsets[prism] as usize..self.offsets[prism + 1] as usize]
+    }
+
+    /// The same joints between cells of bodies, each of which moves as one: those within a cell are none.
+    pub fn of_cells(&self, cell_of: &[u32]) -> Self {
+        let count = self.count();
+        let cell_count = cell_of.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut members = vec![Vec::new(); cell_count];
+        for (body, &cell) in cell_of.iter().enumerate() {
+            members[cell as usize].push(body);
+        }
+        let mean = |bodies: &Vec<usize>| {
+            bodies.iter().map(|&body| self.centres[body]).sum::<DVec3>() / bodies.len().max(1) as f64
+        };
+        let mut coarse = Self {
+            offsets: vec![0],
+            sides: Vec::new(),
+            centres: members.iter().map(mean).collect(),
+            order: Vec::new(),
+            area: self.area,
+        };
+        coarse.centres.extend_from_slice(&self.centres[count..]);
+        let cell_or_ground = |other: usize| {
+            if other < count {
+                cell_of[other] as usize
+            } else {
+                cell_count + other - count
+            }
+        };
+        for (cell, bodies) in members.iter().enumerate() {
+            for &body in bodies {
+                for side in self.sides(body) {
+                    let other = cell_or_ground(side.other as usize);
+                    if other != cell {
+                        let middle = self.centres[body] + side.own_arm;
+                        coarse.sides.push(Side {
+                            other: other as u32,
+                            own_arm: middle - coarse.centres[cell],
+                            other_arm: middle - coarse.centres[other],
+                            ..*side
+                        });
+                    }
+                }
+            }
+            coarse.offsets.push(coarse.sides.len() as u32);
+        }
+        coarse.order = (0..cell_count as u32).collect();
+        coarse
+    }
+
+    /// The other solved bodies that each is joined to, each once, as compressed rows.
+    pub fn graph(&self) -> (Vec<u32>, Vec<u32>) {
+        let (mut offsets, mut list) = (vec![0], Vec::new());
+        for body in 0..self.count() {
+            let start = list.len();
+            for side in self.sides(body) {
+                if (side.other as usize) < self.count() && !list[start..].contains(&side.other) {
+                    list.push(side.other);
+                }
+            }
+            offsets.push(list.len() as u32);
+        }
+        (offsets, list)
+    }
+
+    /// The bodies in an order in which those near each other are near.
+    pub fn walk(&self) -> &[u32] {
+        &self.order
     }
 
     fn pin(&mut self, prisms: &Prisms, material: &Material) {

@@ -44,6 +44,11 @@ impl Colours {
         }
         Self { classes }
     }
+
+    /// The prisms of each colour.
+    pub fn classes(&self) -> &[Vec<u32>] {
+        &self.classes
+    }
 }
 
 impl Pose {
