@@ -13,8 +13,12 @@
 //! translations among the unknowns and the rest pose's matrix over 1000, or 10 plain Gauss–Newton steps that each factor;
 //! with translations eliminated 23, or 17 with the matrix renewed every twelve steps.
 //!
+//! Above some thousands of prisms the matrix is inverted only nearly, by cells of prisms, which is enough to descend by:
+//! on a scan of 86,482 faces binding took 0.75 instead of more than 3 s, a step 0.13 instead of 0.3 s, and there were as
+//! many steps.
+//!
 //! Parts: `prisms` sorts the triangles, `quad` is the integral over a shared quad, `joints` are the couplings, `pose` is
-//! where the prisms are and their energy, `system` and `factored` make the matrices, `start` chooses where to begin,
+//! where the prisms are and their energy, `system` and `factored` make the matrices, `hierarchy` the cells, `start` chooses where to begin,
 //! `sweep` unfolds, `descent` takes a step, and `vertices` takes the prisms' mean.
 
 mod descent;
@@ -36,7 +40,7 @@ use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
 pub use self::options::Primo;
 
 use self::factored::Springs;
-use self::hierarchy::Preconditioner;
+use self::hierarchy::{DIRECT, Preconditioner};
 use self::joints::{Joints, Material};
 use self::pose::Pose;
 use self::prisms::Prisms;
@@ -141,7 +145,7 @@ impl PrimoSolver {
         cancel.check()?;
         progress.set(0.4);
         let at_rest = Pose::at_rest(joints.count(), world_grounds.len());
-        let preconditioner = Preconditioner::of(&joints, cancel).map_err(refused)?;
+        let preconditioner = Preconditioner::of(&joints, DIRECT, cancel).map_err(refused)?;
         progress.set(1.0);
         let world_rest = |vertex: u32| surface.positions[vertex as usize];
         Ok(Self {
@@ -234,5 +238,91 @@ impl PrimoSolver {
             return (true, energy);
         }
         (self.state == State::Converged, self.relative(energy))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use glam::{DAffine3, DMat3, DQuat, DVec3};
+    use pliant_mesh::{Cancel, Drawn, Progress, shapes};
+
+    use super::pose::tests::noise;
+    use super::{Primo, PrimoSolver, State};
+    use crate::handle::{Handle, Motion};
+    use crate::partition::Partition;
+    use crate::{Holds, Loose, Method, Problem, Role};
+
+    /// A solver with the lowest tenth of z fixed and the highest a handle, and the handle's motion.
+    fn solver(drawn: Drawn) -> (PrimoSolver, Vec<Motion>, usize) {
+        let model = shapes::model(drawn);
+        let bounds = model.bounds().unwrap();
+        let role = |p: &DVec3| match (p.z - bounds.min.z) / bounds.extent().z {
+            h if h > 0.9 => Role::Handle(0),
+            h if h < 0.1 => Role::Fixed,
+            _ => Role::Free,
+        };
+        let positions = &model.surface.positions;
+        let roles: Vec<Role> = positions.iter().map(role).collect();
+        let options = Primo {
+            tolerance: 1e-9,
+            ..Primo::default()
+        };
+        let method = Method::Primo(options.clone());
+        let problem = Problem {
+            surface: &model.surface,
+            topology: &model.topology,
+            roles: &roles,
+            handle_count: 1,
+            stiffness: &vec![1.0; roles.len()],
+            holds: Holds::default(),
+            loose: Loose::Rest,
+            method: &method,
+            revision: 0,
+        };
+        let partition = Partition::of(&problem).unwrap();
+        let handles = [Handle::new(partition.handles[0].clone(), positions)];
+        let target =
+            DAffine3::from_translation(DVec3::new(0.2, 0.1, 0.0) * bounds.diagonal()) * DAffine3::from_rotation_z(0.5);
+        let motions = vec![handles[0].motion(&target)];
+        let (progress, cancel) = (Progress::new(), Cancel::new());
+        let solver = PrimoSolver::bind(&problem, &options, &partition, &handles, &progress, &cancel).unwrap();
+        (solver, motions, roles.len())
+    }
+
+    fn least(solver: &mut PrimoSolver, motions: &[Motion], count: usize) -> f64 {
+        let mut displacements = vec![DVec3::ZERO; count];
+        let mut last = f64::INFINITY;
+        for _ in 0..2000 {
+            let (converged, energy) = solver.step(motions, &mut displacements);
+            assert!(energy <= last);
+            last = energy;
+            if converged {
+                return energy;
+            }
+        }
+        unreachable!("it converges");
+    }
+
+    #[test]
+    fn prisms_scattered_at_random_come_back() {
+        for drawn in [shapes::tube(16, 24, 6.0), shapes::torus(24, 12), shapes::icosphere(3)] {
+            let (mut solver, motions, count) = solver(drawn);
+            let expected = least(&mut solver, &motions, count);
+            for prism in 0..solver.joints.count() {
+                let random = |k: usize| noise(3 * prism + k);
+                let turn = DQuat::from_scaled_axis(DVec3::new(random(0), random(1), random(2)) * 3.0);
+                solver.current.rotations[prism] = turn;
+                solver.current.turns[prism] = DMat3::from_quat(turn);
+            }
+            solver.current.settle(&solver.joints, &solver.springs);
+            solver.current.evaluate(&solver.joints);
+            solver.memory.clear();
+            solver.state = solver.how_folded();
+            assert!(matches!(solver.state, State::Folded(_)));
+            assert!(solver.current.energy / solver.joints.area > 5.0 * expected);
+            let again = least(&mut solver, &motions, count);
+            assert!((again - expected).abs() < 1e-4 * expected, "{again} {expected}");
+        }
     }
 }

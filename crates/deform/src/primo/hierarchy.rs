@@ -34,7 +34,7 @@ pub(crate) type Wrench = [f64; 6];
 /// H⁻¹ at rest, or nearly so.
 #[derive(Debug)]
 pub(crate) enum Preconditioner {
-    Direct(Factored),
+    Direct(Box<Factored>),
     Cells(Box<Cells>),
 }
 
@@ -52,18 +52,18 @@ pub(crate) struct Cells {
 }
 
 impl Preconditioner {
-    /// For the bodies of `joints` at rest.
+    /// For the bodies of `joints` at rest; up to `direct` of them are solved for directly.
     ///
     /// # Errors
     /// As [`Factored::at`]; a pivot is named by one of its prisms.
-    pub fn of(joints: &Joints, cancel: &Cancel) -> Result<Self, FactorError> {
-        if joints.count() <= DIRECT {
+    pub fn of(joints: &Joints, direct: usize, cancel: &Cancel) -> Result<Self, FactorError> {
+        if joints.count() <= direct {
             let at_rest = Pose::at_rest(joints.count(), joints.centres.len() - joints.count());
-            return Ok(Self::Direct(Factored::at(joints, &at_rest, cancel)?));
+            return Ok(Self::Direct(Box::new(Factored::at(joints, &at_rest, cancel)?)));
         }
         let mut cell_of = cells(joints);
         let mut coarse = joints.of_cells(&cell_of);
-        if coarse.count() <= DIRECT {
+        if coarse.count() <= direct {
             let (offsets, neighbours) = coarse.graph();
             let mut rank = vec![0; coarse.count()];
             for (place, &cell) in elimination_order(&offsets, &neighbours).iter().enumerate() {
@@ -74,7 +74,7 @@ impl Preconditioner {
             }
             coarse = joints.of_cells(&cell_of);
         }
-        let below = Self::of(&coarse, cancel).map_err(|error| match error {
+        let below = Self::of(&coarse, direct, cancel).map_err(|error| match error {
             FactorError::Pivot(cell) => {
                 FactorError::Pivot(cell_of.iter().position(|&own| own as usize == cell).unwrap_or_default())
             }
@@ -279,4 +279,77 @@ fn cells(joints: &Joints) -> Vec<u32> {
         }
     }
     cell_of
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use pliant_mesh::{Cancel, shapes};
+
+    use super::super::joints::Joints;
+    use super::super::pose::tests::{joints_of, noise};
+    use super::{Preconditioner, Wrench, residual};
+
+    fn random(count: usize, seed: usize) -> Vec<Wrench> {
+        let value = |body: usize, k: usize| noise(6 * body + k + 1000 * seed);
+        (0..count).map(|body| std::array::from_fn(|k| value(body, k))).collect()
+    }
+
+    fn dot(a: &[Wrench], b: &[Wrench]) -> f64 {
+        a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| a * b).sum()
+    }
+
+    /// H x.
+    fn product(joints: &Joints, x: &[Wrench]) -> Vec<Wrench> {
+        let zeros = vec![[0.0; 6]; x.len()];
+        (0..x.len())
+            .map(|body| residual(joints, body, &zeros, x).map(|value| -value))
+            .collect()
+    }
+
+    fn solved(preconditioner: &Preconditioner, joints: &Joints, b: &[Wrench]) -> Vec<Wrench> {
+        let mut x = b.to_vec();
+        preconditioner.solve(joints, &mut x);
+        x
+    }
+
+    #[test]
+    fn the_direct_inverse_undoes_the_product() {
+        let joints = joints_of(shapes::torus(30, 20));
+        let direct = Preconditioner::of(&joints, usize::MAX, &Cancel::new()).unwrap();
+        let x = random(joints.count(), 1);
+        let back = solved(&direct, &joints, &product(&joints, &x));
+        let error = back
+            .iter()
+            .flatten()
+            .zip(x.iter().flatten())
+            .map(|(a, b)| (a - b).abs());
+        assert!(error.fold(0.0, f64::max) < 1e-6);
+    }
+
+    #[test]
+    fn a_cycle_is_symmetric_and_positive_and_brings_every_error_down() {
+        // Two levels, and three.
+        for direct in [400, 50] {
+            let joints = joints_of(shapes::torus(60, 30));
+            let cells = Preconditioner::of(&joints, direct, &Cancel::new()).unwrap();
+            assert!(matches!(cells, Preconditioner::Cells(_)));
+            let (a, b) = (random(joints.count(), 1), random(joints.count(), 2));
+            let (ca, cb) = (solved(&cells, &joints, &a), solved(&cells, &joints, &b));
+            assert!((dot(&a, &cb) - dot(&b, &ca)).abs() < 1e-9 * dot(&a, &ca));
+            assert!(dot(&a, &ca) > 0.0 && dot(&b, &cb) > 0.0);
+            // The error that is slowest to go shows after some rounds.
+            let mut error = random(joints.count(), 3);
+            let mut rate = 0.0;
+            for _ in 0..30 {
+                let before = dot(&error, &product(&joints, &error));
+                let step = solved(&cells, &joints, &product(&joints, &error));
+                for (e, s) in error.iter_mut().flatten().zip(step.iter().flatten()) {
+                    *e -= s;
+                }
+                rate = (dot(&error, &product(&joints, &error)) / before).sqrt();
+            }
+            assert!(rate < 0.9, "{direct}: {rate}");
+        }
+    }
 }

@@ -353,3 +353,27 @@ fn neither_unit_nor_place_matters() {
         assert!(apart(&here, &there) < 1e-4, "{scale}: {:e}", apart(&here, &there));
     }
 }
+
+#[test]
+fn more_prisms_than_are_solved_for_directly_obey_the_same_laws() {
+    let mut scene = scene(shapes::torus(130, 90)).with_ends(true);
+    scene.method = primo(1e-6);
+    assert!(scene.model.surface.triangles.len() * 2 / 3 + 500 > 16_000);
+    let bound = &mut scene.bind();
+    let (_, energies) = solve(bound, &far(&scene));
+    assert!(energies.windows(2).all(|pair| pair[1] <= pair[0]));
+    assert!(energies.len() < 100, "{}", energies.len());
+    let unheld = Scene {
+        method: primo(1e-6),
+        ..Scene::new(shapes::torus(130, 90))
+    }
+    .with_ends(false);
+    let motion = turned(DVec3::ZERO, 2.0, DVec3::X);
+    let (displacements, _) = solve(&mut unheld.bind(), &vec![motion; unheld.handle_count]);
+    let expected: Vec<DVec3> = unheld
+        .positions()
+        .iter()
+        .map(|&p| motion.transform_point3(p) - p)
+        .collect();
+    assert!(apart(&displacements, &expected) < 1e-6 * unheld.diagonal());
+}
