@@ -4,6 +4,7 @@
 //! Each part is a function of its own, so that the window can keep what has not changed; [`apply`] is all of them in a
 //! row with a clock beside them.
 
+use std::hash::Hasher as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -11,11 +12,11 @@ use std::time::Instant;
 use glam::DVec3;
 use pliant_deform::{Bound, Method, Ordering, Problem, SolveError};
 use pliant_editor::{Beginning, Setup};
-use pliant_io::{Format, Save, Scene};
+use pliant_io::{Format, MorphTarget, OutputFile, Save, Saved, Scene};
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 
 use crate::AppError;
-use crate::files::{self, Neighbours, Staged, Staging};
+use crate::files::{self, Bridge, Neighbours, Staged, Staging};
 use crate::report::{Distortion, Energy, FrameTimes, Report, finite_or};
 use crate::watch::Watch;
 
@@ -117,6 +118,20 @@ pub fn stage_save(
     output: &Path,
     staging: &Staging,
 ) -> Result<(Staged, Vec<String>), AppError> {
+    stage_save_as(loaded, positions, None, output, staging)
+}
+
+/// As [`stage_save`]; with `morph` the shape stays as it was and the new positions are saved as a morph target.
+///
+/// # Errors
+/// As [`stage_save`].
+pub fn stage_save_as(
+    loaded: &Loaded,
+    positions: &[DVec3],
+    morph: Option<&MorphTarget<'_>>,
+    output: &Path,
+    staging: &Staging,
+) -> Result<(Staged, Vec<String>), AppError> {
     let refuse = |source| AppError::Save {
         file: output.to_owned(),
         source,
@@ -129,13 +144,48 @@ pub fn stage_save(
         name: &name,
         placement: files::placement(&loaded.path, output),
     };
-    let saved = loaded.scene.save(&save).map_err(refuse)?;
+    let saved = match morph {
+        None => loaded.scene.save(&save),
+        Some(morph) => loaded.scene.save_as_morph(&save, morph),
+    };
+    let saved = saved.map_err(refuse)?;
     // Neighbours first: the file that names them must not stand there without them.
     let mut names: Vec<(&str, &[u8])> = saved.files.iter().map(|file| (&*file.name, &*file.bytes)).collect();
     let count = names.len();
     names.rotate_left(1.min(count));
-    let staged = staging.stage(files::folder_of(output), names)?;
+    let folder = files::folder_of(output);
+    let passing = passing_names(folder, &saved);
+    let bridged = (output.exists() && !passing.is_empty())
+        .then(|| pliant_io::with_neighbours_renamed(&saved.files[0].bytes, &passing))
+        .flatten();
+    let staged = match &bridged {
+        None => staging.stage(folder, names)?,
+        Some(bytes) => staging.stage_bridged(
+            folder,
+            &names,
+            &Bridge {
+                name: &name,
+                bytes,
+                neighbours: &passing,
+            },
+        )?,
+    };
     Ok((staged, saved.warnings))
+}
+
+/// The neighbours that stand there with other bytes, each with a name that is its new bytes' own.
+fn passing_names<'a>(folder: &Path, saved: &'a Saved) -> Vec<(&'a str, String)> {
+    let is_replaced = |file: &&OutputFile| {
+        let there = std::fs::read(folder.join(&file.name));
+        there.is_ok_and(|there| there != file.bytes)
+    };
+    let named = saved.files[1..].iter().filter(is_replaced).map(|file| {
+        let mut hasher = std::hash::DefaultHasher::new();
+        hasher.write(&file.bytes);
+        let (stem, extension) = file.name.rsplit_once('.').unwrap_or((&file.name, "bin"));
+        (&*file.name, format!("{stem}.{:016x}.{extension}", hasher.finish()))
+    });
+    named.collect()
 }
 
 /// What [`apply`] is to do.
@@ -153,6 +203,8 @@ pub struct Apply<'a> {
     pub report: Option<&'a Path>,
     /// Replays the edit as a drag of so many frames; `None` is one solve to the target.
     pub frames: Option<usize>,
+    /// Saves the edit as a morph target beside the shape as it was.
+    pub morph: Option<MorphTarget<'a>>,
 }
 
 /// Applies an edit to a file and writes the result and the report, or nothing at all.
@@ -183,7 +235,13 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
 
     let progress = watch.begin("saving");
     let start = Instant::now();
-    let (mut staged, save_warnings) = stage_save(&loaded, &solution.positions, apply.output, staging)?;
+    let (mut staged, save_warnings) = stage_save_as(
+        &loaded,
+        &solution.positions,
+        apply.morph.as_ref(),
+        apply.output,
+        staging,
+    )?;
     let save_ms = ms_since(start);
     progress.set(1.0);
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use pliant_io::{Placement, Resolver};
 
-pub use crate::staging::{Staged, Staging};
+pub use crate::staging::{Bridge, Staged, Staging};
 
 /// A file could not be read or written.
 #[derive(Debug, thiserror::Error)]

@@ -3,6 +3,11 @@
 //! It goes in two steps. [`Staging::stage`] writes every file's bytes under a temporary name beside its target and
 //! syncs them: whatever can fail for want of space or rights fails here. [`Staged::commit`] then renames them into
 //! place, one after the other, and puts back what it replaced should a rename fail after all.
+//!
+//! Between two renames the power may fail. A file that names others must not then stand beside others than it was
+//! written with: a [`Bridge`] is such a file that names its neighbours by names of their own, under which their bytes
+//! stand for the while. It is renamed into place first, then the neighbours, then the file itself; at every moment what
+//! stands there is the old state or the new one, whole.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
@@ -27,6 +32,7 @@ struct State {
 #[derive(Debug)]
 pub struct Staged {
     files: Vec<StagedFile>,
+    bridge: Option<StagedBridge>,
     /// Folders that were made for them, outer ones first.
     folders: Vec<PathBuf>,
     staging: Staging,
@@ -41,7 +47,58 @@ struct StagedFile {
     temporary: TempPath,
 }
 
+/// What stands in a file's place while its neighbours are replaced.
+#[derive(Clone, Copy, Debug)]
+pub struct Bridge<'a> {
+    /// The file's name, one of those that are staged.
+    pub name: &'a str,
+    /// Its content, naming the neighbours by their passing names.
+    pub bytes: &'a [u8],
+    /// The neighbours that are replaced, each with its passing name.
+    pub neighbours: &'a [(&'a str, String)],
+}
+
+#[derive(Debug)]
+struct StagedBridge {
+    file: StagedFile,
+    /// The files, by their place among the staged ones, and the paths at which they stand for the while.
+    passing: Vec<(usize, PathBuf)>,
+}
+
 impl Staging {
+    /// As [`Self::stage`], to be committed over a bridge.
+    ///
+    /// # Errors
+    /// As [`Self::stage`].
+    pub fn stage_bridged<'a>(
+        &self,
+        folder: &Path,
+        files: &[(&'a str, &'a [u8])],
+        bridge: &Bridge<'_>,
+    ) -> Result<Staged, FileError> {
+        let mut staged = self.stage(folder, files.iter().copied())?;
+        let place = |name: &str| {
+            if folder == Path::new(".") {
+                PathBuf::from(name)
+            } else {
+                folder.join(name)
+            }
+        };
+        let name = place(bridge.name);
+        let file = self
+            .stage_one(&name, bridge.bytes)
+            .map_err(|error| FileError::writing(&name, error))?;
+        let passing = bridge.neighbours.iter().filter_map(|(name, passing)| {
+            let file = files.iter().position(|(other, _)| other == name)?;
+            Some((file, place(passing)))
+        });
+        staged.bridge = Some(StagedBridge {
+            file,
+            passing: passing.collect(),
+        });
+        Ok(staged)
+    }
+
     /// Writes and syncs `files` beside their targets, under temporary names. The targets are relative to `folder`,
     /// which must be there; folders inside of it are made where they lack.
     ///
@@ -54,6 +111,7 @@ impl Staging {
     ) -> Result<Staged, FileError> {
         let mut staged = Staged {
             files: Vec::new(),
+            bridge: None,
             folders: Vec::new(),
             staging: self.clone(),
         };
@@ -164,14 +222,32 @@ impl Staged {
     ///
     /// # Errors
     /// Where a rename fails. The files that were replaced before it are put back.
-    pub fn commit(mut self) -> Result<(), FileError> {
+    pub fn commit(self) -> Result<(), FileError> {
+        self.commit_watched(&mut || {})
+    }
+
+    /// As [`Self::commit`]; `before_each` is called before each change of what stands in the folders.
+    ///
+    /// # Errors
+    /// As [`Self::commit`].
+    pub fn commit_watched(mut self, before_each: &mut dyn FnMut()) -> Result<(), FileError> {
         let staging = self.staging.clone();
         let mut state = staging.lock();
+        let mut files = std::mem::take(&mut self.files);
+        let mut passing = Passing(Vec::new());
+        if let Some(bridge) = self.bridge.take() {
+            for (file, path) in bridge.passing {
+                before_each();
+                let temporary = &files[file].temporary;
+                second_name(temporary, &path).map_err(|error| FileError::writing(&path, error))?;
+                passing.0.push(path);
+            }
+            files.insert(0, bridge.file);
+        }
         let mut replaced: Vec<(PathBuf, Option<TempPath>)> = Vec::new();
-        let mut folders: Vec<PathBuf> = Vec::new();
-        let files = std::mem::take(&mut self.files);
         let last = files.len().saturating_sub(1);
         for (i, file) in files.into_iter().enumerate() {
+            before_each();
             // The last rename is the one that no other can fail after: it needs no way back.
             let backup = if i == last { Ok(None) } else { backup(&file.target) };
             let renamed = backup.and_then(|backup| {
@@ -180,10 +256,8 @@ impl Staged {
             });
             match renamed {
                 Ok(backup) => {
-                    let folder = folder_of(&file.target).to_owned();
-                    if !folders.contains(&folder) {
-                        folders.push(folder);
-                    }
+                    // The next rename must not last without this one.
+                    sync_folder(folder_of(&file.target));
                     replaced.push((file.target, backup));
                 }
                 Err(error) => {
@@ -192,11 +266,24 @@ impl Staged {
                 }
             }
         }
-        folders.iter().for_each(|folder| sync_folder(folder));
+        before_each();
+        drop(passing);
         self.folders.clear();
         state.temporary.clear();
         state.committed = true;
         Ok(())
+    }
+}
+
+/// Files under passing names, which go when this does.
+struct Passing(Vec<PathBuf>);
+
+impl Drop for Passing {
+    fn drop(&mut self) {
+        for path in &self.0 {
+            // One that can't be removed is a file too many, and no harm.
+            let _ = fs::remove_file(path);
+        }
     }
 }
 
@@ -218,11 +305,14 @@ fn backup(target: &Path) -> io::Result<Option<TempPath>> {
     let name = tempfile::Builder::new()
         .prefix(".pliant-")
         .suffix(".old")
-        .make_in(folder_of(target), |path| {
-            // Not every file system has hard links.
-            fs::hard_link(target, path).or_else(|_| fs::copy(target, path).map(|_| ()))
-        })?;
+        .make_in(folder_of(target), |path| second_name(target, path))?;
     Ok(Some(name.into_temp_path()))
+}
+
+/// Lets the bytes of `file` stand at `path` as well.
+fn second_name(file: &Path, path: &Path) -> io::Result<()> {
+    // Not every file system has hard links, and an earlier save that was cut off may have left one.
+    fs::hard_link(file, path).or_else(|_| fs::copy(file, path).map(|_| ()))
 }
 
 fn put_back(replaced: Vec<(PathBuf, Option<TempPath>)>) {

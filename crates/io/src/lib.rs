@@ -31,6 +31,7 @@ pub use appearance::{AlphaMode, Appearance, Group, Image, Lighting, Map, Materia
 pub use difference::{Difference, What};
 pub use error::{ImageError, ReadError, SaveError, UnknownFormat};
 pub use format::Format;
+pub use gltf::with_neighbours_renamed;
 pub use image::{Rgba8, decode_image};
-pub use save::{OutputFile, Placement, Save, Saved};
+pub use save::{MorphTarget, OutputFile, Placement, Save, Saved};
 pub use scene::{Opened, Resolver, Scene, Summary, read};

@@ -20,6 +20,15 @@ pub struct Save<'a> {
     pub placement: Placement,
 }
 
+/// An edit to be saved as a morph target.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct MorphTarget<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// How far it is applied by default, usually 1 (the edited shape shows) or 0 (the one before).
+    pub weight: f64,
+}
+
 /// Where OUT stands relative to the file that was read.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Placement {

@@ -7,14 +7,15 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use pliant_mesh::{Cancel, Drawn, Progress};
 use serde::Serialize;
 
 use crate::difference::{self, Difference};
-use crate::moved::Moved;
+use crate::moved::{Moved, bit_equal};
 use crate::new_faces::{lost, lost_where};
 use crate::new_mesh::{NewMesh, Polygons};
-use crate::save::{OutputFile, Placement, Save, Saved};
+use crate::save::{MorphTarget, OutputFile, Placement, Save, Saved};
 use crate::{Appearance, Format, ReadError, SaveError, gltf, new_glb, obj, off, ply, stl};
 
 /// Gives the bytes of a file's neighbours.
@@ -135,6 +136,14 @@ pub fn read(
     })
 }
 
+/// A saved file's own neighbours.
+impl Resolver for Saved {
+    fn read(&self, uri: &str) -> Result<Vec<u8>, String> {
+        let file = self.files.iter().find(|file| file.name == uri);
+        file.map_or_else(|| Err("it was not written".to_owned()), |file| Ok(file.bytes.clone()))
+    }
+}
+
 impl Scene {
     /// The kind that was read.
     pub fn format(&self) -> Format {
@@ -215,6 +224,59 @@ impl Scene {
         }
     }
 
+    /// The file with the edit as a morph target: the shape stays, and the way to `save.positions` is added to each
+    /// edited mesh. Only glTF holds such; a file of another kind is written as glTF first, its vertices as they are.
+    pub fn save_as_morph(&self, save: &Save<'_>, target: &MorphTarget<'_>) -> Result<Saved, SaveError> {
+        if !matches!(save.format, Format::Glb | Format::Gltf) {
+            return Err(SaveError::CannotHold {
+                what: "a morph target".to_owned(),
+                format: save.format,
+                remedy: "save as .glb".to_owned(),
+            });
+        }
+        let moved = Moved::of(save.drawn, save.positions)?;
+        if let Stored::Gltf(stored) = &self.stored {
+            return stored.save_as_morph(save, &moved, target);
+        }
+        let rest = self.save(&Save {
+            positions: &save.drawn.positions,
+            ..*save
+        })?;
+        let fault = |what: String| SaveError::CannotHold {
+            what,
+            format: save.format,
+            remedy: "this is a fault of the program, so report it with the file".to_owned(),
+        };
+        let file = rest.files[0].bytes.clone();
+        let written = read(file, save.format, save.name, &rest, &Progress::new(), &Cancel::new())
+            .map_err(|error| fault(error.to_string()))?;
+        if written.drawn.positions.len() != save.positions.len() {
+            return Err(fault("a shape whose vertices are not all written".to_owned()));
+        }
+        // Its positions were rounded to f32; the way is taken from there.
+        let ways = save.drawn.positions.iter().zip(save.positions);
+        let positions: Vec<DVec3> = (written.drawn.positions.iter().zip(ways))
+            .map(|(&written, (&rest, &new))| {
+                if bit_equal(rest, new) {
+                    written
+                } else {
+                    written + (new - rest)
+                }
+            })
+            .collect();
+        let mut saved = written.scene.save_as_morph(
+            &Save {
+                drawn: &written.drawn,
+                positions: &positions,
+                placement: Placement::OtherFolder,
+                ..*save
+            },
+            target,
+        )?;
+        saved.warnings.splice(0..0, rest.warnings);
+        Ok(saved)
+    }
+
     /// A warning about what moves a scene, which no kind but glTF holds.
     fn motion_lost(&self, format: Format) -> Option<String> {
         let summary = self.summary();
@@ -241,7 +303,9 @@ impl Scene {
         }
         let shown = |scene: &Self| (scene.appearance(), scene.summary());
         let mut out = difference::of_shapes((drawn, &shown(self).0), (other_drawn, &shown(other).0));
-        if self.format == other.format && drawn.positions.len() == other_drawn.positions.len() {
+        // An STL's normals follow its shape, rounded from more digits than it keeps.
+        let is_comparable = self.format == other.format && self.format != Format::Stl;
+        if is_comparable && drawn.positions.len() == other_drawn.positions.len() {
             // With the other's shape this file would be the other, if nothing else differs.
             let save = Save {
                 drawn,

@@ -4,6 +4,7 @@
 //! a module in `bench` with a function from [`Scale`] to rows runs it with [`table::measured`] on the meshes of
 //! [`meshes`]; and [`SECTIONS`] names it. Printing and keeping are done here.
 
+mod files;
 mod frames;
 mod linear;
 mod meshes;
@@ -44,6 +45,11 @@ const SECTIONS: &[Section] = &[
         name: "primo",
         title: "Coupled prisms on the survey's scenes, from the rest shape to 1% of the least energy: milliseconds",
         rows: primo::rows,
+    },
+    Section {
+        name: "files",
+        title: "Reading and saving: megabytes a second, beside a plain read of the file; medians",
+        rows: files::rows,
     },
     Section {
         name: "peers",

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pliant_deform::Method;
 use pliant_editor::{Beginning, Project};
-use pliant_io::Format;
+use pliant_io::{Format, MorphTarget};
 
 use super::arguments::ApplyArguments;
 use super::{Console, on_threads};
@@ -16,6 +16,8 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         edit: edit_path,
         output,
         report,
+        as_morph,
+        morph_weight,
         frames,
         method,
         threads,
@@ -37,6 +39,12 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     if let Some(method) = method {
         edit.set_method(method);
     }
+    let stem = edit_path.file_stem().unwrap_or_default().to_string_lossy();
+    let own_name = stem.strip_suffix(".edit").unwrap_or(&stem);
+    let morph = as_morph.as_deref().map(|name| MorphTarget {
+        name: if name.is_empty() { own_name } else { name },
+        weight: *morph_weight,
+    });
     let job = engine::Apply {
         file,
         edit: &edit,
@@ -44,6 +52,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         output,
         report: report.as_deref(),
         frames: *frames,
+        morph,
     };
     let (watch, staging) = (&console.watch, &console.staging);
     on_threads(*threads, || engine::apply(&job, watch, staging))??;

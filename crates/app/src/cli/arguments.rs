@@ -70,6 +70,13 @@ pub(crate) struct ApplyArguments {
     /// Where to write what was done, how long it took and how far the shape was distorted
     #[arg(long, value_name = "REPORT.json")]
     pub report: Option<PathBuf>,
+    /// Leave the shape as it is and save the edit as a morph target of this name (without one, the edit's own): OUT is
+    /// glb or gltf
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
+    pub as_morph: Option<String>,
+    /// How far the morph target shows by default, from 0 to 1
+    #[arg(long, value_name = "W", default_value = "1", requires = "as_morph", value_parser = unit_number)]
+    pub morph_weight: f64,
     /// Replay the edit as a drag of N frames (1 to 100000) instead of one solve
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=100_000))]
     pub frames: Option<usize>,
@@ -160,6 +167,13 @@ impl std::str::FromStr for PictureSize {
             None => Err("a size is WIDTHxHEIGHT, such as 1280x800, each from 1 to 16384".to_owned()),
         }
     }
+}
+
+fn unit_number(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|number| (0.0..=1.0).contains(number))
+        .ok_or_else(|| "a weight is a number from 0 to 1".to_owned())
 }
 
 /// Reads the arguments, the program's name first. What comes back as an error may be the help that was asked for.

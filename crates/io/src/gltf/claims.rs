@@ -19,7 +19,22 @@ pub(super) struct MeshCopy {
     /// `None` for the file's own mesh; the nodes that a clone is for.
     pub clone_for: Option<Vec<usize>>,
     /// The part that each primitive's attributes come from, where it is drawn.
-    parts: Vec<Option<usize>>,
+    pub parts: Vec<Option<usize>>,
+}
+
+impl MeshCopy {
+    /// The part that says what becomes of a primitive. One that is not drawn (the lines along a surface's edges, say)
+    /// follows a drawn one of its mesh that names the same positions.
+    pub fn part_of(&self, primitives: &[Primitive], primitive: usize) -> Option<usize> {
+        let position = primitives[primitive].position;
+        let followed = || {
+            let others = self.parts.iter().zip(primitives);
+            others
+                .filter(|(_, other)| other.position == position)
+                .find_map(|(part, _)| *part)
+        };
+        self.parts[primitive].or_else(followed)
+    }
 }
 
 /// A primitive's attribute in one of the copies.

@@ -29,6 +29,8 @@ pub(super) struct Part {
     pub vertices: Range<u32>,
     /// The primitive whose attributes these are (others of the mesh may name the same).
     pub primitive: usize,
+    /// The morph targets that are applied by default, with their weights.
+    pub weights: Vec<(usize, f64)>,
 }
 
 /// The triangles of one primitive seen through one node.
@@ -102,9 +104,14 @@ pub(super) fn drawn(
                         "vertices",
                     )?;
                     let start = drawn.positions.len() as u32;
+                    let weights = default_weights(document, place, primitive);
+                    let mut positions = layout.floats::<3>(document);
+                    let targets = weights
+                        .iter()
+                        .map(|&(target, weight)| (primitive.targets[target].position, weight));
+                    apply_targets(document, &mut positions, targets)?;
                     place_vertices(
-                        document,
-                        &layout,
+                        &positions,
                         place.world_from_node,
                         first_file_vertex[position],
                         &mut drawn,
@@ -121,6 +128,7 @@ pub(super) fn drawn(
                         world_from_node,
                         vertices,
                         primitive: number,
+                        weights,
                     });
                     pieces.parts.len() - 1
                 }
@@ -182,20 +190,55 @@ fn spend(budget: &mut usize, count: usize, bytes_each: usize, what: &str) -> Res
     Ok(())
 }
 
-fn place_vertices(
+/// The targets of a primitive that its node, or else its mesh, applies, with their weights.
+fn default_weights(document: &Document, place: &Placed, primitive: &Primitive) -> Vec<(usize, f64)> {
+    let json = &document.json;
+    let own = json.member(document.nodes_at[place.node], "weights");
+    let list = own.or_else(|| json.member(document.meshes_at[place.mesh], "weights"));
+    let numbers = list.into_iter().flat_map(|list| json.elements(list));
+    numbers
+        .map(|at| json.number(at).unwrap_or(0.0))
+        .take(primitive.targets.len())
+        .enumerate()
+        .filter(|(_, weight)| *weight != 0.0 && weight.is_finite())
+        .collect()
+}
+
+/// Adds the ways of morph targets, each times its weight. A target of another count is refused in words.
+pub(super) fn apply_targets(
     document: &Document,
-    layout: &Layout,
+    elements: &mut [[f32; 3]],
+    targets: impl Iterator<Item = (Option<usize>, f64)>,
+) -> Result<(), String> {
+    for (accessor, weight) in targets {
+        let Some(accessor) = accessor else { continue };
+        let layout = Layout::of(document, accessor)?;
+        if layout.count != elements.len() || layout.lanes != 3 {
+            return Err(format!(
+                "accessor {accessor}, a morph target, is not of its base's size"
+            ));
+        }
+        for (element, way) in elements.iter_mut().zip(layout.floats::<3>(document)) {
+            (0..3).for_each(|lane| element[lane] = (f64::from(element[lane]) + weight * f64::from(way[lane])) as f32);
+        }
+    }
+    Ok(())
+}
+
+fn place_vertices(
+    positions: &[[f32; 3]],
     world_from_node: DAffine3,
     first_file_vertex: Option<u32>,
     drawn: &mut Drawn,
 ) {
     let first = first_file_vertex.unwrap_or(0);
-    let positions = layout.floats::<3>(document);
     let world = |p: &[f32; 3]| world_from_node.transform_point3(Vec3::from_array(*p).as_dvec3());
     drawn
         .positions
         .par_extend(positions.par_iter().with_min_len(CHUNK).map(world));
-    drawn.file_vertex.extend((first..).take(layout.count).map(FileVertex));
+    drawn
+        .file_vertex
+        .extend((first..).take(positions.len()).map(FileVertex));
 }
 
 /// The corners of a primitive: indices into its vertices, or all of them in order.

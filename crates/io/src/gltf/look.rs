@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::accessor::Layout;
 use super::document::{Document, ImageFile};
-use super::geometry::{Part, Pieces};
+use super::geometry::{self, Part, Pieces};
 use super::maps;
 use super::primitive::Primitive;
 use crate::appearance::{AlphaMode, Appearance, Group, Image, Material, Wrap};
@@ -21,7 +21,7 @@ const CHUNK: usize = 1 << 14;
 pub(super) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Appearance {
     let mut out = Appearance {
         normals: gather(pieces, [0.0; 3], |part| {
-            let normals = attribute::<3>(document, part, primitive(meshes, part).normal)?;
+            let normals = normals(document, part, primitive(meshes, part))?;
             let world = normal_matrix(part);
             let turn = |n: &[f32; 3]| {
                 (world * Vec3::from_array(*n).as_dvec3())
@@ -90,13 +90,25 @@ pub(super) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
 pub(super) fn world_normals(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<DVec3> {
     let mut out = Vec::new();
     for part in &pieces.parts {
-        let normals = attribute::<3>(document, part, primitive(meshes, part).normal);
+        let normals = normals(document, part, primitive(meshes, part));
         let normals = normals.unwrap_or_else(|| vec![[0.0; 3]; part.vertices.len()]);
         let world = normal_matrix(part);
         let turn = |n: &[f32; 3]| (world * Vec3::from_array(*n).as_dvec3()).normalize_or_zero();
         out.par_extend(normals.par_iter().with_min_len(CHUNK).map(turn));
     }
     out
+}
+
+/// A part's rest normals in its node's space, default morph targets applied; `None` where it has none.
+fn normals(document: &Document, part: &Part, primitive: &Primitive) -> Option<Vec<[f32; 3]>> {
+    let mut normals = attribute::<3>(document, part, primitive.normal)?;
+    let targets = part
+        .weights
+        .iter()
+        .map(|&(target, weight)| (primitive.targets[target].normal, weight));
+    // A target whose normals can't be read leaves the others as they are.
+    let _ = geometry::apply_targets(document, &mut normals, targets);
+    Some(normals)
 }
 
 /// An attribute of a part's vertices; `None` where it has none of the right count.

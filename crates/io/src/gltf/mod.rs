@@ -14,6 +14,7 @@ mod json;
 mod look;
 mod maps;
 mod meshopt;
+mod morph;
 mod pack;
 mod patch;
 mod primitive;
@@ -29,7 +30,7 @@ use self::geometry::Pieces;
 use self::patch::Patched;
 use self::primitive::Primitive;
 use crate::moved::Moved;
-use crate::save::{Save, Saved};
+use crate::save::{MorphTarget, Save, Saved};
 use crate::scene::{Source, Summary};
 use crate::{Appearance, Difference, Format, ReadError, SaveError};
 
@@ -74,6 +75,27 @@ pub(crate) fn join_glb(json: &[u8], bin: &[u8]) -> Option<Vec<u8>> {
     container::join(json, Some(bin), &[], &[])
 }
 
+/// A `.gltf` with other names for the neighbours that `names` pairs with them, and all else as it is; `None` where it
+/// is no JSON or names none of them.
+pub fn with_neighbours_renamed(gltf: &[u8], names: &[(&str, String)]) -> Option<Vec<u8>> {
+    let json = json::Json::parse(gltf.to_vec()).ok()?;
+    let mut edits = json::Edits::default();
+    for section in ["buffers", "images"] {
+        let list = json.member(json.root(), section);
+        for object in list.into_iter().flat_map(|list| json.elements(list)) {
+            let Some(at) = json.member(object, "uri") else { continue };
+            let Ok(uri::Address::Neighbour(path)) = uri::address(&json.string(at)?) else {
+                continue;
+            };
+            let path = uri::inside(&path);
+            if let Some((_, new)) = names.iter().find(|(old, _)| Some(*old) == path.as_deref()) {
+                edits.replace(json.span(at), uri::json_uri(new));
+            }
+        }
+    }
+    (!edits.is_empty()).then(|| edits.apply(json.text(), 0..gltf.len()))
+}
+
 /// A neighbour's path as a URI.
 pub(crate) fn encoded_uri(path: &str) -> String {
     uri::encoded(path)
@@ -99,7 +121,7 @@ impl Stored {
                 .meshes
                 .iter()
                 .flatten()
-                .map(|primitive| primitive.target_count)
+                .map(|primitive| primitive.targets.len())
                 .sum(),
         }
     }
@@ -127,6 +149,36 @@ impl Stored {
             let changes = changes::changes(document, meshes, pieces, moved)?;
             patch::patch(document, meshes, pieces, &changes, save.format)?
         };
+        self.deliver(patched, save)
+    }
+
+    /// The file as GLB or `.gltf`, its shape as it was, with the moved vertices' way as one more morph target.
+    pub fn save_as_morph(
+        &self,
+        save: &Save<'_>,
+        moved: &Moved<'_>,
+        target: &MorphTarget<'_>,
+    ) -> Result<Saved, SaveError> {
+        let Self {
+            document,
+            meshes,
+            pieces,
+            ..
+        } = self;
+        let mut patched = Patched::unchanged(document);
+        if moved.is_nothing() {
+            patched
+                .warnings
+                .push("Nothing moved, so no morph target was added.".to_owned());
+        } else {
+            let changes = changes::changes(document, meshes, pieces, moved)?;
+            patched = morph::with_target(document, meshes, pieces, &changes, target, save.format)?;
+        }
+        self.deliver(patched, save)
+    }
+
+    fn deliver(&self, patched: Patched<'_>, save: &Save<'_>) -> Result<Saved, SaveError> {
+        let document = &self.document;
         match (self.format, save.format) {
             (Format::Glb, Format::Gltf) => deliver::unpacked(document, patched, save),
             // A GLB that is called .gltf goes through `in_its_kind`, which keeps its container.

@@ -47,7 +47,7 @@ impl<'a> Patched<'a> {
 /// Everything that is being put together.
 pub(super) struct Patch<'a> {
     pub document: &'a Document,
-    out: Patched<'a>,
+    pub out: Patched<'a>,
     pub edits: Edits,
     /// Edits of each mesh copy's primitives: of clones only, as they apply to a copy of the text.
     clone_edits: BTreeMap<usize, Edits>,
@@ -65,14 +65,7 @@ pub(super) fn patch<'a>(
 ) -> Result<Patched<'a>, SaveError> {
     let copies = claims::copies(document, meshes, pieces, changes);
     let outcomes = claims::outcomes(document, meshes, &copies, changes);
-    let mut patch = Patch {
-        document,
-        out: Patched::unchanged(document),
-        edits: Edits::default(),
-        clone_edits: BTreeMap::new(),
-        new_accessors: Vec::new(),
-        new_views: Vec::new(),
-    };
+    let mut patch = Patch::new(document);
     let places = places(document);
     for (&accessor, outcome) in &outcomes {
         if !outcome.kept.change.is_empty() {
@@ -88,8 +81,7 @@ pub(super) fn patch<'a>(
         }
         for claim in &outcome.moved_out {
             let text = patch.new_accessor(accessor, claim, format)?;
-            let number = document.accessors_at.len() + patch.new_accessors.len();
-            patch.new_accessors.push(text);
+            let number = patch.push_accessor(text);
             for naming in &claim.namings {
                 patch.rename(meshes, &copies, naming, number);
             }
@@ -97,12 +89,34 @@ pub(super) fn patch<'a>(
     }
     patch.unpack(meshes, &copies, &outcomes, format)?;
     patch.clone_meshes(&copies);
-    patch.finish();
-    patch.out.warnings = morph_warnings(document, meshes, pieces, changes);
-    Ok(patch.out)
+    let mut patched = patch.finished();
+    patched
+        .warnings
+        .extend(morph_warnings(document, meshes, pieces, changes));
+    Ok(patched)
 }
 
-impl Patch<'_> {
+impl<'a> Patch<'a> {
+    /// Nothing changed yet.
+    pub fn new(document: &'a Document) -> Self {
+        Self {
+            document,
+            out: Patched::unchanged(document),
+            edits: Edits::default(),
+            clone_edits: BTreeMap::new(),
+            new_accessors: Vec::new(),
+            new_views: Vec::new(),
+        }
+    }
+
+    /// Adds an accessor, written out, and gives its number.
+    pub fn push_accessor(&mut self, text: String) -> usize {
+        self.new_accessors.push(text);
+        self.document.accessors_at.len() + self.new_accessors.len() - 1
+    }
+}
+
+impl<'a> Patch<'a> {
     /// Writes a change over the accessor's own bytes; `None`, and nothing written, where they can't hold it: they are
     /// not f32, not there (sparse zeros), or another accessor's too.
     fn in_place(
@@ -270,7 +284,7 @@ impl Patch<'_> {
     }
 
     /// Adds the clones behind the meshes and lets their nodes show them.
-    fn clone_meshes(&mut self, copies: &[MeshCopy]) {
+    pub(super) fn clone_meshes(&mut self, copies: &[MeshCopy]) {
         let json = &self.document.json;
         let mut clones = Vec::new();
         for (number, copy) in copies.iter().enumerate() {
@@ -287,7 +301,8 @@ impl Patch<'_> {
         self.append("meshes", &clones);
     }
 
-    fn finish(&mut self) {
+    /// The whole, put together.
+    pub(super) fn finished(mut self) -> Patched<'a> {
         let document = self.document;
         let json = &document.json;
         let (accessors, views) = (
@@ -305,6 +320,7 @@ impl Patch<'_> {
         if !self.edits.is_empty() {
             self.out.text = Cow::Owned(self.edits.apply(json.text(), 0..json.text().len()));
         }
+        self.out
     }
 
     fn append(&mut self, section: &str, elements: &[String]) {
@@ -329,13 +345,13 @@ pub(super) fn cannot_hold(what: String, format: Format) -> SaveError {
 }
 
 /// Bounds of elements, number by number; not finite where no element's number is.
-struct Bounds {
-    min: [f32; 4],
-    max: [f32; 4],
+pub(super) struct Bounds {
+    pub min: [f32; 4],
+    pub max: [f32; 4],
 }
 
 impl Bounds {
-    fn of(elements: &[[f32; 4]]) -> Self {
+    pub fn of(elements: &[[f32; 4]]) -> Self {
         let mut bounds = Self {
             min: [f32::INFINITY; 4],
             max: [f32::NEG_INFINITY; 4],
@@ -359,7 +375,7 @@ impl Bounds {
 }
 
 /// An f32 as text that reads back as the same number, as f64 too: validators compare either way.
-fn number(value: f32) -> String {
+pub(super) fn number(value: f32) -> String {
     let value = f64::from(value);
     // Rust writes no exponent by itself, and a bound may be 1e-38.
     if value == 0.0 || (1e-5..1e15).contains(&value.abs()) {
@@ -401,7 +417,7 @@ fn morph_warnings(
         let mut parts = pieces.parts.iter().zip(changes);
         parts.any(|(part, change)| part.mesh == mesh && !change.is_empty())
     };
-    let has_targets = |mesh: &usize| meshes[*mesh].iter().any(|primitive| primitive.target_count > 0);
+    let has_targets = |mesh: &usize| meshes[*mesh].iter().any(|primitive| !primitive.targets.is_empty());
     (0..meshes.len())
         .filter(has_targets)
         .filter(|&mesh| is_edited(mesh))

@@ -33,8 +33,14 @@ pub(super) struct Primitive {
     pub second_uv: Option<usize>,
     pub indices: Option<usize>,
     pub material: Option<usize>,
-    /// Morph targets.
-    pub target_count: usize,
+    pub targets: Vec<Target>,
+}
+
+/// A morph target: the ways of the base's numbers.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Target {
+    pub position: Option<usize>,
+    pub normal: Option<usize>,
 }
 
 /// The primitives of every mesh, in the file's order.
@@ -82,14 +88,25 @@ impl Primitive {
             },
             indices: accessor(at, "indices")?,
             material,
-            target_count: targets.map_or(0, |targets| json.elements(targets).count()),
+            targets: targets
+                .into_iter()
+                .flat_map(|targets| json.elements(targets))
+                .map(|target| {
+                    Ok(Target {
+                        position: accessor(target, "POSITION")?,
+                        normal: accessor(target, "NORMAL")?,
+                    })
+                })
+                .collect::<Result<_, String>>()?,
         })
     }
 
     /// Whether two primitives' vertices look the same, so that their drawn vertices are the same.
     pub fn has_attributes_of(&self, other: &Self) -> bool {
         let key = |p: &Self| (p.position, p.normal, p.tangent, p.colour, p.uv, p.second_uv);
-        key(self) == key(other) && (self.uv.is_none() || self.uv_transform == other.uv_transform)
+        key(self) == key(other)
+            && self.targets == other.targets
+            && (self.uv.is_none() || self.uv_transform == other.uv_transform)
     }
 
     /// Refuses, in words, what is compressed and could not be decoded.

@@ -1,0 +1,112 @@
+//! How fast files are read and saved: `files FILE [KIND..]` prints a JSON object a line for FILE and for the same mesh
+//! as each KIND (obj, ply, ..), which is written beside it: megabytes a second beside those of a plain read of the file,
+//! medians of several rounds. `cargo xtask bench files` makes a table of them.
+//!
+//! Saving is what it takes to make the bytes of the file as its own kind with every vertex moved; writing them to disk
+//! is the disk's.
+
+#![allow(
+    clippy::print_stdout,
+    clippy::expect_used,
+    reason = "an example speaks, and fails loudly"
+)]
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use glam::DVec3;
+use pliant_io::{Format, Opened, Placement, Resolver, Save, read};
+use pliant_mesh::{Cancel, Progress};
+
+/// Bench files have no neighbours.
+struct Alone;
+
+impl Resolver for Alone {
+    fn read(&self, _: &str) -> Result<Vec<u8>, String> {
+        Err("it stands alone".to_owned())
+    }
+}
+
+/// Rounds of each measurement; the median counts.
+const ROUNDS: usize = 3;
+
+fn main() {
+    let mut arguments = std::env::args().skip(1);
+    let first = PathBuf::from(arguments.next().expect("files FILE [KIND..]"));
+    let mut paths = vec![first.clone()];
+    for kind in arguments {
+        let path = first.with_extension(&kind);
+        if !path.exists() {
+            convert(&first, &path);
+        }
+        paths.push(path);
+    }
+    paths.iter().for_each(|path| measure(path));
+}
+
+fn convert(from: &Path, to: &Path) {
+    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let format = |path: &Path| Format::of_name(&name(path)).expect("a file of a known kind");
+    let bytes = std::fs::read(from).expect("a file that can be read");
+    let opened = open(bytes, format(from), &name(from));
+    let saved = opened.scene.save(&Save {
+        drawn: &opened.drawn,
+        positions: &opened.drawn.positions,
+        format: format(to),
+        name: &name(to),
+        placement: Placement::OtherFolder,
+    });
+    let saved = saved.expect("a mesh that every kind holds");
+    std::fs::write(to, &saved.files[0].bytes).expect("a folder that can be written");
+}
+
+fn measure(path: &Path) {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let format = Format::of_name(&name).expect("a file of a known kind");
+    let plain_s = median(|| {
+        let start = Instant::now();
+        std::hint::black_box(std::fs::read(path).expect("a file that can be read"));
+        start.elapsed().as_secs_f64()
+    });
+    let mut opened = None;
+    let read_s = median(|| {
+        opened = None;
+        let start = Instant::now();
+        let bytes = std::fs::read(path).expect("a file that can be read");
+        opened = Some(open(bytes, format, &name));
+        start.elapsed().as_secs_f64()
+    });
+    let opened = opened.expect("it was read just now");
+    let by = DVec3::new(0.01, 0.02, 0.03);
+    let positions: Vec<DVec3> = opened.drawn.positions.iter().map(|p| *p + by).collect();
+    let save_s = median(|| {
+        let start = Instant::now();
+        let save = Save {
+            drawn: &opened.drawn,
+            positions: &positions,
+            format,
+            name: &name,
+            placement: Placement::OtherFolder,
+        };
+        std::hint::black_box(opened.scene.save(&save).expect("a file that can be saved"));
+        start.elapsed().as_secs_f64()
+    });
+    let megabytes = std::fs::metadata(path).map_or(0.0, |metadata| metadata.len() as f64 / 1e6);
+    println!(
+        "{{\"file\":\"{name}\",\"megabytes\":{megabytes:.1},\"triangles\":{},\"plain_mb_s\":{:.0},\"load_mb_s\":{:.0},\"save_mb_s\":{:.0}}}",
+        opened.drawn.triangles.len(),
+        megabytes / plain_s,
+        megabytes / read_s,
+        megabytes / save_s,
+    );
+}
+
+fn open(bytes: Vec<u8>, format: Format, name: &str) -> Opened {
+    read(bytes, format, name, &Alone, &Progress::new(), &Cancel::new()).expect("a sound file")
+}
+
+fn median(mut once: impl FnMut() -> f64) -> f64 {
+    let mut times: Vec<f64> = (0..ROUNDS).map(|_| once()).collect();
+    times.sort_by(f64::total_cmp);
+    times[ROUNDS / 2]
+}

@@ -1,0 +1,20 @@
+//! Reading and saving files, by the example `files` of `io`.
+
+use super::Scale;
+use super::meshes::creature_glb;
+use super::table::{Row, measured};
+
+/// A row for each size and kind. A file is read by all threads.
+pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
+    let sizes: &[usize] = match scale {
+        Scale::Usual => &[60_000, 600_000],
+        Scale::Full => &[60_000, 600_000, 5_000_000],
+    };
+    let mut rows = Vec::new();
+    for &triangles in sizes {
+        let mut arguments = vec![creature_glb(triangles)?.display().to_string()];
+        arguments.extend(["ply", "stl", "obj", "off"].map(str::to_owned));
+        rows.extend(measured("pliant-io", "files", &arguments)?);
+    }
+    Ok(rows)
+}

@@ -1,0 +1,73 @@
+// Whether three.js' loader finds as much in OUT as in IN.
+//
+//   npm install three
+//   node counts.mjs IN OUT
+//
+// Prints vertices, triangles, materials, images, skins, animations and morph targets of both, and ends with status 1
+// where they differ. Images are counted and not decoded: node has no pictures.
+
+import { createRequire } from 'node:module';
+import { readFileSync } from 'node:fs';
+import { basename, dirname, resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
+
+const require = createRequire(import.meta.url);
+const root = dirname(dirname(require.resolve('three')));
+const load = (path) => import(pathToFileURL(resolve(root, path)));
+globalThis.self = globalThis;
+globalThis.ProgressEvent ??= class {};
+const THREE = await load('build/three.module.js');
+const { GLTFLoader } = await load('examples/jsm/loaders/GLTFLoader.js');
+const { MeshoptDecoder } = await load('examples/jsm/libs/meshopt_decoder.module.js');
+
+async function counts(path) {
+    const folder = dirname(resolve(path));
+    const manager = new THREE.LoadingManager();
+    const loader = new GLTFLoader(manager);
+    loader.setMeshoptDecoder(MeshoptDecoder);
+    // No pictures: a texture of nothing stands for each.
+    loader.register((parser) => {
+        parser.loadTextureImage = async () => new THREE.Texture();
+        return { name: 'no-pictures' };
+    });
+    THREE.FileLoader.prototype.load = function (url, done, _, failed) {
+        try {
+            const bytes = url.startsWith('data:')
+                ? Buffer.from(url.slice(url.indexOf(',') + 1), 'base64')
+                : readFileSync(resolve(folder, decodeURIComponent(url)));
+            done(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
+        } catch (error) {
+            failed(error);
+        }
+    };
+    const bytes = readFileSync(path);
+    const content = basename(path).endsWith('.gltf') ? bytes.toString() : bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length);
+    const gltf = await loader.parseAsync(content, '');
+    const found = { vertices: 0, triangles: 0, targets: 0, nodes: 0, animations: gltf.animations.length };
+    for (const scene of gltf.scenes) {
+        scene.traverse((object) => {
+            found.nodes += 1;
+            const geometry = object.geometry;
+            if (geometry) {
+                found.vertices += geometry.attributes.position?.count ?? 0;
+                found.triangles += (geometry.index?.count ?? geometry.attributes.position?.count ?? 0) / 3;
+                found.targets += geometry.morphAttributes.position?.length ?? 0;
+            }
+        });
+    }
+    const json = gltf.parser.json;
+    for (const key of ['materials', 'images', 'skins']) {
+        found[key] = json[key]?.length ?? 0;
+    }
+    return found;
+}
+
+const [input, output] = process.argv.slice(2);
+if (!output) {
+    console.error('node counts.mjs IN OUT');
+    process.exit(2);
+}
+const [before, after] = [await counts(input), await counts(output)];
+const is_same = JSON.stringify(before) === JSON.stringify(after);
+console.log(`${is_same ? 'same' : 'DIFFERENT'} ${JSON.stringify(before)}${is_same ? '' : ` ${JSON.stringify(after)}`}`);
+process.exit(is_same ? 0 : 1);
