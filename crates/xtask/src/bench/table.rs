@@ -32,11 +32,6 @@ impl Row {
         self
     }
 
-    /// The number of this name.
-    pub fn get(&self, name: &str) -> Option<f64> {
-        self.0.iter().find(|(own, _)| own == name)?.1.parse().ok()
-    }
-
     /// Reads one flat JSON object of texts and numbers on one line; `None` for anything else.
     pub fn parse(line: &str) -> Option<Self> {
         let mut rest = line.trim().strip_prefix('{')?.strip_suffix('}')?.trim();
@@ -177,8 +172,6 @@ mod tests {
             .number("count", 3.0);
         assert_eq!(row.json(), r#"{"mesh": "a, b", "ms": 1.25, "count": 3}"#);
         assert_eq!(Row::parse(&row.json()), Some(row.clone()));
-        assert_eq!(row.get("ms"), Some(1.25));
-        assert_eq!(row.get("mesh"), None);
         assert_eq!(Row::parse("bound in 3 ms"), None);
         assert_eq!(Row::parse("{}"), Some(Row::default()));
     }
