@@ -64,6 +64,9 @@ pub(crate) struct ArapSolver {
     /// The motions that `current` is a shape for.
     motions: Vec<Motion>,
     state: State,
+    /// How many targets were set since the rest shape, and the energy of the last blend from it.
+    drag_frames: u32,
+    blend_energy: f64,
     mollified_faces: usize,
 }
 
@@ -195,6 +198,8 @@ impl ArapSolver {
             unit,
             motions: vec![Motion::default(); handles.len()],
             state: State::Converged,
+            drag_frames: 0,
+            blend_energy: 0.0,
             mollified_faces,
             domain,
         })
@@ -251,6 +256,7 @@ impl ArapSolver {
         self.current.gradient.fill([0.0; 4]);
         self.current.energy = 0.0;
         self.history.clear();
+        self.drag_frames = 0;
         self.state = State::Converged;
     }
 

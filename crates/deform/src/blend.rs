@@ -64,15 +64,36 @@ pub(crate) fn carried(point: DVec3, screws: &[Screw], weights: &[f64]) -> Carrie
         stretch += screw.stretch * (point - screw.centre) * weight;
     }
     let arm = point + stretch;
-    let turn = DQuat::from_scaled_axis(turn_rad);
-    let slid = if turn_rad == DVec3::ZERO {
-        slide
+    let angle = turn_rad.length();
+    let square = angle * angle;
+    // sin θ / θ, (1 − cos θ) / θ² and (θ − sin θ) / θ³, and the quaternion's sin(θ/2) / θ and cos(θ/2).
+    let (sine, first, second, half_sine, half_cosine) = if angle < 1e-2 {
+        (
+            1.0 - square / 6.0 * (1.0 - square / 20.0),
+            0.5 - square / 24.0 * (1.0 - square / 30.0),
+            (1.0 - square / 20.0 * (1.0 - square / 42.0)) / 6.0,
+            0.5 - square / 48.0 * (1.0 - square / 80.0),
+            1.0 - square / 8.0 * (1.0 - square / 48.0),
+        )
     } else {
-        slides(turn_rad) * slide
+        let (s, c) = (0.5 * angle).sin_cos();
+        let sine = 2.0 * s * c;
+        (
+            sine / angle,
+            2.0 * s * s / square,
+            (angle - sine) / (square * angle),
+            s / angle,
+            c,
+        )
     };
+    let across = turn_rad.cross(arm);
+    let turned = across * sine + turn_rad.cross(across) * first;
+    let across = turn_rad.cross(slide);
+    let slid = slide + across * first + turn_rad.cross(across) * second;
+    let axis = turn_rad * half_sine;
     Carried {
-        displacement: stretch + (turn * arm - arm) + slid,
-        turn,
+        displacement: stretch + turned + slid,
+        turn: DQuat::from_xyzw(axis.x, axis.y, axis.z, half_cosine),
     }
 }
 

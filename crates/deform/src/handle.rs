@@ -17,10 +17,20 @@ pub(crate) struct Handle {
 }
 
 /// What a transform changes: the displacement of the point `world_centre + radius * q` is `linear * q + shift`.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Motion {
     pub linear: DMat3,
     pub shift: DVec3,
+}
+
+impl Default for Motion {
+    /// Rest: a matrix's own default is the identity.
+    fn default() -> Self {
+        Self {
+            linear: DMat3::ZERO,
+            shift: DVec3::ZERO,
+        }
+    }
 }
 
 impl Handle {

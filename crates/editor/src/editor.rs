@@ -17,9 +17,9 @@ use crate::picking::{Pick, Picking};
 use crate::tool::{Tool, ToolMode};
 use crate::transaction::Transaction;
 use crate::{
-    BRUSH_RADIUS_PX, Beginning, BrushMetric, Button, Camera, Command, Cursor, Depth, Event, Executor, GizmoMode,
-    GizmoOrientation, HandleTransform, JobDone, JobKind, Key, Modifiers, Pointer, Revision, SceneView, Shading,
-    StiffnessBrush, StrokeShape,
+    BRUSH_RADIUS_PX, Beginning, BrushMetric, Button, Camera, Command, Cursor, Depth, Descent, Event, Executor,
+    GizmoMode, GizmoOrientation, HandleTransform, JobDone, JobKind, Key, Modifiers, Pointer, Revision, SceneView,
+    Shading, StiffnessBrush, StrokeShape,
 };
 
 /// The program without a window.
@@ -67,6 +67,8 @@ pub struct Editor {
     pub(crate) wireframe: bool,
     pub(crate) shows_regions: bool,
     pub(crate) problem: Option<String>,
+    /// How far the shape's descent is, where its method takes steps.
+    pub(crate) descent: Option<Descent>,
     /// The step that a widget is adjusting, while a command is added to it.
     pub(crate) open_step: Option<Transaction>,
     pub(crate) overlay: Overlay,
@@ -117,6 +119,7 @@ impl Editor {
             wireframe: false,
             shows_regions: true,
             problem: None,
+            descent: None,
             open_step: None,
             overlay: Overlay::default(),
             held: VecDeque::new(),
@@ -404,6 +407,7 @@ impl Editor {
                 if self.document.settled || solved.from_rest.len() != self.document.from_rest.len() {
                     return;
                 }
+                self.descent = solved.descent;
                 self.document.show(solved.from_rest, solved.from_file);
                 if finality == Finality::Final {
                     self.document.settled = true;
@@ -416,6 +420,7 @@ impl Editor {
         self.abort_tool();
         self.held.clear();
         self.problem = None;
+        self.descent = None;
         self.selected = None;
         self.companions.clear();
         self.wants_new_handle = false;

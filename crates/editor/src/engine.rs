@@ -15,13 +15,13 @@ use pliant_mesh::{Bvh, Cancel, Model, Progress, Surface, SurfaceVertex};
 use crate::document::{Document, HandleId, sum_of_shapes};
 use crate::job_queue::{JobQueue, Running};
 use crate::region::{Region, RegionInput, displaced};
-use crate::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
+use crate::{Descent, Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
 
 type Work = Box<dyn FnOnce(&Progress, &Cancel) -> JobOutcome + Send>;
 
 /// A solve takes so many vertices' worth of steps before it shows its shape: about what a window's frame has time for.
 /// There is no clock here.
-const VERTEX_STEPS: usize = 60_000;
+const VERTEX_STEPS: usize = 100_000;
 
 /// The most steps of one solve, however few its vertices are.
 const MOST_STEPS: usize = 16;
@@ -405,6 +405,11 @@ impl Engine {
                         from_rest,
                         from_file,
                         finished: step.finished,
+                        descent: bound.handle_bases().is_none().then_some(Descent {
+                            energy: step.energy,
+                            converged: step.converged,
+                            finished: step.finished,
+                        }),
                     })
                 }
             }

@@ -143,4 +143,17 @@ pub struct Solved {
     pub from_file: Arc<Vec<DVec3>>,
     /// Whether further steps would leave it as it is.
     pub finished: bool,
+    /// How far an iterative method's descent is; `None` for a method that is done in one step.
+    pub descent: Option<Descent>,
+}
+
+/// How far a descent is.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Descent {
+    /// The present shape's energy, without unit (see [`pliant_deform::Step::energy`]).
+    pub energy: f64,
+    /// Whether that is the least, to the method's tolerance.
+    pub converged: bool,
+    /// Whether no further step is taken: it converged, or met the method's limit.
+    pub finished: bool,
 }

@@ -65,7 +65,7 @@ pub use gizmo::{GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, g
 pub use handle_transform::HandleTransform;
 pub use history::{HISTORY_BYTES, History};
 pub use inline_executor::InlineExecutor;
-pub use job::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
+pub use job::{Descent, Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
 pub use job_queue::{JobQueue, Running};
 pub use method_form::{MethodOption, OptionKind, method_options, method_title, option_value, when_to_use, with_option};
 pub use picking::Pick;

@@ -22,10 +22,21 @@ impl Editor {
             Tool::Transform(drag) => drag.status(self),
             Tool::Idle | Tool::Adjust(_) => self.idle(),
         };
-        match self.working() {
-            Some(working) => format!("{working} · {now}"),
-            None => now,
-        }
+        let parts = [self.working(), self.descent(), Some(now)];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
+    }
+
+    /// How far the shape's descent is, where its method takes steps.
+    fn descent(&self) -> Option<String> {
+        let descent = self.descent.filter(|_| self.document.is_displaced())?;
+        let energy = format!("energy {:.3e}", descent.energy);
+        Some(if descent.converged && self.document.settled {
+            format!("Converged, {energy}")
+        } else if descent.finished && self.document.settled {
+            format!("Stopped at its limit of steps, {energy}")
+        } else {
+            format!("Settling, {energy}")
+        })
     }
 
     fn painting(&self, paint: Paint) -> String {

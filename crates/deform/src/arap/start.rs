@@ -10,6 +10,13 @@ use crate::blend::{Screw, carried};
 use crate::handle::Motion;
 use crate::operators::CHUNK;
 
+/// Below this share of the last blend's energy the carried shape is taken without asking: a blend costs as much as the
+/// step after it, and along a drag its energy changes slowly.
+const PROMISING: f64 = 0.5;
+
+/// Every so many targets the blend is looked at whatever it had: a drag may have turned back.
+const RECONSIDERED: u32 = 8;
+
 impl ArapSolver {
     /// Makes the better of two starts the current shape for `motions`.
     pub(super) fn start(&mut self, motions: &[Motion]) {
@@ -32,7 +39,14 @@ impl ArapSolver {
             self.carry(&onwards, Origin::Current);
             std::mem::swap(&mut self.current, &mut self.trial);
         }
+        self.drag_frames += 1;
+        let could_win = self.current.energy >= PROMISING * self.blend_energy;
+        if !(was_at_rest || could_win || self.drag_frames.is_multiple_of(RECONSIDERED)) {
+            self.state = State::Descending;
+            return;
+        }
         self.carry(&from_rest, Origin::Rest);
+        self.blend_energy = self.trial.energy;
         if was_at_rest || self.trial.energy < self.current.energy || !self.current.energy.is_finite() {
             self.history.clear();
             std::mem::swap(&mut self.current, &mut self.trial);
