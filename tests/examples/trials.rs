@@ -1,4 +1,4 @@
-//! Seeded trials on every scan, with counts: `trials COUNT [FIRST]`.
+//! Seeded trials on every scan, with counts: `trials COUNT [FIRST [METHOD]]`; without METHOD any.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that reports")]
 
 use std::collections::BTreeMap;
@@ -8,13 +8,14 @@ use pliant_deform::Method;
 use pliant_tests::trials::{Outcome, Trial, scans};
 
 fn main() {
-    let mut words = std::env::args().skip(1).map(|word| word.parse().unwrap());
-    let (count, first): (u64, u64) = (words.next().unwrap_or(1000), words.next().unwrap_or(0));
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let number = |place: usize, otherwise: u64| words.get(place).map_or(otherwise, |word| word.parse().unwrap());
+    let (count, first) = (number(0, 1000), number(1, 0));
     let mut subjects = scans();
     let mut counts = BTreeMap::<String, [usize; 3]>::new();
     for seed in first..first + count {
         let place = (seed % subjects.len() as u64) as usize;
-        let trial = Trial::new(seed, &subjects[place].model);
+        let trial = Trial::with(seed, &subjects[place].model, words.get(2).map(String::as_str));
         let kind = match &trial.method {
             Method::Bilaplacian(options) => format!("bilaplacian order {}", options.order.number()),
             method => method.name().to_owned(),

@@ -81,10 +81,21 @@ pub struct Trial {
 impl Trial {
     /// The trial number `seed` on `model`; always the same.
     pub fn new(seed: u64, model: &Model) -> Self {
+        Self::with(seed, model, None)
+    }
+
+    /// The same with another method, and its options by chance, where `name` is one's.
+    pub fn with(seed: u64, model: &Model, name: Option<&str>) -> Self {
         let chance = &mut Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x5DEE_CE66);
         let count = model.surface.positions.len();
         let diagonal = model.bounds().unwrap().diagonal();
-        let method = method(chance);
+        let mut method = method(chance);
+        if let Some(name) = name {
+            method = Method::from_name(name).unwrap();
+        }
+        if let Method::Primo(options) = &mut method {
+            options.thickness = 10_f64.powf(chance.between(-3.0, 0.0));
+        }
         let ball = |chance: &mut Chance, radius: f64| {
             let centre = model.surface.positions[chance.below(count)];
             let radius = radius * diagonal;

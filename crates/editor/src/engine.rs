@@ -426,7 +426,7 @@ fn steps(
 ) -> Result<Step, SolveError> {
     bound.set_targets(targets)?;
     let mut step = bound.step(displacements)?;
-    for _ in 1..(VERTEX_STEPS / bound.solved_count().max(1)).clamp(1, MOST_STEPS) {
+    for _ in 1..(VERTEX_STEPS / bound.step_cost().max(1)).clamp(1, MOST_STEPS) {
         if step.finished || cancel.is_cancelled() {
             break;
         }
