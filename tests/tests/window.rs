@@ -14,6 +14,8 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use glam::{DVec2, DVec3};
 use pliant_app::window::{Application, KeepOriginal, Source};
+use pliant_deform::Method;
+use pliant_editor::{BrushMetric, Command, Reach, ToolMode};
 use pliant_tests::{Folder, assets, open, run};
 
 /// Drives the application as a person would.
@@ -331,4 +333,83 @@ fn a_project_comes_back_as_it_was_though_its_mesh_was_saved_over() {
         Some(&*mesh),
         "saving goes on where it went"
     );
+}
+
+/// Everything in one go: what is undone comes back, what is redone too, and what is saved is what is opened.
+#[test]
+fn a_whole_session_undone_redone_saved_and_opened_again_is_the_same_document_by_its_hash() {
+    let Some(mut session) = Session::begin() else { return };
+    let hash = |session: &Session| session.harness.state().editor().document_hash().unwrap();
+    let command = |session: &mut Session, command: Command| {
+        session.harness.state_mut().command(command);
+        session.settle();
+    };
+    let first = hash(&session);
+    let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
+    let side = session.point_of(|positions| *positions.iter().max_by(|a, b| a.x.total_cmp(&b.x)).unwrap());
+
+    // Two handles, the region of the first widened by distance along the surface.
+    command(&mut session, Command::SetBrushMetric(BrushMetric::Surface));
+    command(&mut session, Command::SetBrushRadius(16.0));
+    session.stroke(top + vec2(0.0, 8.0), top + vec2(3.0, 12.0));
+    let one = session.harness.state().editor().view().selected.unwrap();
+    command(&mut session, Command::SetReach(one, Reach::Radii(5.0)));
+    command(&mut session, Command::NewHandle);
+    session.stroke(side + vec2(-10.0, 0.0), side + vec2(-14.0, 2.0));
+    assert_eq!(session.harness.state().editor().document().handles().len(), 2);
+    // Stiffness beside them.
+    command(&mut session, Command::SetTool(ToolMode::PaintStiffness));
+    session.stroke(top + vec2(0.0, 40.0), top + vec2(10.0, 60.0));
+    assert!(session.harness.state().editor().document().stiffness().is_some());
+
+    // A drag with each method: the handles stay, the shapes differ.
+    command(&mut session, Command::SelectHandle(one));
+    for key in [Key::R, Key::Z, Key::Num4, Key::Num0, Key::Enter] {
+        session.key(key, Modifiers::NONE);
+    }
+    session.settle();
+    let mut shapes: Vec<Vec<DVec3>> = Vec::new();
+    for &name in Method::NAMES {
+        command(&mut session, Command::SetMethod(Method::from_name(name).unwrap()));
+        assert!(session.harness.state().editor().view().problem.is_none(), "{name}");
+        shapes.push(session.shape());
+    }
+    for (number, shape) in shapes.iter().enumerate() {
+        assert!(moved(shape) > 0, "{}", Method::NAMES[number]);
+        assert!(
+            shapes[..number].iter().all(|other| other != shape),
+            "{}",
+            Method::NAMES[number]
+        );
+    }
+    command(&mut session, Command::Apply);
+    for key in [Key::G, Key::Y, Key::Num0, Key::Period, Key::Num1, Key::Enter] {
+        session.key(key, Modifiers::NONE);
+    }
+    session.settle();
+    let last = hash(&session);
+
+    let steps = session.harness.state().editor().history().names().1;
+    for _ in 0..steps {
+        session.key(Key::Z, Modifiers::COMMAND);
+    }
+    session.settle();
+    assert_eq!(hash(&session), first, "after undoing {steps} steps");
+    for _ in 0..steps {
+        session.key(Key::Z, Modifiers::COMMAND | Modifiers::SHIFT);
+    }
+    session.settle();
+    assert_eq!(hash(&session), last, "after redoing {steps} steps");
+
+    let folder = Folder::new();
+    let project = folder.path().join("session.pliant");
+    session.harness.state_mut().save_project_to(project.clone());
+    session.settle();
+    assert!(!session.harness.state().editor().view().unsaved);
+    session.harness.state_mut().open(assets().join("plane.glb"));
+    session.settle();
+    session.harness.state_mut().open(project);
+    session.settle();
+    assert_eq!(session.harness.state().headline(), None);
+    assert_eq!(hash(&session), last, "opened again");
 }

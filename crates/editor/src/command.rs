@@ -567,15 +567,6 @@ impl Command {
         listed(Command::CancelJobs, "Stop", "Stops what is being computed.", &[]),
     ];
 
-    /// The listed command that this key sends.
-    pub fn of_key(key: Key, modifiers: Modifiers) -> Option<Self> {
-        let pressed = Shortcut { modifiers, key };
-        Self::LISTED
-            .iter()
-            .find(|listed| listed.shortcuts.contains(&pressed))
-            .map(|listed| listed.command.clone())
-    }
-
     /// The entry of [`Command::LISTED`] for this command.
     pub fn listed(&self) -> Option<&'static Listed> {
         Self::LISTED.iter().find(|listed| listed.command == *self)

@@ -18,8 +18,8 @@ use crate::tool::{Tool, ToolMode};
 use crate::transaction::Transaction;
 use crate::{
     BRUSH_RADIUS_PX, Beginning, BrushMetric, Button, Camera, Command, Cursor, Depth, Descent, Event, Executor,
-    GizmoMode, GizmoOrientation, HandleTransform, JobDone, JobKind, Key, Modifiers, Pointer, Revision, SceneView,
-    Shading, StiffnessBrush, StrokeShape,
+    GizmoMode, GizmoOrientation, HandleTransform, JobDone, JobKind, Key, KeyMap, Modifiers, Pointer, Revision,
+    SceneView, Shading, Shortcut, StiffnessBrush, StrokeShape,
 };
 
 /// The program without a window.
@@ -66,6 +66,7 @@ pub struct Editor {
     pub(crate) shading: Shading,
     pub(crate) wireframe: bool,
     pub(crate) shows_regions: bool,
+    key_map: KeyMap,
     pub(crate) problem: Option<String>,
     /// How far the shape's descent is, where its method takes steps.
     pub(crate) descent: Option<Descent>,
@@ -118,6 +119,7 @@ impl Editor {
             shading: Shading::default(),
             wireframe: false,
             shows_regions: true,
+            key_map: KeyMap::default(),
             problem: None,
             descent: None,
             open_step: None,
@@ -188,6 +190,11 @@ impl Editor {
             unsaved: self.history.is_unsaved(),
             settled: self.is_settled(),
         }
+    }
+
+    /// The keys that send a listed command; the first is shown.
+    pub fn shortcuts(&self, command: &Command) -> &[Shortcut] {
+        self.key_map.shortcuts(command)
     }
 
     /// The document.
@@ -359,6 +366,7 @@ impl Editor {
             }
             Event::Key(key, modifiers) => self.key(key, modifiers),
             Event::Command(command) => self.execute(command),
+            Event::Keys(key_map) => self.key_map = key_map,
             Event::Adjust(command) => self.adjust(command),
             Event::Adjusted => self.adjusted(),
             Event::JobDone(done) => self.job_done(done),
@@ -394,7 +402,7 @@ impl Editor {
             self.problem = None;
             self.wants_new_handle = false;
             self.wants_pivot = false;
-        } else if let Some(command) = Command::of_key(key, modifiers) {
+        } else if let Some(command) = self.key_map.command(key, modifiers) {
             self.execute(command);
         }
     }

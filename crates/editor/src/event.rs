@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use pliant_mesh::Model;
 
-use crate::{Beginning, Command, JobDone};
+use crate::{Beginning, Command, JobDone, KeyMap};
 
 /// One thing that happened. No event carries the time: the editor has no clock.
 #[derive(Debug)]
@@ -46,6 +46,8 @@ pub enum Event {
     Key(Key, Modifiers),
     /// Something a menu, a button or the command palette asks for.
     Command(Command),
+    /// A person's choice of keys.
+    Keys(KeyMap),
     /// A widget is being dragged: what the command changes is shown, and becomes one step with all that follow it until
     /// [`Event::Adjusted`].
     Adjust(Command),

@@ -8,11 +8,12 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, CentralPanel, Panel, Sense};
 use glam::{DVec2, DVec3};
-use pliant_editor::{Command, Cursor, Editor, Event, JobQueue, Revision};
+use pliant_editor::{Command, Cursor, Editor, Event, JobQueue, KeyMap, Revision};
 
 use super::dialog::{self, Question, Then};
 use super::hints;
 use super::input::{Attention, Input};
+use super::keys_window::KeysWindow;
 use super::log::Log;
 use super::message::{Message, Opened, Posed};
 use super::notes::{Note, Notes};
@@ -49,6 +50,7 @@ pub struct Application {
     /// Whether this is a person's window, where the first steps are shown.
     shows_hints: bool,
     pub(super) log: Log,
+    pub(super) keys: KeysWindow,
     pub(super) question: Option<Question>,
     /// What to do once the save that was asked for first has ended.
     pub(super) after_saving: Option<Then>,
@@ -105,7 +107,7 @@ impl Application {
         }
         let mut session = Session::default();
         session.load(source, &viewport.gpu(), &workers);
-        Ok(Self {
+        let mut application = Self {
             editor: Editor::new(Box::new(workers.clone())),
             viewport,
             workers,
@@ -118,6 +120,7 @@ impl Application {
             palette: None,
             shows_hints: places.settings.is_some(),
             log: Log::default(),
+            keys: KeysWindow::default(),
             recovery,
             question: (!left.is_empty()).then_some(Question::Recover(left)),
             after_saving: None,
@@ -128,7 +131,9 @@ impl Application {
             longest_frame: Duration::ZERO,
             view_rect: egui::Rect::ZERO,
             title: String::new(),
-        })
+        };
+        application.take_keys();
+        Ok(application)
     }
 
     /// The editor, to look at.
@@ -343,6 +348,15 @@ impl Application {
         );
     }
 
+    /// Tells the editor which keys a person has chosen.
+    fn take_keys(&mut self) {
+        let (keys, problems) = KeyMap::of_names(&self.settings.get().keys);
+        self.editor.handle(Event::Keys(keys));
+        if !problems.is_empty() {
+            self.fail(problems.join(" "));
+        }
+    }
+
     fn show_palette(&mut self, context: &egui::Context) {
         let Some(palette) = &mut self.palette else { return };
         if let Outcome::Chosen(found) = palette.show(context, &self.editor) {
@@ -393,7 +407,10 @@ impl Application {
             pointer: ui.input(|input| input.pointer.latest_pos()).unwrap_or(rect.center()),
             pointer_over: response.contains_pointer() && self.question.is_none() && self.palette.is_none(),
             follows_pointer: self.editor.view().cursor == Cursor::Move,
-            keys: self.question.is_none() && self.palette.is_none() && !ui.ctx().egui_wants_keyboard_input(),
+            keys: self.question.is_none()
+                && self.palette.is_none()
+                && !self.keys.takes_keys()
+                && !ui.ctx().egui_wants_keyboard_input(),
         };
         let events = self.input.events(ui.ctx(), attention);
         if !events.is_empty() {
@@ -499,6 +516,9 @@ impl eframe::App for Application {
             self.log.say(sentence.as_deref().unwrap_or_default());
         }
         self.log.show(&context);
+        if self.keys.show(&context, &self.editor, &mut self.settings) {
+            self.take_keys();
+        }
         if let Some(answer) = self
             .question
             .as_mut()

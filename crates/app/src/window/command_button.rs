@@ -7,7 +7,7 @@ use pliant_editor::{Command, Editor};
 pub fn command_button(ui: &mut egui::Ui, editor: &Editor, command: &Command) -> bool {
     let Some(listed) = command.listed() else { return false };
     let mut button = Button::new(listed.name);
-    if let Some(shortcut) = listed.shortcuts.first() {
+    if let Some(shortcut) = editor.shortcuts(command).first() {
         button = button.shortcut_text(shortcut.label());
     }
     ui.add_enabled(editor.is_enabled(command), button)
@@ -18,7 +18,7 @@ pub fn command_button(ui: &mut egui::Ui, editor: &Editor, command: &Command) -> 
 /// The same as a choice that is marked while it holds.
 pub fn command_choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, chosen: bool) -> bool {
     let Some(listed) = command.listed() else { return false };
-    let tooltip = match listed.shortcuts.first() {
+    let tooltip = match editor.shortcuts(command).first() {
         Some(shortcut) => format!("{} ({})", listed.tooltip, shortcut.label()),
         None => listed.tooltip.to_owned(),
     };

@@ -88,6 +88,7 @@ impl Application {
             FileCommand::ExportEdit => dialog::choose(Purpose::ExportEdit, self.path(), &self.workers),
             FileCommand::Palette => self.palette = Some(Palette::default()),
             FileCommand::Log => self.log.open = true,
+            FileCommand::Keys => self.keys.open = true,
             FileCommand::NextTheme => {
                 self.settings.change(|settings| settings.theme = settings.theme.next());
                 theme::apply(context, self.settings.get());

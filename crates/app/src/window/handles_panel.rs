@@ -159,7 +159,8 @@ fn numbers(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
                     set(moved, rotation, scale)
                 });
                 let (x, y, z) = rotation.to_euler(EulerRot::XYZ);
-                let degrees = DVec3::new(x, y, z).map(f64::to_degrees);
+                // Adding 0 makes −0 a plain 0.
+                let degrees = DVec3::new(x, y, z).map(f64::to_degrees) + 0.0;
                 triple(ui, "Turn", degrees, 0.5, "°", commands, |degrees| {
                     let [x, y, z] = degrees.map(f64::to_radians).to_array();
                     set(translation, DQuat::from_euler(EulerRot::XYZ, x, y, z), scale)

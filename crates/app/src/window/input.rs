@@ -127,6 +127,19 @@ impl Input {
     }
 }
 
+/// The key that went down in this frame, with its modifiers, if it is one that the editor knows.
+pub fn pressed_key(input: &egui::InputState) -> Option<(Key, Modifiers)> {
+    input.events.iter().find_map(|event| match event {
+        egui::Event::Key {
+            key,
+            pressed: true,
+            modifiers,
+            ..
+        } => Some((key_of(*key)?, held_modifiers(*modifiers))),
+        _ => None,
+    })
+}
+
 fn held_modifiers(modifiers: egui::Modifiers) -> Modifiers {
     Modifiers {
         shift: modifiers.shift,

@@ -13,6 +13,7 @@ mod hints;
 mod history_panel;
 mod icon;
 mod input;
+mod keys_window;
 mod log;
 mod message;
 mod method_panel;

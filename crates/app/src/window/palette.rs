@@ -99,7 +99,11 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
     let listed = Command::LISTED.iter().map(|listed: &Listed| Entry {
         name: listed.name.to_owned(),
         tooltip: listed.tooltip.to_owned(),
-        shortcut: listed.shortcuts.first().map(|s| s.label()).unwrap_or_default(),
+        shortcut: editor
+            .shortcuts(&listed.command)
+            .first()
+            .map(|s| s.label())
+            .unwrap_or_default(),
         found: Found::Editor(listed.command.clone()),
         enabled: editor.is_enabled(&listed.command),
     });

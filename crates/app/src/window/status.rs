@@ -6,10 +6,23 @@ use pliant_editor::{Command, Editor};
 use super::notes::Note;
 use super::outbox::Outbox;
 
-/// What went wrong.
-const FAILED: Color32 = Color32::from_rgb(255, 138, 122);
-/// What went well.
-const DONE: Color32 = Color32::from_rgb(150, 210, 140);
+/// The colour of what went wrong, legible on a dim and on a bright ground.
+fn failed(ui: &egui::Ui) -> Color32 {
+    if ui.visuals().dark_mode {
+        Color32::from_rgb(255, 138, 122)
+    } else {
+        Color32::from_rgb(176, 32, 20)
+    }
+}
+
+/// The colour of what went well.
+fn done(ui: &egui::Ui) -> Color32 {
+    if ui.visuals().dark_mode {
+        Color32::from_rgb(150, 210, 140)
+    } else {
+        Color32::from_rgb(30, 108, 36)
+    }
+}
 
 /// Shows the line. True if the person asks to stop opening a file.
 pub fn show(
@@ -23,7 +36,7 @@ pub fn show(
     let view = editor.view();
     let mut stop_opening = false;
     if let Some(problem) = view.problem {
-        ui.add(egui::Label::new(RichText::new(problem).color(FAILED)).wrap());
+        ui.add(egui::Label::new(RichText::new(problem).color(failed(ui))).wrap());
     }
     if let Some(note) = headline.clone() {
         ui.horizontal(|ui| {
@@ -31,8 +44,8 @@ pub fn show(
                 *headline = None;
             }
             let (sentence, colour) = match note {
-                Note::Done(sentence) => (sentence, DONE),
-                Note::Failed(sentence) => (sentence, FAILED),
+                Note::Done(sentence) => (sentence, done(ui)),
+                Note::Failed(sentence) => (sentence, failed(ui)),
             };
             ui.add(egui::Label::new(RichText::new(sentence).color(colour)).wrap());
         });

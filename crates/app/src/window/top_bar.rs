@@ -29,6 +29,8 @@ pub enum FileCommand {
     Palette,
     /// Show what was said.
     Log,
+    /// Show the commands' keys, to be changed.
+    Keys,
     /// Light, dark, or as the system is.
     NextTheme,
     /// Everything larger (above 0) or smaller, in tenths.
@@ -66,12 +68,12 @@ impl FileCommand {
             Self::Palette => Some(KeyboardShortcut::new(Modifiers::NONE, Key::F1)),
             Self::Scale(1..) => command(Key::Num9),
             Self::Scale(_) => command(Key::Num0),
-            Self::SaveProjectAs | Self::Log | Self::NextTheme | Self::Hints | Self::OpenPath(_) => None,
+            Self::SaveProjectAs | Self::Log | Self::Keys | Self::NextTheme | Self::Hints | Self::OpenPath(_) => None,
         }
     }
 
     /// All that need no path, in the order of the menu.
-    pub const LISTED: [Self; 11] = [
+    pub const LISTED: [Self; 12] = [
         Self::Open,
         Self::Save,
         Self::SaveAs,
@@ -80,6 +82,7 @@ impl FileCommand {
         Self::ExportEdit,
         Self::Palette,
         Self::Log,
+        Self::Keys,
         Self::NextTheme,
         Self::Hints,
         Self::Quit,
@@ -95,6 +98,7 @@ impl FileCommand {
             Self::SaveProjectAs => "Save project as…",
             Self::Palette => "Find a command…",
             Self::Log => "Log…",
+            Self::Keys => "Keys…",
             Self::NextTheme => "Light or dark",
             Self::Scale(_) => "Size of everything",
             Self::Hints => "Hints on the canvas",
@@ -237,6 +241,7 @@ fn window_menu(ui: &mut egui::Ui, chosen: &mut Option<FileCommand>) {
     for (command, name) in [
         (FileCommand::Palette, None),
         (FileCommand::Log, None),
+        (FileCommand::Keys, None),
         (FileCommand::NextTheme, None),
         (FileCommand::Scale(1), Some("Larger")),
         (FileCommand::Scale(-1), Some("Smaller")),

@@ -1,0 +1,81 @@
+//! The list of commands and their keys, each of which can be changed by pressing another.
+
+use eframe::egui::{self, RichText, ScrollArea};
+use pliant_editor::{Command, Editor, Shortcut};
+
+use super::input::pressed_key;
+use super::settings::SettingsFile;
+
+/// The open list.
+#[derive(Debug, Default)]
+pub struct KeysWindow {
+    /// Whether it is open.
+    pub open: bool,
+    /// The command that waits for its key.
+    waiting: Option<&'static str>,
+}
+
+impl KeysWindow {
+    /// Whether the next key is meant for it.
+    pub fn takes_keys(&self) -> bool {
+        self.open && self.waiting.is_some()
+    }
+
+    /// Shows it, if it is open; true when a key was changed.
+    pub fn show(&mut self, context: &egui::Context, editor: &Editor, settings: &mut SettingsFile) -> bool {
+        let mut changed = false;
+        if let Some(name) = self.waiting
+            && let Some((key, modifiers)) = context.input(pressed_key)
+        {
+            self.waiting = None;
+            let key = Shortcut { modifiers, key };
+            settings.change(|settings| {
+                settings.keys.insert(name.to_owned(), vec![key.label()]);
+            });
+            changed = true;
+        }
+        let mut open = self.open;
+        egui::Window::new("Keys")
+            .open(&mut open)
+            .default_width(360.0)
+            .show(context, |ui| {
+                let others = !settings.get().keys.is_empty();
+                if ui
+                    .add_enabled(others, egui::Button::new("The program's own keys"))
+                    .clicked()
+                {
+                    settings.change(|settings| settings.keys.clear());
+                    changed = true;
+                }
+                ui.separator();
+                ScrollArea::vertical()
+                    .max_height(380.0)
+                    .auto_shrink(false)
+                    .show(ui, |ui| {
+                        egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
+                            for listed in Command::LISTED {
+                                ui.label(listed.name).on_hover_text(listed.tooltip);
+                                let keys = editor.shortcuts(&listed.command);
+                                let shown = match (self.waiting == Some(listed.name), keys.first()) {
+                                    (true, _) => "press a key".to_owned(),
+                                    (false, Some(key)) => key.label(),
+                                    (false, None) => "none".to_owned(),
+                                };
+                                let button = ui.button(RichText::new(shown).monospace());
+                                let label = format!("Key of {}", listed.name);
+                                button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
+                                if button.clicked() {
+                                    self.waiting = Some(listed.name);
+                                }
+                                ui.end_row();
+                            }
+                        });
+                    });
+            });
+        self.open = open;
+        if !open {
+            self.waiting = None;
+        }
+        changed
+    }
+}
