@@ -4,6 +4,7 @@
 //! a module in `bench` with a function from [`Scale`] to rows runs it with [`table::measured`] on the meshes of
 //! [`meshes`]; and [`SECTIONS`] names it. Printing and keeping are done here.
 
+mod arap;
 mod files;
 mod frames;
 mod linear;
@@ -45,6 +46,11 @@ const SECTIONS: &[Section] = &[
         name: "primo",
         title: "Coupled prisms on the survey's scenes, from the rest shape to 1% of the least energy: milliseconds",
         rows: primo::rows,
+    },
+    Section {
+        name: "arap",
+        title: "As rigid as possible beside libigl: milliseconds; energies without unit; distances in diagonals",
+        rows: arap::rows,
     },
     Section {
         name: "files",
