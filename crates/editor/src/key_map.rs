@@ -64,21 +64,19 @@ impl Shortcut {
     pub fn parse(text: &str) -> Option<Self> {
         let mut modifiers = Modifiers::NONE;
         let mut rest = text.trim();
-        loop {
-            // "Ctrl++" is Ctrl and the plus key.
-            let Some((word, after)) = rest
-                .split_once('+')
-                .filter(|(word, after)| !word.is_empty() && !after.is_empty())
-            else {
-                break;
-            };
-            match word.to_lowercase().as_str() {
+        // "Ctrl++" is Ctrl and the plus key.
+        let prefix = |text: &str| {
+            let (word, after) = text.split_once('+')?;
+            (!word.is_empty() && !after.is_empty()).then(|| (word.to_lowercase(), word.len() + 1))
+        };
+        while let Some((word, length)) = prefix(rest) {
+            match word.as_str() {
                 "ctrl" | "cmd" | "command" => modifiers.ctrl = true,
                 "alt" | "option" => modifiers.alt = true,
                 "shift" => modifiers.shift = true,
                 _ => return None,
             }
-            rest = after;
+            rest = &rest[length..];
         }
         let mut letters = rest.chars();
         let key = match (letters.next(), letters.next(), rest.to_lowercase().as_str()) {
