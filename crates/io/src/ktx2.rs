@@ -43,6 +43,22 @@ fn checked_size(encoded: &[u8]) -> Result<[u32; 2], &'static str> {
     if depth > 0 || layers > 1 || faces != 1 || !(1..=16).contains(&levels) {
         return Err("it is more than one image");
     }
+    // The descriptor, the keys and the codebooks: where each begins and how long it is.
+    let parts = (|| {
+        let (at, keys) = (u64::from(word(48)?), u64::from(word(56)?));
+        Some([
+            (at, u64::from(word(52)?)),
+            (keys, u64::from(word(60)?)),
+            (long(64)?, long(72)?),
+        ])
+    })();
+    let is_whole = |(start, length): &(u64, u64)| {
+        let end = start.checked_add(*length);
+        end.is_some_and(|end| end <= encoded.len() as u64)
+    };
+    if !parts.is_some_and(|parts| parts.iter().all(is_whole)) {
+        return Err("its parts are not what its header tells");
+    }
     for level in 0..levels {
         let at = LEVELS_AT + level as usize * LEVEL_BYTES;
         let (Some(offset), Some(length), Some(unpacked)) = (long(at), long(at + 8), long(at + 16)) else {

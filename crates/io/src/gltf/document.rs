@@ -250,6 +250,7 @@ impl Document {
             _ => {
                 let raw = String::from_utf8_lossy(self.json.raw(at))
                     .chars()
+                    .map(|letter| if letter.is_control() { ' ' } else { letter })
                     .take(24)
                     .collect::<String>();
                 Err(format!("{} {raw}, but there are {count}", what()))
