@@ -20,7 +20,7 @@ fn vs_background(@builtin(vertex_index) vertex: u32) -> BackgroundFragment {
 
 @fragment
 fn fs_background(in: BackgroundFragment) -> @location(0) vec4f {
-    let encoded = mix(frame.background_bottom.rgb, frame.background_top.rgb, smoothstep(0.0, 1.0, in.height));
+    let encoded = mix(frame.background_bottom.rgb, frame.background_top.rgb, smoothstep(0.0, 1.0, frame.background_span.x + frame.background_span.y * in.height));
     // Half a step of noise, so that the gradient has no bands (interleaved gradient noise, Jimenez 2014).
     let noise = fract(52.9829189 * fract(dot(floor(in.position_clip.xy), vec2f(0.06711056, 0.00583715))));
     return vec4f(linear_from_srgb(encoded + (noise - 0.5) / 255.0), 1.0);

@@ -1,7 +1,7 @@
-// Lines of a width in pixels: one instance a line, widened on the screen to a strip of two triangles, with borders
-// that fade over one pixel. Drawn twice, as triangles of the overlay are.
+// Lines above the surfaces, one instance a line. Drawn twice, as triangles of the overlay are.
 #include "lib/frame.wgsl"
 #include "lib/colour.wgsl"
+#include "lib/line.wgsl"
 
 struct OverlayLine {
     @location(0) start: vec3f,
@@ -13,57 +13,11 @@ struct OverlayLine {
     @location(5) end_colour: vec4f,
 }
 
-struct LineFragment {
-    @builtin(position) position_clip: vec4f,
-    @location(0) colour: vec4f,
-    // Distance from the line's middle, interpolated on the screen.
-    @location(1) @interpolate(linear) across_px: f32,
-    @location(2) half_width_px: f32,
-    @location(3) hidden_share: f32,
-}
-
-// `a`, or where it lies before the near plane (z > w), the point on the way to `b` that does not.
-fn before_the_eye(a: vec4f, b: vec4f) -> vec4f {
-    let inside_a = a.w - a.z;
-    let inside_b = b.w - b.z;
-    if inside_a >= 0.0 || inside_b <= 0.0 {
-        return a;
-    }
-    return mix(a, b, inside_a / (inside_a - inside_b));
-}
-
 @vertex
 fn vs_overlay_line(@builtin(vertex_index) corner: u32, line: OverlayLine) -> LineFragment {
-    let start_whole = frame.clip_from_world * vec4f(line.start, 1.0);
-    let end_whole = frame.clip_from_world * vec4f(line.end, 1.0);
-    let start_clip = before_the_eye(start_whole, end_whole);
-    let end_clip = before_the_eye(end_whole, start_whole);
-    let half_size_px = 0.5 * frame.size_px;
-    let start_px = start_clip.xy / max(start_clip.w, 1e-9) * half_size_px;
-    let end_px = end_clip.xy / max(end_clip.w, 1e-9) * half_size_px;
-    let along = end_px - start_px;
-    let length_px = length(along);
-    let direction = select(vec2f(1.0, 0.0), along / length_px, length_px > 1e-6);
-    let at_end = (corner & 1u) == 1u;
-    let side = select(-1.0, 1.0, (corner & 2u) == 2u);
-    // A pixel more on each side for the fading border.
-    let half_width_px = 0.5 * line.width_px;
-    let reach_px = half_width_px + 1.0;
-    let offset_px = vec2f(-direction.y, direction.x) * side * reach_px;
-
-    var out: LineFragment;
-    var position = select(start_clip, end_clip, at_end);
-    position = vec4f(position.xy + offset_px / half_size_px * position.w, position.z * 1.0015, position.w);
-    out.position_clip = position;
-    out.colour = premultiplied_from_srgb(select(line.start_colour, line.end_colour, at_end), 1.0);
-    out.across_px = side * reach_px;
-    out.half_width_px = half_width_px;
-    out.hidden_share = line.hidden_share;
-    return out;
-}
-
-fn coverage(in: LineFragment) -> f32 {
-    return clamp(in.half_width_px + 0.5 - abs(in.across_px), 0.0, 1.0);
+    let start_colour = premultiplied_from_srgb(line.start_colour, 1.0);
+    let end_colour = premultiplied_from_srgb(line.end_colour, 1.0);
+    return widened(corner, line.start, line.end, line.width_px, start_colour, end_colour, line.hidden_share);
 }
 
 @fragment

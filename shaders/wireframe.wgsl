@@ -1,6 +1,5 @@
 // A surface's edges as thin lines just before it.
 #include "lib/frame.wgsl"
-#include "lib/colour.wgsl"
 #include "lib/surface_vertex.wgsl"
 
 struct WireFragment {
@@ -11,7 +10,7 @@ struct WireFragment {
 @vertex
 fn vs_wireframe(@location(0) position: vec3f) -> WireFragment {
     var out: WireFragment;
-    out.position_clip = frame.clip_from_world * vec4f(position, 1.0);
+    out.position_clip = clip_from_vertex(position);
     // Depth grows towards the eye: a factor lifts the line off its own faces at any distance.
     out.position_clip.z *= 1.0006;
     // Edges of less than a few pixels would blacken the surface, so they fade.

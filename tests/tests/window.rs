@@ -13,9 +13,9 @@ use std::time::{Duration, Instant};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use glam::{DVec2, DVec3};
-use pliant_app::window::{Application, KeepOriginal, Source};
-use pliant_deform::Method;
-use pliant_editor::{BrushMetric, Command, Reach, ToolMode};
+use pliant_app::window::{Application, KeepOriginal, NumpadDigits, Shared, Shell, Source};
+use pliant_deform::{Loose, Method};
+use pliant_editor::{BrushMetric, Command, Reach, Shading, ToolMode};
 use pliant_tests::{Folder, assets, open, run};
 
 /// Drives the application as a person would.
@@ -412,4 +412,63 @@ fn a_whole_session_undone_redone_saved_and_opened_again_is_the_same_document_by_
     session.settle();
     assert_eq!(session.harness.state().headline(), None);
     assert_eq!(hash(&session), last, "opened again");
+}
+
+#[test]
+fn a_lost_graphics_device_is_opened_again_and_the_document_is_as_it_was() {
+    if let Err(error) = pliant_render::Headless::new() {
+        eprintln!("skipped: the window's session ({error})");
+        return;
+    }
+    let shared = Shared::default();
+    let window = || {
+        let shared = shared.clone();
+        Harness::builder()
+            .with_size(vec2(600.0, 400.0))
+            .with_max_steps(64)
+            .wgpu()
+            .build_eframe(move |context| {
+                Shell::new(
+                    context,
+                    shared,
+                    |context| Application::new(context, Source::Sample),
+                    NumpadDigits::default(),
+                )
+                .expect("the device was just there")
+            })
+    };
+    let settle = |harness: &mut Harness<'_, Shell>| {
+        let start = Instant::now();
+        harness.step();
+        while !shared.borrow().as_ref().unwrap().is_settled() {
+            assert!(start.elapsed() < Duration::from_secs(120), "still busy");
+            std::thread::sleep(Duration::from_millis(5));
+            harness.step();
+        }
+        harness.step();
+    };
+    let mut first = window();
+    settle(&mut first);
+    let with = |act: &dyn Fn(&mut Application)| act(shared.borrow_mut().as_mut().unwrap());
+    with(&|application| application.command(Command::SetLoose(Loose::Rest)));
+    with(&|application| application.command(Command::SetShading(Shading::Zebra)));
+    settle(&mut first);
+    with(&|application| application.lose_device());
+    first.step();
+    with(&|application| assert!(application.has_lost_its_device()));
+    drop(first);
+    let mut second = window();
+    settle(&mut second);
+    with(&|application| {
+        assert!(!application.has_lost_its_device());
+        assert!(
+            application.headline().unwrap().contains("lost"),
+            "{:?}",
+            application.headline()
+        );
+        let view = application.editor().view();
+        assert!(view.unsaved && view.undo.is_some() && view.look.shading == Shading::Zebra);
+        assert_eq!(application.editor().document().loose(), Loose::Rest);
+        assert!(application.drawings() > 0, "it is drawn on the new device");
+    });
 }

@@ -5,6 +5,8 @@ pub mod drawing;
 pub mod engine;
 mod error;
 pub mod files;
+mod legend;
+mod picture_file;
 pub mod report;
 mod staging;
 mod version;

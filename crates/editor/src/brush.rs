@@ -25,6 +25,8 @@ pub enum BrushMetric {
     Screen,
     /// What is no farther along the surface: into folds and round edges, seen or not.
     Surface,
+    /// Everything that the disc on the screen covers, however far behind.
+    Through,
 }
 
 /// How large the brush is, and how that is meant.
@@ -55,6 +57,9 @@ impl Brush {
         size: &BrushSize,
         mut visit: impl FnMut(SurfaceVertex, f64),
     ) {
+        if size.metric == BrushMetric::Through {
+            return sweep(picking, [from_px, to_px], size.radius_px, visit);
+        }
         let steps = ((to_px - from_px).length() / (size.radius_px * SPACING).max(1.0))
             .ceil()
             .max(1.0) as u32;
@@ -63,7 +68,9 @@ impl Brush {
             picking.at(position_px)
         });
         match size.metric {
-            BrushMetric::Screen => picks.for_each(|pick| self.dab(picking, &pick, size.radius_px, &mut visit)),
+            BrushMetric::Screen | BrushMetric::Through => {
+                picks.for_each(|pick| self.dab(picking, &pick, size.radius_px, &mut visit))
+            }
             BrushMetric::Surface => {
                 let picks: Vec<Pick> = picks.collect();
                 self.along_surface(picking, &picks, size.radius_px, &mut visit);
@@ -135,9 +142,35 @@ impl Brush {
     }
 }
 
+/// Calls `visit` for every vertex that appears within `radius_px` of the way from one point of the viewport to the
+/// other, whatever hides it.
+fn sweep(
+    picking: &Picking<'_>,
+    [from_px, to_px]: [DVec2; 2],
+    radius_px: f64,
+    mut visit: impl FnMut(SurfaceVertex, f64),
+) {
+    let along = to_px - from_px;
+    let length_squared = along.length_squared();
+    for vertex in (0..picking.model.surface.positions.len() as u32).map(SurfaceVertex) {
+        let Some(seen_px) = picking.camera.project(picking.position(vertex), picking.viewport_px) else {
+            continue;
+        };
+        let share = if length_squared > 0.0 {
+            ((seen_px - from_px).dot(along) / length_squared).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let off_px = seen_px.distance(from_px + along * share);
+        if off_px <= radius_px {
+            visit(vertex, off_px / radius_px);
+        }
+    }
+}
+
 /// Whether any triangle at the vertex shows the eye the side that was met.
 pub(crate) fn faces(picking: &Picking<'_>, vertex: SurfaceVertex, position: DVec3, front: bool) -> bool {
-    let sight = position - picking.camera.eye();
+    let sight = -picking.camera.towards_eye(position);
     picking.model.topology.faces(vertex).iter().any(|&face| {
         let [a, b, c] = picking.corners(face);
         let outward = (b - a).cross(c - a).dot(sight);
@@ -151,7 +184,7 @@ pub(crate) fn ring(picking: &Picking<'_>, position_px: DVec2, pick: &Pick, radiu
     let px = picking.camera.world_per_px(pick.point, picking.viewport_px);
     let radius = radius_px * px;
     // Lifted towards the eye, so that the surface does not swallow it.
-    let lifted = |point: DVec3| point + (picking.camera.eye() - point).normalize_or_zero() * px;
+    let lifted = |point: DVec3| point + picking.camera.towards_eye(point) * px;
     (0..RING_SEGMENTS)
         .map(|step| {
             let angle_rad = TAU * step as f64 / RING_SEGMENTS as f64;

@@ -1,11 +1,11 @@
-//! The eye: a perspective turntable in f64, so that it works at geographic coordinates too.
+//! The eye: it circles a target, in f64, so that it works at geographic coordinates too.
 //!
 //! View space looks along −z with x to the right and y up. Clip space has x and y in −1..1, y up, and reversed depth:
 //! 1 at the near plane and 0 infinitely far away, which spreads f32 depth evenly over any distance.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
-use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
+use glam::{DMat3, DMat4, DQuat, DVec2, DVec3, DVec4};
 
 /// Which axis of the world points up on the screen.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
@@ -62,6 +62,26 @@ impl NamedView {
     }
 }
 
+/// How depth looks.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum Projection {
+    /// What is farther away looks smaller.
+    #[default]
+    Perspective,
+    /// It does not: for comparing lengths. What is at the target's depth looks as large as in perspective.
+    Orthographic,
+}
+
+/// What dragging the view does.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum Orbit {
+    /// It turns about the up axis and tips; the horizon stays level.
+    #[default]
+    Turntable,
+    /// It rolls like a ball under the pointer.
+    Trackball,
+}
+
 /// As far up or down as the turntable tips: the poles themselves.
 const MAX_PITCH_RAD: f64 = FRAC_PI_2;
 /// How far the eye turns per point of dragging.
@@ -86,8 +106,12 @@ pub struct Camera {
     pub yaw_rad: f64,
     /// Height above the horizon, −π/2 to π/2.
     pub pitch_rad: f64,
-    /// The angle of the view's height.
+    /// Turn about the line of sight; 0 keeps the horizon level, growing turns the picture clockwise.
+    pub roll_rad: f64,
+    /// The angle of the view's height; an orthographic view shows as much at the target's depth.
     pub fov_y_rad: f64,
+    /// How depth looks.
+    pub projection: Projection,
     /// Which axis points up.
     pub up: UpAxis,
     /// The size of what was framed last, in world units: bounds zooming.
@@ -102,7 +126,9 @@ impl Default for Camera {
             distance: 3.0,
             yaw_rad,
             pitch_rad,
+            roll_rad: 0.0,
             fov_y_rad: FRAC_PI_4 * 0.9,
+            projection: Projection::Perspective,
             up: UpAxis::Y,
             scale: 1.0,
         }
@@ -122,7 +148,9 @@ impl Camera {
     /// Whether it can be looked through: everything finite, distances above zero.
     pub(crate) fn is_usable(&self) -> bool {
         self.target.is_finite()
-            && [self.yaw_rad, self.pitch_rad].iter().all(|angle| angle.is_finite())
+            && [self.yaw_rad, self.pitch_rad, self.roll_rad]
+                .iter()
+                .all(|angle| angle.is_finite())
             && [self.distance, self.scale]
                 .iter()
                 .all(|length| length.is_finite() && *length > 0.0)
@@ -154,16 +182,29 @@ impl Camera {
         )
     }
 
-    /// Clip from view for a viewport of this size: reversed depth, infinitely far.
+    /// Clip from view for a viewport of this size: reversed depth; infinitely far in perspective, else as far before
+    /// and behind the target as anything is likely to be.
     pub fn clip_from_view(&self, viewport_px: DVec2) -> DMat4 {
         let focal = 1.0 / (0.5 * self.fov_y_rad).tan();
         let aspect = viewport_px.x / viewport_px.y;
-        DMat4::from_cols(
-            DVec4::new(focal / aspect, 0.0, 0.0, 0.0),
-            DVec4::new(0.0, focal, 0.0, 0.0),
-            DVec4::new(0.0, 0.0, 0.0, -1.0),
-            DVec4::new(0.0, 0.0, self.near(), 0.0),
-        )
+        match self.projection {
+            Projection::Perspective => DMat4::from_cols(
+                DVec4::new(focal / aspect, 0.0, 0.0, 0.0),
+                DVec4::new(0.0, focal, 0.0, 0.0),
+                DVec4::new(0.0, 0.0, 0.0, -1.0),
+                DVec4::new(0.0, 0.0, self.near(), 0.0),
+            ),
+            Projection::Orthographic => {
+                let scale = focal / self.distance;
+                let depth_scale = 0.5 / self.reach();
+                DMat4::from_cols(
+                    DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
+                    DVec4::new(0.0, scale, 0.0, 0.0),
+                    DVec4::new(0.0, 0.0, depth_scale, 0.0),
+                    DVec4::new(0.0, 0.0, (self.distance + self.reach()) * depth_scale, 1.0),
+                )
+            }
+        }
     }
 
     /// Clip from world for a viewport of this size. For GPU positions relative to a centre, multiply by the
@@ -177,6 +218,11 @@ impl Camera {
         (self.distance * 1e-3).max(self.scale * 1e-6)
     }
 
+    /// How far before and behind the target an orthographic view shows things.
+    fn reach(&self) -> f64 {
+        1.5 * self.scale + 3.0 * self.distance * (0.5 * self.fov_y_rad).tan()
+    }
+
     /// Where the eye is, in world space.
     pub fn eye(&self) -> DVec3 {
         self.target + self.axes().z_axis * self.distance
@@ -187,8 +233,28 @@ impl Camera {
         -self.axes().z_axis
     }
 
+    /// The unit vector towards the eye from a point of the world.
+    pub fn towards_eye(&self, world: DVec3) -> DVec3 {
+        let backward = self.axes().z_axis;
+        match self.projection {
+            Projection::Perspective => (self.eye() - world).normalize_or(backward),
+            Projection::Orthographic => backward,
+        }
+    }
+
     /// The view's right, up and backward axes in world space, as columns: a rotation.
     pub fn axes(&self) -> DMat3 {
+        let level = self.level_axes();
+        let (sin, cos) = self.roll_rad.sin_cos();
+        DMat3::from_cols(
+            level.x_axis * cos + level.y_axis * sin,
+            level.y_axis * cos - level.x_axis * sin,
+            level.z_axis,
+        )
+    }
+
+    /// The axes without roll.
+    fn level_axes(&self) -> DMat3 {
         let (sin_yaw, cos_yaw) = self.yaw_rad.sin_cos();
         let (sin_pitch, cos_pitch) = self.pitch_rad.sin_cos();
         // With y up: the eye stands at (sin yaw cos pitch, sin pitch, cos yaw cos pitch) from the target.
@@ -209,17 +275,27 @@ impl Camera {
     /// The ray through a point of the viewport.
     pub fn ray(&self, position_px: DVec2, viewport_px: DVec2) -> Ray {
         let offset = DVec2::new(position_px.x - 0.5 * viewport_px.x, 0.5 * viewport_px.y - position_px.y);
-        let in_view = (offset / self.focal_px(viewport_px)).extend(-1.0).normalize();
-        Ray {
-            origin: self.eye(),
-            direction: self.axes() * in_view,
+        let slope = offset / self.focal_px(viewport_px);
+        let axes = self.axes();
+        match self.projection {
+            Projection::Perspective => Ray {
+                origin: self.eye(),
+                direction: axes * slope.extend(-1.0).normalize(),
+            },
+            Projection::Orthographic => Ray {
+                origin: self.target + axes * (slope * self.distance).extend(self.reach()),
+                direction: -axes.z_axis,
+            },
         }
     }
 
     /// Where a point of the world appears in the viewport; `None` behind the eye.
     pub fn project(&self, world: DVec3, viewport_px: DVec2) -> Option<DVec2> {
         let in_view = self.axes().transpose() * (world - self.eye());
-        let depth = -in_view.z;
+        let depth = match self.projection {
+            Projection::Perspective => -in_view.z,
+            Projection::Orthographic => self.distance,
+        };
         if depth <= 0.0 {
             return None;
         }
@@ -232,14 +308,47 @@ impl Camera {
 
     /// World units that one point of the screen spans at the depth of `world` (never below that of the near plane).
     pub fn world_per_px(&self, world: DVec3, viewport_px: DVec2) -> f64 {
-        let depth = (world - self.eye()).dot(self.forward()).max(self.near());
+        let depth = match self.projection {
+            Projection::Perspective => (world - self.eye()).dot(self.forward()).max(self.near()),
+            Projection::Orthographic => self.distance,
+        };
         depth / self.focal_px(viewport_px)
     }
 
     /// Circles the target as the pointer moves by `delta_px`.
-    pub fn orbit(&mut self, delta_px: DVec2) {
-        self.yaw_rad = (self.yaw_rad - delta_px.x * ORBIT_RAD_PER_PX).rem_euclid(TAU);
-        self.pitch_rad = (self.pitch_rad + delta_px.y * ORBIT_RAD_PER_PX).clamp(-MAX_PITCH_RAD, MAX_PITCH_RAD);
+    pub fn orbit(&mut self, orbit: Orbit, delta_px: DVec2) {
+        match orbit {
+            Orbit::Turntable => self.turn(delta_px * ORBIT_RAD_PER_PX),
+            Orbit::Trackball => self.roll_ball(delta_px * ORBIT_RAD_PER_PX),
+        }
+    }
+
+    /// Turns the table to the right and tips it down, by radians, and levels the horizon.
+    pub fn turn(&mut self, angles_rad: DVec2) {
+        self.roll_rad = 0.0;
+        self.yaw_rad = (self.yaw_rad - angles_rad.x).rem_euclid(TAU);
+        self.pitch_rad = (self.pitch_rad + angles_rad.y).clamp(-MAX_PITCH_RAD, MAX_PITCH_RAD);
+    }
+
+    /// Turns about the view's own axes, by radians, wherever up then is.
+    fn roll_ball(&mut self, angles_rad: DVec2) {
+        let turn = DQuat::from_scaled_axis(DVec3::new(-angles_rad.y, -angles_rad.x, 0.0));
+        let turned = self.axes() * DMat3::from_quat(turn);
+        let backward = match self.up {
+            UpAxis::Y => turned.z_axis,
+            UpAxis::Z => DVec3::new(turned.z_axis.x, turned.z_axis.z, -turned.z_axis.y),
+        };
+        self.pitch_rad = backward.y.clamp(-1.0, 1.0).asin();
+        self.yaw_rad = backward.x.atan2(backward.z).rem_euclid(TAU);
+        let level = self.level_axes();
+        self.roll_rad = turned.x_axis.dot(level.y_axis).atan2(turned.x_axis.dot(level.x_axis));
+    }
+
+    /// Looks from the other side.
+    pub fn turn_around(&mut self) {
+        self.yaw_rad = (self.yaw_rad + PI).rem_euclid(TAU);
+        self.pitch_rad = -self.pitch_rad;
+        self.roll_rad = -self.roll_rad;
     }
 
     /// Moves eye and target across the view, so that what lies at `anchor`'s depth stays under the pointer.
@@ -284,11 +393,16 @@ impl Camera {
         let slope_y = (0.5 * self.fov_y_rad).tan() / FRAME_MARGIN;
         let slope_x = slope_y * viewport_px.x / viewport_px.y;
         let least = if size > 0.0 { 1e-3 * size } else { self.scale };
+        // Without perspective nothing looks larger because it is near.
+        let nearness = match self.projection {
+            Projection::Perspective => 1.0,
+            Projection::Orthographic => 0.0,
+        };
         let distance = |centre: DVec3, stride: usize| {
             let nearest = positions.iter().step_by(stride).map(|position| {
                 // It lies `distance − seen.z` before the eye, which must see it within the slopes.
                 let seen = seen(position) - centre;
-                seen.z + (seen.x.abs() / slope_x).max(seen.y.abs() / slope_y)
+                nearness * seen.z + (seen.x.abs() / slope_x).max(seen.y.abs() / slope_y)
             });
             nearest.fold(least, f64::max)
         };
@@ -298,7 +412,7 @@ impl Camera {
             let from_eye = distance(centre, stride);
             let slopes = positions.iter().step_by(stride).map(|position| {
                 let seen = seen(position) - centre;
-                seen.truncate() / (from_eye - seen.z).max(1e-9 * from_eye)
+                seen.truncate() / (from_eye - nearness * seen.z).max(1e-9 * from_eye)
             });
             let (low, high) = slopes.fold((DVec2::MAX, DVec2::MIN), |(low, high), slope| {
                 (low.min(slope), high.max(slope))
@@ -312,6 +426,7 @@ impl Camera {
     /// Looks from a named side.
     pub fn look_from(&mut self, view: NamedView) {
         (self.yaw_rad, self.pitch_rad) = view.angles_rad();
+        self.roll_rad = 0.0;
     }
 
     /// Points of the screen per unit of view-space slope.
@@ -325,20 +440,24 @@ impl Camera {
 mod tests {
     use glam::{DVec2, DVec3};
 
-    use super::{Camera, NamedView, UpAxis};
+    use super::{Camera, NamedView, Orbit, Projection, UpAxis};
 
     const VIEWPORT_PX: DVec2 = DVec2::new(800.0, 500.0);
 
     fn cameras() -> Vec<Camera> {
         let mut cameras = Vec::new();
-        for up in [UpAxis::Y, UpAxis::Z] {
-            for (_, view) in NamedView::NAMES {
+        let kinds =
+            [UpAxis::Y, UpAxis::Z].map(|up| [Projection::Perspective, Projection::Orthographic].map(|p| (up, p)));
+        for (up, projection) in kinds.into_iter().flatten() {
+            for (number, (_, view)) in NamedView::NAMES.into_iter().enumerate() {
                 let mut camera = Camera {
                     up,
+                    projection,
                     target: DVec3::new(5e5, -3.0, 4e6),
                     ..Camera::default()
                 };
                 camera.look_from(view);
+                camera.roll_rad = 0.3 * number as f64;
                 cameras.push(camera);
             }
         }
@@ -415,6 +534,50 @@ mod tests {
                     assert!(fills < 1.0 && fills > 0.8, "{fills}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_ball_rolls_about_the_views_own_axes_from_anywhere() {
+        for mut camera in cameras() {
+            let before = camera.axes();
+            camera.orbit(Orbit::Trackball, DVec2::new(30.0, 0.0));
+            let after = camera.axes();
+            assert!(
+                after.y_axis.distance(before.y_axis) < 1e-9,
+                "sideways it turns about what is up on the screen"
+            );
+            assert!((after.z_axis.dot(before.z_axis) - (30.0 * super::ORBIT_RAD_PER_PX).cos()).abs() < 1e-9);
+            camera.orbit(Orbit::Trackball, DVec2::new(-30.0, 0.0));
+            camera.orbit(Orbit::Trackball, DVec2::new(0.0, 400.0));
+            assert!(
+                camera.axes().x_axis.distance(before.x_axis) < 1e-9,
+                "over the pole and on"
+            );
+            camera.orbit(Orbit::Trackball, DVec2::new(0.0, -400.0));
+            for axis in 0..3 {
+                assert!(camera.axes().col(axis).distance(before.col(axis)) < 1e-9);
+            }
+            camera.turn_around();
+            assert!(camera.forward().distance(before.z_axis) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn both_projections_agree_at_the_targets_depth() {
+        for camera in cameras() {
+            let other = match camera.projection {
+                Projection::Perspective => Projection::Orthographic,
+                Projection::Orthographic => Projection::Perspective,
+            };
+            let flat = Camera {
+                projection: other,
+                ..camera
+            };
+            let axes = camera.axes();
+            let world = camera.target + axes.x_axis * 0.4 - axes.y_axis * 0.3;
+            let [a, b] = [camera, flat].map(|camera| camera.project(world, VIEWPORT_PX).unwrap());
+            assert!(a.distance(b) < 1e-5, "{a} {b}");
         }
     }
 

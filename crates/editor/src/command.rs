@@ -73,8 +73,24 @@ pub enum Command {
     SetUp(crate::UpAxis),
     /// How the surface is shaded.
     SetShading(Shading),
+    /// Shades the surface like this clay.
+    SetClay(crate::Clay),
+    /// Shows each triangle flat, or normals interpolated.
+    ToggleFlat,
     /// Shows or hides the wireframe.
     ToggleWireframe,
+    /// Marks edges that a closed surface lacks, or not.
+    ToggleBorders,
+    /// Shows or hides the ground's grid.
+    ToggleGrid,
+    /// Changes between perspective and orthographic.
+    ToggleProjection,
+    /// What dragging the view does.
+    SetOrbit(crate::Orbit),
+    /// Turns the view by steps of 15 degrees, to the right and down.
+    StepView([i8; 2]),
+    /// Looks from the other side.
+    TurnAround,
     /// Shows or hides the regions' colours over clay and material.
     ToggleRegions,
     /// What the gizmo offers.
@@ -185,6 +201,7 @@ impl Shortcut {
             Key::Delete => label.push_str("Delete"),
             Key::Home => label.push_str("Home"),
             Key::Tab => label.push_str("Tab"),
+            Key::Numpad(digit) => label.push_str(&format!("Num {digit}")),
         }
         label
     }
@@ -214,6 +231,14 @@ const fn listed(command: Command, name: &'static str, tooltip: &'static str, sho
 
 const fn character(character: char) -> Shortcut {
     Shortcut::plain(Key::Character(character))
+}
+
+const fn numpad(digit: u8) -> Shortcut {
+    Shortcut::plain(Key::Numpad(digit))
+}
+
+const fn ctrl_numpad(digit: u8) -> Shortcut {
+    Shortcut::with(Modifiers::CTRL, Key::Numpad(digit))
 }
 
 impl Command {
@@ -551,6 +576,150 @@ impl Command {
             "Material",
             "Shades the surface with the file's materials.",
             &[],
+        ),
+        listed(
+            Command::SetShading(Shading::Stretch),
+            "Edge stretch",
+            "Colours the surface by how much longer or shorter its edges are than at rest.",
+            &[],
+        ),
+        listed(
+            Command::SetShading(Shading::Area),
+            "Area change",
+            "Colours the surface by how much larger or smaller it is than at rest.",
+            &[],
+        ),
+        listed(
+            Command::SetShading(Shading::Stiffness),
+            "Stiffness",
+            "Colours the surface by how stiff it was painted.",
+            &[],
+        ),
+        listed(
+            Command::SetShading(Shading::Curvature),
+            "Curvature",
+            "Colours the surface by its mean curvature: red bulges, blue is hollow.",
+            &[],
+        ),
+        listed(
+            Command::SetShading(Shading::Zebra),
+            "Zebra stripes",
+            "Mirrors stripes in the surface: they break at creases and kink where curvature jumps.",
+            &[],
+        ),
+        listed(
+            Command::SetShading(Shading::Normals),
+            "Normals",
+            "Colours the surface by the direction in which it faces.",
+            &[],
+        ),
+        listed(
+            Command::ToggleFlat,
+            "Flat faces",
+            "Shows each triangle flat, or normals interpolated.",
+            &[],
+        ),
+        listed(
+            Command::ToggleBorders,
+            "Borders",
+            "Marks edges where the surface ends, and those that more than two triangles share.",
+            &[],
+        ),
+        listed(
+            Command::ToggleGrid,
+            "Ground grid",
+            "Shows or hides the ground's grid.",
+            &[],
+        ),
+        listed(
+            Command::ToggleProjection,
+            "Orthographic",
+            "Changes between perspective and a view in which distance does not matter.",
+            &[numpad(5)],
+        ),
+        listed(
+            Command::SetOrbit(crate::Orbit::Turntable),
+            "Turntable",
+            "Dragging turns the view about the up axis; the horizon stays level.",
+            &[],
+        ),
+        listed(
+            Command::SetOrbit(crate::Orbit::Trackball),
+            "Trackball",
+            "Dragging rolls the view like a ball.",
+            &[],
+        ),
+        listed(
+            Command::StepView([1, 0]),
+            "Turn left",
+            "Turns the view by 15°.",
+            &[numpad(4)],
+        ),
+        listed(
+            Command::StepView([-1, 0]),
+            "Turn right",
+            "Turns the view by 15°.",
+            &[numpad(6)],
+        ),
+        listed(
+            Command::StepView([0, 1]),
+            "Turn up",
+            "Turns the view by 15°.",
+            &[numpad(8)],
+        ),
+        listed(
+            Command::StepView([0, -1]),
+            "Turn down",
+            "Turns the view by 15°.",
+            &[numpad(2)],
+        ),
+        listed(
+            Command::TurnAround,
+            "Other side",
+            "Looks from the other side.",
+            &[numpad(9)],
+        ),
+        listed(
+            Command::View(crate::NamedView::Front),
+            "From front",
+            "Looks from the front.",
+            &[numpad(1)],
+        ),
+        listed(
+            Command::View(crate::NamedView::Back),
+            "From back",
+            "Looks from behind.",
+            &[ctrl_numpad(1)],
+        ),
+        listed(
+            Command::View(crate::NamedView::Left),
+            "From left",
+            "Looks from the left.",
+            &[ctrl_numpad(3)],
+        ),
+        listed(
+            Command::View(crate::NamedView::Right),
+            "From right",
+            "Looks from the right.",
+            &[numpad(3)],
+        ),
+        listed(
+            Command::View(crate::NamedView::Top),
+            "From top",
+            "Looks from above.",
+            &[numpad(7)],
+        ),
+        listed(
+            Command::View(crate::NamedView::Bottom),
+            "From bottom",
+            "Looks from below.",
+            &[ctrl_numpad(7)],
+        ),
+        listed(
+            Command::View(crate::NamedView::ThreeQuarter),
+            "Three-quarter",
+            "Looks from the front, the right and above.",
+            &[numpad(0)],
         ),
         listed(
             Command::ToggleRegions,

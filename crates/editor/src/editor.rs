@@ -18,8 +18,8 @@ use crate::tool::{Tool, ToolMode};
 use crate::transaction::Transaction;
 use crate::{
     BRUSH_RADIUS_PX, Beginning, BrushMetric, Button, Camera, Command, Cursor, Depth, Descent, Event, Executor,
-    GizmoMode, GizmoOrientation, HandleTransform, JobDone, JobKind, Key, KeyMap, Modifiers, Pointer, Revision,
-    SceneView, Shading, Shortcut, StiffnessBrush, StrokeShape,
+    GizmoMode, GizmoOrientation, HandleTransform, JobDone, JobKind, Key, KeyMap, Look, Modifiers, Orbit, Pointer,
+    Readout, Revision, SceneView, Shortcut, StiffnessBrush, StrokeShape,
 };
 
 /// The program without a window.
@@ -63,9 +63,8 @@ pub struct Editor {
     pub(crate) companions: Vec<HandleId>,
     pub(crate) selected: Option<HandleId>,
     pub(crate) wants_new_handle: bool,
-    pub(crate) shading: Shading,
-    pub(crate) wireframe: bool,
-    pub(crate) shows_regions: bool,
+    pub(crate) look: Look,
+    pub(crate) orbit: Orbit,
     key_map: KeyMap,
     pub(crate) problem: Option<String>,
     /// How far the shape's descent is, where its method takes steps.
@@ -116,9 +115,8 @@ impl Editor {
             companions: Vec::new(),
             selected: None,
             wants_new_handle: false,
-            shading: Shading::default(),
-            wireframe: false,
-            shows_regions: true,
+            look: Look::default(),
+            orbit: Orbit::default(),
             key_map: KeyMap::default(),
             problem: None,
             descent: None,
@@ -161,9 +159,9 @@ impl Editor {
             camera_revision: self.camera_revision,
             brush_ring: &self.overlay.ring,
             gizmo: &self.overlay.gizmo,
-            shading: self.shading,
-            wireframe: self.wireframe,
-            regions: self.shows_regions,
+            look: self.look,
+            orbit: self.orbit,
+            readout: self.readout(),
             tool: self.mode,
             cursor: self.cursor(),
             outline_px: match &self.tool {
@@ -280,6 +278,13 @@ impl Editor {
         let transaction = self.begin(name);
         act(self);
         transaction.commit(&self.document, &mut self.history)
+    }
+
+    fn readout(&self) -> Option<Readout> {
+        match &self.tool {
+            Tool::Transform(drag) => drag.readout(self),
+            _ => None,
+        }
     }
 
     /// Puts a handle somewhere, in the document as it stands: the surface follows as soon as it can.

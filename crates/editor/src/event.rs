@@ -151,4 +151,6 @@ pub enum Key {
     Home,
     /// Tab.
     Tab,
+    /// A digit of the numeric pad.
+    Numpad(u8),
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use glam::DVec2;
 use pliant_mesh::SurfaceVertex;
 
 use crate::camera_history::CameraStep;
@@ -11,10 +12,12 @@ use crate::document::{Handle, HandleId, Paint};
 use crate::editor::Editor;
 use crate::exchange::without_pivot;
 use crate::tool::{Tool, TransformDrag, TransformKind, Widen};
-use crate::{HandleTransform, SOFT_RANGE, STIFFNESS_RANGE};
+use crate::{HandleTransform, Orbit, Projection, SOFT_RANGE, STIFFNESS_RANGE};
 
 /// The factor by which a key sizes the brush.
 const BRUSH_STEP: f64 = 1.2;
+/// How far a key turns the view: 15 degrees.
+const VIEW_STEP_RAD: f64 = std::f64::consts::PI / 12.0;
 
 impl Editor {
     /// Whether the command would do anything now.
@@ -71,13 +74,21 @@ impl Editor {
             | Command::View(_)
             | Command::SetUp(_)
             | Command::SetShading(_)
+            | Command::SetClay(_)
+            | Command::ToggleFlat
             | Command::ToggleWireframe
+            | Command::ToggleBorders
             | Command::ToggleRegions
             | Command::SetOrientation(_)
             | Command::SetStrokeShape(_)
             | Command::SetDepth(_)
             | Command::SetBrushMetric(_)
             | Command::SetStiffnessBrush(_)
+            | Command::ToggleGrid
+            | Command::ToggleProjection
+            | Command::SetOrbit(_)
+            | Command::StepView(_)
+            | Command::TurnAround
             | Command::SetGizmo(_) => true,
         }
     }
@@ -187,9 +198,36 @@ impl Editor {
                 self.is_framed = false;
             }
             Command::SetUp(up) => self.camera.up = up,
-            Command::SetShading(shading) => self.shading = shading,
-            Command::ToggleWireframe => self.wireframe = !self.wireframe,
-            Command::ToggleRegions => self.shows_regions = !self.shows_regions,
+            Command::SetShading(shading) => self.look.shading = shading,
+            Command::SetClay(clay) => {
+                self.look.clay = clay;
+                self.look.shading = crate::Shading::Clay;
+            }
+            Command::ToggleFlat => self.look.flat = !self.look.flat,
+            Command::ToggleWireframe => self.look.wireframe = !self.look.wireframe,
+            Command::ToggleBorders => self.look.borders = !self.look.borders,
+            Command::ToggleRegions => self.look.regions = !self.look.regions,
+            Command::ToggleGrid => self.look.grid = !self.look.grid,
+            Command::ToggleProjection => {
+                self.camera.projection = match self.camera.projection {
+                    Projection::Perspective => Projection::Orthographic,
+                    Projection::Orthographic => Projection::Perspective,
+                };
+            }
+            Command::SetOrbit(orbit) => {
+                self.orbit = orbit;
+                if orbit == Orbit::Turntable {
+                    self.camera.roll_rad = 0.0;
+                }
+            }
+            Command::StepView(steps) => {
+                self.camera.turn(DVec2::from(steps.map(f64::from)) * VIEW_STEP_RAD);
+                self.is_framed = false;
+            }
+            Command::TurnAround => {
+                self.camera.turn_around();
+                self.is_framed = false;
+            }
             Command::SetGizmo(mode) => self.gizmo_mode = mode,
             Command::SetOrientation(orientation) => self.orientation = orientation,
             Command::SetStrokeShape(shape) => {

@@ -111,7 +111,7 @@ pub fn gizmo_shapes(
     highlighted: Option<GizmoPart>,
 ) -> Vec<GizmoShape> {
     let px = camera.world_per_px(centre, viewport_px);
-    let to_eye = (camera.eye() - centre).normalize_or(DVec3::Z);
+    let to_eye = camera.towards_eye(centre);
     let mut shapes = Vec::new();
     let mut add = |part: GizmoPart, axis: Option<usize>, lines: Vec<[DVec3; 2]>, triangles: Vec<[DVec3; 3]>| {
         let highlighted = highlighted == Some(part);

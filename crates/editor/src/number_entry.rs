@@ -12,6 +12,10 @@ pub(crate) struct NumberEntry {
 impl NumberEntry {
     /// Takes a key; false if it types no number.
     pub(crate) fn take(&mut self, key: Key) -> bool {
+        let key = match key {
+            Key::Numpad(digit) => Key::Character(char::from(b'0' + digit.min(9))),
+            key => key,
+        };
         match key {
             Key::Character(digit) if digit.is_ascii_digit() && self.digits.len() < 15 => self.digits.push(digit),
             Key::Character('.' | ',') if !self.digits.contains('.') => self.digits.push('.'),

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use crate::camera::UpAxis;
+use crate::camera::{Projection, UpAxis};
 use crate::document::{Document, Handle, HandleId, MirrorPlane, Paint, PivotPlace, Twin};
 use crate::edit_error::EditError;
 use crate::edit_node::Node;
@@ -141,6 +141,18 @@ struct StoredCamera {
     fov_y_rad: f64,
     up: StoredUp,
     scale: f64,
+    #[serde(default)]
+    roll_rad: f64,
+    #[serde(default)]
+    projection: StoredProjection,
+}
+
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum StoredProjection {
+    #[default]
+    Perspective,
+    Orthographic,
 }
 
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
@@ -521,6 +533,11 @@ impl StoredCamera {
                 UpAxis::Z => StoredUp::Z,
             },
             scale: camera.scale,
+            roll_rad: camera.roll_rad,
+            projection: match camera.projection {
+                Projection::Perspective => StoredProjection::Perspective,
+                Projection::Orthographic => StoredProjection::Orthographic,
+            },
         }
     }
 
@@ -536,6 +553,11 @@ impl StoredCamera {
                 StoredUp::Z => UpAxis::Z,
             },
             scale: self.scale,
+            roll_rad: self.roll_rad,
+            projection: match self.projection {
+                StoredProjection::Perspective => Projection::Perspective,
+                StoredProjection::Orthographic => Projection::Orthographic,
+            },
         }
     }
 }

@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::Model;
 
 use crate::{
-    BrushMetric, Camera, Depth, GizmoOrientation, GizmoShape, Handle, HandleId, JobKind, StiffnessBrush, StrokeShape,
-    ToolMode,
+    BrushMetric, Camera, Depth, GizmoOrientation, GizmoShape, Handle, HandleId, JobKind, Look, Orbit, StiffnessBrush,
+    StrokeShape, ToolMode,
 };
 
 /// Everything the 3D view and the panels around it show.
@@ -36,12 +36,12 @@ pub struct SceneView<'a> {
     pub brush_ring: &'a [DVec3],
     /// The selected handle's gizmo, in world space; empty where none is shown.
     pub gizmo: &'a [GizmoShape],
-    /// How the surface is shaded.
-    pub shading: Shading,
-    /// Whether the triangles' edges are shown.
-    pub wireframe: bool,
-    /// Whether the regions' colours are shown.
-    pub regions: bool,
+    /// How the surface is shown.
+    pub look: Look,
+    /// What dragging the view does.
+    pub orbit: Orbit,
+    /// How far, by what angle or factor the transform that goes on has come.
+    pub readout: Option<Readout>,
     /// What the left button does on the surface.
     pub tool: ToolMode,
     /// What the pointer should look like.
@@ -99,14 +99,13 @@ pub struct Counts {
     pub handle: usize,
 }
 
-/// How the surface is shaded.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
-pub enum Shading {
-    /// Plain clay.
-    #[default]
-    Clay,
-    /// The file's materials.
-    Material,
+/// A number to be shown beside what it is about, while something is dragged.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Readout {
+    /// Where, in world space.
+    pub at: DVec3,
+    /// The number with its unit or sign.
+    pub text: String,
 }
 
 /// What the pointer should look like over the view.

@@ -42,6 +42,40 @@ fn for_each_edge(triangles: &[[u32; 3]], mut visit: impl FnMut(u32, u32)) {
     }
 }
 
+/// An edge that a closed, well-behaved surface does not have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Odd {
+    /// One triangle has it: the surface ends there.
+    Border([u32; 2]),
+    /// More than two triangles have it.
+    Branching([u32; 2]),
+}
+
+/// The edges that one triangle has, or more than two, in the order of [`unique_edges`]. `twins` gives each vertex the
+/// lowest vertex at the same place, so that a seam of texture coordinates is no border; without it every vertex is its
+/// own.
+pub(crate) fn odd_edges(triangles: &[[u32; 3]], vertex_count: usize, twins: Option<&[u32]>) -> Vec<Odd> {
+    let joined = |vertex: u32| twins.map_or(vertex, |twins| twins[vertex as usize]);
+    let mut edges = Vec::with_capacity(3 * triangles.len());
+    for &triangle in triangles {
+        let corners = triangle.map(joined);
+        // A collapsed triangle has no edges of its own.
+        if corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0] {
+            for_each_edge(&[corners], |low, high| edges.push([low, high]));
+        }
+    }
+    debug_assert!(edges.iter().all(|edge| (edge[1] as usize) < vertex_count));
+    edges.sort_unstable();
+    edges
+        .chunk_by(|a, b| a == b)
+        .filter_map(|same| match same.len() {
+            1 => Some(Odd::Border(same[0])),
+            2 => None,
+            _ => Some(Odd::Branching(same[0])),
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -58,5 +92,22 @@ mod tests {
         let twice_and_collapsed = [[2, 1, 0], [0, 1, 2], [1, 1, 2]];
         assert_eq!(unique_edges(&twice_and_collapsed, 3), [[0, 1], [0, 2], [1, 2]]);
         assert!(unique_edges(&[], 0).is_empty());
+    }
+
+    #[test]
+    fn borders_and_branches_are_found_across_seams() {
+        let square = [[0, 1, 2], [1, 3, 2]];
+        let border = |low, high| Odd::Border([low, high]);
+        let around = [border(0, 1), border(0, 2), border(1, 3), border(2, 3)];
+        assert_eq!(odd_edges(&square, 4, None), around);
+        // The same square with its diagonal split by a seam.
+        let split = [[0, 1, 2], [4, 3, 5]];
+        assert_eq!(odd_edges(&split, 6, Some(&[0, 1, 2, 3, 1, 2])), around);
+        assert_eq!(odd_edges(&split, 6, None).len(), 6);
+        let fan = [[0, 1, 2], [0, 1, 3], [1, 0, 4]];
+        assert!(odd_edges(&fan, 5, None).contains(&Odd::Branching([0, 1])));
+        let tetrahedron = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+        assert!(odd_edges(&tetrahedron, 4, None).is_empty());
+        assert!(odd_edges(&[[0, 0, 1]], 2, None).is_empty());
     }
 }

@@ -79,15 +79,13 @@ pub enum RenderError {
         /// The device's limit in bytes.
         limit: u64,
     },
-    /// A picture larger than the device can draw.
-    #[error("a picture of {width} by {height} pixels is too large, this device draws at most {limit} a side")]
+    /// A picture larger than memory, or a view larger than the device can draw.
+    #[error("a picture of {width} by {height} pixels is too large for this device; ask for a smaller one")]
     PictureTooLarge {
         /// Width asked for, in pixels.
         width: u32,
         /// Height asked for, in pixels.
         height: u32,
-        /// The device's limit a side, in pixels.
-        limit: u32,
     },
     /// A picture without pixels.
     #[error("a picture needs at least one pixel a side, not {width} by {height}")]

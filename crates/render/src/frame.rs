@@ -1,6 +1,6 @@
 //! What one picture shows: a view, a style, surfaces, and marks above them.
 
-use crate::{Overlay, Surface, View};
+use crate::{Grid, Matcap, Overlay, Surface, View};
 
 /// Everything one picture shows. Cheap to make anew each time.
 #[derive(Debug, Clone, Copy)]
@@ -11,6 +11,8 @@ pub struct Frame<'a> {
     pub style: &'a Style,
     /// What is drawn; order does not matter (transparent materials aside, which are drawn last, in this order).
     pub surfaces: &'a [&'a Surface],
+    /// The ground, if it is to be seen.
+    pub grid: Option<&'a Grid>,
     /// Marks above the surfaces (gizmos, the brush's ring), later ones over earlier ones.
     pub overlays: &'a [Overlay],
 }
@@ -22,20 +24,45 @@ pub struct Style {
     pub shading: Shading,
     /// How much of it the surface's region colours replace (see [`Surface::update_regions`]): 0 none, 1 all.
     pub region_share: f32,
+    /// Which way faces seem to face.
+    pub faces: Faces,
     /// Whether edges are drawn over it.
     pub wireframe: Wireframe,
+    /// Whether edges that a closed surface lacks are marked.
+    pub borders: Borders,
     /// What is behind it.
     pub background: Background,
 }
 
 /// What a surface seems to be made of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shading {
-    /// A plain warm-grey clay: shape and nothing else.
-    #[default]
-    Clay,
-    /// The file's own: base colours, textures and vertex colours.
+    /// A clay under its studio's lamps: shape and nothing else.
+    Clay(Matcap),
+    /// The file's own materials.
     Material,
+    /// Region colours that carry numbers: shaded so gently that they match a legend.
+    Painted,
+    /// Stripes that the surface mirrors: they break where it has creases and kink where its curvature jumps.
+    Zebra,
+    /// The direction in which the surface faces, as a colour.
+    Normals,
+}
+
+impl Default for Shading {
+    fn default() -> Self {
+        Self::Clay(Matcap::default())
+    }
+}
+
+/// Which way faces seem to face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Faces {
+    /// As the vertices' normals say, interpolated.
+    #[default]
+    Smooth,
+    /// As the triangles lie.
+    Flat,
 }
 
 /// Edges over the surface.
@@ -45,6 +72,16 @@ pub enum Wireframe {
     #[default]
     Off,
     /// Thin dark lines, fainter where they lie closer than a few pixels.
+    On,
+}
+
+/// Marks on edges that a closed surface lacks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Borders {
+    /// None.
+    #[default]
+    Off,
+    /// Edges of one triangle in one colour, those of more than two in another ([`crate::border`]).
     On,
 }
 

@@ -10,3 +10,11 @@ pub mod region {
     /// Is moved by hand.
     pub const HANDLE: [u8; 4] = [232, 184, 84, 255];
 }
+
+/// Colours of [`crate::Borders::On`].
+pub mod border {
+    /// An edge that one triangle has.
+    pub const OPEN: [u8; 4] = [64, 208, 232, 255];
+    /// An edge that more than two triangles have.
+    pub const BRANCHING: [u8; 4] = [240, 84, 160, 255];
+}

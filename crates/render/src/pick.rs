@@ -3,10 +3,14 @@
 //! A ray against a tree on the processor is faster for a single point; this answers for rectangles (what a lasso may
 //! take is what is *seen*), and with exactly what the picture shows, since both share their vertex shader.
 
+use std::sync::Arc;
+
 use crate::guard::guarded;
-use crate::pipelines::ID_FORMAT;
+use crate::pipelines::{ID_FORMAT, Pipeline};
 use crate::readback::Readback;
-use crate::{Frame, RenderError, Renderer, Target};
+use crate::renderer::WHOLE;
+use crate::surface::Joining;
+use crate::{Frame, Partition, RenderError, Renderer, Samples, Target};
 
 /// The hidden target that triangle numbers are drawn into. Made to measure by [`Renderer::pick`]; keep it.
 #[derive(Debug, Default)]
@@ -59,6 +63,8 @@ pub struct PickRequest {
     rect: PixelRect,
     /// The triangle number, plus 1, that follows each surface's last one.
     ends: Vec<u32>,
+    /// For each surface, which triangle is drawn where.
+    partitions: Vec<Arc<Partition>>,
     /// None where the rectangle has no pixel.
     readback: Option<Readback>,
 }
@@ -152,6 +158,7 @@ impl Renderer {
     ) -> Result<PickRequest, RenderError> {
         let rect = rect.cut_to(size_px);
         let (mut bases, mut ends) = (Vec::new(), Vec::new());
+        let partitions: Vec<_> = frame.surfaces.iter().map(|surface| surface.partition()).collect();
         let mut next = 1_u32;
         for surface in frame.surfaces {
             bases.push(next);
@@ -162,17 +169,18 @@ impl Renderer {
             return Ok(PickRequest {
                 rect,
                 ends,
+                partitions,
                 readback: None,
             });
         }
         let limit = self.device().limits().max_texture_dimension_2d;
         if size_px.iter().any(|&side| side > limit) {
             let [width, height] = size_px;
-            return Err(RenderError::PictureTooLarge { width, height, limit });
+            return Err(RenderError::PictureTooLarge { width, height });
         }
-        self.write_frame(frame, size_px)?;
+        self.write_frame(frame, size_px, WHOLE)?;
         let device = self.device().clone();
-        let pipeline = self.pipelines.id(&device)?.clone();
+        self.pipelines.prepare(&device, Pipeline::Id, Samples::One)?;
         let readback = guarded(&device, "while picking", || {
             for (surface, &base) in frame.surfaces.iter().zip(&bases) {
                 surface.set_id_base(self.queue(), base);
@@ -181,11 +189,17 @@ impl Renderer {
             let mut encoder = device.create_command_encoder(&Default::default());
             let mut pass = begin_ids(&mut encoder, attachments);
             pass.set_scissor_rect(rect.x, rect.y, rect.width, rect.height);
-            pass.set_pipeline(&pipeline);
+            if let Some(pipeline) = self.pipelines.get(Pipeline::Id, Samples::One) {
+                pass.set_pipeline(pipeline);
+            }
             pass.set_bind_group(0, self.frame_group(), &[]);
-            for surface in frame.surfaces.iter().filter(|surface| surface.index_count() > 0) {
+            for surface in frame.surfaces {
                 surface.bind(&mut pass);
-                pass.draw_indexed(0..surface.index_count(), 0, 0..1);
+                for run in surface.runs(frame.view, Joining::Any) {
+                    surface.bind_shape(&mut pass, run.page);
+                    let first = run.first_place;
+                    pass.draw_indexed(3 * run.triangles.start..3 * run.triangles.end, 0, first..first + 1);
+                }
             }
             drop(pass);
             let origin = [rect.x, rect.y];
@@ -200,6 +214,7 @@ impl Renderer {
         Ok(PickRequest {
             rect,
             ends,
+            partitions,
             readback: Some(readback),
         })
     }
@@ -260,7 +275,10 @@ impl PickRequest {
                 let first = if surface == 0 { 1 } else { self.ends[surface - 1] };
                 (id > 0 && surface < self.ends.len()).then(|| Picked {
                     surface: surface as u32,
-                    triangle: id - first,
+                    triangle: self
+                        .partitions
+                        .get(surface)
+                        .map_or(id - first, |partition| partition.triangle_at(id - first)),
                 })
             })
             .collect();
@@ -284,6 +302,7 @@ mod tests {
         let request = PickRequest {
             rect,
             ends: vec![4, 4, 6],
+            partitions: Vec::new(),
             readback: None,
         };
         let bytes: Vec<u8> = [0_u32, 1, 3, 4, 5, 6].iter().flat_map(|id| id.to_le_bytes()).collect();

@@ -1,8 +1,10 @@
-//! Layouts and pipelines: made once a device, those that depend on the number of samples when first needed.
+//! Layouts, made once a device, and pipelines, each when it is first needed.
+
+use std::collections::HashMap;
 
 use crate::guard::guarded;
 use crate::shaders::Shader;
-use crate::uniforms::{OverlayLineInstance, OverlayVertex};
+use crate::uniforms::{BorderEdge, LookVertex, OverlayLineInstance, OverlayVertex};
 use crate::{RenderError, Samples, Target};
 
 /// The format of triangle numbers.
@@ -13,45 +15,92 @@ pub(crate) const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 pub(crate) struct Pipelines {
     pub(crate) frame_layout: wgpu::BindGroupLayout,
     pub(crate) surface_layout: wgpu::BindGroupLayout,
+    pub(crate) clay_layout: wgpu::BindGroupLayout,
     pub(crate) material_layout: wgpu::BindGroupLayout,
-    picture: [Option<PicturePipelines>; 2],
-    id: Option<wgpu::RenderPipeline>,
+    pub(crate) environment_layout: wgpu::BindGroupLayout,
+    pub(crate) positions_layout: wgpu::BindGroupLayout,
+    modules: HashMap<Shader, wgpu::ShaderModule>,
+    made: HashMap<(Pipeline, Samples), wgpu::RenderPipeline>,
 }
 
-/// The pipelines of a picture with one number of samples.
-#[derive(Debug)]
-pub(crate) struct PicturePipelines {
-    pub(crate) clay: wgpu::RenderPipeline,
-    pub(crate) material_opaque: wgpu::RenderPipeline,
-    pub(crate) material_mask: wgpu::RenderPipeline,
-    pub(crate) material_blend: wgpu::RenderPipeline,
-    pub(crate) wireframe: wgpu::RenderPipeline,
-    pub(crate) background: wgpu::RenderPipeline,
-    pub(crate) overlay_triangles: Softened,
-    pub(crate) overlay_lines: Softened,
+/// A pipeline of a picture, or that of triangle numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Pipeline {
+    Clay,
+    Painted,
+    Zebra,
+    Normals,
+    Material(Alpha, Look),
+    Wireframe,
+    Border(Part),
+    Background,
+    Grid,
+    OverlayTriangles(Part),
+    OverlayLines(Part),
+    Id,
 }
 
-/// Two pipelines of a mark: where it is seen and where a surface hides it.
-#[derive(Debug)]
-pub(crate) struct Softened {
-    pub(crate) visible: wgpu::RenderPipeline,
-    pub(crate) hidden: wgpu::RenderPipeline,
+/// How a material's alpha is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Alpha {
+    Opaque,
+    Mask,
+    Blend,
 }
 
-/// The vertex buffers of a surface: positions, normals, texture coordinates, colours, regions.
-pub(crate) const SURFACE_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 5] = {
-    const POSITION: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x3];
-    const NORMAL: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![1 => Float32x3];
-    const UV: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![2 => Float32x2];
-    const COLOUR: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![3 => Unorm8x4];
-    const REGION: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![4 => Unorm8x4];
+/// Whether each vertex has texture coordinates and a colour of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Look {
+    Own,
+    Shared,
+}
+
+/// Marks are drawn where they are seen and, fainter, where a surface hides them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Part {
+    Hidden,
+    Visible,
+}
+
+impl Part {
+    /// In the order of drawing.
+    pub(crate) const BOTH: [Self; 2] = [Self::Hidden, Self::Visible];
+}
+
+const POSITION: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x3];
+const NORMAL: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![1 => Float32x3];
+const REGION: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![2 => Unorm8x4];
+const LOOK: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![3 => Float32x4, 4 => Unorm8x4];
+
+/// The vertex buffers of a surface's shape: positions, normals, regions.
+pub(crate) const SHAPE_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 3] = [
+    Some(per_vertex(12, &POSITION)),
+    Some(per_vertex(12, &NORMAL)),
+    Some(per_vertex(4, &REGION)),
+];
+
+/// The same, and what only materials read; a stride of 0 gives every vertex the one entry.
+pub(crate) const fn material_buffers(look: Look) -> [Option<wgpu::VertexBufferLayout<'static>>; 4] {
+    let stride = match look {
+        Look::Own => size_of::<LookVertex>() as u64,
+        Look::Shared => 0,
+    };
     [
         Some(per_vertex(12, &POSITION)),
         Some(per_vertex(12, &NORMAL)),
-        Some(per_vertex(8, &UV)),
-        Some(per_vertex(4, &COLOUR)),
         Some(per_vertex(4, &REGION)),
+        Some(per_vertex(stride, &LOOK)),
     ]
+}
+
+/// The instance buffer of borders.
+pub(crate) const BORDER_BUFFER: wgpu::VertexBufferLayout<'static> = {
+    const ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Uint32x2, 1 => Unorm8x4];
+    wgpu::VertexBufferLayout {
+        array_stride: size_of::<BorderEdge>() as u64,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes: &ATTRIBUTES,
+    }
 };
 
 /// The one vertex buffer of overlay triangles.
@@ -89,254 +138,249 @@ impl Pipelines {
     pub(crate) fn new(device: &wgpu::Device) -> Self {
         let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let fragment = wgpu::ShaderStages::FRAGMENT;
+        let mut material = vec![uniform_entry(0, fragment)];
+        for image in 0..5 {
+            material.push(texture_entry(2 * image + 1, wgpu::TextureViewDimension::D2));
+            material.push(sampler_entry(2 * image + 2));
+        }
+        let flat = wgpu::TextureViewDimension::D2;
+        let cube = wgpu::TextureViewDimension::Cube;
         Self {
             frame_layout: layout(device, "frame", &[uniform_entry(0, both)]),
             surface_layout: layout(device, "surface", &[uniform_entry(0, both)]),
-            material_layout: layout(
+            clay_layout: layout(
                 device,
-                "material",
-                &[uniform_entry(0, fragment), texture_entry(1), sampler_entry(2)],
+                "clay",
+                &[uniform_entry(0, fragment), texture_entry(1, flat), sampler_entry(2)],
             ),
-            picture: [None, None],
-            id: None,
+            material_layout: layout(device, "material", &material),
+            environment_layout: layout(
+                device,
+                "studio",
+                &[texture_entry(0, cube), texture_entry(1, cube), sampler_entry(2)],
+            ),
+            positions_layout: layout(device, "positions", &[storage_entry(0)]),
+            modules: HashMap::new(),
+            made: HashMap::new(),
         }
     }
 
-    /// The pipelines of pictures of `samples`.
-    pub(crate) fn picture(
+    /// Makes a pipeline for pictures of `samples` unless it is there.
+    pub(crate) fn prepare(
         &mut self,
         device: &wgpu::Device,
+        pipeline: Pipeline,
         samples: Samples,
-    ) -> Result<&PicturePipelines, RenderError> {
-        let slot = match samples {
-            Samples::One => 0,
-            Samples::Four => 1,
-        };
-        if self.picture[slot].is_none() {
-            let made = guarded(device, "while compiling shaders", || {
-                Ok(PicturePipelines::new(device, self, samples))
-            })?;
-            self.picture[slot] = Some(made);
+    ) -> Result<(), RenderError> {
+        if self.made.contains_key(&(pipeline, samples)) {
+            return Ok(());
         }
-        self.picture[slot].as_ref().ok_or(RenderError::Lost {
-            doing: "compiling shaders",
-        })
-    }
-
-    /// The pipeline of triangle numbers.
-    pub(crate) fn id(&mut self, device: &wgpu::Device) -> Result<&wgpu::RenderPipeline, RenderError> {
-        if !device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
+        if pipeline == Pipeline::Id && !device.features().contains(wgpu::Features::PRIMITIVE_INDEX) {
             return Err(RenderError::NoTriangleNumbers);
         }
-        if self.id.is_none() {
-            let made = guarded(device, "while compiling shaders", || {
-                let maker = Maker::new(device, &[&self.frame_layout, &self.surface_layout], Samples::One);
-                let shader = maker.module(Shader::SurfaceId);
-                let numbers = wgpu::ColorTargetState {
-                    format: ID_FORMAT,
-                    blend: None,
-                    write_mask: wgpu::ColorWrites::ALL,
-                };
-                Ok(maker.pipeline(&shader, "fs_id", &Primitive::SURFACE, &numbers))
-            })?;
-            self.id = Some(made);
-        }
-        self.id.as_ref().ok_or(RenderError::Lost {
-            doing: "compiling shaders",
-        })
+        let made = guarded(device, "while compiling shaders", || {
+            Ok(self.make(device, pipeline, samples))
+        })?;
+        self.made.insert((pipeline, samples), made);
+        Ok(())
     }
-}
 
-impl PicturePipelines {
-    fn new(device: &wgpu::Device, shared: &Pipelines, samples: Samples) -> Self {
-        let frame = &shared.frame_layout;
-        let surface = &shared.surface_layout;
-        let opaque = wgpu::ColorTargetState {
-            format: Target::COLOUR_FORMAT,
-            blend: None,
-            write_mask: wgpu::ColorWrites::ALL,
-        };
-        let blended = wgpu::ColorTargetState {
-            blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-            ..opaque.clone()
-        };
-
-        let maker = Maker::new(device, &[frame, surface, &shared.material_layout], samples);
-        let shader = maker.module(Shader::Surface);
-        let solid = Primitive::SURFACE;
-        let glass = Primitive {
-            writes_depth: false,
-            ..Primitive::SURFACE
-        };
-        let material_opaque = maker.pipeline(&shader, "fs_material_opaque", &solid, &opaque);
-        let material_mask = maker.pipeline(&shader, "fs_material_mask", &solid, &opaque);
-        let material_blend = maker.pipeline(&shader, "fs_material_blend", &glass, &blended);
-
-        let maker = Maker::new(device, &[frame, surface], samples);
-        let clay = maker.pipeline(&shader, "fs_clay", &solid, &opaque);
-        let wireframe = {
-            let primitive = Primitive {
-                vertex_entry: "vs_wireframe",
-                buffers: &SURFACE_BUFFERS[..1],
-                topology: wgpu::PrimitiveTopology::LineList,
-                depth_compare: wgpu::CompareFunction::GreaterEqual,
-                writes_depth: false,
-            };
-            maker.pipeline(&maker.module(Shader::Wireframe), "fs_wireframe", &primitive, &blended)
-        };
-
-        let maker = Maker::new(device, &[frame], samples);
-        let background = {
-            let primitive = Primitive {
-                vertex_entry: "vs_background",
-                buffers: &[],
-                topology: wgpu::PrimitiveTopology::TriangleList,
-                depth_compare: wgpu::CompareFunction::GreaterEqual,
-                writes_depth: false,
-            };
-            maker.pipeline(&maker.module(Shader::Background), "fs_background", &primitive, &opaque)
-        };
-        Self {
-            clay,
-            material_opaque,
-            material_mask,
-            material_blend,
-            wireframe,
-            background,
-            overlay_triangles: maker.softened(
-                Shader::OverlayTriangle,
-                "vs_overlay_triangle",
-                &[Some(OVERLAY_TRIANGLE_BUFFER)],
-                wgpu::PrimitiveTopology::TriangleList,
-                &blended,
-            ),
-            overlay_lines: maker.softened(
-                Shader::OverlayLine,
-                "vs_overlay_line",
-                &[Some(OVERLAY_LINE_BUFFER)],
-                wgpu::PrimitiveTopology::TriangleStrip,
-                &blended,
-            ),
-        }
+    /// A pipeline that was prepared.
+    pub(crate) fn get(&self, pipeline: Pipeline, samples: Samples) -> Option<&wgpu::RenderPipeline> {
+        self.made.get(&(pipeline, samples))
     }
-}
 
-/// What the vertex half of a pipeline and its depth test differ in.
-struct Primitive<'a> {
-    vertex_entry: &'a str,
-    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    topology: wgpu::PrimitiveTopology,
-    depth_compare: wgpu::CompareFunction,
-    writes_depth: bool,
-}
-
-impl Primitive<'static> {
-    /// Surfaces, seen from both sides, before what is farther away.
-    const SURFACE: Self = Self {
-        vertex_entry: "vs_surface",
-        buffers: &SURFACE_BUFFERS,
-        topology: wgpu::PrimitiveTopology::TriangleList,
-        depth_compare: wgpu::CompareFunction::Greater,
-        writes_depth: true,
-    };
-}
-
-/// Makes pipelines of one layout and number of samples.
-struct Maker<'a> {
-    device: &'a wgpu::Device,
-    layout: wgpu::PipelineLayout,
-    samples: Samples,
-}
-
-impl<'a> Maker<'a> {
-    fn new(device: &'a wgpu::Device, groups: &[&wgpu::BindGroupLayout], samples: Samples) -> Self {
-        let groups: Vec<_> = groups.iter().map(|&group| Some(group)).collect();
+    fn make(&mut self, device: &wgpu::Device, pipeline: Pipeline, samples: Samples) -> wgpu::RenderPipeline {
+        let description = Description::of(pipeline);
+        let module = self.modules.entry(description.shader).or_insert_with(|| {
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(description.shader.file_name()),
+                source: wgpu::ShaderSource::Wgsl(description.shader.composed().into()),
+            })
+        });
+        let (frame, surface) = (&self.frame_layout, &self.surface_layout);
+        let groups = match pipeline {
+            Pipeline::Clay | Pipeline::Painted | Pipeline::Zebra | Pipeline::Normals => {
+                vec![frame, surface, &self.clay_layout]
+            }
+            Pipeline::Material(..) => vec![frame, surface, &self.material_layout, &self.environment_layout],
+            Pipeline::Wireframe | Pipeline::Id => vec![frame, surface],
+            Pipeline::Border(_) => vec![frame, surface, &self.positions_layout],
+            // The grid's uniform stands in the surface's place and has its form.
+            Pipeline::Grid => vec![frame, surface],
+            Pipeline::Background | Pipeline::OverlayTriangles(_) | Pipeline::OverlayLines(_) => vec![frame],
+        };
+        let groups: Vec<_> = groups.into_iter().map(Some).collect();
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
             bind_group_layouts: &groups,
             immediate_size: 0,
         });
-        Self {
-            device,
-            layout,
-            samples,
-        }
+        description.pipeline(device, &layout, module, samples)
     }
+}
 
-    fn module(&self, shader: Shader) -> wgpu::ShaderModule {
-        self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(shader.file_name()),
-            source: wgpu::ShaderSource::Wgsl(shader.composed().into()),
-        })
+/// What pipelines differ in.
+struct Description {
+    shader: Shader,
+    vertex_entry: &'static str,
+    fragment_entry: &'static str,
+    buffers: Vec<Option<wgpu::VertexBufferLayout<'static>>>,
+    topology: wgpu::PrimitiveTopology,
+    depth_compare: wgpu::CompareFunction,
+    writes_depth: bool,
+    colour: wgpu::ColorTargetState,
+}
+
+const OPAQUE: wgpu::ColorTargetState = wgpu::ColorTargetState {
+    format: Target::COLOUR_FORMAT,
+    blend: None,
+    write_mask: wgpu::ColorWrites::ALL,
+};
+
+const BLENDED: wgpu::ColorTargetState = wgpu::ColorTargetState {
+    blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+    ..OPAQUE
+};
+
+impl Description {
+    fn of(pipeline: Pipeline) -> Self {
+        let solid = |fragment_entry| Self {
+            shader: Shader::Surface,
+            vertex_entry: "vs_surface",
+            fragment_entry,
+            buffers: SHAPE_BUFFERS.to_vec(),
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            depth_compare: wgpu::CompareFunction::Greater,
+            writes_depth: true,
+            colour: OPAQUE,
+        };
+        // What lies over or behind surfaces and hides nothing.
+        let light = |shader, vertex_entry, fragment_entry| Self {
+            shader,
+            vertex_entry,
+            buffers: Vec::new(),
+            depth_compare: wgpu::CompareFunction::GreaterEqual,
+            writes_depth: false,
+            colour: BLENDED,
+            ..solid(fragment_entry)
+        };
+        let mark = |shader, vertex_entry, buffer, topology, part| {
+            let (fragment_entry, depth_compare) = match part {
+                Part::Visible => ("fs_visible", wgpu::CompareFunction::GreaterEqual),
+                Part::Hidden => ("fs_hidden", wgpu::CompareFunction::Less),
+            };
+            Self {
+                buffers: vec![Some(buffer)],
+                topology,
+                depth_compare,
+                ..light(shader, vertex_entry, fragment_entry)
+            }
+        };
+        let (triangles, strip) = (
+            wgpu::PrimitiveTopology::TriangleList,
+            wgpu::PrimitiveTopology::TriangleStrip,
+        );
+        match pipeline {
+            Pipeline::Clay => solid("fs_clay"),
+            Pipeline::Painted => solid("fs_painted"),
+            Pipeline::Zebra => solid("fs_zebra"),
+            Pipeline::Normals => solid("fs_normals"),
+            Pipeline::Material(alpha, look) => {
+                let fragment_entry = match alpha {
+                    Alpha::Opaque => "fs_material_opaque",
+                    Alpha::Mask => "fs_material_mask",
+                    Alpha::Blend => "fs_material_blend",
+                };
+                let is_glass = alpha == Alpha::Blend;
+                Self {
+                    shader: Shader::Material,
+                    vertex_entry: "vs_material",
+                    buffers: material_buffers(look).to_vec(),
+                    writes_depth: !is_glass,
+                    colour: if is_glass { BLENDED } else { OPAQUE },
+                    ..solid(fragment_entry)
+                }
+            }
+            Pipeline::Wireframe => Self {
+                buffers: SHAPE_BUFFERS[..1].to_vec(),
+                topology: wgpu::PrimitiveTopology::LineList,
+                ..light(Shader::Wireframe, "vs_wireframe", "fs_wireframe")
+            },
+            Pipeline::Border(part) => mark(Shader::Border, "vs_border", BORDER_BUFFER, strip, part),
+            Pipeline::Background => Self {
+                colour: OPAQUE,
+                ..light(Shader::Background, "vs_background", "fs_background")
+            },
+            Pipeline::Grid => Self {
+                topology: strip,
+                ..light(Shader::Grid, "vs_grid", "fs_grid")
+            },
+            Pipeline::OverlayTriangles(part) => mark(
+                Shader::OverlayTriangle,
+                "vs_overlay_triangle",
+                OVERLAY_TRIANGLE_BUFFER,
+                triangles,
+                part,
+            ),
+            Pipeline::OverlayLines(part) => {
+                mark(Shader::OverlayLine, "vs_overlay_line", OVERLAY_LINE_BUFFER, strip, part)
+            }
+            Pipeline::Id => Self {
+                shader: Shader::SurfaceId,
+                vertex_entry: "vs_id",
+                buffers: SHAPE_BUFFERS[..1].to_vec(),
+                colour: wgpu::ColorTargetState {
+                    format: ID_FORMAT,
+                    ..OPAQUE
+                },
+                ..solid("fs_id")
+            },
+        }
     }
 
     fn pipeline(
         &self,
-        shader: &wgpu::ShaderModule,
-        fragment_entry: &str,
-        primitive: &Primitive<'_>,
-        colour: &wgpu::ColorTargetState,
+        device: &wgpu::Device,
+        layout: &wgpu::PipelineLayout,
+        module: &wgpu::ShaderModule,
+        samples: Samples,
     ) -> wgpu::RenderPipeline {
-        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(fragment_entry),
-            layout: Some(&self.layout),
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.fragment_entry),
+            layout: Some(layout),
             vertex: wgpu::VertexState {
-                module: shader,
-                entry_point: Some(primitive.vertex_entry),
+                module,
+                entry_point: Some(self.vertex_entry),
                 compilation_options: Default::default(),
-                buffers: primitive.buffers,
+                buffers: &self.buffers,
             },
             primitive: wgpu::PrimitiveState {
-                topology: primitive.topology,
+                topology: self.topology,
                 front_face: wgpu::FrontFace::Ccw,
                 cull_mode: None,
                 ..Default::default()
             },
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: Target::DEPTH_FORMAT,
-                depth_write_enabled: Some(primitive.writes_depth),
-                depth_compare: Some(primitive.depth_compare),
+                depth_write_enabled: Some(self.writes_depth),
+                depth_compare: Some(self.depth_compare),
                 stencil: Default::default(),
                 bias: Default::default(),
             }),
             multisample: wgpu::MultisampleState {
-                count: self.samples.count(),
+                count: samples.count(),
                 ..Default::default()
             },
             fragment: Some(wgpu::FragmentState {
-                module: shader,
-                entry_point: Some(fragment_entry),
+                module,
+                entry_point: Some(self.fragment_entry),
                 compilation_options: Default::default(),
-                targets: &[Some(colour.clone())],
+                targets: &[Some(self.colour.clone())],
             }),
             multiview_mask: None,
             cache: None,
         })
-    }
-
-    fn softened(
-        &self,
-        shader: Shader,
-        vertex_entry: &str,
-        buffers: &[Option<wgpu::VertexBufferLayout<'_>>],
-        topology: wgpu::PrimitiveTopology,
-        colour: &wgpu::ColorTargetState,
-    ) -> Softened {
-        let module = self.module(shader);
-        let half = |fragment_entry, depth_compare| {
-            let primitive = Primitive {
-                vertex_entry,
-                buffers,
-                topology,
-                depth_compare,
-                writes_depth: false,
-            };
-            self.pipeline(&module, fragment_entry, &primitive, colour)
-        };
-        Softened {
-            visible: half("fs_visible", wgpu::CompareFunction::GreaterEqual),
-            hidden: half("fs_hidden", wgpu::CompareFunction::Less),
-        }
     }
 }
 
@@ -361,11 +405,26 @@ fn uniform_entry(binding: u32, visibility: wgpu::ShaderStages) -> wgpu::BindGrou
     }
 }
 
-/// A filterable two-dimensional texture for the fragment stage.
-pub(crate) fn texture_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
+/// A buffer that vertex shaders look numbers up in.
+fn storage_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    let ty = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only: true },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::VERTEX,
+        ty,
+        count: None,
+    }
+}
+
+/// A filterable texture for the fragment stage.
+fn texture_entry(binding: u32, view_dimension: wgpu::TextureViewDimension) -> wgpu::BindGroupLayoutEntry {
     let ty = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Float { filterable: true },
-        view_dimension: wgpu::TextureViewDimension::D2,
+        view_dimension,
         multisampled: false,
     };
     wgpu::BindGroupLayoutEntry {
@@ -377,7 +436,7 @@ pub(crate) fn texture_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
 }
 
 /// A filtering sampler for the fragment stage.
-pub(crate) fn sampler_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
+fn sampler_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
     let ty = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
     wgpu::BindGroupLayoutEntry {
         binding,

@@ -116,33 +116,105 @@ impl Renderer {
         let Some(attachments) = target.attachments() else {
             return Ok(None);
         };
-        let size_px = attachments.size_px;
-        let readback = guarded(self.device(), "while reading a picture back", || {
-            let encoder = self.device().create_command_encoder(&Default::default());
-            Ok(Readback::submit(self, encoder, &attachments.colour, [0, 0], size_px))
-        })?;
-        let [width, height] = size_px;
-        Ok(Some(Image {
-            width,
-            height,
-            rgba: readback.wait(self)?,
-        }))
+        self.read_texture(&attachments.colour).map(Some)
     }
 
-    /// Draws a frame into memory, waiting for it.
+    /// The first bytes of a buffer, waiting for them.
+    pub(crate) fn read_buffer(&self, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, RenderError> {
+        if bytes == 0 {
+            return Ok(Vec::new());
+        }
+        let readback = guarded(self.device(), "while reading a buffer back", || {
+            let readback = self.device().create_buffer(&wgpu::BufferDescriptor {
+                label: Some("readback"),
+                size: bytes,
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            let mut encoder = self.device().create_command_encoder(&Default::default());
+            encoder.copy_buffer_to_buffer(buffer, 0, &readback, 0, bytes);
+            self.queue().submit([encoder.finish()]);
+            readback.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+            Ok(readback)
+        })?;
+        self.device()
+            .poll(wgpu::PollType::wait_indefinitely())
+            .map_err(|_| LOST)?;
+        let view = readback.slice(..).get_mapped_range().map_err(|_| LOST)?;
+        Ok(view.to_vec())
+    }
+
+    /// Reads a texture of four bytes a pixel back, waiting for it; it must be one of this device, and allow copying.
     ///
     /// # Errors
-    /// [`RenderError::EmptyPicture`], [`RenderError::PictureTooLarge`], and as [`Renderer::draw`].
+    /// Memory, or a device that stopped answering or does not take the texture.
+    pub fn read_texture(&self, texture: &wgpu::Texture) -> Result<Image, RenderError> {
+        let (width, height) = (texture.width(), texture.height());
+        let readback = guarded(self.device(), "while reading a picture back", || {
+            let encoder = self.device().create_command_encoder(&Default::default());
+            Ok(Readback::submit(self, encoder, texture, [0, 0], [width, height]))
+        })?;
+        let rgba = readback.wait(self)?;
+        Ok(Image { width, height, rgba })
+    }
+
+    /// Draws a frame into memory, waiting for it. A picture larger than 2048 pixels a side is drawn in tiles, so that
+    /// neither the device's largest texture nor its memory bounds it.
+    ///
+    /// # Errors
+    /// [`RenderError::EmptyPicture`], [`RenderError::OutOfMemory`] and as [`Renderer::draw`].
     pub fn draw_to_image(
         &mut self,
         size_px: [u32; 2],
         samples: Samples,
         frame: &Frame<'_>,
     ) -> Result<Image, RenderError> {
-        let mut target = Target::new();
-        target.resize(self, size_px, samples)?;
-        self.draw(&target, frame)?;
+        self.draw_tiled(size_px, samples, frame, TILE_PX)
+    }
+
+    /// The same with tiles of another size, for trying out that they join.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw_to_image`].
+    pub fn draw_tiled(
+        &mut self,
+        size_px: [u32; 2],
+        samples: Samples,
+        frame: &Frame<'_>,
+        tile_px: u32,
+    ) -> Result<Image, RenderError> {
         let [width, height] = size_px;
-        self.read(&target)?.ok_or(RenderError::EmptyPicture { width, height })
+        if width == 0 || height == 0 {
+            return Err(RenderError::EmptyPicture { width, height });
+        }
+        let mut rgba = Vec::new();
+        let row = PIXEL_BYTES as usize * width as usize;
+        let bytes = row.saturating_mul(height as usize);
+        let no_memory = |_| RenderError::PictureTooLarge { width, height };
+        rgba.try_reserve_exact(bytes).map_err(no_memory)?;
+        rgba.resize(bytes, 0);
+        let side = tile_px.clamp(1, self.device().limits().max_texture_dimension_2d);
+        let mut target = Target::new();
+        for y in (0..height).step_by(side as usize) {
+            for x in (0..width).step_by(side as usize) {
+                let part_px = [side.min(width - x), side.min(height - y)];
+                target.resize(self, part_px, samples)?;
+                let view = frame.view.tile(size_px, [x, y], part_px);
+                // The background rises from the picture's lower border.
+                let below = f64::from(height - y - part_px[1]) / f64::from(height);
+                let span = [below as f32, (f64::from(part_px[1]) / f64::from(height)) as f32];
+                self.draw_part(&target, &Frame { view: &view, ..*frame }, span)?;
+                let Some(part) = self.read(&target)? else { continue };
+                let part_row = PIXEL_BYTES as usize * part_px[0] as usize;
+                for (line, pixels) in part.rgba.chunks_exact(part_row).enumerate() {
+                    let at = (y as usize + line) * row + PIXEL_BYTES as usize * x as usize;
+                    rgba[at..at + part_row].copy_from_slice(pixels);
+                }
+            }
+        }
+        Ok(Image { width, height, rgba })
     }
 }
+
+/// The largest side of a picture that is drawn at once: four samples of it need 130 MB.
+const TILE_PX: u32 = 2048;

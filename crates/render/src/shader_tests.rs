@@ -7,8 +7,13 @@ use std::mem::offset_of;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
 use super::Shader;
-use crate::pipelines::{OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SURFACE_BUFFERS};
-use crate::uniforms::{FrameUniform, MaterialUniform, OverlayLineInstance, OverlayVertex, SurfaceUniform};
+use crate::pipelines::{
+    BORDER_BUFFER, Look, OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SHAPE_BUFFERS, material_buffers,
+};
+use crate::uniforms::{
+    BorderEdge, ClayUniform, DeformUniform, EnvironmentUniform, FrameUniform, GridUniform, LookVertex, MapUniform,
+    MaterialUniform, OverlayLineInstance, OverlayVertex, SurfaceUniform,
+};
 
 #[test]
 fn every_shader_is_valid() {
@@ -42,7 +47,12 @@ fn every_shader_translates_to_hlsl() {
         naga::back::hlsl::Writer::new(&mut text, &options, &pipeline)
             .write(&module, &info, None)
             .unwrap_or_else(|error| panic!("{}: {error}", shader.file_name()));
-        assert!(text.contains("SV_Position"), "{} draws", shader.file_name());
+        let kind = if shader == Shader::Deform {
+            "numthreads"
+        } else {
+            "SV_Position"
+        };
+        assert!(text.contains(kind), "{} has {kind}", shader.file_name());
     }
 }
 
@@ -58,7 +68,12 @@ fn every_shader_translates_to_msl() {
         let pipeline = naga::back::msl::PipelineOptions::default();
         let (text, translation) = naga::back::msl::write_string(&module, &info, &options, &pipeline)
             .unwrap_or_else(|error| panic!("{}: {error}", shader.file_name()));
-        assert!(text.contains("[[position]]"), "{} draws", shader.file_name());
+        let kind = if shader == Shader::Deform {
+            "kernel"
+        } else {
+            "[[position]]"
+        };
+        assert!(text.contains(kind), "{} has {kind}", shader.file_name());
         for name in translation.entry_point_names {
             name.unwrap_or_else(|error| panic!("{}: {error}", shader.file_name()));
         }
@@ -81,14 +96,17 @@ fn uniform_structs_are_laid_out_alike() {
     let frame = layout!(FrameUniform {
         clip_from_world: [[f32; 4]; 4],
         view_from_world: [[f32; 4]; 4],
-        eye: [f32; 4],
         background_top: [f32; 4],
         background_bottom: [f32; 4],
         size_px: [f32; 2],
+        background_span: [f32; 2],
         region_share: f32,
         scale_px: f32,
+        perspective: f32,
+        flatness: f32,
     });
-    for shader in Shader::ALL.into_iter().filter(|&shader| shader != Shader::Mipmap) {
+    let frameless = [Shader::Mipmap, Shader::Environment, Shader::Deform];
+    for shader in Shader::ALL.into_iter().filter(|shader| !frameless.contains(shader)) {
         assert_eq!(wgsl_layout(shader, "Frame"), frame, "{}", shader.file_name());
     }
     let surface = layout!(SurfaceUniform {
@@ -97,23 +115,84 @@ fn uniform_structs_are_laid_out_alike() {
         mean_edge: f32,
         padding: u32,
     });
-    for shader in [Shader::Surface, Shader::SurfaceId, Shader::Wireframe] {
+    for shader in [
+        Shader::Surface,
+        Shader::Material,
+        Shader::SurfaceId,
+        Shader::Wireframe,
+        Shader::Border,
+    ] {
         assert_eq!(wgsl_layout(shader, "Surface"), surface, "{}", shader.file_name());
     }
+    let clay = layout!(ClayUniform {
+        colour: [f32; 4],
+        inside: [f32; 4],
+    });
+    assert_eq!(wgsl_layout(Shader::Surface, "Clay"), clay);
     let material = layout!(MaterialUniform {
         base_colour: [f32; 4],
-        alpha_cutoff: f32,
+        emissive: [f32; 4],
+        metallic: f32,
+        roughness: f32,
+        normal_scale: f32,
+        occlusion_strength: f32,
         back_share: f32,
+        flags: u32,
+        padding: [f32; 2],
+        metallic_roughness: MapUniform,
+        normal: MapUniform,
+        occlusion: MapUniform,
+        emission: MapUniform,
+    });
+    assert_eq!(wgsl_layout(Shader::Material, "Material"), material);
+    let map = layout!(MapUniform {
+        u: [f32; 4],
+        v: [f32; 4]
+    });
+    assert_eq!(wgsl_layout(Shader::Material, "Map"), map);
+    let grid = layout!(GridUniform {
+        middle: [f32; 3],
+        step: f32,
+        along_u: [f32; 3],
+        reach: f32,
+        along_v: [f32; 3],
+        fine_share: f32,
+        axes: [f32; 2],
+        padding: [f32; 2],
+        colour: [f32; 4],
+        u_axis_colour: [f32; 4],
+        v_axis_colour: [f32; 4],
+    });
+    assert_eq!(wgsl_layout(Shader::Grid, "Grid"), grid);
+    let environment = layout!(EnvironmentUniform {
+        right: [f32; 4],
+        down: [f32; 4],
+        forward: [f32; 4],
+        roughness: f32,
+        samples: u32,
         padding: [f32; 2],
     });
-    assert_eq!(wgsl_layout(Shader::Surface, "Material"), material);
+    assert_eq!(wgsl_layout(Shader::Environment, "Pass"), environment);
+    let deform = layout!(DeformUniform {
+        vertex_count: u32,
+        handle_count: u32,
+        has_stored: u32,
+        padding: u32,
+    });
+    assert_eq!(wgsl_layout(Shader::Deform, "Job"), deform);
 }
 
 #[test]
 fn vertex_buffers_have_what_shaders_read() {
-    let surface: Vec<_> = SURFACE_BUFFERS.iter().flatten().cloned().collect();
-    assert_attributes(Shader::Surface, "SurfaceVertex", &surface);
-    assert_attributes(Shader::SurfaceId, "SurfaceVertex", &surface);
+    let shape: Vec<_> = SHAPE_BUFFERS.iter().flatten().cloned().collect();
+    assert_attributes(Shader::Surface, "SurfaceVertex", &shape);
+    assert_attributes(Shader::Material, "SurfaceVertex", &shape);
+    for look in [Look::Own, Look::Shared] {
+        let buffers = material_buffers(look);
+        let own: Vec<_> = buffers[3].iter().cloned().collect();
+        assert_attributes(Shader::Material, "LookVertex", &own);
+    }
+    assert_attributes(Shader::Border, "BorderEdge", &[BORDER_BUFFER]);
     assert_attributes(Shader::OverlayTriangle, "OverlayVertex", &[OVERLAY_TRIANGLE_BUFFER]);
     assert_attributes(Shader::OverlayLine, "OverlayLine", &[OVERLAY_LINE_BUFFER]);
 }
@@ -138,9 +217,15 @@ fn vertex_structs_have_their_members_where_their_buffers_say() {
         offset_of!(OverlayLineInstance, end_colour),
     ];
     assert_eq!(offsets(&OVERLAY_LINE_BUFFER), line.map(|offset| offset as u64));
-    for buffer in SURFACE_BUFFERS.iter().flatten() {
+    for buffer in SHAPE_BUFFERS.iter().flatten() {
         assert_eq!(buffer.array_stride, buffer.attributes[0].format.size());
     }
+    let look = [offset_of!(LookVertex, uvs), offset_of!(LookVertex, colour)];
+    for buffer in material_buffers(Look::Own)[3].iter() {
+        assert_eq!(offsets(buffer), look.map(|offset| offset as u64));
+    }
+    let border = [offset_of!(BorderEdge, ends), offset_of!(BorderEdge, colour)];
+    assert_eq!(offsets(&BORDER_BUFFER), border.map(|offset| offset as u64));
 }
 
 fn validated(shader: Shader) -> (naga::Module, ModuleInfo) {
@@ -204,7 +289,9 @@ fn components(format: wgpu::VertexFormat) -> u32 {
     match format {
         wgpu::VertexFormat::Float32 => 1,
         wgpu::VertexFormat::Float32x2 => 2,
+        wgpu::VertexFormat::Uint32x2 => 2,
         wgpu::VertexFormat::Float32x3 => 3,
+        wgpu::VertexFormat::Float32x4 => 4,
         wgpu::VertexFormat::Unorm8x4 => 4,
         other => panic!("say here how many components {other:?} has"),
     }

@@ -8,24 +8,34 @@
 pub(crate) enum Shader {
     Surface,
     SurfaceId,
+    Material,
+    Environment,
     Wireframe,
+    Border,
     Background,
+    Grid,
     OverlayTriangle,
     OverlayLine,
     Mipmap,
+    Deform,
 }
 
 impl Shader {
     /// All of them.
     #[cfg(test)]
-    pub(crate) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 12] = [
         Self::Surface,
         Self::SurfaceId,
+        Self::Material,
+        Self::Environment,
         Self::Wireframe,
+        Self::Border,
         Self::Background,
+        Self::Grid,
         Self::OverlayTriangle,
         Self::OverlayLine,
         Self::Mipmap,
+        Self::Deform,
     ];
 
     /// The file's name under `shaders/`.
@@ -33,11 +43,16 @@ impl Shader {
         match self {
             Self::Surface => "surface.wgsl",
             Self::SurfaceId => "surface_id.wgsl",
+            Self::Material => "material.wgsl",
+            Self::Environment => "environment.wgsl",
             Self::Wireframe => "wireframe.wgsl",
+            Self::Border => "border.wgsl",
             Self::Background => "background.wgsl",
+            Self::Grid => "grid.wgsl",
             Self::OverlayTriangle => "overlay_triangle.wgsl",
             Self::OverlayLine => "overlay_line.wgsl",
             Self::Mipmap => "mipmap.wgsl",
+            Self::Deform => "deform.wgsl",
         }
     }
 
@@ -50,24 +65,38 @@ impl Shader {
         match self {
             Self::Surface => include_str!("../../../shaders/surface.wgsl"),
             Self::SurfaceId => include_str!("../../../shaders/surface_id.wgsl"),
+            Self::Material => include_str!("../../../shaders/material.wgsl"),
+            Self::Environment => include_str!("../../../shaders/environment.wgsl"),
             Self::Wireframe => include_str!("../../../shaders/wireframe.wgsl"),
+            Self::Border => include_str!("../../../shaders/border.wgsl"),
             Self::Background => include_str!("../../../shaders/background.wgsl"),
+            Self::Grid => include_str!("../../../shaders/grid.wgsl"),
             Self::OverlayTriangle => include_str!("../../../shaders/overlay_triangle.wgsl"),
             Self::OverlayLine => include_str!("../../../shaders/overlay_line.wgsl"),
             Self::Mipmap => include_str!("../../../shaders/mipmap.wgsl"),
+            Self::Deform => include_str!("../../../shaders/deform.wgsl"),
         }
     }
 }
 
 /// The shared files that an include may name.
-const LIBRARY: [(&str, &str); 4] = [
+const LIBRARY: [(&str, &str); 7] = [
     ("lib/frame.wgsl", include_str!("../../../shaders/lib/frame.wgsl")),
     ("lib/colour.wgsl", include_str!("../../../shaders/lib/colour.wgsl")),
     (
         "lib/surface_vertex.wgsl",
         include_str!("../../../shaders/lib/surface_vertex.wgsl"),
     ),
-    ("lib/light.wgsl", include_str!("../../../shaders/lib/light.wgsl")),
+    (
+        "lib/surface_shape.wgsl",
+        include_str!("../../../shaders/lib/surface_shape.wgsl"),
+    ),
+    ("lib/tone.wgsl", include_str!("../../../shaders/lib/tone.wgsl")),
+    (
+        "lib/reflectance.wgsl",
+        include_str!("../../../shaders/lib/reflectance.wgsl"),
+    ),
+    ("lib/line.wgsl", include_str!("../../../shaders/lib/line.wgsl")),
 ];
 
 /// `text` with each include line replaced; one that names no shared file stays, so that the compiler points at it.

@@ -1,95 +1,171 @@
 //! A triangle mesh in GPU buffers.
 
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
-use crate::buffers::{filled, refill};
-use crate::edges::unique_edges;
-use crate::surface_data::checked;
-use crate::uniforms::{MaterialUniform, SurfaceUniform};
-use crate::{AlphaMode, ColourSpace, Material, RenderError, Renderer, SurfaceData};
+use crate::buffers::filled;
+use crate::edges::{Odd, odd_edges};
+use crate::guard::guarded;
+use crate::pages::{Attributes, Page, PageLimits, page_chunks};
+use crate::partition::{ChunkBounds, Partition};
+use crate::pipelines::{Alpha, Look};
+use crate::surface_data::{checked, textures_exist};
+use crate::uniforms::{BorderEdge, LookVertex, SurfaceUniform};
+use crate::{AlphaMode, ColourSpace, Material, RenderError, Renderer, SurfaceData, TextureData, View, border};
 
 /// A triangle mesh in GPU buffers; its topology is fixed, its vertices may move and change colour.
 #[derive(Debug)]
 pub struct Surface {
     vertex_count: usize,
-    /// Kept for the edges, which are only made when a wireframe is first drawn: 12 bytes a triangle.
+    /// Kept for the borders, which are only looked for when first drawn: 12 bytes a triangle.
     triangles: Vec<[u32; 3]>,
-    /// Positions, normals, texture coordinates, colours, regions: the order of the pipelines' buffers.
-    vertex_buffers: [wgpu::Buffer; 5],
-    index_buffer: wgpu::Buffer,
+    twins: Option<Vec<u32>>,
+    partition: Arc<Partition>,
+    bounds: Vec<ChunkBounds>,
+    pages: Vec<Page>,
+    look: Look,
+    /// The one entry of surfaces whose vertices have neither texture coordinates nor colours.
+    shared_look: wgpu::Buffer,
     uniform_buffer: wgpu::Buffer,
     group: wgpu::BindGroup,
     materials: Vec<wgpu::BindGroup>,
-    batches: Vec<Batch>,
-    edges: OnceLock<Option<Edges>>,
+    /// For each page.
+    borders: OnceLock<Vec<Option<Borders>>>,
 }
 
-/// Triangles that are drawn together.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Batch {
-    pub(crate) triangles: Range<u32>,
-    pub(crate) material: usize,
-    pub(crate) alpha: AlphaMode,
-}
-
-/// A surface's edges, for its wireframe.
+/// A page's odd edges.
 #[derive(Debug)]
-pub(crate) struct Edges {
-    pub(crate) buffer: wgpu::Buffer,
-    pub(crate) index_count: u32,
+pub(crate) struct Borders {
+    pub(crate) edges: wgpu::Buffer,
+    pub(crate) count: u32,
+    pub(crate) positions: wgpu::BindGroup,
 }
 
-const POSITIONS: usize = 0;
-const NORMALS: usize = 1;
-const REGIONS: usize = 4;
+/// A new shape for a [`Surface`], with what can be computed beforehand on another thread.
+#[derive(Debug, Clone, Copy)]
+pub struct ShapeData<'a> {
+    /// Positions relative to the caller's centre, one a vertex.
+    pub positions: &'a [[f32; 3]],
+    /// Unit normals, one a vertex.
+    pub normals: &'a [[f32; 3]],
+    /// [`Partition::bounds`] of every chunk at these positions.
+    pub bounds: &'a [ChunkBounds],
+}
+
+/// Materials and their textures on the device, made apart from the surface that will wear them: textures take longer to
+/// decode and upload than all the rest, and can be made on another thread.
+#[derive(Debug)]
+pub struct Outfit {
+    /// One a material, and the default one's behind them.
+    groups: Vec<wgpu::BindGroup>,
+}
+
+impl Outfit {
+    /// Uploads textures and the materials that use them.
+    ///
+    /// # Errors
+    /// Numbers out of range, textures of the wrong length, memory.
+    pub fn new(renderer: &Renderer, materials: &[Material], textures: &[TextureData<'_>]) -> Result<Self, RenderError> {
+        textures_exist(materials, textures.len())?;
+        let groups = renderer.material_groups(materials, textures)?;
+        Ok(Self { groups })
+    }
+}
+
+/// Triangles of one page that are drawn by one call: page, places within the page, what they are made of.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Run {
+    pub(crate) page: usize,
+    pub(crate) triangles: Range<u32>,
+    /// The place in the surface's drawing order of the first one.
+    pub(crate) first_place: u32,
+    pub(crate) material: usize,
+    pub(crate) alpha: Alpha,
+}
+
+/// Which neighbouring chunks may be drawn by one call.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Joining {
+    /// All.
+    Any,
+    /// Those of one material.
+    OneMaterial,
+}
 
 impl Surface {
     /// Uploads a mesh. No triangles or no vertices is fine: it draws nothing.
     ///
     /// # Errors
-    /// Slices that contradict each other, numbers out of range, buffers beyond the device's limit
-    /// ([`RenderError::TooLarge`]), memory.
+    /// Slices that contradict each other, numbers out of range, textures of the wrong length, memory.
     pub fn new(renderer: &Renderer, data: &SurfaceData<'_>) -> Result<Self, RenderError> {
+        Self::paged(renderer, data, PageLimits::of(renderer.device()))
+    }
+
+    /// The same on a device that holds no more than `vertices` and `triangles` in a buffer, for trying out how a mesh
+    /// is spread over several.
+    ///
+    /// # Errors
+    /// As [`Surface::new`].
+    pub fn spread(
+        renderer: &Renderer,
+        data: &SurfaceData<'_>,
+        vertices: usize,
+        triangles: usize,
+    ) -> Result<Self, RenderError> {
+        Self::paged(renderer, data, PageLimits { vertices, triangles })
+    }
+
+    fn paged(renderer: &Renderer, data: &SurfaceData<'_>, limits: PageLimits) -> Result<Self, RenderError> {
         checked(data)?;
         let (device, queue) = (renderer.device(), renderer.queue());
         let count = data.positions.len();
-        let vertex = wgpu::BufferUsages::VERTEX;
-        let uvs = data.uvs.map_or_else(|| vec![[0.0; 2]; count], <[_]>::to_vec);
-        let colours = data.colours.map_or_else(|| vec![[255; 4]; count], <[_]>::to_vec);
-        let regions = data.regions.map_or_else(|| vec![[0; 4]; count], <[_]>::to_vec);
-        let vertex_buffers = [
-            filled(device, queue, "positions", vertex, data.positions)?,
-            filled(device, queue, "normals", vertex, data.normals)?,
-            filled(device, queue, "texture coordinates", vertex, &uvs)?,
-            filled(device, queue, "vertex colours", vertex, &colours)?,
-            filled(device, queue, "region colours", vertex, &regions)?,
-        ];
-        let index_buffer = filled(device, queue, "triangles", wgpu::BufferUsages::INDEX, data.triangles)?;
+        let partition = match data.partition {
+            Some(partition) => Arc::clone(partition),
+            None => Arc::new(Partition::new(
+                data.positions,
+                data.triangles,
+                data.groups,
+                data.materials,
+            )),
+        };
+        let plain = vec![[0; 4]; if data.regions.is_some() { 0 } else { count }];
+        let look = looks(data);
+        let attributes = Attributes {
+            positions: data.positions,
+            normals: data.normals,
+            regions: data.regions.unwrap_or(&plain),
+            look: look.as_deref(),
+        };
+        let pages = page_chunks(&partition, count, limits)
+            .into_iter()
+            .map(|chunks| Page::new(device, queue, &partition, chunks, data.triangles, &attributes))
+            .collect::<Result<Vec<_>, _>>()?;
         let uniform = SurfaceUniform {
             id_base: 1,
             colours_are_linear: u32::from(data.colour_space == ColourSpace::Linear),
             mean_edge: mean_edge(data),
             padding: 0,
         };
-        let uniform_buffer = filled(
-            device,
-            queue,
-            "surface uniform",
-            wgpu::BufferUsages::UNIFORM,
-            &[uniform],
-        )?;
-        let group = renderer.uniform_group(&renderer.pipelines().surface_layout, &uniform_buffer)?;
+        let uniforms = wgpu::BufferUsages::UNIFORM;
+        let uniform_buffer = filled(device, queue, "surface uniform", uniforms, &[uniform])?;
+        let group = renderer.uniform_group(&renderer.pipelines.surface_layout, &uniform_buffer)?;
+        let white = LookVertex {
+            uvs: [0.0; 4],
+            colour: [255; 4],
+        };
         Ok(Self {
             vertex_count: count,
             triangles: data.triangles.to_vec(),
-            vertex_buffers,
-            index_buffer,
+            twins: data.twins.map(<[u32]>::to_vec),
+            bounds: partition.all_bounds(data.positions),
+            partition,
+            pages,
+            look: if look.is_some() { Look::Own } else { Look::Shared },
+            shared_look: filled(device, queue, "plain look", wgpu::BufferUsages::VERTEX, &[white])?,
             uniform_buffer,
             group,
-            materials: material_groups(renderer, data)?,
-            batches: batches(data),
-            edges: OnceLock::new(),
+            materials: renderer.material_groups(data.materials, data.textures)?,
+            borders: OnceLock::new(),
         })
     }
 
@@ -105,20 +181,43 @@ impl Surface {
 
     /// Bytes that the mesh's buffers hold on the device (textures not counted).
     pub fn gpu_bytes(&self) -> u64 {
-        let edges = self
-            .edges
-            .get()
-            .and_then(Option::as_ref)
-            .map_or(0, |edges| edges.buffer.size());
-        self.vertex_buffers.iter().map(wgpu::Buffer::size).sum::<u64>() + self.index_buffer.size() + edges
+        self.pages.iter().map(Page::bytes).sum()
+    }
+
+    /// Over how many sets of buffers the mesh is spread.
+    pub fn page_count(&self) -> usize {
+        self.pages.len()
+    }
+
+    /// How many of the triangles a picture of `view` draws; the others lie in chunks that can't be seen.
+    pub fn drawn_triangles(&self, view: &View) -> usize {
+        let runs = self.runs(view, Joining::Any);
+        runs.iter().map(|run| run.triangles.len()).sum()
     }
 
     /// Moves the vertices; seen in the next drawing.
     ///
     /// # Errors
     /// [`RenderError::Length`] unless there is one position a vertex; memory.
-    pub fn update_positions(&self, renderer: &Renderer, positions: &[[f32; 3]]) -> Result<(), RenderError> {
-        self.update(renderer, "positions", POSITIONS, positions)
+    pub fn update_positions(&mut self, renderer: &Renderer, positions: &[[f32; 3]]) -> Result<(), RenderError> {
+        self.update(renderer, "positions", |page| &page.positions, positions)?;
+        self.bounds = self.partition.all_bounds(positions);
+        Ok(())
+    }
+
+    /// Moves the vertices, turns their normals and moves the chunks' boxes along.
+    ///
+    /// # Errors
+    /// As [`Surface::update_positions`].
+    pub fn update_shape(&mut self, renderer: &Renderer, shape: &ShapeData<'_>) -> Result<(), RenderError> {
+        if shape.bounds.len() != self.partition.chunk_count() {
+            let (expected, found) = (self.partition.chunk_count(), shape.bounds.len());
+            let what = "chunk bounds";
+            return Err(RenderError::Length { what, expected, found });
+        }
+        self.update(renderer, "positions", |page| &page.positions, shape.positions)?;
+        self.bounds.copy_from_slice(shape.bounds);
+        self.update_normals(renderer, shape.normals)
     }
 
     /// Turns the normals (unit vectors); seen in the next drawing.
@@ -126,7 +225,7 @@ impl Surface {
     /// # Errors
     /// As [`Surface::update_positions`].
     pub fn update_normals(&self, renderer: &Renderer, normals: &[[f32; 3]]) -> Result<(), RenderError> {
-        self.update(renderer, "normals", NORMALS, normals)
+        self.update(renderer, "normals", |page| &page.normals, normals)
     }
 
     /// Sets the region colours that [`crate::Style::region_share`] shows: sRGB, and in the fourth byte how much of
@@ -135,76 +234,161 @@ impl Surface {
     /// # Errors
     /// As [`Surface::update_positions`].
     pub fn update_regions(&self, renderer: &Renderer, regions: &[[u8; 4]]) -> Result<(), RenderError> {
-        self.update(renderer, "region colours", REGIONS, regions)
+        self.update(renderer, "region colours", |page| &page.regions, regions)
+    }
+
+    /// Gives the surface other materials: as many as it was made with, with the same alpha.
+    ///
+    /// # Errors
+    /// [`RenderError::Length`] for another number of materials.
+    pub fn wear(&mut self, outfit: Outfit) -> Result<(), RenderError> {
+        if outfit.groups.len() != self.materials.len() {
+            let [expected, found] = [&self.materials, &outfit.groups].map(|groups| groups.len() - 1);
+            let what = "materials";
+            return Err(RenderError::Length { what, expected, found });
+        }
+        self.materials = outfit.groups;
+        Ok(())
+    }
+
+    /// Reads positions and normals back from the device, waiting for them: for comparing what it computed.
+    ///
+    /// # Errors
+    /// Memory, or a device that stopped answering; a surface that is spread over several buffers is none to compare.
+    pub fn read_shape(&self, renderer: &Renderer) -> Result<[Vec<[f32; 3]>; 2], RenderError> {
+        let page = self.whole_page().ok_or(RenderError::Lost {
+            doing: "reading several buffers as one",
+        })?;
+        let read = |buffer| renderer.read_buffer(buffer, 12 * self.vertex_count as u64);
+        let [positions, normals] = [read(&page.positions)?, read(&page.normals)?];
+        let triples = |bytes: Vec<u8>| bytes.chunks_exact(12).map(bytemuck::pod_read_unaligned).collect();
+        Ok([triples(positions), triples(normals)])
     }
 
     fn update<T: bytemuck::NoUninit>(
         &self,
         renderer: &Renderer,
         what: &'static str,
-        buffer: usize,
+        buffer: impl Fn(&Page) -> &wgpu::Buffer,
         contents: &[T],
     ) -> Result<(), RenderError> {
         if contents.len() != self.vertex_count {
             let (expected, found) = (self.vertex_count, contents.len());
             return Err(RenderError::Length { what, expected, found });
         }
-        refill(
-            renderer.device(),
-            renderer.queue(),
-            &self.vertex_buffers[buffer],
-            contents,
-        )
+        for page in &self.pages {
+            page.refill(renderer.device(), renderer.queue(), buffer(page), contents)?;
+        }
+        Ok(())
     }
 
-    pub(crate) fn batches(&self) -> &[Batch] {
-        &self.batches
+    /// Chunks may be anywhere from now on: all are drawn.
+    pub(crate) fn forget_bounds(&mut self) {
+        self.bounds.fill(ChunkBounds::EVERYWHERE);
     }
 
-    pub(crate) fn material(&self, number: usize) -> &wgpu::BindGroup {
-        &self.materials[number]
+    /// The one page of a mesh that is not spread over several.
+    pub(crate) fn whole_page(&self) -> Option<&Page> {
+        self.pages.first().filter(|page| page.is_whole())
     }
 
-    pub(crate) fn index_count(&self) -> u32 {
-        3 * self.triangles.len() as u32
+    pub(crate) fn pages(&self) -> &[Page] {
+        &self.pages
     }
 
-    /// Binds group 1 and all vertex and index buffers.
+    pub(crate) fn look(&self) -> Look {
+        self.look
+    }
+
+    pub(crate) fn material(&self, number: usize) -> Option<&wgpu::BindGroup> {
+        self.materials.get(number)
+    }
+
+    /// Which triangle is drawn where.
+    pub(crate) fn partition(&self) -> Arc<Partition> {
+        Arc::clone(&self.partition)
+    }
+
+    /// Ways of drawing what may be seen, each chunk once.
+    pub(crate) fn runs(&self, view: &View, joining: Joining) -> Vec<Run> {
+        let mut runs: Vec<Run> = Vec::new();
+        let mut page = 0;
+        for (chunk, bounds) in self.partition.chunks().iter().zip(&self.bounds) {
+            while self
+                .pages
+                .get(page)
+                .is_some_and(|page| page.places().end <= chunk.triangles.start)
+            {
+                page += 1;
+            }
+            if !bounds.may_be_seen(&view.clip_from_world) {
+                continue;
+            }
+            let start = self.pages.get(page).map_or(0, |page| page.places().start);
+            let (from, to) = (chunk.triangles.start - start, chunk.triangles.end - start);
+            match runs.last_mut() {
+                Some(last)
+                    if last.page == page
+                        && last.triangles.end == from
+                        && (joining == Joining::Any || last.material == chunk.material) =>
+                {
+                    last.triangles.end = to;
+                }
+                _ => runs.push(Run {
+                    page,
+                    triangles: from..to,
+                    first_place: chunk.triangles.start,
+                    material: chunk.material,
+                    alpha: match chunk.alpha {
+                        AlphaMode::Opaque => Alpha::Opaque,
+                        AlphaMode::Mask { .. } => Alpha::Mask,
+                        AlphaMode::Blend => Alpha::Blend,
+                    },
+                }),
+            }
+        }
+        runs
+    }
+
+    /// Binds group 1.
     pub(crate) fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_bind_group(1, &self.group, &[]);
-        for (slot, buffer) in self.vertex_buffers.iter().enumerate() {
-            pass.set_vertex_buffer(slot as u32, buffer.slice(..));
-        }
-        pass.set_index_buffer(self.index_buffer.slice(..), wgpu::IndexFormat::Uint32);
     }
 
-    /// Binds group 1, positions and edges; gives the number of indices, zero when there is nothing to draw.
-    pub(crate) fn bind_edges(&self, pass: &mut wgpu::RenderPass<'_>) -> u32 {
-        let Some(edges) = self.edges.get().and_then(Option::as_ref) else {
-            return 0;
-        };
-        pass.set_bind_group(1, &self.group, &[]);
-        pass.set_vertex_buffer(0, self.vertex_buffers[POSITIONS].slice(..));
-        pass.set_index_buffer(edges.buffer.slice(..), wgpu::IndexFormat::Uint32);
-        edges.index_count
+    /// Binds a page's shape and triangles.
+    pub(crate) fn bind_shape(&self, pass: &mut wgpu::RenderPass<'_>, page: usize) {
+        let Some(page) = self.pages.get(page) else { return };
+        for (slot, buffer) in [&page.positions, &page.normals, &page.regions].into_iter().enumerate() {
+            pass.set_vertex_buffer(slot as u32, buffer.slice(..));
+        }
+        pass.set_index_buffer(page.indices.slice(..), wgpu::IndexFormat::Uint32);
+    }
+
+    /// Binds a page's texture coordinates and colours.
+    pub(crate) fn bind_look(&self, pass: &mut wgpu::RenderPass<'_>, page: usize) {
+        let own = self.pages.get(page).and_then(|page| page.look.as_ref());
+        pass.set_vertex_buffer(3, own.unwrap_or(&self.shared_look).slice(..));
+    }
+
+    /// A page's borders, where there are any.
+    pub(crate) fn borders(&self, page: usize) -> Option<&Borders> {
+        self.borders.get()?.get(page)?.as_ref()
     }
 
     /// Makes the edges unless they are there.
-    pub(crate) fn prepare_edges(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), RenderError> {
-        if self.edges.get().is_some() {
+    pub(crate) fn prepare_edges(&self, renderer: &Renderer) -> Result<(), RenderError> {
+        let (device, queue) = (renderer.device(), renderer.queue());
+        self.pages.iter().try_for_each(|page| page.prepare_edges(device, queue))
+    }
+
+    /// Looks for borders unless that was done.
+    pub(crate) fn prepare_borders(&self, renderer: &Renderer) -> Result<(), RenderError> {
+        if self.borders.get().is_some() {
             return Ok(());
         }
-        let edges = unique_edges(&self.triangles, self.vertex_count);
-        let made = if edges.is_empty() {
-            None
-        } else {
-            let buffer = filled(device, queue, "edges", wgpu::BufferUsages::INDEX, &edges)?;
-            Some(Edges {
-                buffer,
-                index_count: 2 * edges.len() as u32,
-            })
-        };
-        let _ = self.edges.set(made);
+        let odd = odd_edges(&self.triangles, self.vertex_count, self.twins.as_deref());
+        let made = self.pages.iter().map(|page| borders(renderer, page, &odd));
+        let _ = self.borders.set(made.collect::<Result<Vec<_>, _>>()?);
         Ok(())
     }
 
@@ -215,70 +399,56 @@ impl Surface {
     }
 }
 
-/// The given materials, and the default one after them.
-fn material_groups(renderer: &Renderer, data: &SurfaceData<'_>) -> Result<Vec<wgpu::BindGroup>, RenderError> {
-    let textures = data
-        .textures
+/// The odd edges whose ends are both on a page; an edge on several is drawn as often.
+fn borders(renderer: &Renderer, page: &Page, odd: &[Odd]) -> Result<Option<Borders>, RenderError> {
+    let (device, queue) = (renderer.device(), renderer.queue());
+    let instances: Vec<BorderEdge> = odd
         .iter()
-        .enumerate()
-        .map(|(number, texture)| renderer.textures().texture(number, texture))
-        .collect::<Result<Vec<_>, _>>()?;
-    data.materials
-        .iter()
-        .chain([&Material::default()])
-        .map(|material| {
-            let (alpha_cutoff, opaque) = match material.alpha {
-                AlphaMode::Mask { cutoff } => (cutoff, true),
-                AlphaMode::Opaque => (0.0, true),
-                AlphaMode::Blend => (0.0, false),
+        .filter_map(|odd| {
+            let (ends, colour) = match odd {
+                Odd::Border(ends) => (ends, border::OPEN),
+                Odd::Branching(ends) => (ends, border::BRANCHING),
             };
-            let uniform = MaterialUniform {
-                base_colour: material.base_colour,
-                alpha_cutoff,
-                back_share: if material.double_sided || !opaque { 1.0 } else { 0.45 },
-                padding: [0.0; 2],
-            };
-            let texture = material
-                .base_colour_texture
-                .map(|number| (&textures[number], data.textures[number].wrap));
-            renderer.material_group(&uniform, texture)
+            Some(BorderEdge {
+                ends: [page.vertex(ends[0])?, page.vertex(ends[1])?],
+                colour,
+            })
         })
-        .collect()
+        .collect();
+    if instances.is_empty() {
+        return Ok(None);
+    }
+    let positions = guarded(device, "while making bind groups", || {
+        Ok(device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("positions"),
+            layout: &renderer.pipelines.positions_layout,
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: page.positions.as_entire_binding(),
+            }],
+        }))
+    })?;
+    Ok(Some(Borders {
+        edges: filled(device, queue, "borders", wgpu::BufferUsages::VERTEX, &instances)?,
+        count: instances.len() as u32,
+        positions,
+    }))
 }
 
-/// The groups in the order of triangles, gaps filled with the default material.
-fn batches(data: &SurfaceData<'_>) -> Vec<Batch> {
-    let default_material = data.materials.len();
-    let count = data.triangles.len() as u32;
-    let mut groups: Vec<_> = data.groups.iter().filter(|group| !group.triangles.is_empty()).collect();
-    groups.sort_by_key(|group| group.triangles.start);
-    let mut batches: Vec<Batch> = Vec::new();
-    let mut push = |triangles: Range<u32>, material: usize| {
-        if triangles.is_empty() {
-            return;
-        }
-        match batches.last_mut() {
-            Some(last) if last.material == material && last.triangles.end == triangles.start => {
-                last.triangles.end = triangles.end;
-            }
-            _ => {
-                let alpha = data.materials.get(material).map_or(AlphaMode::Opaque, |m| m.alpha);
-                batches.push(Batch {
-                    triangles,
-                    material,
-                    alpha,
-                });
-            }
+/// Texture coordinates and colours side by side, where the data has any.
+fn looks(data: &SurfaceData<'_>) -> Option<Vec<LookVertex>> {
+    if data.uvs.is_none() && data.second_uvs.is_none() && data.colours.is_none() {
+        return None;
+    }
+    let look = |vertex: usize| {
+        let [u, v] = data.uvs.map_or([0.0; 2], |uvs| uvs[vertex]);
+        let [s, t] = data.second_uvs.map_or([0.0; 2], |uvs| uvs[vertex]);
+        LookVertex {
+            uvs: [u, v, s, t],
+            colour: data.colours.map_or([255; 4], |colours| colours[vertex]),
         }
     };
-    let mut next = 0;
-    for group in groups {
-        push(next..group.triangles.start, default_material);
-        push(group.triangles.clone(), group.material);
-        next = next.max(group.triangles.end);
-    }
-    push(next..count, default_material);
-    batches
+    Some((0..data.positions.len()).map(look).collect())
 }
 
 /// The mean length of an edge, from at most ten thousand triangles evenly spread: it only sets how faint a wireframe
@@ -297,38 +467,4 @@ fn mean_edge(data: &SurfaceData<'_>) -> f32 {
         }
     }
     sum / count.max(1) as f32
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::MaterialGroup;
-
-    #[test]
-    fn gaps_between_groups_get_the_default_material_and_neighbours_merge() {
-        let group = |triangles, material| MaterialGroup { triangles, material };
-        let groups = [group(6..8, 0), group(2..4, 1), group(4..4, 0), group(4..6, 1)];
-        let glass = Material {
-            alpha: AlphaMode::Blend,
-            ..Material::default()
-        };
-        let data = SurfaceData {
-            triangles: &[[0; 3]; 10],
-            groups: &groups,
-            materials: &[Material::default(), glass],
-            ..Default::default()
-        };
-        let batch = |triangles, material, alpha| Batch {
-            triangles,
-            material,
-            alpha,
-        };
-        let expected = [
-            batch(0..2, 2, AlphaMode::Opaque),
-            batch(2..6, 1, AlphaMode::Blend),
-            batch(6..8, 0, AlphaMode::Opaque),
-            batch(8..10, 2, AlphaMode::Opaque),
-        ];
-        assert_eq!(batches(&data), expected);
-    }
 }

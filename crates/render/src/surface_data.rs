@@ -1,6 +1,8 @@
 //! What a surface is made of: slices, checked before anything is uploaded.
 
-use crate::{Material, MaterialGroup, RenderError, TextureData};
+use std::sync::Arc;
+
+use crate::{Material, MaterialGroup, Partition, RenderError, TextureData};
 
 /// The slices a [`crate::Surface`] is made of. All per-vertex slices have one entry a vertex.
 #[derive(Debug, Clone, Copy, Default)]
@@ -13,6 +15,8 @@ pub struct SurfaceData<'a> {
     pub triangles: &'a [[u32; 3]],
     /// Texture coordinates, v downwards as in glTF.
     pub uvs: Option<&'a [[f32; 2]]>,
+    /// A second set of them, for maps that ask for it.
+    pub second_uvs: Option<&'a [[f32; 2]]>,
     /// The file's vertex colours (red, green, blue, alpha).
     pub colours: Option<&'a [[u8; 4]]>,
     /// How the vertex colours are encoded.
@@ -23,6 +27,11 @@ pub struct SurfaceData<'a> {
     pub groups: &'a [MaterialGroup],
     /// The materials that groups name.
     pub materials: &'a [Material],
+    /// For each vertex the lowest vertex at the same place: what lies between such twins is a seam, no border. None
+    /// means that no two vertices are twins.
+    pub twins: Option<&'a [u32]>,
+    /// How the triangles are cut into chunks; made of the slices above where none is given.
+    pub partition: Option<&'a Arc<Partition>>,
     /// The textures that materials name.
     pub textures: &'a [TextureData<'a>],
 }
@@ -43,6 +52,8 @@ pub(crate) fn checked(data: &SurfaceData<'_>) -> Result<(), RenderError> {
     for (what, length) in [
         ("normals", Some(data.normals.len())),
         ("texture coordinates", data.uvs.map(<[_]>::len)),
+        ("second texture coordinates", data.second_uvs.map(<[_]>::len)),
+        ("twins", data.twins.map(<[_]>::len)),
         ("vertex colours", data.colours.map(<[_]>::len)),
         ("region colours", data.regions.map(<[_]>::len)),
     ] {
@@ -79,12 +90,32 @@ pub(crate) fn checked(data: &SurfaceData<'_>) -> Result<(), RenderError> {
         }
         in_range("material", group.material, data.materials.len())?;
     }
-    for texture in data
-        .materials
+    if let Some(&twin) = data
+        .twins
+        .unwrap_or_default()
         .iter()
-        .filter_map(|material| material.base_colour_texture)
+        .find(|&&twin| twin as usize >= vertices)
     {
-        in_range("texture", texture, data.textures.len())?;
+        in_range("twin", twin as usize, vertices)?;
+    }
+    textures_exist(data.materials, data.textures.len())?;
+    if let Some(partition) = data.partition.filter(|partition| !partition.fits(data.triangles.len())) {
+        return Err(RenderError::Length {
+            what: "the partition's triangles",
+            expected: data.triangles.len(),
+            found: partition
+                .chunks()
+                .last()
+                .map_or(0, |chunk| chunk.triangles.end as usize),
+        });
+    }
+    Ok(())
+}
+
+/// Refuses materials that name a texture which does not exist.
+pub(crate) fn textures_exist(materials: &[Material], texture_count: usize) -> Result<(), RenderError> {
+    for map in materials.iter().flat_map(|material| material.maps()).flatten() {
+        in_range("texture", map.texture, texture_count)?;
     }
     Ok(())
 }

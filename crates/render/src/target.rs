@@ -76,7 +76,7 @@ impl Target {
         let limit = renderer.device().limits().max_texture_dimension_2d;
         if size_px.iter().any(|&side| side > limit) {
             let [width, height] = size_px;
-            return Err(RenderError::PictureTooLarge { width, height, limit });
+            return Err(RenderError::PictureTooLarge { width, height });
         }
         self.attachments = Some(guarded(renderer.device(), "while making the view's texture", || {
             Ok(Attachments::new(renderer.device(), size_px, samples))

@@ -1,12 +1,12 @@
-//! Images on surfaces: sRGB bytes in, a texture with mipmaps on the device.
+//! Images on surfaces: bytes in, a texture with mipmaps on the device.
 
 use std::borrow::Cow;
 
-use crate::RenderError;
 use crate::guard::guarded;
 use crate::shaders::Shader;
+use crate::{RenderError, Wrap};
 
-/// An image of four sRGB bytes a pixel (alpha straight), rows from the top.
+/// An image of four bytes a pixel (alpha straight), rows from the top.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextureData<'a> {
     /// Width in pixels, at least 1.
@@ -15,20 +15,18 @@ pub struct TextureData<'a> {
     pub height: u32,
     /// `4 · width · height` bytes.
     pub rgba: &'a [u8],
-    /// What lies beyond the borders, along u and v.
-    pub wrap: [Wrap; 2],
+    /// What its bytes say.
+    pub encoding: Encoding,
 }
 
-/// What lies beyond an image's border.
+/// What an image's bytes say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Wrap {
-    /// The image again.
+pub enum Encoding {
+    /// Colours as screens show them.
     #[default]
-    Repeat,
-    /// The image mirrored, and again.
-    Mirror,
-    /// Its border pixels.
-    Clamp,
+    Srgb,
+    /// Numbers: normals, roughness, occlusion.
+    Linear,
 }
 
 /// Makes textures: holds what mipmaps are made with.
@@ -36,12 +34,14 @@ pub enum Wrap {
 pub(crate) struct TextureMaker {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    mipmap: wgpu::RenderPipeline,
+    /// For sRGB and for linear images.
+    mipmaps: [wgpu::RenderPipeline; 2],
     mipmap_sampler: wgpu::Sampler,
     anisotropy: u16,
 }
 
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// The formats of sRGB and of linear images.
+const FORMATS: [wgpu::TextureFormat; 2] = [wgpu::TextureFormat::Rgba8UnormSrgb, wgpu::TextureFormat::Rgba8Unorm];
 
 impl TextureMaker {
     pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
@@ -49,27 +49,29 @@ impl TextureMaker {
             label: Some(Shader::Mipmap.file_name()),
             source: wgpu::ShaderSource::Wgsl(Shader::Mipmap.composed().into()),
         });
-        let mipmap = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("mipmap"),
-            layout: None,
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vs_mipmap"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fs_mipmap"),
-                compilation_options: Default::default(),
-                targets: &[Some(FORMAT.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+        let pipeline = |format: wgpu::TextureFormat| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("mipmap"),
+                layout: None,
+                vertex: wgpu::VertexState {
+                    module: &module,
+                    entry_point: Some("vs_mipmap"),
+                    compilation_options: Default::default(),
+                    buffers: &[],
+                },
+                primitive: Default::default(),
+                depth_stencil: None,
+                multisample: Default::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some("fs_mipmap"),
+                    compilation_options: Default::default(),
+                    targets: &[Some(format.into())],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
         let mipmap_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("mipmap"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -81,7 +83,7 @@ impl TextureMaker {
         Self {
             device: device.clone(),
             queue: queue.clone(),
-            mipmap,
+            mipmaps: FORMATS.map(pipeline),
             mipmap_sampler,
             anisotropy: if is_software { 1 } else { 8 },
         }
@@ -109,12 +111,12 @@ impl TextureMaker {
                 depth_or_array_layers: 1,
             };
             let texture = self.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("base colour"),
+                label: Some("material image"),
                 size,
                 mip_level_count: width.max(height).ilog2() + 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
-                format: FORMAT,
+                format: FORMATS[data.encoding as usize],
                 usage: wgpu::TextureUsages::TEXTURE_BINDING
                     | wgpu::TextureUsages::COPY_DST
                     | wgpu::TextureUsages::RENDER_ATTACHMENT,
@@ -126,7 +128,7 @@ impl TextureMaker {
                 rows_per_image: Some(height),
             };
             self.queue.write_texture(texture.as_image_copy(), &rgba, rows, size);
-            self.make_mipmaps(&texture);
+            self.make_mipmaps(&texture, &self.mipmaps[data.encoding as usize]);
             Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
         })
     }
@@ -139,7 +141,7 @@ impl TextureMaker {
             Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
         };
         self.device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("base colour"),
+            label: Some("material image"),
             address_mode_u: mode(wrap[0]),
             address_mode_v: mode(wrap[1]),
             mag_filter: wgpu::FilterMode::Linear,
@@ -150,7 +152,7 @@ impl TextureMaker {
         })
     }
 
-    fn make_mipmaps(&self, texture: &wgpu::Texture) {
+    fn make_mipmaps(&self, texture: &wgpu::Texture, pipeline: &wgpu::RenderPipeline) {
         let view_of = |level| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 base_mip_level: level,
@@ -159,7 +161,7 @@ impl TextureMaker {
             })
         };
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        let layout = self.mipmap.get_bind_group_layout(0);
+        let layout = pipeline.get_bind_group_layout(0);
         for level in 1..texture.mip_level_count() {
             let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("mipmap"),
@@ -185,7 +187,7 @@ impl TextureMaker {
                 })],
                 ..Default::default()
             });
-            pass.set_pipeline(&self.mipmap);
+            pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &group, &[]);
             pass.draw(0..3, 0..1);
         }
@@ -233,7 +235,7 @@ mod tests {
             width: 5,
             height: 2,
             rgba: &rgba,
-            wrap: [Wrap::Repeat; 2],
+            encoding: Encoding::Srgb,
         };
         assert_eq!(scaled_to_fit(&data, 5), (5, 2, Cow::Borrowed(&rgba[..])));
         let (width, height, halved) = scaled_to_fit(&data, 4);

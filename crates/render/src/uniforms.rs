@@ -8,12 +8,14 @@ use bytemuck::{Pod, Zeroable};
 pub(crate) struct FrameUniform {
     pub(crate) clip_from_world: [[f32; 4]; 4],
     pub(crate) view_from_world: [[f32; 4]; 4],
-    pub(crate) eye: [f32; 4],
     pub(crate) background_top: [f32; 4],
     pub(crate) background_bottom: [f32; 4],
     pub(crate) size_px: [f32; 2],
+    pub(crate) background_span: [f32; 2],
     pub(crate) region_share: f32,
     pub(crate) scale_px: f32,
+    pub(crate) perspective: f32,
+    pub(crate) flatness: f32,
 }
 
 /// `Surface` in `shaders/lib/surface_vertex.wgsl`.
@@ -26,14 +28,94 @@ pub(crate) struct SurfaceUniform {
     pub(crate) padding: u32,
 }
 
-/// `Material` in `shaders/surface.wgsl`.
+/// `Clay` in `shaders/surface.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct ClayUniform {
+    pub(crate) colour: [f32; 4],
+    pub(crate) inside: [f32; 4],
+}
+
+/// `Map` in `shaders/material.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct MapUniform {
+    pub(crate) u: [f32; 4],
+    pub(crate) v: [f32; 4],
+}
+
+/// `Material` in `shaders/material.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(crate) struct MaterialUniform {
     pub(crate) base_colour: [f32; 4],
-    pub(crate) alpha_cutoff: f32,
+    pub(crate) emissive: [f32; 4],
+    pub(crate) metallic: f32,
+    pub(crate) roughness: f32,
+    pub(crate) normal_scale: f32,
+    pub(crate) occlusion_strength: f32,
     pub(crate) back_share: f32,
+    pub(crate) flags: u32,
     pub(crate) padding: [f32; 2],
+    pub(crate) metallic_roughness: MapUniform,
+    pub(crate) normal: MapUniform,
+    pub(crate) occlusion: MapUniform,
+    pub(crate) emission: MapUniform,
+}
+
+/// `Pass` in `shaders/environment.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct EnvironmentUniform {
+    pub(crate) right: [f32; 4],
+    pub(crate) down: [f32; 4],
+    pub(crate) forward: [f32; 4],
+    pub(crate) roughness: f32,
+    pub(crate) samples: u32,
+    pub(crate) padding: [f32; 2],
+}
+
+/// `Grid` in `shaders/grid.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct GridUniform {
+    pub(crate) middle: [f32; 3],
+    pub(crate) step: f32,
+    pub(crate) along_u: [f32; 3],
+    pub(crate) reach: f32,
+    pub(crate) along_v: [f32; 3],
+    pub(crate) fine_share: f32,
+    pub(crate) axes: [f32; 2],
+    pub(crate) padding: [f32; 2],
+    pub(crate) colour: [f32; 4],
+    pub(crate) u_axis_colour: [f32; 4],
+    pub(crate) v_axis_colour: [f32; 4],
+}
+
+/// `Job` in `shaders/deform.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct DeformUniform {
+    pub(crate) vertex_count: u32,
+    pub(crate) handle_count: u32,
+    pub(crate) has_stored: u32,
+    pub(crate) padding: u32,
+}
+
+/// `LookVertex` in `shaders/material.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub(crate) struct LookVertex {
+    pub(crate) uvs: [f32; 4],
+    pub(crate) colour: [u8; 4],
+}
+
+/// `BorderEdge` in `shaders/border.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+pub(crate) struct BorderEdge {
+    pub(crate) ends: [u32; 2],
+    pub(crate) colour: [u8; 4],
 }
 
 /// `OverlayVertex` in `shaders/overlay_triangle.wgsl`.

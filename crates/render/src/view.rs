@@ -70,6 +70,29 @@ impl View {
         world_from_view.inverse()
     }
 
+    /// Whether the eye is somewhere, rather than infinitely far in a direction.
+    pub fn is_perspective(&self) -> bool {
+        self.eye.w != 0.0
+    }
+
+    /// The part of a picture of `size_px` that begins at `origin_px` from its upper left corner, as a view of its own
+    /// for a picture of `tile_px`.
+    pub fn tile(&self, size_px: [u32; 2], origin_px: [u32; 2], tile_px: [u32; 2]) -> Self {
+        let share = |axis: usize| size_px[axis] as f32 / tile_px[axis] as f32;
+        let middle = |axis: usize| (2.0 * origin_px[axis] as f32 + tile_px[axis] as f32) / size_px[axis] as f32 - 1.0;
+        let (x_scale, y_scale) = (share(0), share(1));
+        let tile_from_clip = Mat4::from_cols(
+            Vec4::new(x_scale, 0.0, 0.0, 0.0),
+            Vec4::new(0.0, y_scale, 0.0, 0.0),
+            Vec4::Z,
+            Vec4::new(-middle(0) * x_scale, middle(1) * y_scale, 0.0, 1.0),
+        );
+        Self {
+            clip_from_world: tile_from_clip * self.clip_from_world,
+            ..*self
+        }
+    }
+
     /// Where a point of the world falls in a picture of `size_px`, in pixels from its upper left corner, with its
     /// depth (1 near, 0 far); `None` behind the eye.
     pub fn pixel_from_world(&self, position: Vec3, size_px: [u32; 2]) -> Option<Vec3> {

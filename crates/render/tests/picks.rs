@@ -20,6 +20,7 @@ fn pick(renderer: &mut Renderer, view: &View, surfaces: &[&Surface], rect: Pixel
         view,
         style: &style,
         surfaces,
+        grid: None,
         overlays: &[],
     };
     let mut target = IdTarget::new();
@@ -143,6 +144,7 @@ fn an_answer_comes_without_waiting_for_it() {
         view: &view,
         style: &style,
         surfaces: &[&sphere],
+        grid: None,
         overlays: &[],
     };
     let mut target = IdTarget::new();

@@ -5,8 +5,8 @@ mod rig;
 
 use glam::Vec3;
 use pliant_render::{
-    AlphaMode, Background, Frame, Material, MaterialGroup, RenderError, Samples, Shading, Style, Surface, SurfaceData,
-    Target, TextureData, Wireframe, Wrap, region,
+    AlphaMode, Background, Encoding, Frame, Map, Matcap, Material, MaterialGroup, RenderError, Samples, Shading, Style,
+    Surface, SurfaceData, Target, TextureData, Wireframe, Wrap, region,
 };
 use rig::{SIZE_PX, Shape, brightness, draw, front_view, is_near, parallel_front_view, pixel_at, renderer};
 
@@ -24,7 +24,13 @@ fn a_sphere_is_brighter_where_it_faces_the_key_than_at_its_far_contour() {
     let Some(mut headless) = renderer() else { return };
     let sphere = Shape::sphere(4).upload(&headless.renderer);
     for view in [front_view(), parallel_front_view()] {
-        let image = draw(&mut headless.renderer, &view, &style(Shading::Clay), &[&sphere], &[]);
+        let image = draw(
+            &mut headless.renderer,
+            &view,
+            &style(Shading::Clay(Matcap::Clay)),
+            &[&sphere],
+            &[],
+        );
         let at = |x: f32, y: f32| brightness(pixel_at(&image, &view, [x, y, (1.0 - x * x - y * y).sqrt()]));
         assert!(at(-0.4, 0.5) > at(0.0, 0.0), "the key comes from the upper left");
         assert!(at(0.0, 0.0) > at(0.7, -0.6) + 40.0, "the far side lies in shadow");
@@ -109,13 +115,19 @@ fn region_colours_show_in_regions_only_and_change_in_place() {
     let view = front_view();
     let square = Shape::square(0.0, 0.0, 1.0);
     let surface = square.upload(&headless.renderer);
-    let clay = draw(&mut headless.renderer, &view, &style(Shading::Clay), &[&surface], &[]);
+    let clay = draw(
+        &mut headless.renderer,
+        &view,
+        &style(Shading::Clay(Matcap::Clay)),
+        &[&surface],
+        &[],
+    );
     let plain = draw(
         &mut headless.renderer,
         &view,
         &Style {
             region_share: 1.0,
-            ..style(Shading::Clay)
+            ..style(Shading::Clay(Matcap::Clay))
         },
         &[&surface],
         &[],
@@ -129,12 +141,18 @@ fn region_colours_show_in_regions_only_and_change_in_place() {
         &view,
         &Style {
             region_share: 1.0,
-            ..style(Shading::Clay)
+            ..style(Shading::Clay(Matcap::Clay))
         },
         &[&surface],
         &[],
     );
-    let still_clay = draw(&mut headless.renderer, &view, &style(Shading::Clay), &[&surface], &[]);
+    let still_clay = draw(
+        &mut headless.renderer,
+        &view,
+        &style(Shading::Clay(Matcap::Clay)),
+        &[&surface],
+        &[],
+    );
     assert_eq!(clay, still_clay);
     let [red, green, blue, _] = pixel_at(&gold, &view, [0.1; 3]);
     assert!(red > green && green > blue + 40, "a handle is golden");
@@ -144,7 +162,7 @@ fn region_colours_show_in_regions_only_and_change_in_place() {
         &view,
         &Style {
             region_share: 1.0,
-            ..style(Shading::Clay)
+            ..style(Shading::Clay(Matcap::Clay))
         },
         &[&surface],
         &[],
@@ -189,14 +207,20 @@ fn vertices_move_in_place_and_a_wrong_count_is_refused() {
     let Some(mut headless) = renderer() else { return };
     let view = front_view();
     let (here, there) = (Shape::square(-0.6, 0.0, 0.3), Shape::square(0.6, 0.0, 0.3));
-    let surface = here.upload(&headless.renderer);
+    let mut surface = here.upload(&headless.renderer);
     surface.update_positions(&headless.renderer, &there.positions).unwrap();
-    let moved = draw(&mut headless.renderer, &view, &style(Shading::Clay), &[&surface], &[]);
+    let moved = draw(
+        &mut headless.renderer,
+        &view,
+        &style(Shading::Clay(Matcap::Clay)),
+        &[&surface],
+        &[],
+    );
     let made_there = there.upload(&headless.renderer);
     let expected = draw(
         &mut headless.renderer,
         &view,
-        &style(Shading::Clay),
+        &style(Shading::Clay(Matcap::Clay)),
         &[&made_there],
         &[],
     );
@@ -226,7 +250,7 @@ fn the_back_of_a_single_sided_surface_is_dimmer_and_normals_may_be_missing() {
     let back = Shape::square(0.0, 0.0, 1.0)
         .turned_inside_out()
         .upload(&headless.renderer);
-    for shading in [Shading::Clay, Shading::Material] {
+    for shading in [Shading::Clay(Matcap::Clay), Shading::Material] {
         let shown = |renderer: &mut _, surface| {
             brightness(pixel_at(
                 &draw(renderer, &view, &style(shading), &[surface], &[]),
@@ -260,8 +284,12 @@ fn textures_show_upright_and_masks_cut_holes() {
         .collect();
     let uvs = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
     let shown = |renderer: &mut pliant_render::Renderer, alpha| {
+        let map = Map {
+            wrap: [Wrap::Clamp; 2],
+            ..Map::of(0)
+        };
         let material = Material {
-            base_colour_texture: Some(0),
+            base_colour_map: Some(map),
             alpha,
             ..Material::default()
         };
@@ -276,7 +304,7 @@ fn textures_show_upright_and_masks_cut_holes() {
                 width,
                 height,
                 rgba: &rgba,
-                wrap: [Wrap::Clamp; 2],
+                encoding: Encoding::Srgb,
             }],
             ..square.data()
         };
@@ -319,7 +347,7 @@ fn mipmaps_keep_the_mean_light() {
     let uvs = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
     let mut shown = |rgba: &[u8], side| {
         let material = Material {
-            base_colour_texture: Some(0),
+            base_colour_map: Some(Map::of(0)),
             ..Material::default()
         };
         let data = SurfaceData {
@@ -333,7 +361,7 @@ fn mipmaps_keep_the_mean_light() {
                 width: side,
                 height: side,
                 rgba,
-                wrap: [Wrap::Repeat; 2],
+                encoding: Encoding::Srgb,
             }],
             ..square.data()
         };
@@ -353,12 +381,13 @@ fn mipmaps_keep_the_mean_light() {
 #[test]
 fn four_samples_smooth_borders_and_change_nothing_else() {
     let Some(mut headless) = renderer() else { return };
-    let (view, style) = (front_view(), style(Shading::Clay));
+    let (view, style) = (front_view(), style(Shading::Clay(Matcap::Clay)));
     let sphere = Shape::sphere(4).upload(&headless.renderer);
     let frame = Frame {
         view: &view,
         style: &style,
         surfaces: &[&sphere],
+        grid: None,
         overlays: &[],
     };
     let jagged = headless.renderer.draw_to_image(SIZE_PX, Samples::One, &frame).unwrap();
@@ -391,6 +420,7 @@ fn no_size_draws_nothing_and_too_large_a_size_is_refused() {
         view: &view,
         style: &wired,
         surfaces: &[&empty],
+        grid: None,
         overlays: &[],
     };
     let renderer = &mut headless.renderer;

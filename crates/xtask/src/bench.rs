@@ -12,6 +12,7 @@ mod meshes;
 mod peers;
 mod primo;
 mod table;
+mod view;
 
 use table::Row;
 
@@ -56,6 +57,11 @@ const SECTIONS: &[Section] = &[
         name: "files",
         title: "Reading and saving: megabytes a second, beside a plain read of the file; medians",
         rows: files::rows,
+    },
+    Section {
+        name: "view",
+        title: "Drawing at 1280×800, moving and asking: milliseconds, medians; the processor's side and the device's own clock",
+        rows: view::rows,
     },
     Section {
         name: "peers",

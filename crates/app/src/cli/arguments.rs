@@ -111,6 +111,30 @@ pub struct RenderArguments {
     /// How to colour the surface
     #[arg(long, value_enum, default_value = "clay")]
     pub shading: Shading,
+    /// Which clay `--shading clay` and `regions` take
+    #[arg(long, value_enum, default_value = "clay")]
+    pub clay: ClayName,
+    /// How depth looks
+    #[arg(long, value_enum, default_value = "perspective")]
+    pub projection: ProjectionName,
+    /// Show each triangle flat instead of interpolating normals
+    #[arg(long)]
+    pub flat: bool,
+    /// Draw the triangles' edges
+    #[arg(long)]
+    pub wireframe: bool,
+    /// Mark edges where the surface ends, and those that more than two triangles share
+    #[arg(long)]
+    pub borders: bool,
+    /// Draw the ground's grid
+    #[arg(long)]
+    pub grid: bool,
+    /// Leave the background transparent
+    #[arg(long)]
+    pub transparent: bool,
+    /// Write N pictures all around the up axis (2 to 9999), as OUT-0001.png and so on
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=9999))]
+    pub turntable: Option<u32>,
 }
 
 /// The axis that points up in a picture.
@@ -136,13 +160,43 @@ pub enum View {
 
 /// How a picture colours the surface.
 #[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-#[expect(missing_docs, reason = "each variant is what its name says")]
 pub enum Shading {
+    /// Clay: shape and nothing else
     Clay,
+    /// The file's materials
     Material,
+    /// Clay with the edit's regions in colour
     Regions,
+    /// The edit's stiffness, with a legend
     Stiffness,
+    /// Lengths of edges over those at rest, with a legend
     Distortion,
+    /// Areas over those at rest, with a legend
+    Area,
+    /// Mean curvature, with a legend
+    Curvature,
+    /// Mirrored stripes: they break at creases and kink where curvature jumps
+    Zebra,
+    /// The direction in which the surface faces
+    Normals,
+}
+
+/// A clay.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub enum ClayName {
+    Clay,
+    Plaster,
+    Wax,
+    Bronze,
+    Porcelain,
+    Graphite,
+}
+
+/// How depth looks in a picture.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub enum ProjectionName {
+    Perspective,
+    Orthographic,
 }
 
 /// A picture's size in pixels, 1 to 16384 each way.

@@ -1,20 +1,22 @@
 //! `pliant render`: a picture of a file, at rest or with an edit applied, as the window shows it.
 
-use std::io::Cursor;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use pliant_editor::{Camera, Editor, Event, InlineExecutor, JobKind, NamedView, UpAxis};
+use pliant_editor::{
+    Camera, Clay, Editor, Event, InlineExecutor, JobKind, Look, NamedView, Projection, Shading, UpAxis,
+};
 use pliant_mesh::WeldOptions;
-use pliant_render::{Frame, Headless, Image, Samples, Shading, Style};
+use pliant_render::{Background, Frame, Headless, RenderError, Samples};
 
 use super::apply::read_edit;
-use super::arguments::{self, PictureSize, RenderArguments, Up, View};
+use super::arguments::{self, ClayName, PictureSize, ProjectionName, RenderArguments, Up, View};
 use super::{Console, on_threads};
-use crate::drawing::{self, Drawing};
+use crate::drawing::{self, Drawing, Scale};
 use crate::engine::{self, Loaded};
 use crate::watch::Watch;
-use crate::{AppError, files};
+use crate::{AppError, files, legend, picture_file};
 
 pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     let output = &arguments.output;
@@ -27,86 +29,157 @@ pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Res
             "--output {output} is no .png: pictures are written as PNG"
         )));
     }
-    let style = style(arguments.shading)?;
     let watch = &console.watch;
-    let png = on_threads(None, || picture(arguments, &style, watch))??;
+    let pngs = on_threads(None, || pictures(arguments, watch))??;
     if watch.cancel.is_cancelled() {
         return Err(AppError::Interrupted);
     }
-    let name = output.file_name().unwrap_or_default().to_string_lossy();
+    let named = names(arguments).into_iter().zip(&pngs);
+    let files: Vec<(String, &[u8])> = named.map(|(name, png)| (name, png.as_slice())).collect();
     console
         .staging
-        .stage(files::folder_of(output), [(&*name, &*png)])?
+        .stage(
+            files::folder_of(output),
+            files.iter().map(|(name, png)| (name.as_str(), *png)),
+        )?
         .commit()?;
     Ok(())
 }
 
-fn style(shading: arguments::Shading) -> Result<Style, AppError> {
-    let missing = |name| {
-        Err(AppError::Unsupported(format!(
-            "--shading {name} is not drawn yet: use clay, material or regions"
-        )))
-    };
-    let (shading, region_share) = match shading {
-        arguments::Shading::Clay => (Shading::Clay, 0.0),
-        arguments::Shading::Material => (Shading::Material, 0.0),
-        arguments::Shading::Regions => (Shading::Clay, 1.0),
-        arguments::Shading::Stiffness => return missing("stiffness"),
-        arguments::Shading::Distortion => return missing("distortion"),
-    };
-    Ok(Style {
-        shading,
-        region_share,
-        ..Style::default()
-    })
+/// The names of the pictures in their folder.
+fn names(arguments: &RenderArguments) -> Vec<String> {
+    let output = &arguments.output;
+    match arguments.turntable {
+        None => vec![output.file_name().unwrap_or_default().to_string_lossy().into_owned()],
+        Some(count) => {
+            let stem = output.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            (1..=count).map(|number| format!("{stem}-{number:04}.png")).collect()
+        }
+    }
 }
 
-fn picture(arguments: &RenderArguments, style: &Style, watch: &Watch) -> Result<Vec<u8>, AppError> {
+/// How the arguments want the surface shown.
+fn look(arguments: &RenderArguments) -> Look {
+    let shading = match arguments.shading {
+        arguments::Shading::Clay | arguments::Shading::Regions => Shading::Clay,
+        arguments::Shading::Material => Shading::Material,
+        arguments::Shading::Stiffness => Shading::Stiffness,
+        arguments::Shading::Distortion => Shading::Stretch,
+        arguments::Shading::Area => Shading::Area,
+        arguments::Shading::Curvature => Shading::Curvature,
+        arguments::Shading::Zebra => Shading::Zebra,
+        arguments::Shading::Normals => Shading::Normals,
+    };
+    Look {
+        shading,
+        clay: match arguments.clay {
+            ClayName::Clay => Clay::Clay,
+            ClayName::Plaster => Clay::Plaster,
+            ClayName::Wax => Clay::Wax,
+            ClayName::Bronze => Clay::Bronze,
+            ClayName::Porcelain => Clay::Porcelain,
+            ClayName::Graphite => Clay::Graphite,
+        },
+        flat: arguments.flat,
+        wireframe: arguments.wireframe,
+        borders: arguments.borders,
+        regions: arguments.shading == arguments::Shading::Regions,
+        grid: arguments.grid,
+    }
+}
+
+fn pictures(arguments: &RenderArguments, watch: &Watch) -> Result<Vec<Vec<u8>>, AppError> {
     let loaded = engine::load(&arguments.file, &WeldOptions::default(), watch)?;
-    let Some(bounds) = loaded
-        .model
-        .bounds()
-        .filter(|_| !loaded.model.surface.triangles.is_empty())
-    else {
+    let model = &loaded.model;
+    let Some(bounds) = model.bounds().filter(|_| !model.surface.triangles.is_empty()) else {
         return Err(AppError::NoTriangles(arguments.file.clone()));
     };
     let shape = shape(arguments, &loaded, watch)?;
     let progress = watch.begin("drawing");
-    let (drawing, _) = Drawing::new(&loaded.model, loaded.scene.appearance());
-    let pose = drawing.pose(&loaded.model, &shape.displacements);
-    progress.set(0.3);
+    let drawing = Drawing::new(model, loaded.scene.appearance());
+    let pose = drawing.pose(model, &shape.displacements);
+    progress.set(0.2);
 
-    let system = |error: String| AppError::System(error);
-    let mut renderer = Headless::new().map_err(|error| system(error.to_string()))?.renderer;
-    let refuse = |error: pliant_render::RenderError| system(error.to_string());
-    let surface = drawing.upload(&renderer, &pose).map_err(refuse)?;
-    surface
-        .update_regions(&renderer, &drawing::drawn_colours(&loaded.model, &shape.region_colours))
-        .map_err(refuse)?;
+    let mut renderer = Headless::new()
+        .map_err(|error| AppError::System(error.to_string()))?
+        .renderer;
+    let refuse = |error: RenderError| AppError::System(error.to_string());
+    let mut surface = drawing.upload(&renderer, &pose).map_err(refuse)?;
+    let look = look(arguments);
+    let scale = drawing::field(look.shading).map(|field| (field, Scale::of(field, model)));
+    let colours = match &scale {
+        Some((field, scale)) => {
+            drawing::colours(*field, scale, model, &shape.displacements, shape.stiffness.as_deref())
+        }
+        None => shape.region_colours,
+    };
+    let colours = drawing::drawn_colours(model, &colours);
+    surface.update_regions(&renderer, &colours).map_err(refuse)?;
+    if look.shading == Shading::Material {
+        let dress = drawing.wardrobe.decode();
+        surface.wear(dress.upload(&renderer).map_err(refuse)?).map_err(refuse)?;
+    }
+    progress.set(0.3);
 
     let PictureSize { width, height } = arguments.size;
     let size_px = DVec2::new(f64::from(width), f64::from(height));
     let mut camera = Camera {
         up: up(arguments.up),
         scale: bounds.diagonal(),
+        projection: match arguments.projection {
+            ProjectionName::Perspective => Projection::Perspective,
+            ProjectionName::Orthographic => Projection::Orthographic,
+        },
         ..Camera::default()
     };
     camera.look_from(view(arguments.view));
     // The rest shape is framed, whatever the edit does, so that before and after compare.
-    camera.frame(&loaded.model.surface.positions, size_px);
+    camera.frame(&model.surface.positions, size_px);
     camera.distance *= ROOM_FOR_THE_EDIT;
-    let eye = drawing::view(&camera, size_px, drawing.centre);
-    let frame = Frame {
-        view: &eye,
-        style,
-        surfaces: &[&surface],
-        overlays: &[],
+    let mut style = drawing::style(&look);
+    if arguments.transparent {
+        style.background = Background::Transparent;
+    }
+    let legend = match &scale {
+        // As large as on a screen of the usual size, and smaller in a small picture.
+        Some((_, scale)) => {
+            let points = (height as f32 / 620.0).clamp(0.7, 8.0);
+            Some(legend::picture(&renderer, scale, points).map_err(refuse)?)
+        }
+        None => None,
     };
-    let image = renderer
-        .draw_to_image([width, height], Samples::Four, &frame)
-        .map_err(refuse)?;
-    progress.set(0.9);
-    png(image)
+    let low = match camera.up {
+        UpAxis::Y => bounds.min.y,
+        UpAxis::Z => bounds.min.z,
+    };
+    let count = arguments.turntable.unwrap_or(1);
+    let mut pngs = Vec::new();
+    for number in 0..count {
+        if watch.cancel.is_cancelled() {
+            return Err(AppError::Interrupted);
+        }
+        let mut turned = camera;
+        turned.yaw_rad += TAU * f64::from(number) / f64::from(count);
+        let ground = look
+            .grid
+            .then(|| drawing::ground(&turned, size_px, low, drawing.centre));
+        let frame = Frame {
+            view: &drawing::view(&turned, size_px, drawing.centre),
+            style: &style,
+            surfaces: &[&surface],
+            grid: ground.as_ref(),
+            overlays: &[],
+        };
+        let mut image = renderer
+            .draw_to_image([width, height], Samples::Four, &frame)
+            .map_err(refuse)?;
+        if let Some(legend) = &legend {
+            legend::lay_over(&mut image, legend, height / 50);
+        }
+        pngs.push(picture_file::png(image)?);
+        progress.set(0.3 + 0.7 * (number + 1) as f32 / count as f32);
+    }
+    Ok(pngs)
 }
 
 /// How much farther the eye stands than the rest shape alone wants, since the bent one is to be seen whole, too.
@@ -116,6 +189,7 @@ const ROOM_FOR_THE_EDIT: f64 = 1.2;
 struct Shape {
     displacements: Arc<Vec<DVec3>>,
     region_colours: Vec<[u8; 4]>,
+    stiffness: Option<Vec<f64>>,
 }
 
 /// The shape and the regions that the window shows when it has opened the file with the edit and come to rest.
@@ -157,18 +231,8 @@ fn shape(arguments: &RenderArguments, loaded: &Loaded, watch: &Watch) -> Result<
     Ok(Shape {
         displacements,
         region_colours,
+        stiffness: editor.document().stiffness().map(<[f64]>::to_vec),
     })
-}
-
-fn png(picture: Image) -> Result<Vec<u8>, AppError> {
-    let refuse = |reason: String| AppError::System(format!("the picture can't be written as PNG: {reason}"));
-    let Image { width, height, rgba } = picture;
-    let image = image::RgbaImage::from_raw(width, height, rgba).ok_or_else(|| refuse("it is incomplete".to_owned()))?;
-    let mut png = Cursor::new(Vec::new());
-    image
-        .write_to(&mut png, image::ImageFormat::Png)
-        .map_err(|error| refuse(error.to_string()))?;
-    Ok(png.into_inner())
 }
 
 fn up(up: Up) -> UpAxis {

@@ -4,58 +4,51 @@
 //! drawn vertices share a normal. A [`Pose`] is one shape in the renderer's f32, relative to the drawing's centre;
 //! making one is pure computation, so the window does it away from its own thread.
 
+mod field;
+mod ground;
 mod normals;
 mod pose;
 mod stage;
 mod textures;
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use pliant_io::Appearance;
 use pliant_mesh::{Model, bounding_box};
-use pliant_render::{AlphaMode, ColourSpace, Material, MaterialGroup, RenderError, Renderer, Surface, SurfaceData};
+use pliant_render::{ColourSpace, MaterialGroup, Partition, RenderError, Renderer, Surface, SurfaceData};
 
+pub use field::{Field, Scale, Tick, colour_at, colours};
+pub use ground::ground;
 pub use pose::Pose;
-pub use stage::{overlays, style, view};
+pub use stage::{field, overlays, style, view};
+pub use textures::{Dress, Wardrobe};
 
 use normals::NormalGroups;
-use textures::Textures;
 
 /// What stays the same while the shape moves.
 #[derive(Debug)]
 pub struct Drawing {
     /// The f64 point that GPU positions are relative to: the centre of the file's bounding box.
     pub centre: DVec3,
+    /// The file's materials and images.
+    pub wardrobe: Wardrobe,
     triangles: Vec<[u32; 3]>,
+    twins: Vec<u32>,
+    partition: Arc<Partition>,
     normals: NormalGroups,
     uvs: Option<Vec<[f32; 2]>>,
+    second_uvs: Option<Vec<[f32; 2]>>,
     colours: Option<Vec<[u8; 4]>>,
     groups: Vec<MaterialGroup>,
-    materials: Vec<Material>,
-    textures: Textures,
 }
 
 impl Drawing {
-    /// Prepares a file for drawing, decoding its base-colour images. What can't be shown (an image that doesn't
-    /// decode) is left out and told in a sentence each.
-    pub fn new(model: &Model, appearance: Appearance) -> (Self, Vec<String>) {
+    /// Prepares a file for drawing. Its images are decoded apart: see [`Wardrobe::decode`].
+    pub fn new(model: &Model, mut appearance: Appearance) -> Self {
         let centre = bounding_box(&model.surface.positions).map_or(DVec3::ZERO, |bounds| bounds.centre());
-        let (textures, notes) = Textures::decode(&appearance);
-        let materials = appearance
-            .materials
-            .iter()
-            .enumerate()
-            .map(|(number, material)| Material {
-                base_colour: material.base_colour,
-                base_colour_texture: textures.of_material(number),
-                alpha: match material.alpha {
-                    pliant_io::AlphaMode::Opaque => AlphaMode::Opaque,
-                    pliant_io::AlphaMode::Mask(cutoff) => AlphaMode::Mask { cutoff },
-                    pliant_io::AlphaMode::Blend => AlphaMode::Blend,
-                },
-                double_sided: material.double_sided,
-            })
-            .collect();
-        let groups = appearance
+        let wardrobe = Wardrobe::new(&mut appearance);
+        let groups: Vec<MaterialGroup> = appearance
             .groups
             .iter()
             .map(|group| MaterialGroup {
@@ -63,35 +56,43 @@ impl Drawing {
                 material: group.material,
             })
             .collect();
-        let drawing = Self {
+        let triangles: Vec<[u32; 3]> = model
+            .drawn
+            .triangles
+            .iter()
+            .map(|corners| corners.map(|vertex| vertex.0))
+            .collect();
+        let relative = model
+            .drawn
+            .positions
+            .iter()
+            .map(|&position| pose::finite(position - centre));
+        let positions: Vec<[f32; 3]> = relative.collect();
+        let partition = Partition::new(&positions, &triangles, &groups, &wardrobe.plain());
+        Self {
             centre,
-            triangles: model
-                .drawn
-                .triangles
-                .iter()
-                .map(|corners| corners.map(|vertex| vertex.0))
-                .collect(),
+            wardrobe,
+            triangles,
+            twins: twins(model),
+            partition: Arc::new(partition),
             normals: NormalGroups::of(model, appearance.normals),
             uvs: appearance.uvs,
+            second_uvs: appearance.second_uvs,
             colours: appearance.colours,
             groups,
-            materials,
-            textures,
-        };
-        (drawing, notes)
+        }
     }
 
     /// The shape that `displacements` (one a surface vertex, from the file's shape) give, ready for the renderer.
     pub fn pose(&self, model: &Model, displacements: &[DVec3]) -> Pose {
-        Pose::of(model, displacements, self.centre, &self.normals)
+        Pose::of(model, displacements, self.centre, &self.normals, &self.partition)
     }
 
-    /// Uploads everything, in the shape of `pose`.
+    /// Uploads everything but the images, in the shape of `pose`.
     ///
     /// # Errors
     /// What the device refuses: see [`Surface::new`].
     pub fn upload(&self, renderer: &Renderer, pose: &Pose) -> Result<Surface, RenderError> {
-        let textures = self.textures.data();
         Surface::new(
             renderer,
             &SurfaceData {
@@ -99,15 +100,34 @@ impl Drawing {
                 normals: &pose.normals,
                 triangles: &self.triangles,
                 uvs: self.uvs.as_deref(),
+                second_uvs: self.second_uvs.as_deref(),
                 colours: self.colours.as_deref(),
                 colour_space: ColourSpace::Linear,
                 regions: None,
                 groups: &self.groups,
-                materials: &self.materials,
-                textures: &textures,
+                materials: &self.wardrobe.plain(),
+                textures: &[],
+                twins: Some(&self.twins),
+                partition: Some(&self.partition),
             },
         )
     }
+}
+
+/// For each drawn vertex the first one that is welded with it.
+fn twins(model: &Model) -> Vec<u32> {
+    let mut first = vec![u32::MAX; model.surface.positions.len()];
+    let of_drawn = model.surface_of_drawn.iter().enumerate();
+    of_drawn
+        .map(|(drawn, surface)| match surface {
+            Some(surface) => {
+                let first = &mut first[surface.index()];
+                *first = (*first).min(drawn as u32);
+                *first
+            }
+            None => drawn as u32,
+        })
+        .collect()
 }
 
 /// Colours of surface vertices, handed down to the drawn vertices; drawn vertices that belong to no kept triangle get

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use pliant_mesh::Model;
+use pliant_render::{ChunkBounds, Partition, ShapeData};
 use rayon::prelude::*;
 
 use super::normals::NormalGroups;
@@ -13,21 +14,46 @@ pub struct Pose {
     pub positions: Vec<[f32; 3]>,
     /// Unit normals.
     pub normals: Vec<[f32; 3]>,
+    /// The box of each chunk of the drawing's partition.
+    pub bounds: Vec<ChunkBounds>,
 }
 
 impl Pose {
-    pub(super) fn of(model: &Model, displacements: &[DVec3], centre: DVec3, groups: &NormalGroups) -> Self {
+    pub(super) fn of(
+        model: &Model,
+        displacements: &[DVec3],
+        centre: DVec3,
+        groups: &NormalGroups,
+        partition: &Partition,
+    ) -> Self {
         let mut world = Vec::new();
         model.drawn_positions(displacements, &mut world);
         let normals = groups.at(&world, model);
-        let positions = world.par_iter().map(|&position| finite(position - centre)).collect();
-        Self { positions, normals }
+        let positions: Vec<[f32; 3]> = world.par_iter().map(|&position| finite(position - centre)).collect();
+        let bounds = (0..partition.chunk_count())
+            .into_par_iter()
+            .map(|chunk| partition.bounds(chunk, &positions))
+            .collect();
+        Self {
+            positions,
+            normals,
+            bounds,
+        }
+    }
+
+    /// What the renderer takes.
+    pub fn data(&self) -> ShapeData<'_> {
+        ShapeData {
+            positions: &self.positions,
+            normals: &self.normals,
+            bounds: &self.bounds,
+        }
     }
 }
 
 /// A position for the GPU; vertices that the file gives no finite position (they belong to no kept triangle) go to
 /// the centre.
-fn finite(relative: DVec3) -> [f32; 3] {
+pub(super) fn finite(relative: DVec3) -> [f32; 3] {
     if relative.is_finite() {
         relative.as_vec3().to_array()
     } else {

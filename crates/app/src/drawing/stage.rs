@@ -1,8 +1,10 @@
 //! The editor's view in the renderer's terms: the eye, and the marks above the surface.
 
 use glam::{DMat4, DVec2, DVec3};
-use pliant_editor::{Camera, SceneView};
-use pliant_render::{Overlay, OverlayLine, OverlayTriangle, Shading, Style, View, Wireframe};
+use pliant_editor::{Camera, Clay, Look, SceneView, Shading};
+use pliant_render::{Borders, Faces, Matcap, Overlay, OverlayLine, OverlayTriangle, Style, View, Wireframe};
+
+use super::field::Field;
 
 /// How much of a mark's alpha is left where the surface hides it.
 const HIDDEN_SHARE: f32 = 0.35;
@@ -21,18 +23,51 @@ pub fn view(camera: &Camera, viewport_px: DVec2, centre: DVec3) -> View {
     View::new(camera.clip_from_view(viewport_px).as_mat4(), view_from_world.as_mat4())
 }
 
-/// The renderer's style for what the editor wants shown.
-pub fn style(view: &SceneView<'_>) -> Style {
-    let (shading, region_share) = match view.shading {
-        pliant_editor::Shading::Clay => (Shading::Clay, 1.0),
+/// The numbers that a shading shows as colours, if it does.
+pub fn field(shading: Shading) -> Option<Field> {
+    match shading {
+        Shading::Stiffness => Some(Field::Stiffness),
+        Shading::Stretch => Some(Field::Stretch),
+        Shading::Area => Some(Field::Area),
+        Shading::Curvature => Some(Field::Curvature),
+        Shading::Clay | Shading::Material | Shading::Zebra | Shading::Normals => None,
+    }
+}
+
+/// The renderer's style for how a person wants the surface shown.
+pub fn style(look: &Look) -> Style {
+    let (shading, region_share) = match look.shading {
+        Shading::Clay => (pliant_render::Shading::Clay(matcap(look.clay)), 1.0),
         // The file's colours stay to be seen under the paint.
-        pliant_editor::Shading::Material => (Shading::Material, 0.45),
+        Shading::Material => (pliant_render::Shading::Material, 0.45),
+        Shading::Zebra => (pliant_render::Shading::Zebra, 0.0),
+        Shading::Normals => (pliant_render::Shading::Normals, 0.0),
+        Shading::Stiffness | Shading::Stretch | Shading::Area | Shading::Curvature => {
+            (pliant_render::Shading::Painted, 1.0)
+        }
     };
     Style {
         shading,
-        region_share: if view.regions { region_share } else { 0.0 },
-        wireframe: if view.wireframe { Wireframe::On } else { Wireframe::Off },
+        region_share: if look.regions || field(look.shading).is_some() {
+            region_share
+        } else {
+            0.0
+        },
+        faces: if look.flat { Faces::Flat } else { Faces::Smooth },
+        wireframe: if look.wireframe { Wireframe::On } else { Wireframe::Off },
+        borders: if look.borders { Borders::On } else { Borders::Off },
         ..Style::default()
+    }
+}
+
+fn matcap(clay: Clay) -> Matcap {
+    match clay {
+        Clay::Clay => Matcap::Clay,
+        Clay::Plaster => Matcap::Plaster,
+        Clay::Wax => Matcap::Wax,
+        Clay::Bronze => Matcap::Bronze,
+        Clay::Porcelain => Matcap::Porcelain,
+        Clay::Graphite => Matcap::Graphite,
     }
 }
 

@@ -1,69 +1,184 @@
-//! A file's base-colour images, decoded.
+//! A file's images, decoded for the renderer, and its materials in the renderer's words.
+//!
+//! Decoding takes longer than everything else about opening a file, so materials exist in two states: plain ones,
+//! without any image, to show at once; and dressed ones, when the images have been decoded on another thread.
 
 use std::collections::HashMap;
 
-use pliant_io::{Appearance, Rgba8, decode_image};
-use pliant_render::{TextureData, Wrap};
+use pliant_io::{Appearance, Image, Rgba8, decode_image};
+use pliant_render::{
+    AlphaMode, Encoding, Lighting, Map, Material, Outfit, RenderError, Renderer, TextureData, UvSet, Wrap,
+};
+use rayon::prelude::*;
 
-/// Decoded images, each with the wrap of the materials that use it.
+/// A file's materials and the encoded images that they use.
 #[derive(Debug)]
-pub struct Textures {
-    images: Vec<(Rgba8, [Wrap; 2])>,
-    of_material: Vec<Option<usize>>,
+pub struct Wardrobe {
+    materials: Vec<Material>,
+    /// The images to decode: number of the file's image, and what its bytes say.
+    wanted: Vec<(usize, Encoding)>,
+    images: Vec<Image>,
 }
 
-impl Textures {
-    /// Decodes every image that a material's base colour names, once; an image that fails is told in a sentence.
-    pub fn decode(appearance: &Appearance) -> (Self, Vec<String>) {
-        let mut textures = Self {
-            images: Vec::new(),
-            of_material: Vec::new(),
+/// Materials with their images, decoded.
+#[derive(Debug)]
+pub struct Dress {
+    materials: Vec<Material>,
+    textures: Vec<(Rgba8, Encoding)>,
+    /// What can't be shown, a sentence each.
+    pub notes: Vec<String>,
+}
+
+impl Wardrobe {
+    /// The materials of a file.
+    pub fn new(appearance: &mut Appearance) -> Self {
+        let mut wardrobe = Self {
+            materials: Vec::new(),
+            wanted: Vec::new(),
+            images: std::mem::take(&mut appearance.images),
         };
-        let mut notes = Vec::new();
-        let mut decoded: HashMap<(usize, [Wrap; 2]), Option<usize>> = HashMap::new();
+        let mut texture_of: HashMap<(usize, Encoding), usize> = HashMap::new();
+        let mut texture = |image: usize, encoding: Encoding| {
+            *texture_of.entry((image, encoding)).or_insert_with(|| {
+                wardrobe.wanted.push((image, encoding));
+                wardrobe.wanted.len() - 1
+            })
+        };
         for material in &appearance.materials {
-            let Some(image) = material.base_colour_image else {
-                textures.of_material.push(None);
-                continue;
+            let mut map = |map: Option<pliant_io::Map>, encoding: Encoding| {
+                map.map(|map| Map {
+                    texture: texture(map.image, encoding),
+                    wrap: map.wrap.map(wrap),
+                    set: match map.set {
+                        pliant_io::UvSet::Base => UvSet::First,
+                        pliant_io::UvSet::Second => UvSet::Second,
+                    },
+                    transform: map.transform,
+                })
             };
-            let wrap = material.wrap.map(|mode| match mode {
-                pliant_io::Wrap::Repeat => Wrap::Repeat,
-                pliant_io::Wrap::MirroredRepeat => Wrap::Mirror,
-                pliant_io::Wrap::ClampToEdge => Wrap::Clamp,
+            let base = material.base_colour_image.map(|image| pliant_io::Map {
+                image,
+                wrap: material.wrap,
+                set: pliant_io::UvSet::Base,
+                transform: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
             });
-            let texture = *decoded.entry((image, wrap)).or_insert_with(|| {
-                let source = appearance.images.get(image)?;
-                match decode_image(&source.encoded) {
-                    Ok(pixels) => {
-                        textures.images.push((pixels, wrap));
-                        Some(textures.images.len() - 1)
-                    }
-                    Err(error) => {
-                        notes.push(format!("the image {} is not shown: {error}", source.name));
-                        None
+            wardrobe.materials.push(Material {
+                base_colour: material.base_colour,
+                base_colour_map: map(base, Encoding::Srgb),
+                metallic: material.metallic,
+                roughness: material.roughness,
+                metallic_roughness_map: map(material.metallic_roughness_map, Encoding::Linear),
+                normal_map: map(material.normal_map, Encoding::Linear),
+                normal_scale: material.normal_scale,
+                occlusion_map: map(material.occlusion_map, Encoding::Linear),
+                occlusion_strength: material.occlusion_strength,
+                emissive: material.emissive,
+                emissive_map: map(material.emissive_map, Encoding::Srgb),
+                lighting: match material.lighting {
+                    pliant_io::Lighting::Lit => Lighting::Lit,
+                    pliant_io::Lighting::Unlit => Lighting::Unlit,
+                },
+                alpha: match material.alpha {
+                    pliant_io::AlphaMode::Opaque => AlphaMode::Opaque,
+                    pliant_io::AlphaMode::Mask(cutoff) => AlphaMode::Mask { cutoff },
+                    pliant_io::AlphaMode::Blend => AlphaMode::Blend,
+                },
+                double_sided: material.double_sided,
+            });
+        }
+        wardrobe
+    }
+
+    /// The materials without their images.
+    pub fn plain(&self) -> Vec<Material> {
+        self.materials.iter().map(|material| kept(material, |_| None)).collect()
+    }
+
+    /// Whether any material has an image.
+    pub fn has_images(&self) -> bool {
+        !self.wanted.is_empty()
+    }
+
+    /// Decodes the images, beside each other; what can't be decoded is left out and told in a sentence.
+    pub fn decode(&self) -> Dress {
+        let decoded: Vec<Result<Rgba8, String>> = self
+            .wanted
+            .par_iter()
+            .map(|&(image, _)| {
+                let Some(source) = self.images.get(image) else {
+                    return Err("an image is missing".to_owned());
+                };
+                decode_image(&source.encoded)
+                    .map_err(|error| format!("the image {} is not shown: {error}", source.name))
+            })
+            .collect();
+        let (mut textures, mut notes, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+        for (result, &(_, encoding)) in decoded.into_iter().zip(&self.wanted) {
+            match result {
+                Ok(pixels) => {
+                    numbers.push(Some(textures.len()));
+                    textures.push((pixels, encoding));
+                }
+                Err(sentence) => {
+                    numbers.push(None);
+                    if !notes.contains(&sentence) {
+                        notes.push(sentence);
                     }
                 }
-            });
-            textures.of_material.push(texture);
+            }
         }
-        (textures, notes)
+        let with_number = |map: Map| {
+            let texture = numbers.get(map.texture).copied().flatten()?;
+            Some(Map { texture, ..map })
+        };
+        Dress {
+            materials: self
+                .materials
+                .iter()
+                .map(|material| kept(material, with_number))
+                .collect(),
+            textures,
+            notes,
+        }
     }
+}
 
-    /// The texture of a material.
-    pub fn of_material(&self, material: usize) -> Option<usize> {
-        self.of_material.get(material).copied().flatten()
-    }
-
-    /// What the renderer takes.
-    pub fn data(&self) -> Vec<TextureData<'_>> {
-        self.images
+impl Dress {
+    /// Uploads the images, for the file's surface to wear.
+    ///
+    /// # Errors
+    /// As [`Outfit::new`].
+    pub fn upload(&self, renderer: &Renderer) -> Result<Outfit, RenderError> {
+        let textures: Vec<TextureData<'_>> = self
+            .textures
             .iter()
-            .map(|(pixels, wrap)| TextureData {
+            .map(|(pixels, encoding)| TextureData {
                 width: pixels.width,
                 height: pixels.height,
                 rgba: &pixels.pixels,
-                wrap: *wrap,
+                encoding: *encoding,
             })
-            .collect()
+            .collect();
+        Outfit::new(renderer, &self.materials, &textures)
+    }
+}
+
+/// The material with each of its maps as `map` says.
+fn kept(material: &Material, map: impl Fn(Map) -> Option<Map>) -> Material {
+    Material {
+        base_colour_map: material.base_colour_map.and_then(&map),
+        metallic_roughness_map: material.metallic_roughness_map.and_then(&map),
+        normal_map: material.normal_map.and_then(&map),
+        occlusion_map: material.occlusion_map.and_then(&map),
+        emissive_map: material.emissive_map.and_then(&map),
+        ..*material
+    }
+}
+
+fn wrap(mode: pliant_io::Wrap) -> Wrap {
+    match mode {
+        pliant_io::Wrap::Repeat => Wrap::Repeat,
+        pliant_io::Wrap::MirroredRepeat => Wrap::Mirror,
+        pliant_io::Wrap::ClampToEdge => Wrap::Clamp,
     }
 }

@@ -1,21 +1,23 @@
 //! The application: what happens in one frame of the window, from messages and input to the editor, and back to the
 //! screen.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-use eframe::egui::{self, CentralPanel, Panel, Sense};
+use eframe::egui::{self, CentralPanel, Panel, Sense, vec2};
 use glam::{DVec2, DVec3};
-use pliant_editor::{Command, Cursor, Editor, Event, JobQueue, KeyMap, Revision};
+use pliant_editor::{Command, Cursor, Editor, Event, JobQueue, KeyMap, Revision, Shading};
 
+use super::axis_ball;
 use super::dialog::{self, Question, Then};
 use super::hints;
 use super::input::{Attention, Input};
 use super::keys_window::KeysWindow;
 use super::log::Log;
-use super::message::{Message, Opened, Posed};
+use super::message::{Dressed, Message, Opened, Posed};
 use super::notes::{Note, Notes};
 use super::outbox::Outbox;
 use super::palette::{Found, Outcome, Palette};
@@ -30,6 +32,8 @@ use super::top_bar;
 use super::viewport::{Smoothness, Viewport};
 use super::workers::{Stage, Workers};
 use crate::AppError;
+use crate::drawing::{self, Drawing, Field};
+use crate::legend;
 
 /// How long the view must rest before it is drawn with smooth borders on a software device.
 const REST: Duration = Duration::from_millis(300);
@@ -60,6 +64,8 @@ pub struct Application {
     /// The left session that is open now, until its work is kept or saved by this one.
     recovered_from: Option<PathBuf>,
     longest_frame: Duration,
+    /// Whether the open file's images were asked for.
+    is_dressed: bool,
     view_rect: egui::Rect,
     title: String,
 }
@@ -129,11 +135,59 @@ impl Application {
             closing: false,
             recovered_from: None,
             longest_frame: Duration::ZERO,
+            is_dressed: false,
             view_rect: egui::Rect::ZERO,
             title: String::new(),
         };
         application.take_keys();
         Ok(application)
+    }
+
+    /// Goes on in another window of eframe's, on another device: the document, its history and the jobs that run are
+    /// as they were, and what was on the lost device is uploaded again.
+    ///
+    /// # Errors
+    /// As [`Application::new`].
+    pub fn revive(&mut self, context: &eframe::CreationContext<'_>) -> Result<(), AppError> {
+        theme::apply(&context.egui_ctx, self.settings.get());
+        let Some(state) = context.wgpu_render_state.clone() else {
+            return Err(AppError::System(
+                "the window has no graphics device any more".to_owned(),
+            ));
+        };
+        let system = |error: pliant_render::RenderError| AppError::System(error.to_string());
+        self.viewport = Viewport::new(state).map_err(system)?;
+        self.workers.wake(context.egui_ctx.clone());
+        self.input = Input::default();
+        self.is_dressed = false;
+        self.title.clear();
+        if let Some(open) = &self.session.open {
+            let (drawing, model) = (Arc::clone(&open.drawing), &open.loaded.model);
+            let displacements = Arc::clone(self.editor.view().displacements);
+            let pose = drawing.pose(model, &displacements);
+            let surface = self.viewport.gpu().upload(&drawing, &pose).map_err(system)?;
+            let lowest = model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
+            self.viewport.show(drawing, surface, displacements, lowest);
+        }
+        self.notes.headline = Some(Note::Done(
+            "The graphics device was lost and has been opened again; the document is as it was.".to_owned(),
+        ));
+        Ok(())
+    }
+
+    /// Digits of the numeric pad that went down since the last frame, in order.
+    pub(super) fn press_numpad(&mut self, digits: VecDeque<u8>) {
+        self.input.numpad = digits;
+    }
+
+    /// Whether the graphics device is gone, so that the window must be opened anew.
+    pub fn has_lost_its_device(&self) -> bool {
+        self.viewport.is_lost()
+    }
+
+    /// Loses the graphics device, for trying out that nothing else is lost.
+    pub fn lose_device(&self) {
+        self.viewport.lose_device();
     }
 
     /// The editor, to look at.
@@ -226,6 +280,7 @@ impl Application {
                         Err(sentence) => self.fail(sentence),
                     }
                 }
+                Message::Dressed(drawing, result) => self.wear(&drawing, result),
                 Message::Opened(stamp, result) => match self.session.loaded(stamp, result, &self.workers) {
                     Some(Ok(opened)) => self.adopt(*opened),
                     Some(Err(sentence)) => self.fail(sentence),
@@ -271,9 +326,13 @@ impl Application {
         self.workers.set_stage(Stage {
             loaded: Arc::clone(&loaded),
             drawing: Arc::clone(&drawing),
+            field: self.wanted_field(),
+            scales: Arc::default(),
         });
         self.poses.cancel();
-        self.viewport.show(drawing, surface, displacements);
+        self.is_dressed = false;
+        let lowest = loaded.model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
+        self.viewport.show(drawing, surface, displacements, lowest);
         self.notes = Notes {
             headline: None,
             about_file: notes,
@@ -323,22 +382,65 @@ impl Application {
         }
     }
 
+    /// The numbers of the shape that are to be shown as colours. Stiffness is none of the shape's.
+    fn wanted_field(&self) -> Option<Field> {
+        drawing::field(self.editor.view().look.shading).filter(|&field| field != Field::Stiffness)
+    }
+
+    /// Has the images decoded and uploaded when materials are first shown.
+    fn request_images(&mut self) {
+        let Some(open) = &self.session.open else { return };
+        if self.is_dressed
+            || self.editor.view().look.shading != Shading::Material
+            || !open.drawing.wardrobe.has_images()
+        {
+            return;
+        }
+        self.is_dressed = true;
+        let (drawing, gpu) = (Arc::clone(&open.drawing), self.viewport.gpu());
+        let failed = Arc::clone(&drawing);
+        self.workers.spawn(
+            "images",
+            move || {
+                let dress = drawing.wardrobe.decode();
+                let outfit = gpu.upload_images(&dress).map_err(|error| error.to_string());
+                let notes = dress.notes;
+                Message::Dressed(drawing, outfit.map(|outfit| Dressed { outfit, notes }))
+            },
+            move |sentence| Message::Dressed(Arc::clone(&failed), Err(sentence)),
+        );
+    }
+
+    fn wear(&mut self, drawing: &Arc<Drawing>, result: Result<Dressed, String>) {
+        let worn = result.and_then(|Dressed { outfit, notes }| {
+            self.notes.about_file.extend(notes);
+            self.viewport.wear(drawing, outfit).map_err(|error| error.to_string())
+        });
+        if let Err(sentence) = worn {
+            self.fail(format!("the materials are shown without their images: {sentence}"));
+        }
+    }
+
     /// Asks for the pose of the present shape if it is not the one that is shown (after undo, or while a handle moves
     /// before its binding is ready).
     fn request_pose(&mut self) {
+        let field = self.wanted_field();
+        let Some(mut stage) = self.workers.stage() else { return };
+        if stage.field != field {
+            stage.field = field;
+            self.workers.set_stage(stage.clone());
+        }
         let wanted = self.editor.view().displacements;
         let shown = self.viewport.displacements();
-        if shown.is_some_and(|shown| !Arc::ptr_eq(shown, wanted)) && !self.poses.is_busy() {
+        let is_stale = shown.is_some_and(|shown| !Arc::ptr_eq(shown, wanted))
+            || (shown.is_some() && field.is_some() && self.viewport.field() != field);
+        if is_stale && !self.poses.is_busy() {
             let wanted = Arc::clone(wanted);
             self.next_pose += 1;
             self.poses.request(Revision(self.next_pose), wanted);
         }
-        let (Some((running, displacements)), Some(open)) = (self.poses.start_next(), &self.session.open) else {
+        let Some((running, displacements)) = self.poses.start_next() else {
             return;
-        };
-        let stage = Stage {
-            loaded: Arc::clone(&open.loaded),
-            drawing: Arc::clone(&open.drawing),
         };
         let stamp = running.stamp;
         self.workers.spawn(
@@ -402,10 +504,14 @@ impl Application {
                 }
             });
         }
+        let over_ball = axis_ball::contains(rect, ui.input(|input| input.pointer.latest_pos()));
         let attention = Attention {
             rect,
             pointer: ui.input(|input| input.pointer.latest_pos()).unwrap_or(rect.center()),
-            pointer_over: response.contains_pointer() && self.question.is_none() && self.palette.is_none(),
+            pointer_over: response.contains_pointer()
+                && self.question.is_none()
+                && self.palette.is_none()
+                && !over_ball,
             follows_pointer: self.editor.view().cursor == Cursor::Move,
             keys: self.question.is_none()
                 && self.palette.is_none()
@@ -420,6 +526,7 @@ impl Application {
             self.editor.handle(event);
         }
         self.request_pose();
+        self.request_images();
         ui.ctx().set_cursor_icon(match self.editor.view().cursor {
             _ if !response.contains_pointer() => egui::CursorIcon::Default,
             Cursor::Arrow => egui::CursorIcon::Default,
@@ -442,13 +549,31 @@ impl Application {
         }
         let outline_px = self.editor.view().outline_px;
         if outline_px.len() > 1 {
-            let point = |px: &DVec2| rect.min + egui::vec2(px.x as f32, px.y as f32);
+            let point = |px: &DVec2| rect.min + vec2(px.x as f32, px.y as f32);
             let mut line: Vec<egui::Pos2> = outline_px.iter().map(point).collect();
             line.push(line[0]);
             let shadow = egui::Stroke::new(3.0, egui::Color32::from_black_alpha(120));
             ui.painter().add(egui::Shape::line(line.clone(), shadow));
             ui.painter()
                 .add(egui::Shape::line(line, egui::Stroke::new(1.5, theme::ACCENT)));
+        }
+        let shown = self.editor.view();
+        if let Some(scale) = self.viewport.scale() {
+            legend::paint(
+                ui.painter(),
+                rect.left_bottom() + vec2(14.0, -14.0 - legend::SIZE.y),
+                scale,
+            );
+        }
+        if let Some(readout) = &shown.readout
+            && let Some(at_px) = shown.camera.project(readout.at, shown.viewport_px)
+        {
+            let at = rect.min + vec2(at_px.x as f32 + 22.0, at_px.y as f32 - 26.0);
+            axis_ball::readout(ui.painter(), at, &readout.text);
+        }
+        if let Some(command) = axis_ball::show(ui, rect, shown.camera) {
+            self.command(command);
+            ui.ctx().request_repaint();
         }
         if self.shows_hints && !self.settings.get().hints_seen && hints::show(ui, rect, &self.editor) {
             self.settings.change(|settings| settings.hints_seen = true);
@@ -462,6 +587,10 @@ impl eframe::App for Application {
         let (start, drawn_before) = (Instant::now(), self.viewport.drawing_time());
         let context = ui.ctx().clone();
         self.take_messages();
+        if self.viewport.is_lost() {
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+            return;
+        }
         self.file_shortcuts(&context);
 
         let mut commands = Outbox::default();

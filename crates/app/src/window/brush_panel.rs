@@ -54,6 +54,11 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                             "along surface",
                             "What is near along the surface: into folds and round edges, seen or not.",
                         ),
+                        (
+                            BrushMetric::Through,
+                            "through",
+                            "Everything that the disc on the screen covers, however far behind.",
+                        ),
                     ] {
                         if ui
                             .selectable_label(view.brush_metric == metric, name)

@@ -55,6 +55,13 @@ pub fn choose(purpose: Purpose, near: Option<&Path>, workers: &Workers) {
                 .save_file();
             workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
         }
+        Purpose::SavePicture(_) => {
+            let answer = dialog
+                .set_title("Save the picture as")
+                .set_file_name("picture.png")
+                .save_file();
+            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
+        }
     }
 }
 
@@ -81,6 +88,7 @@ impl Question {
             Self::Path(Purpose::SaveProject, _) => "Save the project as",
             Self::Recover(_) => "Recover unsaved work?",
             Self::Path(Purpose::ExportEdit, _) => "Export the edit",
+            Self::Path(Purpose::SavePicture(_), _) => "Save the picture as",
             Self::Discard(_) => "There is unsaved work",
         }
     }
@@ -169,6 +177,7 @@ fn path(ui: &mut egui::Ui, purpose: Purpose, typed: &mut String, answer: &mut Op
         ),
         Purpose::SaveProject => ("Save the project as", "The path of the .pliant file:"),
         Purpose::ExportEdit => ("Export the edit", "The path of the .json file:"),
+        Purpose::SavePicture(_) => ("Save the picture", "The path of the .png file:"),
     };
     ui.heading(heading);
     ui.label(hint);

@@ -53,6 +53,11 @@ impl Application {
                 Ok(edit) => self.session.export(path, edit, &self.workers),
                 Err(error) => self.fail(error.to_string()),
             },
+            (Purpose::SavePicture(kind), Some(path)) => match self.viewport.picture(&self.editor, kind) {
+                Ok(Some(image)) => self.session.save_picture(path, image, &self.workers),
+                Ok(None) => self.fail("the view is busy or empty: try again".to_owned()),
+                Err(error) => self.fail(error.to_string()),
+            },
             // Cancelled, or the system has no dialog: then a path can be typed.
             (purpose, None) => self.question = Some(Question::Path(purpose, self.suggested_path(purpose))),
         }
@@ -66,6 +71,8 @@ impl Application {
             (Purpose::SaveProject, Some(path)) => path.with_extension("pliant").display().to_string(),
             (Purpose::SaveProject, None) => "edited.pliant".to_owned(),
             (Purpose::ExportEdit, None) => "edit.json".to_owned(),
+            (Purpose::SavePicture(_), Some(path)) => path.with_extension("png").display().to_string(),
+            (Purpose::SavePicture(_), None) => "picture.png".to_owned(),
             (Purpose::Open, _) => String::new(),
         }
     }
@@ -101,6 +108,7 @@ impl Application {
                 theme::apply(context, self.settings.get());
             }
             FileCommand::Hints => self.settings.change(|settings| settings.hints_seen = false),
+            FileCommand::SavePicture(kind) => dialog::choose(Purpose::SavePicture(kind), self.path(), &self.workers),
             FileCommand::Quit => self.unless_unsaved(context, Then::Close),
         }
     }
@@ -170,7 +178,7 @@ impl Application {
         self.session.written(stamp, &result, &self.workers);
         match result {
             Ok(written) => {
-                if written.what != WrittenKind::Edit {
+                if !matches!(written.what, WrittenKind::Edit | WrittenKind::Picture) {
                     self.editor.handle(Event::Saved);
                     self.settings.change(|settings| settings.remember(&written.path));
                 }

@@ -1,5 +1,7 @@
 //! From egui's events to the editor's: what happened over the 3D view, in the view's own points.
 
+use std::collections::VecDeque;
+
 use eframe::egui::{self, MouseWheelUnit, PointerButton, Rect};
 use glam::DVec2;
 use pliant_editor::{Button, Event, Key, Modifiers, Pointer};
@@ -12,6 +14,8 @@ const POINTS_PER_LINE: f64 = 50.0;
 pub struct Input {
     held: Vec<PointerButton>,
     inside: bool,
+    /// Digits of the numeric pad that went down in this frame.
+    pub numpad: VecDeque<u8>,
 }
 
 /// Who gets what happens now.
@@ -37,6 +41,8 @@ impl Input {
         for event in events {
             self.translate(&event, modifiers, attention, &mut out);
         }
+        // What went elsewhere, into a field to type in, is no command.
+        self.numpad.clear();
         if self.inside && !attention.pointer_over && !attention.follows_pointer && self.held.is_empty() {
             self.inside = false;
             out.push(Event::PointerLeft);
@@ -114,11 +120,18 @@ impl Input {
             }
             egui::Event::Key {
                 key,
+                physical_key,
                 pressed: true,
                 modifiers,
                 ..
             } if attention.keys => {
-                if let Some(key) = key_of(key) {
+                let digit = physical_key.or(Some(key)).and_then(digit_of);
+                let is_numpads = digit.is_some() && self.numpad.front().copied() == digit;
+                let numpad = digit.filter(|_| is_numpads).map(Key::Numpad);
+                if is_numpads {
+                    self.numpad.pop_front();
+                }
+                if let Some(key) = numpad.or_else(|| key_of(key)) {
                     out.push(Event::Key(key, held_modifiers(modifiers)));
                 }
             }
@@ -155,6 +168,11 @@ fn button_of(button: PointerButton) -> Option<Button> {
         PointerButton::Secondary => Some(Button::Secondary),
         PointerButton::Extra1 | PointerButton::Extra2 => None,
     }
+}
+
+/// The digit that stands on a key, in either row.
+fn digit_of(key: egui::Key) -> Option<u8> {
+    key.symbol_or_name().parse::<u8>().ok().filter(|digit| *digit < 10)
 }
 
 fn key_of(key: egui::Key) -> Option<Key> {

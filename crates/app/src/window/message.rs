@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_editor::{Beginning, JobDone, Revision, SnapshotKey};
-use pliant_render::Surface;
+use pliant_render::{Outfit, Surface};
 
 use super::project_file::MeshSource;
-use crate::drawing::{Drawing, Pose};
+use crate::drawing::{Drawing, Field, Pose, Scale};
 use crate::engine::Loaded;
 
 /// Something that ended elsewhere; the window takes all that wait at the start of each frame.
@@ -17,6 +17,8 @@ pub enum Message {
     Job(JobDone, Option<Posed>),
     /// A shape was made ready for the renderer.
     Posed(Revision, Result<Posed, String>),
+    /// The images of a file were decoded and uploaded, or why not.
+    Dressed(Arc<Drawing>, Result<Dressed, String>),
     /// A file was opened, or why it was not.
     Opened(Revision, Result<Box<Opened>, String>),
     /// A file was written, or why it was not.
@@ -33,6 +35,26 @@ pub struct Posed {
     pub displacements: Arc<Vec<DVec3>>,
     /// The same for the renderer.
     pub pose: Pose,
+    /// The shape's numbers as colours, where such are shown.
+    pub painted: Option<Painted>,
+}
+
+/// Numbers on the surface as colours.
+pub struct Painted {
+    /// What they are.
+    pub field: Field,
+    /// What the colours mean.
+    pub scale: Arc<Scale>,
+    /// Colours of the drawn vertices.
+    pub colours: Vec<[u8; 4]>,
+}
+
+/// A file's materials with their images.
+pub struct Dressed {
+    /// On the device.
+    pub outfit: Outfit,
+    /// Images that can't be shown, a sentence each.
+    pub notes: Vec<String>,
 }
 
 /// An opened file, ready to be shown and edited.
@@ -76,6 +98,8 @@ pub enum WrittenKind {
     Model(Option<MeshSource>),
     /// The project.
     Project,
+    /// A picture.
+    Picture,
     /// An edit for the command line: the work is not saved with it.
     Edit,
 }
@@ -91,4 +115,24 @@ pub enum Purpose {
     SaveProject,
     /// To write the edit file to.
     ExportEdit,
+    /// To save a picture of the view under.
+    SavePicture(PictureKind),
+}
+
+/// How a picture of the view is saved.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct PictureKind {
+    /// How many of its pixels a side one of the view's becomes, at least 1.
+    pub scale: u32,
+    /// What is behind the surface.
+    pub ground: Ground,
+}
+
+/// What is behind the surface in a saved picture.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Ground {
+    /// What the window shows.
+    AsShown,
+    /// Nothing.
+    Transparent,
 }

@@ -2,7 +2,9 @@
 //! and the clock are here; egui meets the renderer in `viewport.rs` alone.
 
 mod application;
+mod axis_ball;
 mod brush_panel;
+mod coarseness;
 mod command_button;
 mod dialog;
 mod fault;
@@ -26,21 +28,31 @@ mod project_file;
 mod recovery;
 mod session;
 mod settings;
+mod shell;
 mod status;
 mod theme;
 mod top_bar;
 mod viewport;
 mod workers;
 
+use std::cell::{Cell, RefCell};
 use std::path::PathBuf;
+use std::rc::Rc;
 use std::sync::Arc;
 
+use eframe::UserEvent;
 use eframe::egui::{ViewportBuilder, vec2};
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+
+use winit::event_loop::EventLoop;
+use winit::platform::run_on_demand::EventLoopExtRunOnDemand;
 
 pub use application::Application;
 pub use places::Places;
 pub use session::{KeepOriginal, Source, original_name};
+pub use shell::{NumpadDigits, Shared, Shell};
+
+use shell::Listener;
 
 use crate::error::AppError;
 
@@ -64,7 +76,68 @@ pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
         fault::listen(folder.clone());
     }
     let source = file.map_or(Source::Sample, Source::File);
-    let options = eframe::NativeOptions {
+    let refused = |reason: String| AppError::System(sentence(&reason));
+    let mut event_loop = EventLoop::<UserEvent>::with_user_event()
+        .build()
+        .map_err(|error| refused(error.to_string()))?;
+    let (application, numpad) = (Shared::default(), NumpadDigits::default());
+    loop {
+        // eframe's handler tells nobody why it could not begin.
+        let failure: Rc<RefCell<Option<AppError>>> = Rc::default();
+        let has_begun = Rc::new(Cell::new(false));
+        let inner = eframe::create_native(
+            "Pliant",
+            options(),
+            {
+                let (application, numpad) = (Rc::clone(&application), Rc::clone(&numpad));
+                let (source, places) = (source.clone(), places.clone());
+                let (failure, has_begun) = (Rc::clone(&failure), Rc::clone(&has_begun));
+                Box::new(move |context| {
+                    has_begun.set(true);
+                    let begin =
+                        |context: &eframe::CreationContext<'_>| Application::with_places(context, source, &places);
+                    match Shell::new(context, application, begin, numpad) {
+                        Ok(shell) => Ok(Box::new(shell) as Box<dyn eframe::App>),
+                        Err(error) => {
+                            let sentence = error.to_string();
+                            *failure.borrow_mut() = Some(error);
+                            Err(sentence.into())
+                        }
+                    }
+                })
+            },
+            &event_loop,
+        );
+        let mut listener = Listener {
+            inner,
+            numpad: Rc::clone(&numpad),
+        };
+        let run = event_loop.run_app_on_demand(&mut listener);
+        drop(listener);
+        run.map_err(|error| refused(error.to_string()))?;
+        if let Some(error) = failure.take() {
+            return Err(error);
+        }
+        if !has_begun.get() {
+            // Nearly always it is the device; asking for one without a window tells.
+            let reason = pliant_render::Headless::new().err().map_or_else(
+                || "the window system or the graphics driver refused it".to_owned(),
+                |error| error.to_string(),
+            );
+            return Err(refused(reason));
+        }
+        let is_lost = application
+            .borrow()
+            .as_ref()
+            .is_some_and(Application::has_lost_its_device);
+        if !is_lost {
+            return Ok(());
+        }
+    }
+}
+
+fn options() -> eframe::NativeOptions {
+    eframe::NativeOptions {
         viewport: ViewportBuilder::default()
             .with_title("Pliant")
             .with_app_id("pliant")
@@ -77,13 +150,7 @@ pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
             ..WgpuConfiguration::default()
         },
         ..eframe::NativeOptions::default()
-    };
-    eframe::run_native(
-        "Pliant",
-        options,
-        Box::new(move |context| Ok(Box::new(Application::with_places(context, source, &places)?))),
-    )
-    .map_err(|error| AppError::System(sentence(&error)))
+    }
 }
 
 /// A device with the adapter's own limits: large scans need large buffers.
@@ -94,8 +161,8 @@ fn setup() -> WgpuSetup {
     WgpuSetup::CreateNew(setup)
 }
 
-fn sentence(error: &eframe::Error) -> String {
-    let reason = error.to_string().replace(['\n', '\r'], " ");
+fn sentence(reason: &str) -> String {
+    let reason = reason.replace(['\n', '\r'], " ");
     format!(
         "no window can be opened ({reason}): start it in a desktop session with a Vulkan, Metal or DirectX 12 driver, \
          or use `pliant apply`, which needs neither"

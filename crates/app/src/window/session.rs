@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_editor::{Beginning, EditFile, JobQueue, Revision, Snapshot};
 use pliant_mesh::WeldOptions;
+use pliant_render::Image;
 
 use super::message::{Message, Opened, Written, WrittenKind};
 use super::project_file::{self, MeshSource, saved_name};
@@ -16,6 +17,7 @@ use crate::AppError;
 use crate::drawing::Drawing;
 use crate::engine::{self, Loaded};
 use crate::files::{self, Staging};
+use crate::picture_file;
 use crate::watch::Watch;
 
 /// The sample that is shown when no file is named.
@@ -88,6 +90,7 @@ enum What {
         source: MeshSource,
     },
     Edit(Box<EditFile>),
+    Picture(Image),
 }
 
 impl Session {
@@ -171,6 +174,12 @@ impl Session {
         );
     }
 
+    /// Writes a picture as PNG, off the window's thread.
+    pub fn save_picture(&mut self, path: PathBuf, image: Image, workers: &Workers) {
+        let what = What::Picture(image);
+        self.write(SaveRequest { path, what }, workers);
+    }
+
     /// Takes a save's end.
     pub fn written(&mut self, stamp: Revision, result: &Result<Written, String>, workers: &Workers) {
         self.saving.finish(stamp);
@@ -184,7 +193,7 @@ impl Session {
                     }
                 }
                 WrittenKind::Project => open.project = Some(written.path.clone()),
-                WrittenKind::Edit => {}
+                WrittenKind::Edit | WrittenKind::Picture => {}
             }
         }
         self.start_saving(workers);
@@ -306,9 +315,8 @@ fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Opened>, AppErr
         }
     };
     let progress = watch.begin("getting the picture ready");
-    let mut notes: Vec<String> = loaded.scene.notes().to_vec();
-    let (drawing, image_notes) = Drawing::new(&loaded.model, loaded.scene.appearance());
-    notes.extend(image_notes);
+    let notes: Vec<String> = loaded.scene.notes().to_vec();
+    let drawing = Drawing::new(&loaded.model, loaded.scene.appearance());
     progress.set(0.7);
     let displacements = Arc::new(vec![DVec3::ZERO; loaded.model.surface.positions.len()]);
     let pose = drawing.pose(&loaded.model, &displacements);
@@ -340,6 +348,15 @@ fn write(request: SaveRequest) -> Result<Written, AppError> {
     let staging = Staging::default();
     let folder = files::folder_of(&path);
     match what {
+        What::Picture(image) => {
+            let png = picture_file::png(image)?;
+            staging.stage(folder, [(&*file_name(&path), &*png)])?.commit()?;
+            Ok(Written {
+                path,
+                what: WrittenKind::Picture,
+                warnings: Vec::new(),
+            })
+        }
         What::Edit(edit) => {
             let text = edit.to_json();
             staging

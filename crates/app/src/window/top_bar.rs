@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use eframe::egui::{self, Key, KeyboardShortcut, MenuBar, Modifiers, RichText};
-use pliant_editor::{Command, Editor, NamedView, RegionAction, Shading, ToolMode, UpAxis};
+use pliant_editor::{Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, ToolMode, UpAxis};
 
 use super::command_button::{command_button, command_choice};
+use super::message::{Ground, PictureKind};
 use super::outbox::Outbox;
 
 /// What is done with files; the window's own, since the editor knows no paths.
@@ -37,6 +38,8 @@ pub enum FileCommand {
     Scale(i8),
     /// Show the first steps again.
     Hints,
+    /// Save a picture of the view.
+    SavePicture(PictureKind),
     /// Close the window.
     Quit,
 }
@@ -68,7 +71,13 @@ impl FileCommand {
             Self::Palette => Some(KeyboardShortcut::new(Modifiers::NONE, Key::F1)),
             Self::Scale(1..) => command(Key::Num9),
             Self::Scale(_) => command(Key::Num0),
-            Self::SaveProjectAs | Self::Log | Self::Keys | Self::NextTheme | Self::Hints | Self::OpenPath(_) => None,
+            Self::SaveProjectAs
+            | Self::Log
+            | Self::Keys
+            | Self::NextTheme
+            | Self::Hints
+            | Self::OpenPath(_)
+            | Self::SavePicture(_) => None,
         }
     }
 
@@ -103,6 +112,7 @@ impl FileCommand {
             Self::Scale(_) => "Size of everything",
             Self::Hints => "Hints on the canvas",
             Self::ExportEdit => "Export edit…",
+            Self::SavePicture(_) => "Save picture…",
             Self::Quit => "Quit",
         }
     }
@@ -148,6 +158,11 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &[PathBuf]) -> Option<F
         FileCommand::ExportEdit,
         FileCommand::Quit,
     ] {
+        if command == FileCommand::Quit {
+            ui.add_enabled_ui(is_open, |ui| {
+                ui.menu_button("Save picture", |ui| chosen = chosen.take().or(picture_menu(ui)));
+            });
+        }
         if matches!(
             command,
             FileCommand::Save | FileCommand::SaveProject | FileCommand::ExportEdit | FileCommand::Quit
@@ -178,6 +193,19 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &[PathBuf]) -> Option<F
         }
     }
     chosen
+}
+
+fn picture_menu(ui: &mut egui::Ui) -> Option<FileCommand> {
+    let kinds = [
+        ("As shown…", 1, Ground::AsShown),
+        ("Twice as large…", 2, Ground::AsShown),
+        ("Four times as large…", 4, Ground::AsShown),
+        ("Twice as large, transparent…", 2, Ground::Transparent),
+    ];
+    let clicked = kinds.into_iter().filter(|(name, ..)| ui.button(*name).clicked());
+    let (_, scale, ground) = clicked.last()?;
+    ui.close();
+    Some(FileCommand::SavePicture(PictureKind { scale, ground }))
 }
 
 fn edit_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
@@ -266,17 +294,63 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         }
     }
     ui.separator();
-    for (name, view) in NamedView::NAMES {
-        if ui
-            .button(format!("From {name}").replace("From three-quarter", "Three-quarter"))
-            .clicked()
-        {
-            commands.push(Command::View(view));
+    let view = editor.view();
+    let look = view.look;
+    let mut choice = |ui: &mut egui::Ui, command: Command, chosen: bool| {
+        if command_choice(ui, editor, &command, chosen) {
+            commands.push(command);
             ui.close();
         }
+    };
+    ui.menu_button("From", |ui| {
+        for (_, side) in NamedView::NAMES {
+            choice(ui, Command::View(side), false);
+        }
+        choice(ui, Command::TurnAround, false);
+        for steps in [[1, 0], [-1, 0], [0, 1], [0, -1]] {
+            choice(ui, Command::StepView(steps), false);
+        }
+    });
+    let is_flat = view.camera.projection == Projection::Orthographic;
+    choice(ui, Command::ToggleProjection, is_flat);
+    for orbit in [Orbit::Turntable, Orbit::Trackball] {
+        choice(ui, Command::SetOrbit(orbit), view.orbit == orbit);
     }
     ui.separator();
-    let up = editor.view().camera.up;
+    ui.menu_button("Clay", |ui| {
+        for (name, clay) in Clay::NAMES {
+            let chosen = look.shading == Shading::Clay && look.clay == clay;
+            if ui.selectable_label(chosen, name).clicked() {
+                commands.push(Command::SetClay(clay));
+                ui.close();
+            }
+        }
+    });
+    let mut choice = |ui: &mut egui::Ui, command: Command, chosen: bool| {
+        if command_choice(ui, editor, &command, chosen) {
+            commands.push(command);
+            ui.close();
+        }
+    };
+    for shading in [
+        Shading::Material,
+        Shading::Stretch,
+        Shading::Area,
+        Shading::Stiffness,
+        Shading::Curvature,
+        Shading::Zebra,
+        Shading::Normals,
+    ] {
+        choice(ui, Command::SetShading(shading), look.shading == shading);
+    }
+    ui.separator();
+    choice(ui, Command::ToggleFlat, look.flat);
+    choice(ui, Command::ToggleWireframe, look.wireframe);
+    choice(ui, Command::ToggleBorders, look.borders);
+    choice(ui, Command::ToggleRegions, look.regions);
+    choice(ui, Command::ToggleGrid, look.grid);
+    ui.separator();
+    let up = view.camera.up;
     for (name, axis) in [("Y is up", UpAxis::Y), ("Z is up", UpAxis::Z)] {
         if ui.radio(up == axis, name).clicked() {
             commands.push(Command::SetUp(axis));
@@ -307,8 +381,8 @@ fn tools(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     choice(ui, Command::Scale, false);
     ui.separator();
     for shading in [Shading::Clay, Shading::Material] {
-        choice(ui, Command::SetShading(shading), view.shading == shading);
+        choice(ui, Command::SetShading(shading), view.look.shading == shading);
     }
-    choice(ui, Command::ToggleRegions, view.regions);
-    choice(ui, Command::ToggleWireframe, view.wireframe);
+    choice(ui, Command::ToggleRegions, view.look.regions);
+    choice(ui, Command::ToggleWireframe, view.look.wireframe);
 }

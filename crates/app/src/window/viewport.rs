@@ -4,32 +4,37 @@
 //! On a device that is the processor itself a changing view is drawn with one sample a pixel, and once more with four
 //! when it has come to rest.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, TextureId};
 use eframe::egui_wgpu::RenderState;
 use glam::DVec3;
-use pliant_editor::{Editor, SceneView};
-use pliant_render::{Frame, RenderError, Renderer, Samples, Style, Surface, Target};
+use pliant_editor::{Editor, Look, SceneView, UpAxis};
+use pliant_render::{Background, Frame, Grid, Image, Outfit, RenderError, Renderer, Samples, Surface, Target};
 
-use super::message::Posed;
-use crate::drawing::{self, Drawing, Pose};
+use super::coarseness::Coarseness;
+use super::message::{Ground, PictureKind, Posed};
+use crate::drawing::{self, Drawing, Dress, Field, Pose, Scale};
+use crate::legend;
 
 /// Surfaces above this many triangles are not drawn a second time for smooth borders on a software device.
 const SOFT_SMOOTH_TRIANGLES: usize = 300_000;
-
 /// The view's GPU side.
 pub struct Viewport {
     state: RenderState,
     gpu: Gpu,
     software: Option<String>,
+    /// Set when the device is gone, by whoever notices.
+    lost: Arc<AtomicBool>,
     target: Target,
     texture: Option<TextureId>,
     surface: Option<Shown>,
     drawn: Option<DrawnKey>,
     drawings: u64,
     drawing_time: Duration,
+    coarseness: Coarseness,
 }
 
 /// The device, shared with the threads that upload files. Drawing needs it alone, and rather skips a frame than wait.
@@ -37,6 +42,14 @@ pub struct Viewport {
 pub struct Gpu(Arc<RwLock<Renderer>>);
 
 impl Gpu {
+    /// Uploads a file's images.
+    ///
+    /// # Errors
+    /// As [`Outfit::new`].
+    pub fn upload_images(&self, dress: &Dress) -> Result<Outfit, RenderError> {
+        dress.upload(&self.read())
+    }
+
     /// Uploads a file's surface.
     ///
     /// # Errors
@@ -56,7 +69,37 @@ struct Shown {
     surface: Surface,
     drawing: Arc<Drawing>,
     displacements: Arc<Vec<DVec3>>,
-    regions_revision: Option<u64>,
+    /// The height of the file's lowest point along each axis, in world units.
+    lowest: DVec3,
+    colours: Colours,
+    scale: Option<Arc<Scale>>,
+    /// How often its materials changed.
+    outfits: u64,
+}
+
+impl Shown {
+    /// The grid under the file's lowest point, where it is to be seen.
+    fn ground(&self, view: &SceneView<'_>) -> Option<Grid> {
+        let height = match view.camera.up {
+            UpAxis::Y => self.lowest.y,
+            UpAxis::Z => self.lowest.z,
+        };
+        let grid = || drawing::ground(view.camera, view.viewport_px, height, self.drawing.centre);
+        view.look.grid.then(grid)
+    }
+}
+
+/// What the surface's region colours are at present.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Colours {
+    /// Not set.
+    None,
+    /// The editor's regions.
+    Regions(u64),
+    /// Numbers of the shape.
+    Field(Field),
+    /// The stiffness with this address.
+    Stiffness(usize),
 }
 
 /// What the picture in the texture was drawn from.
@@ -64,12 +107,27 @@ struct Shown {
 struct DrawnKey {
     pixels_per_point: f32,
     shape: usize,
-    regions: Option<u64>,
+    colours: Colours,
+    outfits: u64,
     overlay: u64,
     camera: u64,
-    style: Style,
+    look: Look,
     size_px: [u32; 2],
     samples: Samples,
+}
+
+impl DrawnKey {
+    /// Whether this picture is as good as the one asked for: of the same thing, with as many samples, and as large or
+    /// as large as the view, `full_px`, itself.
+    fn serves(&self, wanted: &Self, full_px: [u32; 2]) -> bool {
+        let same = Self {
+            size_px: wanted.size_px,
+            samples: wanted.samples,
+            ..self.clone()
+        };
+        let is_as_large = self.size_px == wanted.size_px || self.size_px == full_px;
+        same == *wanted && is_as_large && self.samples.count() >= wanted.samples.count()
+    }
 }
 
 impl Viewport {
@@ -78,19 +136,40 @@ impl Viewport {
     /// # Errors
     /// As [`Renderer::new`].
     pub fn new(state: RenderState) -> Result<Self, RenderError> {
+        let lost = Arc::new(AtomicBool::new(false));
+        let is_lost = Arc::clone(&lost);
+        state
+            .device
+            .set_device_lost_callback(move |_, _| is_lost.store(true, Ordering::Relaxed));
+        // What we ask of the device we hear about ourselves; an error of anybody else's on a device that is going must
+        // not end the program.
+        state.device.on_uncaptured_error(Arc::new(|_| {}));
         let renderer = Renderer::new(&state.device, &state.queue)?;
         let software = renderer.is_software().then(|| renderer.device_name());
         Ok(Self {
             state,
             gpu: Gpu(Arc::new(RwLock::new(renderer))),
             software,
+            lost,
             target: Target::new(),
             texture: None,
             surface: None,
             drawn: None,
             drawings: 0,
             drawing_time: Duration::ZERO,
+            coarseness: Coarseness::default(),
         })
+    }
+
+    /// Whether the device is gone: a driver was updated or crashed, or a card was pulled out.
+    pub fn is_lost(&self) -> bool {
+        self.lost.load(Ordering::Relaxed)
+    }
+
+    /// Loses the device, as a driver that crashes does: for trying out that nothing else is lost.
+    pub fn lose_device(&self) {
+        self.state.device.destroy();
+        self.lost.store(true, Ordering::Relaxed);
     }
 
     /// The device's name if it is the processor itself.
@@ -115,26 +194,63 @@ impl Viewport {
     }
 
     /// Shows another file.
-    pub fn show(&mut self, drawing: Arc<Drawing>, surface: Surface, displacements: Arc<Vec<DVec3>>) {
+    pub fn show(&mut self, drawing: Arc<Drawing>, surface: Surface, displacements: Arc<Vec<DVec3>>, lowest: DVec3) {
         self.drawn = None;
+        self.coarseness = Coarseness::default();
         self.surface = Some(Shown {
             surface,
             drawing,
             displacements,
-            regions_revision: None,
+            lowest,
+            colours: Colours::None,
+            scale: None,
+            outfits: 0,
         });
+    }
+
+    /// Gives the file that is shown its materials with their images, if it is still this one.
+    ///
+    /// # Errors
+    /// As [`Surface::wear`].
+    pub fn wear(&mut self, drawing: &Arc<Drawing>, outfit: Outfit) -> Result<(), RenderError> {
+        match &mut self.surface {
+            Some(shown) if Arc::ptr_eq(&shown.drawing, drawing) => {
+                shown.outfits += 1;
+                shown.surface.wear(outfit)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The numbers that the surface's colours show.
+    pub fn field(&self) -> Option<Field> {
+        match self.surface.as_ref()?.colours {
+            Colours::Field(field) => Some(field),
+            Colours::Stiffness(_) => Some(Field::Stiffness),
+            Colours::None | Colours::Regions(_) => None,
+        }
+    }
+
+    /// What the surface's colours mean, where they show numbers.
+    pub fn scale(&self) -> Option<&Scale> {
+        self.field()?;
+        self.surface.as_ref()?.scale.as_deref()
     }
 
     /// Moves the surface to a pose of the file that is shown.
     ///
     /// # Errors
-    /// As [`Surface::update_positions`].
+    /// As [`Surface::update_shape`].
     pub fn pose(&mut self, posed: Posed) -> Result<(), RenderError> {
         let Some(shown) = &mut self.surface else { return Ok(()) };
         let renderer = self.gpu.read();
-        shown.surface.update_positions(&renderer, &posed.pose.positions)?;
-        shown.surface.update_normals(&renderer, &posed.pose.normals)?;
+        shown.surface.update_shape(&renderer, &posed.pose.data())?;
         shown.displacements = posed.displacements;
+        if let Some(painted) = posed.painted {
+            shown.surface.update_regions(&renderer, &painted.colours)?;
+            shown.colours = Colours::Field(painted.field);
+            shown.scale = Some(painted.scale);
+        }
         Ok(())
     }
 
@@ -166,18 +282,21 @@ impl Viewport {
             Smoothness::Moving | Smoothness::Resting => Samples::Four,
         };
         self.update_regions(editor, &view)?;
-        let mut key = self.key(&view, pixels_per_point, size_px, samples);
-        // A picture of the same thing with more samples than asked for is good as it is.
-        let finer = DrawnKey {
-            samples: Samples::Four,
-            ..key.clone()
+        let factor = match smooth {
+            Smoothness::Moving => self.coarseness.factor(),
+            Smoothness::Resting => 1,
         };
-        if self.drawn.as_ref() == Some(&finer) {
-            key = finer;
-        } else if self.drawn.as_ref() != Some(&key) {
+        let drawn_px = size_px.map(|side| side.div_ceil(factor));
+        let key = self.key(&view, pixels_per_point, drawn_px, samples);
+        if !self.drawn.as_ref().is_some_and(|drawn| drawn.serves(&key, size_px)) {
             if self.draw(&view, &key)? {
-                self.drawn = Some(key.clone());
+                self.drawn = Some(key);
                 self.drawings += 1;
+                if smooth == Smoothness::Moving
+                    && let Some(ms) = self.device_ms()
+                {
+                    self.coarseness.took(ms);
+                }
             } else {
                 ui.ctx().request_repaint();
             }
@@ -186,7 +305,14 @@ impl Viewport {
             let whole = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
             ui.painter().image(texture, rect, whole, egui::Color32::WHITE);
         }
-        Ok(key.samples == Samples::One && triangles <= SOFT_SMOOTH_TRIANGLES)
+        let is_coarse = self.drawn.as_ref().is_some_and(|drawn| drawn.size_px != size_px);
+        let is_jagged = self.drawn.as_ref().is_some_and(|drawn| drawn.samples == Samples::One);
+        Ok(is_coarse || (is_jagged && triangles <= SOFT_SMOOTH_TRIANGLES))
+    }
+
+    /// How long the device worked on a drawing of late.
+    fn device_ms(&self) -> Option<f64> {
+        self.gpu.0.try_read().ok()?.device_ms()
     }
 
     fn key(&self, view: &SceneView<'_>, pixels_per_point: f32, size_px: [u32; 2], samples: Samples) -> DrawnKey {
@@ -196,10 +322,11 @@ impl Viewport {
                 .surface
                 .as_ref()
                 .map_or(0, |shown| Arc::as_ptr(&shown.displacements) as usize),
-            regions: self.surface.as_ref().and_then(|shown| shown.regions_revision),
+            colours: self.surface.as_ref().map_or(Colours::None, |shown| shown.colours),
+            outfits: self.surface.as_ref().map_or(0, |shown| shown.outfits),
             overlay: view.overlay_revision,
             camera: view.camera_revision,
-            style: drawing::style(view),
+            look: view.look,
             size_px,
             samples,
         }
@@ -209,14 +336,27 @@ impl Viewport {
         let (Some(shown), Some(model)) = (&mut self.surface, view.model) else {
             return Ok(());
         };
-        if shown.regions_revision == Some(view.regions_revision) {
+        let stiffness = editor.document().stiffness();
+        let wanted = match drawing::field(view.look.shading) {
+            None => Colours::Regions(view.regions_revision),
+            Some(Field::Stiffness) => Colours::Stiffness(stiffness.map_or(0, |field| field.as_ptr() as usize)),
+            // These come with the shape that they belong to.
+            Some(_) => return Ok(()),
+        };
+        if shown.colours == wanted {
             return Ok(());
         }
         let mut colours = Vec::new();
-        editor.region_colours(&mut colours);
+        if let Colours::Stiffness(_) = wanted {
+            let scale = Arc::new(Scale::of(Field::Stiffness, model));
+            colours = drawing::colours(Field::Stiffness, &scale, model, &shown.displacements, stiffness);
+            shown.scale = Some(scale);
+        } else {
+            editor.region_colours(&mut colours);
+        }
         let colours = drawing::drawn_colours(model, &colours);
         shown.surface.update_regions(&self.gpu.read(), &colours)?;
-        shown.regions_revision = Some(view.regions_revision);
+        shown.colours = wanted;
         Ok(())
     }
 
@@ -231,18 +371,53 @@ impl Viewport {
         }
         let centre = self.surface.as_ref().map_or(DVec3::ZERO, |shown| shown.drawing.centre);
         let eye = drawing::view(view.camera, view.viewport_px, centre);
-        let overlays = drawing::overlays(view, centre, key.pixels_per_point);
+        // Marks keep their width on the screen when the picture has fewer pixels.
+        let drawn_share = f64::from(key.size_px[1]) / view.viewport_px.y.max(1.0);
+        let overlays = drawing::overlays(view, centre, drawn_share as f32);
         let surfaces: Vec<&Surface> = self.surface.iter().map(|shown| &shown.surface).collect();
+        let ground = self.surface.as_ref().and_then(|shown| shown.ground(view));
         let frame = Frame {
             view: &eye,
-            style: &key.style,
+            style: &drawing::style(&key.look),
             surfaces: &surfaces,
+            grid: ground.as_ref(),
             overlays: &overlays,
         };
         let start = Instant::now();
         let drawn = renderer.draw(&self.target, &frame);
         self.drawing_time += start.elapsed();
         drawn.map(|()| true)
+    }
+
+    /// A picture of what the view shows, without its marks; `None` while a file is being uploaded or nothing is open.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw_to_image`].
+    pub fn picture(&mut self, editor: &Editor, kind: PictureKind) -> Result<Option<Image>, RenderError> {
+        let (view, gpu) = (editor.view(), self.gpu.clone());
+        let (Some(shown), Some(key), Ok(mut renderer)) = (&self.surface, &self.drawn, gpu.0.try_write()) else {
+            return Ok(None);
+        };
+        let size_px = key.size_px.map(|side| side.max(1) * kind.scale.max(1));
+        let mut style = drawing::style(&view.look);
+        let mut ground = shown.ground(&view);
+        if kind.ground == Ground::Transparent {
+            (style.background, ground) = (Background::Transparent, None);
+        }
+        let frame = Frame {
+            view: &drawing::view(view.camera, view.viewport_px, shown.drawing.centre),
+            style: &style,
+            surfaces: &[&shown.surface],
+            grid: ground.as_ref(),
+            overlays: &[],
+        };
+        let mut image = renderer.draw_to_image(size_px, Samples::Four, &frame)?;
+        if let Some(scale) = self.scale() {
+            let points = key.pixels_per_point * kind.scale as f32;
+            let legend = legend::picture(&renderer, scale, points)?;
+            legend::lay_over(&mut image, &legend, (14.0 * points) as u32);
+        }
+        Ok(Some(image))
     }
 
     /// Tells egui about a new texture.

@@ -3,6 +3,7 @@
 //! The editor never has more than one job of a kind running, so a handful of threads live at a time; starting one
 //! costs some tens of microseconds, and no job waits behind another kind's.
 
+use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -11,14 +12,15 @@ use eframe::egui;
 use glam::DVec3;
 use pliant_editor::{Executor, Job, JobDone, JobOutcome};
 
-use super::message::{Message, Posed};
-use crate::drawing::Drawing;
+use super::message::{Message, Painted, Posed};
+use crate::drawing::{self, Drawing, Field, Scale};
 use crate::engine::Loaded;
 
 /// Starts work off the window's thread and wakes the window when it ends. Cloning shares the channel.
 #[derive(Clone)]
 pub struct Workers {
-    context: egui::Context,
+    /// Another one after the graphics device was lost.
+    context: Arc<Mutex<egui::Context>>,
     sender: Sender<Message>,
     stage: Arc<Mutex<Option<Stage>>>,
 }
@@ -30,13 +32,34 @@ pub struct Stage {
     pub loaded: Arc<Loaded>,
     /// What the renderer takes of it.
     pub drawing: Arc<Drawing>,
+    /// The numbers that are shown as colours.
+    pub field: Option<Field>,
+    /// The scales used so far: some take a walk over the whole surface.
+    pub scales: Arc<Mutex<HashMap<Field, Arc<Scale>>>>,
 }
 
 impl Stage {
     /// A shape, made ready for the renderer.
     pub fn pose(&self, displacements: Arc<Vec<DVec3>>) -> Posed {
-        let pose = self.drawing.pose(&self.loaded.model, &displacements);
-        Posed { displacements, pose }
+        let model = &self.loaded.model;
+        let pose = self.drawing.pose(model, &displacements);
+        let painted = self.field.map(|field| {
+            let mut scales = self.scales.lock().unwrap_or_else(PoisonError::into_inner);
+            let scale = scales.entry(field).or_insert_with(|| Arc::new(Scale::of(field, model)));
+            let scale = Arc::clone(scale);
+            drop(scales);
+            let colours = drawing::colours(field, &scale, model, &displacements, None);
+            Painted {
+                field,
+                scale,
+                colours: drawing::drawn_colours(model, &colours),
+            }
+        });
+        Posed {
+            displacements,
+            pose,
+            painted,
+        }
     }
 }
 
@@ -44,16 +67,26 @@ impl Workers {
     /// Work's results go to `sender`, and `context` is woken.
     pub fn new(context: egui::Context, sender: Sender<Message>) -> Self {
         Self {
-            context,
+            context: Arc::new(Mutex::new(context)),
             sender,
             stage: Arc::default(),
         }
+    }
+
+    /// Work's ends wake another window from now on.
+    pub fn wake(&self, context: egui::Context) {
+        *self.context.lock().unwrap_or_else(PoisonError::into_inner) = context;
     }
 
     /// Shapes that are solved from now on are posed for this file, still on the job's thread: a step less between
     /// the pointer and the picture.
     pub fn set_stage(&self, stage: Stage) {
         *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = Some(stage);
+    }
+
+    /// What shapes are posed for.
+    pub fn stage(&self) -> Option<Stage> {
+        self.stage.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Does `work` on a thread of its own and sends its message. If it panics or no thread can be had, `failed` makes
@@ -81,7 +114,10 @@ impl Workers {
     pub fn send(&self, message: Message) {
         // A window that is gone wants no messages.
         if self.sender.send(message).is_ok() {
-            self.context.request_repaint();
+            self.context
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .request_repaint();
         }
     }
 }

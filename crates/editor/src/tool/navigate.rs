@@ -42,7 +42,7 @@ impl Navigate {
         let delta_px = pointer.position_px - self.last_px;
         self.last_px = pointer.position_px;
         match self.way {
-            Way::Orbit => editor.camera.orbit(delta_px),
+            Way::Orbit => editor.camera.orbit(editor.orbit, delta_px),
             Way::Pan(anchor) => editor.camera.pan(delta_px, anchor, editor.viewport_px),
         }
         editor.is_framed &= delta_px == DVec2::ZERO;

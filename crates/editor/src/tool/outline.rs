@@ -112,7 +112,6 @@ fn vertices_inside(picking: &Picking<'_>, polygon: &[DVec2], depth: Depth) -> Ve
         .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| {
             (low.min(*p), high.max(*p))
         });
-    let eye = picking.camera.eye();
     (0..picking.model.surface.positions.len() as u32)
         .map(SurfaceVertex)
         .filter(|&vertex| {
@@ -120,6 +119,8 @@ fn vertices_inside(picking: &Picking<'_>, polygon: &[DVec2], depth: Depth) -> Ve
             let Some(px) = picking.camera.project(position, picking.viewport_px) else {
                 return false;
             };
+            // Where the line of sight through the vertex begins: the eye itself, but for an orthographic view.
+            let eye = picking.camera.ray(px, picking.viewport_px).origin;
             px.cmpge(low).all()
                 && px.cmple(high).all()
                 && is_inside(px, polygon)

@@ -15,12 +15,18 @@ use crate::editor::Editor;
 use crate::gizmo::GizmoPart;
 use crate::number_entry::NumberEntry;
 use crate::transaction::Transaction;
-use crate::{Button, HandleTransform, Key, Modifiers, Pointer};
+use crate::{Button, HandleTransform, Key, Modifiers, Pointer, Readout};
 
 /// A held button must move the pointer this far before a handle follows.
 const THRESHOLD_PX: f64 = 3.0;
 /// The smallest factor that the pointer can scale by.
 const MIN_FACTOR: f64 = 1e-3;
+/// What Ctrl holds turns to: 5 degrees.
+const SNAP_RAD: f64 = std::f64::consts::PI / 36.0;
+/// What Ctrl holds factors to.
+const SNAP_FACTOR: f64 = 0.1;
+/// What Ctrl holds lengths to is the largest power of ten below this many points.
+const SNAP_PX: f64 = 40.0;
 
 /// What is done to the handle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -60,6 +66,8 @@ pub(crate) struct TransformDrag {
     /// The turn so far, which may exceed a full circle.
     turned_rad: f64,
     number: NumberEntry,
+    /// Whether Ctrl holds the pointer's way to round numbers.
+    snaps: bool,
     /// The gizmo's axes when it began.
     basis: DQuat,
     /// Handles that go along, as they were when it began.
@@ -118,6 +126,7 @@ impl TransformDrag {
             is_armed: true,
             turned_rad: 0.0,
             number: NumberEntry::default(),
+            snaps: false,
             basis,
             companions,
         })
@@ -138,6 +147,7 @@ impl TransformDrag {
 
     pub(crate) fn moved(mut self: Box<Self>, editor: &mut Editor, pointer: Pointer) -> Tool {
         self.is_armed |= pointer.position_px.distance(self.start_px) >= THRESHOLD_PX;
+        self.snaps = pointer.modifiers.ctrl;
         if self.kind == TransformKind::Turn {
             self.turned_rad += self.turn_rad(editor, self.last_px, pointer.position_px);
         }
@@ -237,14 +247,7 @@ impl TransformDrag {
             TransformKind::Turn => "Turning",
             TransformKind::Scale => "Scaling",
         };
-        let typed = self.number.text();
-        let value = match (typed.is_empty(), self.kind) {
-            (false, TransformKind::Turn) => format!(" by {typed}°"),
-            (false, _) => format!(" by {typed}"),
-            (true, TransformKind::Move) => format!(" by {:.4}", self.translation(editor).length()),
-            (true, TransformKind::Turn) => format!(" by {:.1}°", self.turned_rad.to_degrees()),
-            (true, TransformKind::Scale) => format!(" by {:.3}", self.factor(editor)),
-        };
+        let value = format!(" by {}", self.measure(editor));
         let end = match self.ending {
             Ending::Click => "click or Enter to keep it",
             Ending::Release(_) => "let go to keep it",
@@ -253,6 +256,37 @@ impl TransformDrag {
             "{verb}{}{value}: x, y, z hold it to an axis, numbers type, {end}, Esc to leave it",
             self.constraint.label()
         )
+    }
+
+    /// The number to show beside the handle, once there is one.
+    pub(crate) fn readout(&self, editor: &Editor) -> Option<Readout> {
+        let at = editor.document.handle(self.handle)?.centre();
+        self.is_armed.then(|| Readout {
+            at,
+            text: self.measure(editor),
+        })
+    }
+
+    /// How far, by what angle or factor it has come, as typed or as the pointer says.
+    fn measure(&self, editor: &Editor) -> String {
+        let typed = self.number.text();
+        match (typed.is_empty(), self.kind) {
+            (false, TransformKind::Turn) => format!("{typed}°"),
+            (false, TransformKind::Scale) => format!("×{typed}"),
+            (false, TransformKind::Move) => typed,
+            (true, TransformKind::Move) => length_label(self.translation(editor).length()),
+            (true, TransformKind::Turn) => format!("{:.1}°", self.angle_rad().to_degrees()),
+            (true, TransformKind::Scale) => format!("×{:.3}", self.factor(editor)),
+        }
+    }
+
+    /// The turn, typed or made by the pointer.
+    fn angle_rad(&self) -> f64 {
+        match self.number.value() {
+            Some(degrees) => degrees.to_radians(),
+            None if self.snaps => (self.turned_rad / SNAP_RAD).round() * SNAP_RAD,
+            None => self.turned_rad,
+        }
     }
 
     fn commit(self, editor: &mut Editor) -> Tool {
@@ -281,8 +315,7 @@ impl TransformDrag {
                 }
             }
             TransformKind::Turn => {
-                let angle_rad = self.number.value().map_or(self.turned_rad, f64::to_radians);
-                let turn = rotation(self.turn_axis(editor), angle_rad);
+                let turn = rotation(self.turn_axis(editor), self.angle_rad());
                 editor.put_handle(self.handle, self.start.turned_by(turn, self.pivot));
                 for other in &self.companions {
                     let way = turn * (other.centre - self.centre) - (other.centre - self.centre);
@@ -320,7 +353,7 @@ impl TransformDrag {
             Constraint::Axis(axis) => {
                 let axis = self.axis(axis);
                 let way = along_axis(from, self.centre, axis).zip(along_axis(to, self.centre, axis));
-                way.map_or(DVec3::ZERO, |(from, to)| axis * (to - from))
+                way.map_or(DVec3::ZERO, |(from, to)| axis * self.snapped(editor, to - from))
             }
             Constraint::Free | Constraint::Plane(_) => {
                 let normal = match self.constraint {
@@ -333,13 +366,29 @@ impl TransformDrag {
                     match self.constraint {
                         // Exactly within the plane, so that the other coordinate keeps its bits.
                         Constraint::Plane(axis) if self.basis == DQuat::IDENTITY => {
-                            way * (DVec3::ONE - axis_vector(axis))
+                            let snapped = way.to_array().map(|part| self.snapped(editor, part));
+                            DVec3::from(snapped) * (DVec3::ONE - axis_vector(axis))
+                        }
+                        Constraint::Free if self.snaps => {
+                            let axes = editor.camera.axes();
+                            let along = |axis: DVec3| axis * self.snapped(editor, way.dot(axis));
+                            along(axes.x_axis) + along(axes.y_axis)
                         }
                         _ => way,
                     }
                 })
             }
         }
+    }
+
+    /// A length, held to round numbers while Ctrl is: the power of ten that some dozens of points of the screen span.
+    fn snapped(&self, editor: &Editor, length: f64) -> f64 {
+        if !self.snaps {
+            return length;
+        }
+        let seen = SNAP_PX * editor.camera.world_per_px(self.centre, editor.viewport_px);
+        let step = 10.0_f64.powf(seen.log10().floor());
+        (length / step).round() * step
     }
 
     fn turn_axis(&self, editor: &Editor) -> DVec3 {
@@ -352,7 +401,7 @@ impl TransformDrag {
     /// The turn that the pointer's way from one point to another means.
     fn turn_rad(&self, editor: &Editor, from_px: DVec2, to_px: DVec2) -> f64 {
         let axis = self.turn_axis(editor);
-        let to_eye = (editor.camera.eye() - self.centre).normalize_or_zero();
+        let to_eye = editor.camera.towards_eye(self.centre);
         // Within the ring's plane where that is seen well, else on the screen.
         if self.part.is_some() && axis.dot(to_eye).abs() > 0.25 {
             let [from, to] = [from_px, to_px].map(|px| {
@@ -375,9 +424,14 @@ impl TransformDrag {
 
     /// The factor that the pointer's way means.
     fn factor(&self, editor: &Editor) -> f64 {
-        if let Some(factor) = self.number.value() {
-            return factor;
+        match self.number.value() {
+            Some(factor) => factor,
+            None if self.snaps => (self.pointed_factor(editor) / SNAP_FACTOR).round().max(1.0) * SNAP_FACTOR,
+            None => self.pointed_factor(editor),
         }
+    }
+
+    fn pointed_factor(&self, editor: &Editor) -> f64 {
         if let (Some(GizmoPart::Box(axis)), Constraint::Axis(_)) = (self.part, self.constraint) {
             let axis = self.own_rotation() * axis_vector(axis);
             let [from, to] = [self.start_px, self.last_px]
@@ -413,6 +467,18 @@ impl TransformDrag {
             HandleTransform::Matrix(_) => DQuat::IDENTITY,
         }
     }
+}
+
+/// A length in four digits.
+fn length_label(length: f64) -> String {
+    let digits = match length.abs() {
+        size if size >= 1000.0 => 0,
+        size if size >= 100.0 => 1,
+        size if size >= 10.0 => 2,
+        size if size >= 0.01 || size == 0.0 => 4,
+        _ => return format!("{length:.2e}"),
+    };
+    format!("{length:.digits$}")
 }
 
 impl TransformKind {

@@ -71,6 +71,31 @@ impl Shape {
         shape
     }
 
+    /// A ring (a torus about the z axis) of `around` by `across` quads, from which the last eighth is missing, so that
+    /// its inside and its border are seen.
+    pub fn open_ring(around: u32, across: u32) -> Self {
+        let mut shape = Self::default();
+        let kept = around - around / 8;
+        for i in 0..=kept {
+            let turn = std::f32::consts::TAU * i as f32 / around as f32;
+            let outward = Vec3::new(turn.cos(), turn.sin(), 0.0);
+            for k in 0..across {
+                let lap = std::f32::consts::TAU * k as f32 / across as f32;
+                let normal = outward * lap.cos() + Vec3::Z * lap.sin();
+                shape.positions.push((outward * 0.85 + normal * 0.4).to_array());
+                shape.normals.push(normal.to_array());
+            }
+        }
+        for i in 0..kept {
+            for k in 0..across {
+                let v = |i: u32, k: u32| i * across + k % across;
+                shape.triangles.push([v(i, k), v(i + 1, k), v(i + 1, k + 1)]);
+                shape.triangles.push([v(i, k), v(i + 1, k + 1), v(i, k + 1)]);
+            }
+        }
+        shape
+    }
+
     /// A square in the plane z = `z` that faces +z, `half` units to each side of (`x`, 0).
     pub fn square(x: f32, z: f32, half: f32) -> Self {
         let positions = [
@@ -148,12 +173,19 @@ pub fn parallel_front_view() -> View {
     View::orthographic(1.4, SIZE_PX[0] as f32 / SIZE_PX[1] as f32, 0.0, 10.0, view_from_world)
 }
 
+/// From the front, the right and above.
+pub fn oblique_view() -> View {
+    let view_from_world = View::look_at(Vec3::new(1.6, 2.0, 3.6), Vec3::new(0.0, -0.05, 0.0), Vec3::Y);
+    View::perspective(0.62, SIZE_PX[0] as f32 / SIZE_PX[1] as f32, 0.01, view_from_world)
+}
+
 /// A picture of surfaces and overlays, seen from `view`.
 pub fn draw(renderer: &mut Renderer, view: &View, style: &Style, surfaces: &[&Surface], overlays: &[Overlay]) -> Image {
     let frame = Frame {
         view,
         style,
         surfaces,
+        grid: None,
         overlays,
     };
     renderer

@@ -1,0 +1,333 @@
+//! Numbers on the surface as colours: how far a shape is from the rest shape, how it curves, how stiff it is.
+
+use glam::DVec3;
+use pliant_mesh::{Model, SurfaceVertex, cotangents, edge_lengths, face_area, mixed_corner_areas};
+use rayon::prelude::*;
+
+/// What the colours say.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
+pub enum Field {
+    /// Of the edges at a vertex, the length over that at rest that is farthest from 1.
+    Stretch,
+    /// Area of the triangles around a vertex over that at rest.
+    Area,
+    /// Mean curvature, positive where the surface bulges outwards.
+    Curvature,
+    /// Stiffness, 1 where nothing is said.
+    Stiffness,
+}
+
+/// How numbers become colours; also what a legend shows.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Scale {
+    /// What is measured, in words.
+    pub title: &'static str,
+    spacing: Spacing,
+    /// Numbers beside the bar, the lowest first, with what they say.
+    pub ticks: Vec<Tick>,
+}
+
+/// A number beside a legend's bar.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Tick {
+    /// 0 at the lower end, 1 at the upper.
+    pub at: f64,
+    /// The number.
+    pub label: String,
+}
+
+/// Where a number is between the scale's ends.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Spacing {
+    /// By its logarithm, from 1/most to most.
+    Ratio { most: f64 },
+    /// Evenly, from −most to most.
+    Even { most: f64 },
+}
+
+impl Scale {
+    /// The scale of a field on `model`: the same for every shape of it, so that pictures compare.
+    pub fn of(field: Field, model: &Model) -> Self {
+        let ratio = |title, most: f64, labels: &[f64]| {
+            let spacing = Spacing::Ratio { most };
+            let tick = |&value: &f64| Tick {
+                at: spacing.share(value),
+                label: format!("×{value}"),
+            };
+            Self {
+                title,
+                spacing,
+                ticks: labels.iter().map(tick).collect(),
+            }
+        };
+        match field {
+            Field::Stretch => ratio("edge length / rest", 2.0, &[0.5, 0.71, 1.0, 1.41, 2.0]),
+            Field::Area => ratio("area / rest", 2.0, &[0.5, 0.71, 1.0, 1.41, 2.0]),
+            Field::Stiffness => ratio("stiffness", 1000.0, &[0.001, 0.03, 1.0, 30.0, 1000.0]),
+            Field::Curvature => {
+                let most = usual_curvature(model);
+                let spacing = Spacing::Even { most };
+                let tick = |share: f64| Tick {
+                    at: 0.5 + 0.5 * share,
+                    label: short(share * most),
+                };
+                Self {
+                    title: "mean curvature, 1/unit",
+                    spacing,
+                    ticks: [-1.0, -0.5, 0.0, 0.5, 1.0].map(tick).to_vec(),
+                }
+            }
+        }
+    }
+
+    /// The colour of a number, sRGB; what lies beyond an end has that end's, what is no number is black.
+    pub fn colour(&self, value: f64) -> [u8; 4] {
+        if value.is_nan() {
+            return [0, 0, 0, 255];
+        }
+        colour_at(self.spacing.share(value))
+    }
+}
+
+impl Spacing {
+    fn share(self, value: f64) -> f64 {
+        let signed = match self {
+            Self::Ratio { most } => value.ln() / most.ln(),
+            Self::Even { most } => value / most,
+        };
+        (0.5 + 0.5 * signed).clamp(0.0, 1.0)
+    }
+}
+
+/// The colour at a share of any scale, from its lower end to its upper: blue through grey to red, equally bright at
+/// both ends, so that less and more weigh the same (after Moreland 2009).
+pub fn colour_at(share: f64) -> [u8; 4] {
+    const STOPS: [[f64; 3]; 7] = [
+        [40.0, 62.0, 176.0],
+        [74.0, 128.0, 224.0],
+        [142.0, 186.0, 240.0],
+        [214.0, 214.0, 212.0],
+        [244.0, 168.0, 128.0],
+        [222.0, 92.0, 64.0],
+        [158.0, 18.0, 44.0],
+    ];
+    let at = share.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
+    let below = (at as usize).min(STOPS.len() - 2);
+    let between = at - below as f64;
+    let mixed = |channel: usize| {
+        let mixed = STOPS[below][channel] * (1.0 - between) + STOPS[below + 1][channel] * between;
+        mixed.round() as u8
+    };
+    [mixed(0), mixed(1), mixed(2), 255]
+}
+
+/// The colours of the surface's vertices in the shape that `displacements` give.
+pub fn colours(
+    field: Field,
+    scale: &Scale,
+    model: &Model,
+    displacements: &[DVec3],
+    stiffness: Option<&[f64]>,
+) -> Vec<[u8; 4]> {
+    let vertex_count = model.surface.positions.len();
+    let colour = |value: f64| scale.colour(value);
+    if field == Field::Stiffness {
+        return match stiffness {
+            Some(stiffness) => stiffness.par_iter().map(|&value| colour(value)).collect(),
+            None => vec![colour(1.0); vertex_count],
+        };
+    }
+    let rest = &model.surface.positions;
+    let moved: Vec<DVec3> = rest.par_iter().zip(displacements).map(|(&p, &d)| p + d).collect();
+    match field {
+        Field::Stretch | Field::Stiffness => (0..vertex_count as u32)
+            .into_par_iter()
+            .map(|v| colour(stretch(model, &moved, SurfaceVertex(v))))
+            .collect(),
+        Field::Area => {
+            let ratio = |v: u32| {
+                let around = |positions: &[DVec3]| {
+                    let faces = model.topology.faces(SurfaceVertex(v)).iter();
+                    let area = |&face: &u32| {
+                        face_area(model.surface.triangles[face as usize].map(|corner| positions[corner.index()]))
+                    };
+                    faces.map(area).sum::<f64>()
+                };
+                let before = around(rest);
+                if before > 0.0 { around(&moved) / before } else { 1.0 }
+            };
+            (0..vertex_count as u32)
+                .into_par_iter()
+                .map(|v| colour(ratio(v)))
+                .collect()
+        }
+        Field::Curvature => mean_curvatures(model, &moved).into_par_iter().map(colour).collect(),
+    }
+}
+
+/// Of the edges at `v`, the ratio of lengths that is farthest from 1; edges without length at rest don't count.
+fn stretch(model: &Model, moved: &[DVec3], v: SurfaceVertex) -> f64 {
+    let rest = &model.surface.positions;
+    let mut worst = 1.0_f64;
+    for &u in model.topology.neighbours(v) {
+        let before = rest[v.index()].distance(rest[u.index()]);
+        if before > 0.0 {
+            let ratio = moved[v.index()].distance(moved[u.index()]) / before;
+            if ratio.ln().abs() > worst.ln().abs() {
+                worst = ratio;
+            }
+        }
+    }
+    worst
+}
+
+/// Mean curvature of each vertex by the cotangent formula (Meyer et al. 2003, eq. 8), in 1/unit; 0 where the surface
+/// ends or has no area.
+fn mean_curvatures(model: &Model, positions: &[DVec3]) -> Vec<f64> {
+    let triangles = &model.surface.triangles;
+    let faces: Vec<([f64; 3], [f64; 3], DVec3)> = triangles
+        .par_iter()
+        .map(|triangle| {
+            let corners = triangle.map(|corner| positions[corner.index()]);
+            let lengths = edge_lengths(corners);
+            let [a, b, c] = corners;
+            (cotangents(lengths), mixed_corner_areas(lengths), (b - a).cross(c - a))
+        })
+        .collect();
+    (0..positions.len() as u32)
+        .into_par_iter()
+        .map(|v| {
+            let v = SurfaceVertex(v);
+            if model.topology.is_boundary_vertex(v) {
+                return 0.0;
+            }
+            let (mut pull, mut area, mut normal) = (DVec3::ZERO, 0.0, DVec3::ZERO);
+            for &face in model.topology.faces(v) {
+                let corners = triangles[face as usize];
+                let (cotangents, areas, doubled) = &faces[face as usize];
+                let Some(at) = corners.iter().position(|&corner| corner == v) else {
+                    continue;
+                };
+                let (next, last) = ((at + 1) % 3, (at + 2) % 3);
+                let here = positions[v.index()];
+                // The edge to a corner lies opposite the third one.
+                pull += cotangents[last] * (here - positions[corners[next].index()]);
+                pull += cotangents[next] * (here - positions[corners[last].index()]);
+                area += areas[at];
+                normal += *doubled;
+            }
+            let curvature = 0.25 * pull.dot(normal.normalize_or_zero()) / area;
+            if curvature.is_finite() { curvature } else { 0.0 }
+        })
+        .collect()
+}
+
+/// What 95% of the rest shape's vertices stay below, rounded to a number that reads well.
+fn usual_curvature(model: &Model) -> f64 {
+    let mut sizes: Vec<f64> = mean_curvatures(model, &model.surface.positions)
+        .into_iter()
+        .map(f64::abs)
+        .collect();
+    if sizes.is_empty() {
+        return 1.0;
+    }
+    let at = (sizes.len() * 95 / 100).min(sizes.len() - 1);
+    let (_, &mut usual, _) = sizes.select_nth_unstable_by(at, f64::total_cmp);
+    if !(usual.is_finite() && usual > 0.0) {
+        return 1.0;
+    }
+    let power = 10.0_f64.powf(usual.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0];
+    let step = steps.into_iter().find(|step| step * power >= usual).unwrap_or(10.0);
+    step * power
+}
+
+/// A number in few characters.
+fn short(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".to_owned(),
+        size if (0.01..10_000.0).contains(&size) => format!("{}", (value * 1000.0).round() / 1000.0),
+        _ => format!("{value:.0e}"),
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+    use pliant_mesh::{Cancel, Drawn, DrawnVertex, Progress, WeldOptions};
+
+    /// A sphere of radius `radius`: a cube's grid pushed out.
+    fn sphere(radius: f64, n: u32) -> Model {
+        let mut drawn = Drawn::default();
+        for axis in 0..3 {
+            for side in [-1.0, 1.0] {
+                let first = drawn.positions.len() as u32;
+                for i in 0..=n {
+                    for k in 0..=n {
+                        let at =
+                            |t: u32| (std::f64::consts::FRAC_PI_4 * (2.0 * f64::from(t) / f64::from(n) - 1.0)).tan();
+                        let mut p = DVec3::ZERO;
+                        p[axis] = side;
+                        p[(axis + 1) % 3] = at(i) * side;
+                        p[(axis + 2) % 3] = at(k);
+                        drawn.positions.push(p.normalize() * radius);
+                    }
+                }
+                for i in 0..n {
+                    for k in 0..n {
+                        let v = |i, k| DrawnVertex(first + i * (n + 1) + k);
+                        drawn.triangles.push([v(i, k), v(i + 1, k), v(i + 1, k + 1)]);
+                        drawn.triangles.push([v(i, k), v(i + 1, k + 1), v(i, k + 1)]);
+                    }
+                }
+            }
+        }
+        drawn.file_vertex_count = drawn.positions.len();
+        drawn.file_vertex = (0..drawn.positions.len() as u32).map(pliant_mesh::FileVertex).collect();
+        Model::weld(drawn, &WeldOptions::default(), &Progress::default(), &Cancel::default()).unwrap()
+    }
+
+    #[test]
+    fn a_sphere_curves_by_one_over_its_radius_everywhere() {
+        let model = sphere(4.0, 24);
+        for curvature in mean_curvatures(&model, &model.surface.positions) {
+            assert!((curvature - 0.25).abs() < 0.01, "{curvature}");
+        }
+        assert_eq!(usual_curvature(&model), 0.5);
+    }
+
+    #[test]
+    fn a_surface_grown_to_twice_its_size_is_at_the_ends_of_both_scales() {
+        let model = sphere(1.0, 6);
+        let grown = model.surface.positions.clone();
+        let area = Scale::of(Field::Area, &model);
+        let stretch = Scale::of(Field::Stretch, &model);
+        let none = vec![DVec3::ZERO; grown.len()];
+        let of = |field, scale: &Scale, displacements: &[DVec3]| colours(field, scale, &model, displacements, None);
+        assert!(
+            of(Field::Stretch, &stretch, &grown)
+                .iter()
+                .all(|&c| c == colour_at(1.0))
+        );
+        assert!(of(Field::Area, &area, &grown).iter().all(|&c| c == colour_at(1.0)));
+        assert!(of(Field::Area, &area, &none).iter().all(|&c| c == colour_at(0.5)));
+        let root: Vec<DVec3> = grown.iter().map(|&p| p * (2.0_f64.sqrt() - 1.0)).collect();
+        for colour in of(Field::Stretch, &stretch, &root) {
+            assert!(
+                colour
+                    .iter()
+                    .zip(stretch.colour(2.0_f64.sqrt()))
+                    .all(|(&a, b)| a.abs_diff(b) <= 1)
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_black_and_what_is_beyond_an_end_has_its_colour() {
+        let scale = Scale::of(Field::Stretch, &sphere(1.0, 2));
+        assert_eq!(scale.colour(f64::NAN), [0, 0, 0, 255]);
+        assert_eq!((scale.colour(0.0), scale.colour(1e9)), (colour_at(0.0), colour_at(1.0)));
+        assert_eq!(scale.ticks.iter().map(|tick| tick.at).fold(-1.0, f64::max), 1.0);
+    }
+}

@@ -1,0 +1,62 @@
+//! Pictures as PNG files.
+
+use std::io::Cursor;
+
+use pliant_render::Image;
+
+use crate::AppError;
+
+/// A picture as PNG bytes. The renderer's colours are premultiplied by alpha, in linear light; PNG's are straight.
+pub fn png(mut picture: Image) -> Result<Vec<u8>, AppError> {
+    picture.rgba.chunks_exact_mut(4).for_each(straighten);
+    let refuse = |reason: String| AppError::System(format!("the picture can't be written as PNG: {reason}"));
+    let Image { width, height, rgba } = picture;
+    let image = image::RgbaImage::from_raw(width, height, rgba).ok_or_else(|| refuse("it is incomplete".to_owned()))?;
+    let mut png = Cursor::new(Vec::new());
+    image
+        .write_to(&mut png, image::ImageFormat::Png)
+        .map_err(|error| refuse(error.to_string()))?;
+    Ok(png.into_inner())
+}
+
+/// Divides a pixel's colour by its alpha, in linear light.
+fn straighten(pixel: &mut [u8]) {
+    let alpha = f32::from(pixel[3]) / 255.0;
+    if alpha == 0.0 || pixel[3] == 255 {
+        return;
+    }
+    for channel in &mut pixel[..3] {
+        let encoded = f32::from(*channel) / 255.0;
+        let linear = if encoded <= 0.040_45 {
+            encoded / 12.92
+        } else {
+            ((encoded + 0.055) / 1.055).powf(2.4)
+        };
+        let straight = (linear / alpha).min(1.0);
+        let encoded = if straight <= 0.003_130_8 {
+            12.92 * straight
+        } else {
+            1.055 * straight.powf(1.0 / 2.4) - 0.055
+        };
+        *channel = (255.0 * encoded).round() as u8;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::straighten;
+
+    #[test]
+    fn a_half_covered_pixel_has_the_whole_colour_and_half_the_alpha() {
+        // Half the light of 200 is 147 in sRGB.
+        let mut pixel = [147, 147, 0, 128];
+        straighten(&mut pixel);
+        assert!(
+            pixel[0].abs_diff(200) <= 2 && pixel[2] == 0 && pixel[3] == 128,
+            "{pixel:?}"
+        );
+        let mut whole = [12, 34, 56, 255];
+        straighten(&mut whole);
+        assert_eq!(whole, [12, 34, 56, 255]);
+    }
+}

@@ -1,0 +1,81 @@
+//! How the view shows things: chosen by a person, not part of the document.
+
+/// How the surface is shown.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
+pub struct Look {
+    /// What it seems to be made of, or what its colours say.
+    pub shading: Shading,
+    /// Which clay.
+    pub clay: Clay,
+    /// Whether each triangle is flat, instead of normals being interpolated.
+    pub flat: bool,
+    /// Whether the triangles' edges are shown.
+    pub wireframe: bool,
+    /// Whether edges that a closed surface lacks are marked.
+    pub borders: bool,
+    /// Whether the regions' colours are shown.
+    pub regions: bool,
+    /// Whether the ground's grid is shown.
+    pub grid: bool,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            shading: Shading::Clay,
+            clay: Clay::Clay,
+            flat: false,
+            wireframe: false,
+            borders: false,
+            regions: true,
+            grid: true,
+        }
+    }
+}
+
+/// What the surface seems to be made of, or what its colours say.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum Shading {
+    /// Plain clay.
+    #[default]
+    Clay,
+    /// The file's materials.
+    Material,
+    /// How stiff it was painted.
+    Stiffness,
+    /// How much longer or shorter edges are than at rest.
+    Stretch,
+    /// How much larger or smaller areas are than at rest.
+    Area,
+    /// Mean curvature.
+    Curvature,
+    /// Stripes that it mirrors.
+    Zebra,
+    /// Which way it faces.
+    Normals,
+}
+
+/// A clay.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+#[expect(missing_docs, reason = "each variant is what its name says")]
+pub enum Clay {
+    #[default]
+    Clay,
+    Plaster,
+    Wax,
+    Bronze,
+    Porcelain,
+    Graphite,
+}
+
+impl Clay {
+    /// Every clay with its name in a menu.
+    pub const NAMES: [(&'static str, Self); 6] = [
+        ("Clay", Self::Clay),
+        ("Plaster", Self::Plaster),
+        ("Wax", Self::Wax),
+        ("Bronze", Self::Bronze),
+        ("Porcelain", Self::Porcelain),
+        ("Graphite", Self::Graphite),
+    ];
+}

@@ -1,0 +1,191 @@
+//! Laws of the view: what Ctrl holds, what is read beside a handle, what the brush reaches, and where keys look from.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
+
+mod rig;
+
+use glam::{DVec2, DVec3};
+use pliant_editor::{
+    BrushMetric, Button, Command, Event, GizmoPart, Key, Modifiers, NamedView, Orbit, Paint, Pointer, Projection,
+    ToolMode,
+};
+use pliant_mesh::shapes;
+use rig::{CENTRE_PX, Rig};
+
+/// A sphere seen from the front, with a handle on it.
+fn with_handle(projection: Projection) -> Rig {
+    let mut rig = Rig::open(shapes::icosphere(4));
+    rig.command(Command::View(NamedView::Front));
+    if projection == Projection::Orthographic {
+        rig.command(Command::ToggleProjection);
+    }
+    rig.paint_handle();
+    rig.drain();
+    rig
+}
+
+/// Drags a part of the gizmo with Ctrl held, and stops before letting go.
+fn drag_with_ctrl(rig: &mut Rig, part: GizmoPart, by_px: DVec2) {
+    let from = rig.grip(part).unwrap();
+    rig.press(from);
+    let pointer = |position_px| Pointer {
+        position_px,
+        modifiers: Modifiers::CTRL,
+    };
+    for share in [0.3, 0.7, 1.0] {
+        rig.editor.handle(Event::PointerMoved(pointer(from + by_px * share)));
+    }
+}
+
+#[test]
+fn ctrl_holds_a_move_to_a_power_of_ten_and_a_turn_to_five_degrees() {
+    for projection in [Projection::Perspective, Projection::Orthographic] {
+        let mut rig = with_handle(projection);
+        let centre = rig.editor.view().handles[0].centre();
+        let per_px = rig.editor.view().camera.world_per_px(centre, rig::VIEWPORT_PX);
+        let step = 10.0_f64.powf((40.0 * per_px).log10().floor());
+        drag_with_ctrl(&mut rig, GizmoPart::Arrow(0), DVec2::new(73.0, 5.0));
+        let moved = rig.editor.view().handles[0].centre() - centre;
+        let steps = moved.x / step;
+        assert!((steps - steps.round()).abs() < 1e-9 && steps > 0.5, "{steps}");
+        assert!((moved.x - 73.0 * per_px).abs() <= 0.5 * step + 1e-9);
+        let readout = rig.editor.view().readout.unwrap();
+        assert!(
+            (readout.text.parse::<f64>().unwrap() - moved.length()).abs() < 1e-4,
+            "{readout:?}"
+        );
+        assert!(readout.at.distance(rig.editor.view().handles[0].centre()) < 1e-12);
+        rig.key(Key::Escape);
+        assert_eq!(rig.editor.view().readout, None);
+
+        rig.command(Command::Turn);
+        let start = CENTRE_PX + DVec2::new(120.0, 0.0);
+        rig.move_to(start);
+        for angle in [5.0_f64, 12.0, 21.0] {
+            let position_px = CENTRE_PX + 120.0 * DVec2::from_angle(angle.to_radians());
+            let modifiers = Modifiers::CTRL;
+            rig.editor
+                .handle(Event::PointerMoved(Pointer { position_px, modifiers }));
+        }
+        let text = rig.editor.view().readout.unwrap().text;
+        let degrees: f64 = text.strip_suffix('°').unwrap().parse().unwrap();
+        assert!(
+            (degrees / 5.0 - (degrees / 5.0).round()).abs() < 1e-9 && degrees.abs() > 4.0,
+            "{text}"
+        );
+        rig.key(Key::Escape);
+    }
+}
+
+#[test]
+fn a_brush_that_reaches_through_takes_the_far_side_and_one_that_does_not_leaves_it() {
+    for through in [false, true] {
+        let mut rig = Rig::open(shapes::icosphere(4));
+        rig.command(Command::View(NamedView::Front));
+        if through {
+            rig.command(Command::SetBrushMetric(BrushMetric::Through));
+        }
+        rig.paint(ToolMode::PaintFixed, &[CENTRE_PX, CENTRE_PX + DVec2::new(40.0, 0.0)]);
+        let paint = rig.editor.document().paint();
+        let side = |sign: f64| {
+            let vertices = rig.model.surface.positions.iter().zip(paint);
+            vertices
+                .filter(|(p, paint)| p.z * sign > 0.5 && **paint == Paint::Fixed)
+                .count()
+        };
+        assert!(side(1.0) > 4, "{}", side(1.0));
+        assert_eq!(side(-1.0) > 4, through, "{} on the far side", side(-1.0));
+        // Through: exactly what appears under the ring's way.
+        if through {
+            let view = rig.editor.view();
+            for (vertex, paint) in paint.iter().enumerate() {
+                let p = rig.model.surface.positions[vertex];
+                let seen = view.camera.project(p, view.viewport_px).unwrap() - CENTRE_PX;
+                let off = (seen - DVec2::new(seen.x.clamp(0.0, 40.0), 0.0)).length();
+                let is_under = off < view.brush_radius_px - 1e-6;
+                let is_outside = off > view.brush_radius_px + 1e-6;
+                assert!(
+                    if *paint == Paint::Fixed { !is_outside } else { !is_under },
+                    "{vertex} {off}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_stroke_however_fast_leaves_no_gap() {
+    let mut rig = Rig::open(shapes::icosphere(5));
+    rig.command(Command::View(NamedView::Front));
+    let [from, to] = [-200.0, 200.0].map(|x| CENTRE_PX + DVec2::new(x, 10.0));
+    // Two events alone.
+    rig.paint(ToolMode::PaintFixed, &[from, to]);
+    let view = rig.editor.view();
+    let under = rig
+        .model
+        .surface
+        .positions
+        .iter()
+        .zip(rig.editor.document().paint())
+        .filter(|(p, _)| {
+            let seen = view.camera.project(**p, view.viewport_px).unwrap();
+            // Well within the ring and where the surface does not fall off steeply.
+            p.z > 0.6 && (seen.y - from.y).abs() < 0.9 * view.brush_radius_px && seen.x > from.x && seen.x < to.x
+        });
+    let (mut all, mut painted) = (0, 0);
+    for (_, paint) in under {
+        all += 1;
+        painted += usize::from(*paint == Paint::Fixed);
+    }
+    assert!(all > 100 && painted == all, "{painted} of {all}");
+}
+
+#[test]
+fn the_numeric_pad_looks_from_where_blender_does_and_types_numbers_during_a_drag() {
+    let mut rig = with_handle(Projection::Perspective);
+    let forward = |rig: &Rig| rig.editor.view().camera.forward();
+    for (digit, expected) in [(1, DVec3::NEG_Z), (3, DVec3::NEG_X), (7, DVec3::NEG_Y)] {
+        rig.key(Key::Numpad(digit));
+        assert!(forward(&rig).distance(expected) < 1e-9, "{digit}");
+        rig.key(Key::Numpad(9));
+        assert!(forward(&rig).distance(-expected) < 1e-9, "{digit} and 9");
+    }
+    rig.editor.handle(Event::Key(Key::Numpad(1), Modifiers::CTRL));
+    assert!(forward(&rig).distance(DVec3::Z) < 1e-9);
+    rig.key(Key::Numpad(5));
+    assert_eq!(rig.editor.view().camera.projection, Projection::Orthographic);
+    rig.key(Key::Numpad(6));
+    assert!((forward(&rig).angle_between(DVec3::Z).to_degrees() - 15.0).abs() < 1e-6);
+    let before = rig.editor.view().handles[0].centre();
+    rig.type_keys("gx");
+    rig.key(Key::Numpad(2));
+    rig.key(Key::Enter);
+    assert!((rig.editor.view().handles[0].centre() - before).distance(DVec3::X * 2.0) < 1e-9);
+}
+
+#[test]
+fn a_trackball_rolls_and_the_turntable_levels_again() {
+    let mut rig = Rig::open(shapes::icosphere(2));
+    rig.command(Command::SetOrbit(Orbit::Trackball));
+    let drag = |rig: &mut Rig, by: DVec2| {
+        let pointer = |position_px| Pointer {
+            position_px,
+            modifiers: Modifiers::NONE,
+        };
+        rig.editor
+            .handle(Event::PointerPressed(pointer(CENTRE_PX), Button::Middle));
+        rig.editor.handle(Event::PointerMoved(pointer(CENTRE_PX + by)));
+        rig.editor
+            .handle(Event::PointerReleased(pointer(CENTRE_PX + by), Button::Middle));
+    };
+    drag(&mut rig, DVec2::new(80.0, 60.0));
+    drag(&mut rig, DVec2::new(-20.0, 70.0));
+    assert!(rig.editor.view().camera.roll_rad.abs() > 0.01);
+    let forward = rig.editor.view().camera.forward();
+    rig.command(Command::SetOrbit(Orbit::Turntable));
+    let camera = rig.editor.view().camera;
+    assert_eq!(camera.roll_rad, 0.0);
+    assert!(
+        camera.forward().distance(forward) < 1e-12,
+        "levelling looks where one looked"
+    );
+}

@@ -1,0 +1,169 @@
+//! The studio that materials mirror: drawn into two cubes when a material is first shown.
+
+use crate::buffers::filled;
+use crate::guard::guarded;
+use crate::shaders::Shader;
+use crate::uniforms::EnvironmentUniform;
+use crate::{RenderError, Renderer};
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// The mirrored cube: 64 pixels a side blur to 4 at roughness 1, as `material.wgsl` looks it up.
+const MIRRORED_PX: u32 = 64;
+const MIRRORED_LEVELS: u32 = 5;
+const MIRRORED_SAMPLES: u32 = 96;
+/// The matt cube changes slowly.
+const MATT_PX: u32 = 8;
+const MATT_SAMPLES: u32 = 512;
+
+/// Right, down and forward of each face, in the order of a cube's layers.
+const FACES: [[[f32; 3]; 3]; 6] = [
+    [[0.0, 0.0, -1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]],
+    [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [-1.0, 0.0, 0.0]],
+    [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]],
+    [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, -1.0, 0.0]],
+    [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]],
+    [[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]],
+];
+
+/// The bind group of the studio's cubes.
+pub(crate) fn environment(renderer: &Renderer) -> Result<wgpu::BindGroup, RenderError> {
+    let device = renderer.device();
+    guarded(device, "while lighting the studio", || {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(Shader::Environment.file_name()),
+            source: wgpu::ShaderSource::Wgsl(Shader::Environment.composed().into()),
+        });
+        let mirrored = cube(device, "mirrored studio", MIRRORED_PX, MIRRORED_LEVELS);
+        let matt = cube(device, "matt studio", MATT_PX, 1);
+        fill(renderer, &module, "fs_mirrored", &mirrored, MIRRORED_SAMPLES)?;
+        fill(renderer, &module, "fs_matt", &matt, MATT_SAMPLES)?;
+        let view = |texture: &wgpu::Texture| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::Cube),
+                ..Default::default()
+            })
+        };
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("studio"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            ..Default::default()
+        });
+        Ok(device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("studio"),
+            layout: &renderer.pipelines.environment_layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::TextureView(&view(&mirrored)),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::TextureView(&view(&matt)),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 2,
+                    resource: wgpu::BindingResource::Sampler(&sampler),
+                },
+            ],
+        }))
+    })
+}
+
+fn cube(device: &wgpu::Device, label: &str, side_px: u32, levels: u32) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d {
+            width: side_px,
+            height: side_px,
+            depth_or_array_layers: 6,
+        },
+        mip_level_count: levels,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: FORMAT,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    })
+}
+
+/// Draws every face of every level, the roughness rising evenly from 0 to 1 with the level.
+fn fill(
+    renderer: &Renderer,
+    module: &wgpu::ShaderModule,
+    entry: &str,
+    texture: &wgpu::Texture,
+    samples: u32,
+) -> Result<(), RenderError> {
+    let (device, queue) = (renderer.device(), renderer.queue());
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(entry),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("vs_environment"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            targets: &[Some(FORMAT.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
+    let layout = pipeline.get_bind_group_layout(0);
+    let levels = texture.mip_level_count();
+    let mut encoder = device.create_command_encoder(&Default::default());
+    for level in 0..levels {
+        for (face, axes) in FACES.iter().enumerate() {
+            let [right, down, forward] = axes.map(|[x, y, z]| [x, y, z, 0.0]);
+            let uniform = EnvironmentUniform {
+                right,
+                down,
+                forward,
+                roughness: level as f32 / (levels - 1).max(1) as f32,
+                samples,
+                padding: [0.0; 2],
+            };
+            let buffer = filled(device, queue, "studio uniform", wgpu::BufferUsages::UNIFORM, &[uniform])?;
+            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("studio uniform"),
+                layout: &layout,
+                entries: &[wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: buffer.as_entire_binding(),
+                }],
+            });
+            let view = texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(wgpu::TextureViewDimension::D2),
+                base_mip_level: level,
+                mip_level_count: Some(1),
+                base_array_layer: face as u32,
+                array_layer_count: Some(1),
+                ..Default::default()
+            });
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some(entry),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations::default(),
+                })],
+                ..Default::default()
+            });
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            pass.draw(0..3, 0..1);
+        }
+    }
+    queue.submit([encoder.finish()]);
+    Ok(())
+}

@@ -1,0 +1,289 @@
+//! A mesh's vertex and index buffers: one page where the device takes the mesh whole, else as many as it needs, each
+//! with the vertices of its own triangles.
+
+use std::ops::Range;
+use std::sync::OnceLock;
+
+use bytemuck::NoUninit;
+
+use crate::RenderError;
+use crate::buffers::{filled, refill};
+use crate::edges::unique_edges;
+use crate::partition::Partition;
+use crate::uniforms::LookVertex;
+
+/// Buffers of some of a mesh's chunks.
+#[derive(Debug)]
+pub(crate) struct Page {
+    /// The mesh's number of each of the page's vertices; `None`: they are all there, in order.
+    vertices: Option<Vec<u32>>,
+    /// Triangles of the page's own vertices, in drawing order. Kept for the edges, which are made when first drawn.
+    triangles: Vec<[u32; 3]>,
+    /// Which places of the drawing order these are.
+    places: Range<u32>,
+    pub(crate) positions: wgpu::Buffer,
+    pub(crate) normals: wgpu::Buffer,
+    pub(crate) regions: wgpu::Buffer,
+    pub(crate) look: Option<wgpu::Buffer>,
+    pub(crate) indices: wgpu::Buffer,
+    edges: OnceLock<Option<Edges>>,
+}
+
+/// A page's edges, for its wireframe.
+#[derive(Debug)]
+pub(crate) struct Edges {
+    pub(crate) buffer: wgpu::Buffer,
+    pub(crate) index_count: u32,
+}
+
+/// What fills a page's vertex buffers, one entry a vertex of the mesh.
+pub(crate) struct Attributes<'a> {
+    pub(crate) positions: &'a [[f32; 3]],
+    pub(crate) normals: &'a [[f32; 3]],
+    pub(crate) regions: &'a [[u8; 4]],
+    pub(crate) look: Option<&'a [LookVertex]>,
+}
+
+/// How many vertices and triangles a page may have.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PageLimits {
+    pub(crate) vertices: usize,
+    pub(crate) triangles: usize,
+}
+
+impl PageLimits {
+    /// What the device's buffers hold.
+    pub(crate) fn of(device: &wgpu::Device) -> Self {
+        let bytes = usize::try_from(device.limits().max_buffer_size).unwrap_or(usize::MAX);
+        Self {
+            // The widest of a vertex's buffers is its look.
+            vertices: bytes / size_of::<LookVertex>(),
+            triangles: bytes / size_of::<[u32; 3]>(),
+        }
+    }
+}
+
+/// The chunks that go onto each page: as many as fit, in order. A single chunk always fits.
+pub(crate) fn page_chunks(partition: &Partition, vertex_count: usize, limits: PageLimits) -> Vec<Range<usize>> {
+    let chunks = partition.chunks();
+    let triangle_count = chunks.last().map_or(0, |chunk| chunk.triangles.end as usize);
+    let mut pages: Vec<Range<usize>> = Vec::new();
+    if vertex_count <= limits.vertices && triangle_count <= limits.triangles {
+        pages.push(0..chunks.len());
+        return pages;
+    }
+    let mut on_page = vec![u32::MAX; vertex_count];
+    let (mut vertices, mut triangles) = (0, 0);
+    for (number, chunk) in chunks.iter().enumerate() {
+        let page = (pages.len() as u32).wrapping_sub(1);
+        let is_new = |vertex: &&u32| on_page[**vertex as usize] != page;
+        let more = partition.chunk_vertices(number).iter().filter(is_new).count();
+        if pages.is_empty() || vertices + more > limits.vertices || triangles + chunk.triangles.len() > limits.triangles
+        {
+            pages.push(number..number);
+            (vertices, triangles) = (0, 0);
+        }
+        let page = pages.len() as u32 - 1;
+        for &vertex in partition.chunk_vertices(number) {
+            if on_page[vertex as usize] != page {
+                on_page[vertex as usize] = page;
+                vertices += 1;
+            }
+        }
+        triangles += chunk.triangles.len();
+        if let Some(last) = pages.last_mut() {
+            last.end = number + 1;
+        }
+    }
+    pages
+}
+
+impl Page {
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        partition: &Partition,
+        chunks: Range<usize>,
+        triangles: &[[u32; 3]],
+        attributes: &Attributes<'_>,
+    ) -> Result<Self, RenderError> {
+        let all = partition.chunks();
+        let is_whole = chunks.len() == all.len();
+        let place = |chunk: usize| all.get(chunk).map(|chunk| chunk.triangles.clone()).unwrap_or_default();
+        let places = if chunks.is_empty() {
+            0..0
+        } else {
+            place(chunks.start).start..place(chunks.end - 1).end
+        };
+        let mut own = places
+            .clone()
+            .map(|place| triangles[partition.triangle_at(place) as usize])
+            .collect::<Vec<_>>();
+        let vertices = (!is_whole).then(|| {
+            let lists = chunks.clone().flat_map(|chunk| partition.chunk_vertices(chunk));
+            let mut vertices: Vec<u32> = lists.copied().collect();
+            vertices.sort_unstable();
+            vertices.dedup();
+            for corner in own.iter_mut().flatten() {
+                *corner = vertices.partition_point(|&vertex| vertex < *corner) as u32;
+            }
+            vertices
+        });
+        let vertex = wgpu::BufferUsages::VERTEX;
+        // Borders look positions up by number, and the compute path writes positions and normals.
+        let moved = vertex | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+        let mut page = Self {
+            positions: filled(
+                device,
+                queue,
+                "positions",
+                moved,
+                &gathered(&vertices, attributes.positions),
+            )?,
+            normals: filled(
+                device,
+                queue,
+                "normals",
+                moved,
+                &gathered(&vertices, attributes.normals),
+            )?,
+            regions: filled(
+                device,
+                queue,
+                "region colours",
+                vertex,
+                &gathered(&vertices, attributes.regions),
+            )?,
+            look: None,
+            indices: filled(device, queue, "triangles", wgpu::BufferUsages::INDEX, &own)?,
+            vertices,
+            triangles: own,
+            places,
+            edges: OnceLock::new(),
+        };
+        if let Some(look) = attributes.look {
+            let look = gathered(&page.vertices, look);
+            page.look = Some(filled(device, queue, "texture coordinates and colours", vertex, &look)?);
+        }
+        Ok(page)
+    }
+
+    /// Replaces one of the buffers' contents, given one entry a vertex of the mesh.
+    pub(crate) fn refill<T: NoUninit>(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        buffer: &wgpu::Buffer,
+        contents: &[T],
+    ) -> Result<(), RenderError> {
+        refill(device, queue, buffer, &gathered(&self.vertices, contents))
+    }
+
+    /// Places of the drawing order that are on this page.
+    pub(crate) fn places(&self) -> &Range<u32> {
+        &self.places
+    }
+
+    /// The page's number of a vertex of the mesh, if it is there.
+    pub(crate) fn vertex(&self, of_mesh: u32) -> Option<u32> {
+        match &self.vertices {
+            None => Some(of_mesh),
+            Some(vertices) => vertices.binary_search(&of_mesh).ok().map(|at| at as u32),
+        }
+    }
+
+    /// Whether the page has all of the mesh's vertices, in order.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.vertices.is_none()
+    }
+
+    pub(crate) fn bytes(&self) -> u64 {
+        let edges = self.edges().map_or(0, |edges| edges.buffer.size());
+        let look = self.look.as_ref().map_or(0, wgpu::Buffer::size);
+        let others = [&self.positions, &self.normals, &self.regions, &self.indices];
+        others.iter().map(|buffer| buffer.size()).sum::<u64>() + edges + look
+    }
+
+    pub(crate) fn edges(&self) -> Option<&Edges> {
+        self.edges.get().and_then(Option::as_ref)
+    }
+
+    /// Makes the edges unless they are there.
+    pub(crate) fn prepare_edges(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), RenderError> {
+        if self.edges.get().is_some() {
+            return Ok(());
+        }
+        let vertex_count = self
+            .triangles
+            .iter()
+            .flatten()
+            .max()
+            .map_or(0, |&most| most as usize + 1);
+        let edges = unique_edges(&self.triangles, vertex_count);
+        let made = if edges.is_empty() {
+            None
+        } else {
+            let buffer = filled(device, queue, "edges", wgpu::BufferUsages::INDEX, &edges)?;
+            Some(Edges {
+                buffer,
+                index_count: 2 * edges.len() as u32,
+            })
+        };
+        let _ = self.edges.set(made);
+        Ok(())
+    }
+}
+
+/// The entries of a page's vertices.
+fn gathered<'a, T: Copy>(vertices: &Option<Vec<u32>>, contents: &'a [T]) -> std::borrow::Cow<'a, [T]> {
+    match vertices {
+        None => contents.into(),
+        Some(vertices) => vertices.iter().map(|&vertex| contents[vertex as usize]).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_chunk_is_on_one_page_and_no_page_is_beyond_its_limits() {
+        let count = 300_000_u32;
+        let positions: Vec<[f32; 3]> = (0..count + 2).map(|v| [(v / 2) as f32, (v % 2) as f32, 0.0]).collect();
+        let triangles: Vec<[u32; 3]> = (0..count).map(|t| [t, t + 1, t + 2]).collect();
+        let partition = Partition::new(&positions, &triangles, &[], &[]);
+        let whole = page_chunks(
+            &partition,
+            positions.len(),
+            PageLimits {
+                vertices: 400_000,
+                triangles: 300_000,
+            },
+        );
+        assert!(whole.len() == 1 && whole[0] == (0..partition.chunk_count()));
+        for limits in [
+            PageLimits {
+                vertices: 50_000,
+                triangles: 1 << 30,
+            },
+            PageLimits {
+                vertices: 1 << 30,
+                triangles: 70_000,
+            },
+        ] {
+            let pages = page_chunks(&partition, positions.len(), limits);
+            assert!(pages.len() > 3);
+            let mut next = 0;
+            for page in pages {
+                assert_eq!(page.start, next);
+                next = page.end;
+                let triangles: usize = page.clone().map(|c| partition.chunks()[c].triangles.len()).sum();
+                let mut vertices: Vec<u32> = page.flat_map(|c| partition.chunk_vertices(c).to_vec()).collect();
+                vertices.sort_unstable();
+                vertices.dedup();
+                assert!(triangles <= limits.triangles && vertices.len() <= limits.vertices);
+            }
+            assert_eq!(next, partition.chunk_count());
+        }
+    }
+}

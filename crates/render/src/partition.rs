@@ -1,0 +1,318 @@
+//! A mesh cut into chunks of neighbouring triangles, so that only those that can be seen are drawn, and so that a mesh
+//! larger than a device's buffers can be spread over several.
+//!
+//! Triangles are sorted along a Morton curve by their middle at rest and cut every [`CHUNK`] of them; a chunk has one
+//! material. Small meshes keep their order: there is nothing to be won. The lists of each chunk's vertices make its
+//! bounds after a deformation a walk over about as many positions as there are vertices.
+
+use std::ops::Range;
+
+use glam::{Mat4, Vec3, Vec4};
+
+use crate::{AlphaMode, Material, MaterialGroup};
+
+/// Triangles in a chunk: at five millions, 305 drawings at most and a twentieth of the triangles beyond what is seen.
+const CHUNK: usize = 16_384;
+/// Up to this many triangles all are always drawn, in the file's order.
+const UNSORTED: usize = 4 * CHUNK;
+
+/// How a mesh's triangles are cut into chunks; belongs to the triangles and materials it was made of.
+#[derive(Debug)]
+pub struct Partition {
+    /// The mesh's triangle at each place of the drawing order; `None`: they are drawn in their own.
+    order: Option<Vec<u32>>,
+    chunks: Vec<Chunk>,
+    /// The vertices of chunk `c`, ascending and each once: `vertices[offsets[c]..offsets[c + 1]]`.
+    vertices: Vec<u32>,
+    offsets: Vec<usize>,
+}
+
+/// Triangles that are drawn together.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Chunk {
+    /// Places in the drawing order.
+    pub(crate) triangles: Range<u32>,
+    pub(crate) material: usize,
+    pub(crate) alpha: AlphaMode,
+}
+
+/// The box around a chunk's vertices, relative to the caller's centre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChunkBounds {
+    pub(crate) least: Vec3,
+    pub(crate) most: Vec3,
+}
+
+impl Partition {
+    /// Cuts a mesh whose triangles `groups` give materials; the other triangles have the default one. Vertex numbers
+    /// out of range count as vertex 0: they are refused when the mesh is uploaded.
+    pub fn new(
+        positions: &[[f32; 3]],
+        triangles: &[[u32; 3]],
+        groups: &[MaterialGroup],
+        materials: &[Material],
+    ) -> Self {
+        let runs = material_runs(triangles.len() as u32, groups, materials);
+        let is_sorted = triangles.len() > UNSORTED;
+        let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
+        let mut chunks = Vec::new();
+        if is_sorted {
+            let keys = morton_keys(positions, triangles);
+            for run in &runs {
+                // What is seen through keeps the order in which it was given.
+                if run.alpha != AlphaMode::Blend {
+                    let (start, end) = (run.triangles.start as usize, run.triangles.end as usize);
+                    order[start..end].sort_by_key(|&triangle| keys[triangle as usize]);
+                }
+                let starts = (run.triangles.start..run.triangles.end).step_by(CHUNK);
+                chunks.extend(starts.map(|start| Chunk {
+                    triangles: start..(start + CHUNK as u32).min(run.triangles.end),
+                    ..run.clone()
+                }));
+            }
+        } else {
+            chunks = runs;
+        }
+        let mut partition = Self {
+            order: is_sorted.then_some(order),
+            chunks,
+            vertices: Vec::new(),
+            offsets: vec![0],
+        };
+        partition.list_vertices(triangles, positions.len());
+        partition
+    }
+
+    /// How many chunks there are.
+    pub fn chunk_count(&self) -> usize {
+        self.chunks.len()
+    }
+
+    /// The box around a chunk (below [`Partition::chunk_count`]) whose vertices stand at `positions`.
+    pub fn bounds(&self, chunk: usize, positions: &[[f32; 3]]) -> ChunkBounds {
+        let mut bounds = ChunkBounds {
+            least: Vec3::INFINITY,
+            most: Vec3::NEG_INFINITY,
+        };
+        for &vertex in &self.vertices[self.offsets[chunk]..self.offsets[chunk + 1]] {
+            let Some(&position) = positions.get(vertex as usize) else {
+                continue;
+            };
+            // `min` and `max` pass over NaN: such a vertex is nowhere.
+            bounds.least = bounds.least.min(position.into());
+            bounds.most = bounds.most.max(position.into());
+        }
+        bounds
+    }
+
+    pub(crate) fn all_bounds(&self, positions: &[[f32; 3]]) -> Vec<ChunkBounds> {
+        (0..self.chunks.len())
+            .map(|chunk| self.bounds(chunk, positions))
+            .collect()
+    }
+
+    pub(crate) fn chunks(&self) -> &[Chunk] {
+        &self.chunks
+    }
+
+    pub(crate) fn chunk_vertices(&self, chunk: usize) -> &[u32] {
+        &self.vertices[self.offsets[chunk]..self.offsets[chunk + 1]]
+    }
+
+    /// The mesh's triangle at a place of the drawing order.
+    pub(crate) fn triangle_at(&self, place: u32) -> u32 {
+        match &self.order {
+            Some(order) => order.get(place as usize).copied().unwrap_or(place),
+            None => place,
+        }
+    }
+
+    /// Whether this was made of so many triangles.
+    pub(crate) fn fits(&self, triangle_count: usize) -> bool {
+        self.chunks.last().map_or(0, |chunk| chunk.triangles.end) as usize == triangle_count
+    }
+
+    fn list_vertices(&mut self, triangles: &[[u32; 3]], vertex_count: usize) {
+        let mut seen_in = vec![u32::MAX; vertex_count];
+        for (number, chunk) in self.chunks.iter().enumerate() {
+            let start = self.vertices.len();
+            for place in chunk.triangles.clone() {
+                for vertex in triangles[self.triangle_at(place) as usize] {
+                    if let Some(seen) = seen_in.get_mut(vertex as usize)
+                        && *seen != number as u32
+                    {
+                        *seen = number as u32;
+                        self.vertices.push(vertex);
+                    }
+                }
+            }
+            // Ascending: positions are then read from front to back.
+            self.vertices[start..].sort_unstable();
+            self.offsets.push(self.vertices.len());
+        }
+    }
+}
+
+impl ChunkBounds {
+    /// Nothing is known: always seen.
+    pub(crate) const EVERYWHERE: Self = Self {
+        least: Vec3::NEG_INFINITY,
+        most: Vec3::INFINITY,
+    };
+
+    /// Whether any of the box may be seen in a picture of `clip_from_world` (depth reversed). Never wrongly false.
+    pub(crate) fn may_be_seen(&self, clip_from_world: &Mat4) -> bool {
+        if !self.least.is_finite() || !self.most.is_finite() {
+            // No vertex at all, or one that is infinitely far.
+            return self.least.x <= self.most.x;
+        }
+        let [x, y, z, w] = [0, 1, 2, 3].map(|row| clip_from_world.row(row));
+        // Outside is where a plane's value is negative at the box's corner that lies farthest along it.
+        let is_inside = |plane: Vec4| {
+            let towards = plane.truncate();
+            let corner = Vec3::select(towards.cmpge(Vec3::ZERO), self.most, self.least);
+            let reach = towards.abs().dot(corner.abs()) + plane.w.abs();
+            towards.dot(corner) + plane.w >= -1e-5 * reach
+        };
+        [w + x, w - x, w + y, w - y, w - z].into_iter().all(is_inside)
+    }
+}
+
+/// The materials' runs in the order of triangles, gaps filled with the default material.
+fn material_runs(count: u32, groups: &[MaterialGroup], materials: &[Material]) -> Vec<Chunk> {
+    let default_material = materials.len();
+    let mut groups: Vec<_> = groups.iter().filter(|group| !group.triangles.is_empty()).collect();
+    groups.sort_by_key(|group| group.triangles.start);
+    let mut runs: Vec<Chunk> = Vec::new();
+    let mut push = |triangles: Range<u32>, material: usize| {
+        if triangles.is_empty() {
+            return;
+        }
+        match runs.last_mut() {
+            Some(last) if last.material == material && last.triangles.end == triangles.start => {
+                last.triangles.end = triangles.end;
+            }
+            _ => {
+                let alpha = materials.get(material).map_or(AlphaMode::Opaque, |m| m.alpha);
+                runs.push(Chunk {
+                    triangles,
+                    material,
+                    alpha,
+                });
+            }
+        }
+    };
+    let mut next = 0;
+    for group in groups {
+        let (start, end) = (group.triangles.start.clamp(next, count), group.triangles.end.min(count));
+        push(next..start, default_material);
+        push(start..end, group.material);
+        next = next.max(end);
+    }
+    push(next..count, default_material);
+    runs
+}
+
+/// 30-bit Morton codes of the triangles' middles within the mesh's box.
+fn morton_keys(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<u32> {
+    let finite = positions.iter().map(|&p| Vec3::from(p)).filter(|p| p.is_finite());
+    let (least, most) = finite.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(least, most), p| {
+        (least.min(p), most.max(p))
+    });
+    let extent = (most - least).max_element();
+    let scale = if extent > 0.0 { 1023.0 / extent } else { 0.0 };
+    let at = |vertex: u32| positions.get(vertex as usize).map_or(Vec3::ZERO, |&p| Vec3::from(p));
+    triangles
+        .iter()
+        .map(|&[a, b, c]| {
+            let middle = ((at(a) + at(b) + at(c)) / 3.0 - least) * scale;
+            // NaN becomes 0.
+            let [x, y, z] = middle.to_array().map(|t| spread(t.clamp(0.0, 1023.0) as u32));
+            x | y << 1 | z << 2
+        })
+        .collect()
+}
+
+/// Ten bits, two zeros between each.
+fn spread(bits: u32) -> u32 {
+    let bits = (bits | bits << 16) & 0x0300_00ff;
+    let bits = (bits | bits << 8) & 0x0300_f00f;
+    let bits = (bits | bits << 4) & 0x030c_30c3;
+    (bits | bits << 2) & 0x0924_9249
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::View;
+
+    #[test]
+    fn gaps_between_groups_get_the_default_material_and_neighbours_merge() {
+        let group = |triangles, material| MaterialGroup { triangles, material };
+        let groups = [group(6..8, 0), group(2..4, 1), group(4..4, 0), group(4..6, 1)];
+        let glass = Material {
+            alpha: AlphaMode::Blend,
+            ..Material::default()
+        };
+        let run = |triangles, material, alpha| Chunk {
+            triangles,
+            material,
+            alpha,
+        };
+        let expected = [
+            run(0..2, 2, AlphaMode::Opaque),
+            run(2..6, 1, AlphaMode::Blend),
+            run(6..8, 0, AlphaMode::Opaque),
+            run(8..10, 2, AlphaMode::Opaque),
+        ];
+        assert_eq!(material_runs(10, &groups, &[Material::default(), glass]), expected);
+    }
+
+    /// A strip of separate triangles along x, given in an order that jumps about.
+    fn strip(count: u32) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
+        let place = |triangle: u32| (triangle * 7919 % count) as f32;
+        let positions = (0..count).flat_map(|t| [0.0, 0.5, 1.0].map(|x| [place(t) + x, x, 0.0]));
+        (
+            positions.collect(),
+            (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
+        )
+    }
+
+    #[test]
+    fn a_large_mesh_is_cut_into_small_neighbourhoods_and_loses_no_triangle() {
+        let (positions, triangles) = strip(100_003);
+        let partition = Partition::new(&positions, &triangles, &[], &[]);
+        assert!(partition.fits(100_003) && partition.chunk_count() == 100_003_usize.div_ceil(CHUNK));
+        let mut drawn: Vec<u32> = (0..100_003).map(|place| partition.triangle_at(place)).collect();
+        drawn.sort_unstable();
+        assert!(drawn.iter().enumerate().all(|(at, &triangle)| at as u32 == triangle));
+        let longest = (0..partition.chunk_count()).map(|chunk| {
+            let bounds = partition.bounds(chunk, &positions);
+            bounds.most.x - bounds.least.x
+        });
+        assert!(longest.fold(0.0, f32::max) < 1.05 * CHUNK as f32);
+    }
+
+    #[test]
+    fn a_box_is_left_out_only_where_none_of_its_corners_could_be_seen() {
+        let view_from_world = View::look_at(Vec3::new(0.0, 0.0, 4.0), Vec3::ZERO, Vec3::Y);
+        let views = [
+            View::perspective(0.7, 1.5, 0.01, view_from_world),
+            View::orthographic(1.4, 1.5, 0.1, 10.0, view_from_world),
+        ];
+        for view in views {
+            let seen = |middle: Vec3, half: f32| {
+                let bounds = ChunkBounds {
+                    least: middle - half,
+                    most: middle + half,
+                };
+                bounds.may_be_seen(&view.clip_from_world)
+            };
+            assert!(seen(Vec3::ZERO, 0.1) && seen(Vec3::ZERO, 100.0));
+            assert!(seen(Vec3::new(2.05, 0.0, 0.0), 0.1), "a corner reaches in");
+            assert!(!seen(Vec3::new(3.0, 0.0, 0.0), 0.1) && !seen(Vec3::new(0.0, -2.0, 0.0), 0.1));
+            assert!(!seen(Vec3::new(0.0, 0.0, 5.0), 0.5), "behind the eye");
+            assert!(seen(Vec3::new(0.0, 0.0, f32::NAN), 1.0) || !seen(Vec3::NAN, 1.0));
+        }
+    }
+}

@@ -1,0 +1,36 @@
+// A surface's shape: where it is, which way it faces, and its region's colour.
+struct SurfaceVertex {
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    // sRGB, in alpha how much of the surface's own colour it replaces.
+    @location(2) region: vec4f,
+}
+
+fn normal_to_view(normal: vec3f) -> vec3f {
+    return (frame.view_from_world * vec4f(normal, 0.0)).xyz;
+}
+
+fn position_to_view(position: vec3f) -> vec3f {
+    return (frame.view_from_world * vec4f(position, 1.0)).xyz;
+}
+
+// Linear, in alpha how much of the surface's own colour is replaced.
+fn region_share(region: vec4f) -> vec4f {
+    return vec4f(linear_from_srgb_fast(region.rgb), region.a * frame.region_share);
+}
+
+// The unit normal on the side that is seen. Where interpolation still turns it away from the eye it is mirrored into
+// the visible half, which is continuous at the contour where a sign flip is not.
+fn seen_normal(normal_view: vec3f, position_view: vec3f, to_eye: vec3f, is_front: bool) -> vec3f {
+    let length_squared = dot(normal_view, normal_view);
+    var n = select(to_eye, normal_view * inverseSqrt(length_squared), length_squared > 1e-20);
+    n = select(-n, n, is_front);
+    if frame.flatness > 0.5 {
+        let face = cross(dpdx(position_view), dpdy(position_view));
+        let face_squared = dot(face, face);
+        n = select(n, face * inverseSqrt(face_squared), face_squared > 1e-30);
+        n = select(-n, n, dot(n, to_eye) >= 0.0);
+    }
+    let facing = dot(n, to_eye);
+    return select(n - 2.0 * facing * to_eye, n, facing >= 0.0);
+}

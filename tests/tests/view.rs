@@ -1,0 +1,233 @@
+//! What the view says of a shape: the triangle under a pixel is the one that a ray meets, on deformed scans; and what
+//! `pliant render` writes. Skipped by name where no graphics device exists.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stderr,
+    reason = "tests fail by panicking and say what they skip"
+)]
+
+use std::path::Path;
+
+use glam::{DQuat, DVec2, DVec3};
+use pliant_app::drawing::{self, Drawing};
+use pliant_editor::{Camera, Look, NamedView, Projection};
+use pliant_mesh::{Bvh, Model};
+use pliant_render::{Frame, Headless, IdTarget, PixelRect, Renderer};
+use pliant_tests::{Folder, assets, datum, open, run};
+
+const SIZE_PX: [u32; 2] = [640, 480];
+
+fn renderer() -> Option<Renderer> {
+    match Headless::new() {
+        Ok(headless) => Some(headless.renderer),
+        Err(error) => {
+            eprintln!("skipped: pictures ({error})");
+            None
+        }
+    }
+}
+
+/// A bend, a twist and a bulge at once.
+fn bent(model: &Model) -> Vec<DVec3> {
+    let bounds = model.bounds().unwrap();
+    let (centre, size) = (bounds.centre(), bounds.diagonal());
+    let moved = |&p: &DVec3| {
+        let q = (p - centre) / size;
+        let turned = DQuat::from_rotation_y(1.3 * q.y) * q;
+        let bent = turned + DVec3::new(0.5 * q.y * q.y, 0.0, 0.08 * (9.0 * q.x).sin());
+        centre + bent * size - p
+    };
+    model.surface.positions.iter().map(moved).collect()
+}
+
+/// Which triangle each pixel shows.
+fn ids(renderer: &mut Renderer, model: &Model, displacements: &[DVec3], camera: &Camera) -> Vec<Option<u32>> {
+    let drawing = Drawing::new(model, pliant_io::Appearance::default());
+    // The boxes of chunks come from the shape at rest and are moved along, as in the window.
+    let rest = vec![DVec3::ZERO; displacements.len()];
+    let mut surface = drawing.upload(renderer, &drawing.pose(model, &rest)).unwrap();
+    surface
+        .update_shape(renderer, &drawing.pose(model, displacements).data())
+        .unwrap();
+    let [width, height] = SIZE_PX;
+    let frame = Frame {
+        view: &drawing::view(camera, DVec2::new(f64::from(width), f64::from(height)), drawing.centre),
+        style: &drawing::style(&Look::default()),
+        surfaces: &[&surface],
+        grid: None,
+        overlays: &[],
+    };
+    let whole = PixelRect {
+        x: 0,
+        y: 0,
+        width,
+        height,
+    };
+    let request = renderer.pick(&mut IdTarget::new(), SIZE_PX, whole, &frame).unwrap();
+    let ids = request.wait(renderer).unwrap().ids;
+    ids.into_iter().map(|id| id.map(|id| id.triangle)).collect()
+}
+
+#[test]
+fn the_triangle_under_ten_thousand_pixels_is_the_one_that_a_ray_meets() {
+    let Some(mut renderer) = renderer() else { return };
+    let mut files = vec![assets().join("creature.glb"), assets().join("cactus.glb")];
+    files.extend(["scans/horse.ply", "scans/armadillo.obj"].into_iter().filter_map(datum));
+    let pixels_each = 10_000 / files.len();
+    let mut compared = 0;
+    for (number, file) in files.iter().enumerate() {
+        let loaded = open(file);
+        let model = &loaded.model;
+        let displacements = bent(model);
+        let moved: Vec<DVec3> = model
+            .surface
+            .positions
+            .iter()
+            .zip(&displacements)
+            .map(|(&p, &d)| p + d)
+            .collect();
+        let mut bvh = Bvh::build(&model.surface.positions, &model.surface.triangles);
+        bvh.refit(&moved);
+        let size_px = DVec2::new(f64::from(SIZE_PX[0]), f64::from(SIZE_PX[1]));
+        let mut camera = Camera {
+            scale: model.bounds().unwrap().diagonal(),
+            projection: if number % 2 == 0 {
+                Projection::Perspective
+            } else {
+                Projection::Orthographic
+            },
+            ..Camera::default()
+        };
+        camera.look_from(NamedView::NAMES[number % NamedView::NAMES.len()].1);
+        camera.frame(&moved, size_px);
+        let ids = ids(&mut renderer, model, &displacements, &camera);
+        // A fixed walk over the pixels that comes by each once.
+        let (mut asked, mut beside) = (0, 0);
+        let mut pixel = 12_345_u64;
+        while asked < pixels_each {
+            pixel = pixel
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let at = (pixel >> 33) as usize % ids.len();
+            let Some(seen) = ids[at] else { continue };
+            asked += 1;
+            let (x, y) = (at as u32 % SIZE_PX[0], at as u32 / SIZE_PX[0]);
+            let position_px = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let met = |offset: DVec2| {
+                let ray = camera.ray(position_px + offset, size_px);
+                bvh.ray(ray.origin, ray.direction)
+                    .map(|hit| model.drawn_triangle_of_surface[hit.triangle as usize])
+            };
+            if met(DVec2::ZERO) == Some(seen) {
+                continue;
+            }
+            // The device snaps corners to 1/256 of a pixel: beside an edge either triangle is right.
+            let near = [-1.0, 1.0]
+                .iter()
+                .flat_map(|s| [DVec2::X * *s, DVec2::Y * *s, DVec2::new(*s, 1.0), DVec2::new(*s, -1.0)]);
+            let is_beside = near.map(|offset| offset * 0.02).any(|offset| met(offset) == Some(seen));
+            assert!(
+                is_beside,
+                "{}: pixel {x}, {y} shows {seen}, the ray meets {:?}",
+                file.display(),
+                met(DVec2::ZERO)
+            );
+            beside += 1;
+        }
+        // Where triangles are about as large as pixels, few lie that near to an edge.
+        assert!(
+            10 * beside < asked,
+            "{}: {beside} of {asked} lie beside an edge",
+            file.display()
+        );
+        compared += asked;
+    }
+    assert!(compared >= 9_999, "{compared}");
+}
+
+fn picture(path: &Path) -> image::RgbaImage {
+    image::open(path).unwrap().into_rgba8()
+}
+
+/// `pliant render` of the creature with its edit, with more arguments.
+fn rendered(folder: &Folder, name: &str, arguments: &[&str]) -> image::RgbaImage {
+    let output = folder.at(name);
+    let mut line = vec!["render".to_owned(), assets().join("creature.glb").display().to_string()];
+    line.extend(["--output".to_owned(), output.display().to_string()]);
+    line.extend([
+        "--edit".to_owned(),
+        assets().join("creature.edit.json").display().to_string(),
+    ]);
+    line.extend(["--size".to_owned(), "160x120".to_owned()]);
+    line.extend(arguments.iter().map(|&argument| argument.to_owned()));
+    run(line).done();
+    if output.exists() {
+        picture(&output)
+    } else {
+        image::RgbaImage::new(0, 0)
+    }
+}
+
+#[test]
+fn every_shading_gives_a_picture_of_its_own() {
+    let Some(_) = renderer() else { return };
+    let folder = Folder::new();
+    let shadings = [
+        "clay",
+        "material",
+        "regions",
+        "stiffness",
+        "distortion",
+        "area",
+        "curvature",
+        "zebra",
+        "normals",
+    ];
+    let mut pictures: Vec<(&str, image::RgbaImage)> = Vec::new();
+    for shading in shadings {
+        let picture = rendered(&folder, "a.png", &["--shading", shading]);
+        assert_eq!(picture.dimensions(), (160, 120));
+        for (other, seen) in &pictures {
+            let differing = picture.pixels().zip(seen.pixels()).filter(|(a, b)| a != b).count();
+            assert!(differing > 400, "{shading} looks like {other}");
+        }
+        pictures.push((shading, picture));
+    }
+}
+
+#[test]
+fn a_transparent_picture_has_alpha_only_where_the_surface_is() {
+    let Some(_) = renderer() else { return };
+    let folder = Folder::new();
+    let opaque = rendered(&folder, "a.png", &[]);
+    let clear = rendered(&folder, "b.png", &["--transparent"]);
+    assert_eq!(clear.get_pixel(1, 1).0[3], 0);
+    let whole = clear
+        .pixels()
+        .zip(opaque.pixels())
+        .filter(|(clear, _)| clear.0[3] == 255);
+    let (mut count, mut off) = (0, 0);
+    for (clear, opaque) in whole {
+        count += 1;
+        off += usize::from(clear != opaque);
+    }
+    assert!(count > 1000 && off == 0, "{count} {off}");
+}
+
+#[test]
+fn a_turntable_comes_all_around_and_begins_at_the_view() {
+    let Some(_) = renderer() else { return };
+    let folder = Folder::new();
+    let still = rendered(&folder, "still.png", &[]);
+    rendered(&folder, "turn.png", &["--turntable", "4"]);
+    assert!(!folder.at("turn.png").exists() && !folder.at("turn-0005.png").exists());
+    let turned: Vec<_> = (1..=4)
+        .map(|n| picture(&folder.at(&format!("turn-000{n}.png"))))
+        .collect();
+    assert_eq!(turned[0], still);
+    for n in 1..4 {
+        assert_ne!(turned[n], turned[n - 1]);
+    }
+}
