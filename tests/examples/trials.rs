@@ -5,14 +5,15 @@ use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use pliant_deform::Method;
-use pliant_tests::trials::{Outcome, Trial, scans};
+use pliant_tests::trials::{Outcome, Regularised, Trial, scans};
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let number = |place: usize, otherwise: u64| words.get(place).map_or(otherwise, |word| word.parse().unwrap());
     let (count, first) = (number(0, 1000), number(1, 0));
     let mut subjects = scans();
-    let mut counts = BTreeMap::<String, [usize; 3]>::new();
+    let mut counts = BTreeMap::<String, [usize; 4]>::new();
+    let mut solved = 0;
     for seed in first..first + count {
         let place = (seed % subjects.len() as u64) as usize;
         let trial = Trial::with(seed, &subjects[place].model, words.get(2).map(String::as_str));
@@ -23,26 +24,36 @@ fn main() {
         let name = subjects[place].name.clone();
         let subject = &mut subjects[place];
         let column = match catch_unwind(AssertUnwindSafe(|| trial.run(subject))) {
-            Ok(Outcome::Bent) => 0,
+            Ok(Outcome::Bent {
+                regularised,
+                solved_count,
+            }) => {
+                solved += solved_count;
+                usize::from(regularised == Regularised::Yes)
+            }
             Ok(Outcome::Refused(sentence)) => {
                 println!("trial {seed}, {name}, {:?}: {sentence}", trial.method);
-                1
+                2
             }
             Err(_) => {
                 println!("trial {seed}, {name}, {:?}: BROKEN", trial.method);
-                2
+                3
             }
         };
         counts.entry(kind).or_default()[column] += 1;
     }
-    println!("{:<24}{:>8}{:>9}{:>8}", "method", "bent", "refused", "broken");
-    let mut sum = [0; 3];
-    for (kind, [bent, refused, broken]) in &counts {
-        println!("{kind:<24}{bent:>8}{refused:>9}{broken:>8}");
-        for (sum, count) in sum.iter_mut().zip([bent, refused, broken]) {
+    println!(
+        "{:<24}{:>8}{:>13}{:>9}{:>8}",
+        "method", "bent", "regularised", "refused", "broken"
+    );
+    let mut sum = [0; 4];
+    for (kind, row) in &counts {
+        println!("{kind:<24}{:>8}{:>13}{:>9}{:>8}", row[0], row[1], row[2], row[3]);
+        for (sum, count) in sum.iter_mut().zip(row) {
             *sum += count;
         }
     }
-    println!("{:<24}{:>8}{:>9}{:>8}", "all", sum[0], sum[1], sum[2]);
-    assert_eq!(sum[2], 0, "{} trials broke", sum[2]);
+    println!("{:<24}{:>8}{:>13}{:>9}{:>8}", "all", sum[0], sum[1], sum[2], sum[3]);
+    println!("{} vertices solved for in the mean", solved / (sum[0] + sum[1]).max(1));
+    assert_eq!(sum[3], 0, "{} trials broke", sum[3]);
 }

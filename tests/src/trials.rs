@@ -17,9 +17,21 @@ const STEPS: u32 = 12;
 #[derive(Clone, PartialEq, Debug)]
 pub enum Outcome {
     /// A shape with all that is asked of it.
-    Bent,
+    Bent {
+        /// Whether its system had to be regularised, which is said.
+        regularised: Regularised,
+        /// How many vertices were solved for.
+        solved_count: usize,
+    },
     /// A refusal in words, which names a vertex.
     Refused(String),
+}
+
+/// Whether a system was factored as it is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Regularised {
+    No,
+    Yes,
 }
 
 /// A mesh with the orderings that its trials have needed.
@@ -96,13 +108,10 @@ impl Trial {
         if let Method::Primo(options) = &mut method {
             options.thickness = 10_f64.powf(chance.between(-3.0, 0.0));
         }
-        let ball = |chance: &mut Chance, radius: f64| {
-            let centre = model.surface.positions[chance.below(count)];
-            let radius = radius * diagonal;
-            move |p: DVec3| p.distance(centre) <= radius
-        };
+        let around = |centre: DVec3, radius: f64| move |p: DVec3| p.distance(centre) <= radius * diagonal;
+        let ball = |chance: &mut Chance, radius: f64| around(model.surface.positions[chance.below(count)], radius);
         let mut roles = vec![Role::Free; count];
-        let mut assign = |role: Role, within: &dyn Fn(DVec3) -> bool| {
+        let assign = |roles: &mut [Role], role: Role, within: &dyn Fn(DVec3) -> bool| {
             for (own, &position) in roles.iter_mut().zip(&model.surface.positions) {
                 if within(position) {
                     *own = role;
@@ -113,20 +122,31 @@ impl Trial {
         if chance.share() < 0.8 {
             let radius = chance.between(0.02, 0.35);
             let region = ball(chance, radius);
-            assign(Role::Fixed, &|p| !region(p));
+            assign(&mut roles, Role::Fixed, &|p| !region(p));
         }
         for _ in 0..chance.below(3) {
             let radius = chance.between(0.0, 0.2);
-            assign(Role::Fixed, &ball(chance, radius));
+            assign(&mut roles, Role::Fixed, &ball(chance, radius));
         }
+        // Handles stand where something may move, so that something is to be solved for.
         let wanted = 1 + chance.below(3) as u16;
         for handle in 0..wanted {
+            let free: Vec<usize> = (0..count).filter(|&vertex| roles[vertex] == Role::Free).collect();
+            let centre = if free.is_empty() {
+                chance.below(count)
+            } else {
+                free[chance.below(free.len())]
+            };
             let radius = if chance.share() < 0.2 {
                 0.0
             } else {
-                chance.between(0.005, 0.15)
+                chance.between(0.005, 0.1)
             };
-            assign(Role::Handle(handle), &ball(chance, radius));
+            assign(
+                &mut roles,
+                Role::Handle(handle),
+                &around(model.surface.positions[centre], radius),
+            );
         }
         // A handle that a later one has covered goes.
         let mut numbers: Vec<Option<u16>> = vec![None; usize::from(wanted)];
@@ -239,7 +259,15 @@ impl Trial {
             }
         }
         self.check(&model, &displacements);
-        Outcome::Bent
+        let is_regularised = bound.warnings().iter().any(|said| said.contains("stiffened"));
+        Outcome::Bent {
+            regularised: if is_regularised {
+                Regularised::Yes
+            } else {
+                Regularised::No
+            },
+            solved_count: bound.solved_count(),
+        }
     }
 
     fn check(&self, model: &Model, displacements: &[DVec3]) {

@@ -426,3 +426,44 @@ fn the_report_has_every_member_and_only_finite_numbers() {
 fn read_json(path: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
+
+#[test]
+fn soft_handles_and_hinges_come_from_the_edit_and_other_methods_say_that_they_have_none() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("mesh.off", &shapes::tube(16, 24, 6.0));
+    let out = folder.at("out.off");
+    let hard = bend(&json!({ "translation": [2, 0, 0] }));
+    let bent = |edit: &Value, more: &[&str]| {
+        folder.apply(&file, edit, &out, more).done();
+        open(&out).model.drawn.positions.clone()
+    };
+    let plain = bent(&hard, &[]);
+    let mut soft = hard.clone();
+    soft["handles"][0]["soft"] = json!(0.5);
+    let mut hinged = hard.clone();
+    hinged["continuity"] = json!(0);
+    let mut one_hinge = hard.clone();
+    one_hinge["handles"][0]["continuity"] = json!(0);
+    let shapes = [bent(&soft, &[]), bent(&hinged, &[]), bent(&one_hinge, &[])];
+    for (i, shape) in shapes.iter().enumerate() {
+        assert!(largest_distance(shape, &plain) > 0.05, "{i}");
+        assert!(
+            shapes
+                .iter()
+                .skip(i + 1)
+                .all(|other| largest_distance(shape, other) > 0.05),
+            "{i}"
+        );
+    }
+    let report = folder.at("report.json");
+    let arguments = ["--method", "arap", "--report", report.to_str().unwrap()];
+    let rigid = bent(&soft, &arguments);
+    let said: Value = serde_json::from_str(&fs::read_to_string(&report).unwrap()).unwrap();
+    let said = said["warnings"].as_array().unwrap();
+    assert!(
+        said.iter()
+            .any(|w| w.as_str().unwrap().contains("handle 0 is soft, and arap holds")),
+        "{said:?}"
+    );
+    assert_eq!(rigid, bent(&hard, &["--method", "arap"]));
+}

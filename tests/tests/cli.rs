@@ -199,6 +199,21 @@ fn what_the_edit_format_does_not_have_is_refused_by_name() {
         ),
         (handle("select", json!(7)), &["handles[0].select", "selector"]),
         (handle("nam", json!("x")), &["nam", "handles[0]", "name"]),
+        (handle("soft", json!(0)), &["handles[0].soft", "a weight from"]),
+        (handle("soft", json!(true)), &["handles[0].soft", "a number"]),
+        (
+            handle("continuity", json!(3)),
+            &["handles[0].continuity", "from 0 to 2"],
+        ),
+        (with("continuity", json!(-1)), &["continuity", "from 0 to 2"]),
+        (
+            with("continuity", json!([{ "select": "all", "value": 2.5 }])),
+            &["continuity[0].value", "from 0 to 2"],
+        ),
+        (
+            with("continuity", json!([{ "per_vertex": [1, 1] }])),
+            &["continuity[0].per_vertex", "2", "162"],
+        ),
     ];
     for (edit, words) in cases {
         folder

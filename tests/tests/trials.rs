@@ -13,10 +13,14 @@ fn sixty_trials_end_in_a_sound_shape_or_in_a_refusal_with_a_place() {
         let subject = &mut subjects[(seed % count) as usize];
         let trial = Trial::new(seed, &subject.model);
         match trial.run(subject) {
-            Outcome::Bent => bent += 1,
+            // A handful of vertices between a patch and its region would try nothing.
+            Outcome::Bent { solved_count, .. } => {
+                let share = solved_count as f64 / subject.model.surface.positions.len() as f64;
+                bent += u32::from(solved_count > 100 || share > 0.1);
+            }
             Outcome::Refused(sentence) => refused.push(format!("{} {:?}: {sentence}", subject.name, trial.method)),
         }
     }
-    // Refusing everything is no way to pass.
-    assert!(count == 0 || bent > 50, "{bent} {refused:#?}");
+    // Refusing everything, or solving next to nothing, is no way to pass.
+    assert!(count == 0 || bent > 30, "{bent} {refused:#?}");
 }

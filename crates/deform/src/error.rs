@@ -201,3 +201,29 @@ pub enum SolveError {
         vertex: u32,
     },
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{BindError, SolveError};
+
+    #[test]
+    fn a_renumbered_error_names_the_vertex_that_a_person_knows() {
+        let refused = BindError::NotPositiveDefinite {
+            component: 2,
+            vertex: 7,
+        };
+        let nested = BindError::Order {
+            order: 3,
+            refused: Box::new(refused.clone()),
+        };
+        for error in [refused, nested, BindError::Position { vertex: 7 }] {
+            assert_eq!(error.vertex(), Some(7));
+            let known = error.renumbered(|vertex| vertex + 90);
+            assert_eq!(known.vertex(), Some(97));
+            assert!(known.to_string().contains("vertex 97"), "{known}");
+        }
+        let known = SolveError::NotFinite { vertex: 7 }.renumbered(|vertex| vertex + 90);
+        assert!(known.to_string().contains("vertex 97"), "{known}");
+        assert_eq!(BindError::EmptyHandle { handle: 7 }.renumbered(|_| 97).vertex(), None);
+    }
+}

@@ -88,7 +88,11 @@ fn act(rig: &mut Rig, random: &mut Random) {
             });
         }
         14 => {
-            rig.command(Command::ResetHandle);
+            let soft = [None, Some(0.3), Some(40.0)][random.below(3) as usize];
+            match rig.editor.view().selected {
+                Some(id) if random.below(2) == 0 => rig.command(Command::SetSoft(id, soft)),
+                _ => rig.command(Command::ResetHandle),
+            }
         }
         _ => {
             let alt = |position_px| Pointer {

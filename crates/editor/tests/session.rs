@@ -109,6 +109,44 @@ fn dragging_the_gizmo_moves_the_handle_by_what_the_pointer_says() {
 }
 
 #[test]
+fn a_soft_handle_only_pulls_and_undo_makes_it_hold_again() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    rig.move_by('y', ".5");
+    rig.drain();
+    let id = rig.editor.view().handles[0].id;
+    let lag = |rig: &Rig| {
+        let moved = rig.editor.roles().iter().zip(rig.editor.document().from_file().iter());
+        let own = moved.filter(|(role, _)| matches!(role, Role::Handle(_)));
+        own.map(|(_, d)| d.distance(DVec3::Y * 0.5)).fold(0.0, f64::max)
+    };
+    let hard = rig.fingerprint();
+    assert!(lag(&rig) < 1e-6);
+    let lags = [100.0, 1.0, 0.01].map(|weight| {
+        rig.command(Command::SetSoft(id, Some(weight)));
+        rig.drain();
+        lag(&rig)
+    });
+    assert!(
+        lags[0] > 1e-6 && lags[1] > lags[0] && lags[2] > lags[1] && lags[2] < 0.5,
+        "{lags:?}"
+    );
+    for weight in [0.0, 1e9, f64::NAN] {
+        rig.command(Command::SetSoft(id, Some(weight)));
+        assert!(
+            rig.editor.view().problem.is_some_and(|said| said.contains("weight")),
+            "{weight}"
+        );
+    }
+    for _ in lags {
+        rig.undo();
+    }
+    rig.drain();
+    assert_eq!(rig.fingerprint(), hard);
+}
+
+#[test]
 fn typed_numbers_and_constraints_say_exactly_what_happens() {
     let mut rig = Rig::open(shapes::icosphere(3));
     rig.paint_handle();
