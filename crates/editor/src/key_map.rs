@@ -87,7 +87,11 @@ impl Shortcut {
             (.., "delete") => Key::Delete,
             (.., "home") => Key::Home,
             (.., "tab") => Key::Tab,
-            _ => return None,
+            // "Num 5": a digit of the numeric pad.
+            (.., name) => {
+                let digit = name.strip_prefix("num ")?.parse().ok()?;
+                (digit < 10).then_some(Key::Numpad(digit))?
+            }
         };
         Some(Self { modifiers, key })
     }

@@ -255,42 +255,18 @@ fn short(value: f64) -> String {
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
-    use pliant_mesh::{Cancel, Drawn, DrawnVertex, Progress, WeldOptions};
+    use pliant_mesh::{Cancel, Progress, WeldOptions, shapes};
 
-    /// A sphere of radius `radius`: a cube's grid pushed out.
-    fn sphere(radius: f64, n: u32) -> Model {
-        let mut drawn = Drawn::default();
-        for axis in 0..3 {
-            for side in [-1.0, 1.0] {
-                let first = drawn.positions.len() as u32;
-                for i in 0..=n {
-                    for k in 0..=n {
-                        let at =
-                            |t: u32| (std::f64::consts::FRAC_PI_4 * (2.0 * f64::from(t) / f64::from(n) - 1.0)).tan();
-                        let mut p = DVec3::ZERO;
-                        p[axis] = side;
-                        p[(axis + 1) % 3] = at(i) * side;
-                        p[(axis + 2) % 3] = at(k);
-                        drawn.positions.push(p.normalize() * radius);
-                    }
-                }
-                for i in 0..n {
-                    for k in 0..n {
-                        let v = |i, k| DrawnVertex(first + i * (n + 1) + k);
-                        drawn.triangles.push([v(i, k), v(i + 1, k), v(i + 1, k + 1)]);
-                        drawn.triangles.push([v(i, k), v(i + 1, k + 1), v(i, k + 1)]);
-                    }
-                }
-            }
-        }
-        drawn.file_vertex_count = drawn.positions.len();
-        drawn.file_vertex = (0..drawn.positions.len() as u32).map(pliant_mesh::FileVertex).collect();
+    /// A sphere of radius `radius`, its faces split in four `levels` times.
+    fn sphere(radius: f64, levels: u32) -> Model {
+        let mut drawn = shapes::icosphere(levels);
+        drawn.positions.iter_mut().for_each(|position| *position *= radius);
         Model::weld(drawn, &WeldOptions::default(), &Progress::default(), &Cancel::default()).unwrap()
     }
 
     #[test]
     fn a_sphere_curves_by_one_over_its_radius_everywhere() {
-        let model = sphere(4.0, 24);
+        let model = sphere(4.0, 4);
         for curvature in mean_curvatures(&model, &model.surface.positions) {
             assert!((curvature - 0.25).abs() < 0.01, "{curvature}");
         }
@@ -299,7 +275,7 @@ mod tests {
 
     #[test]
     fn a_surface_grown_to_twice_its_size_is_at_the_ends_of_both_scales() {
-        let model = sphere(1.0, 6);
+        let model = sphere(1.0, 2);
         let grown = model.surface.positions.clone();
         let area = Scale::of(Field::Area, &model);
         let stretch = Scale::of(Field::Stretch, &model);
