@@ -35,6 +35,7 @@ use self::shape::{Guesses, IDENTITY, Scratch, Shape};
 use crate::blend::HandleFrame;
 use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
+use crate::sparse::Elimination;
 use crate::{BindError, Laplacian, Ordering, Problem, Role};
 
 /// The bound method, with the shape it is at.
@@ -99,7 +100,7 @@ impl ArapSolver {
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
         let (surface, topology) = (problem.surface, problem.topology);
-        let order = ordering.restricted(topology, &partition.solved);
+        let Elimination { order, ends } = ordering.elimination(&partition.solved);
         cancel.check()?;
         progress.set(0.1);
         let domain = Domain::of(surface, topology, &order);
@@ -141,21 +142,22 @@ impl ArapSolver {
             handle_of: &handle_of,
             unheld: &unheld,
         };
-        let (preconditioner, weights) = Preconditioner::of(&system, &input, cancel).map_err(|error| match error {
-            PreconditionError::Pivot(local) => BindError::NotPositiveDefinite {
-                component: component(local),
-                vertex: domain.vertices[local],
-            },
-            PreconditionError::Inaccurate(local, error) => BindError::Inaccurate {
-                component: component(local),
-                vertex: domain.vertices[local],
-                error,
-            },
-            PreconditionError::Memory => BindError::OutOfMemory {
-                free_count: domain.solved_count,
-            },
-            PreconditionError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
-        })?;
+        let (preconditioner, weights) =
+            Preconditioner::of(&system, &ends, &input, cancel).map_err(|error| match error {
+                PreconditionError::Pivot(local) => BindError::NotPositiveDefinite {
+                    component: component(local),
+                    vertex: domain.vertices[local],
+                },
+                PreconditionError::Inaccurate(local, error) => BindError::Inaccurate {
+                    component: component(local),
+                    vertex: domain.vertices[local],
+                    error,
+                },
+                PreconditionError::Memory => BindError::OutOfMemory {
+                    free_count: domain.solved_count,
+                },
+                PreconditionError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
+            })?;
         cancel.check()?;
         progress.set(0.9);
         let world_origin = handles.first().map_or(DVec3::ZERO, |handle| handle.world_centre);

@@ -26,6 +26,8 @@ mod rigid_fit;
 mod rotation;
 mod shell;
 mod sparse;
+#[doc(hidden)]
+pub mod stages;
 mod sums;
 
 pub use arap::{Arap, ArapEnergy};

@@ -237,6 +237,12 @@ impl Laplacian {
         self.vertices.binary_search(&surface_vertex).ok()
     }
 
+    /// The local numbers of those of these surface vertices that have one.
+    pub(crate) fn locals(&self, surface_vertices: &[u32]) -> Vec<u32> {
+        let local = |&vertex: &u32| self.local(vertex).map(|local| local as u32);
+        surface_vertices.iter().filter_map(local).collect()
+    }
+
     /// The local neighbours of `local`, ascending; none where the row is not full.
     pub fn neighbours(&self, local: usize) -> &[u32] {
         &self.neighbours[self.offsets[local] as usize..self.offsets[local + 1] as usize]

@@ -50,8 +50,9 @@ use crate::blend::HandleFrame;
 use crate::handle::{Handle, Motion};
 use crate::lbfgs::Memory;
 use crate::partition::Partition;
+use crate::sparse::Elimination;
 use crate::sparse::cholesky::FactorError;
-use crate::sparse::graph::elimination_order;
+use crate::sparse::graph::elimination;
 use crate::{BindError, Problem};
 
 /// The bound method, with the pose it is at.
@@ -105,14 +106,15 @@ impl PrimoSolver {
         cancel.check()?;
         progress.set(0.1);
         let (offsets, neighbours) = prisms.graph(surface, topology);
-        prisms.reorder(&elimination_order(&offsets, &neighbours));
+        let Elimination { order, ends } = elimination(&offsets, &neighbours, cancel)?;
+        prisms.reorder(&order);
         cancel.check()?;
         progress.set(0.2);
         let world_origin = handles.first().map_or(DVec3::ZERO, |handle| handle.world_centre);
         let mut world_grounds = vec![world_origin];
         world_grounds.extend(handles.iter().map(|handle| handle.world_centre));
         let diagonal = bounding_box(&surface.positions).map_or(0.0, |bounds| bounds.diagonal());
-        let joints = Joints::of(
+        let mut joints = Joints::of(
             &prisms,
             &Material {
                 surface,
@@ -123,6 +125,7 @@ impl PrimoSolver {
                 world_grounds: &world_grounds,
             },
         );
+        joints.block_ends = ends;
         cancel.check()?;
         progress.set(0.3);
         let component = |prism: usize| {

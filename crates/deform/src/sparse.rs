@@ -1,15 +1,20 @@
 //! Sparse symmetric systems: the order of elimination, the scaled matrix, its Cholesky factor and the solves with it.
 
+mod aligned;
+mod bisection;
 pub(crate) mod cholesky;
-mod etree;
+mod dissection;
 mod forest;
 mod front;
 pub(crate) mod graph;
+mod kernels;
+mod leaf;
 pub(crate) mod matrix;
 mod multifrontal;
 mod ordering;
-pub(crate) mod reach;
 pub(crate) mod substitution;
+mod symbolic;
 mod triangular;
 
+pub(crate) use ordering::Elimination;
 pub use ordering::Ordering;

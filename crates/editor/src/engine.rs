@@ -55,7 +55,8 @@ pub(crate) struct Engine {
     /// The surface in the shape of `bvh`.
     pub(crate) picked: Option<Arc<Surface>>,
     bvh_revision: Revision,
-    ordering: Option<Arc<Ordering>>,
+    /// One a power of the Laplacian that a method has asked for.
+    orderings: Vec<Arc<Ordering>>,
     pub(crate) region: Region,
     region_revision: Revision,
     bound: Option<Arc<Mutex<Bound>>>,
@@ -100,7 +101,7 @@ impl Engine {
             bvh: None,
             picked: None,
             bvh_revision: Revision(0),
-            ordering: None,
+            orderings: Vec::new(),
             region: Region::still(0),
             region_revision: Revision(0),
             bound: None,
@@ -123,7 +124,8 @@ impl Engine {
         self.region = Region::still(model.surface.positions.len());
         self.model = Some(model);
         self.model_revision = self.next_revision();
-        (self.bvh, self.ordering, self.bound) = (None, None, None);
+        (self.bvh, self.bound) = (None, None);
+        self.orderings.clear();
         self.picked = None;
         self.warnings.clear();
         self.problem_changed();
@@ -215,7 +217,7 @@ impl Engine {
             self.want(JobKind::Pick, |engine| engine.pick_work(&model, document));
         }
         let power = document.method.operator_power();
-        let has_ordering = self.ordering.as_ref().is_some_and(|ordering| ordering.power() == power);
+        let has_ordering = self.ordering(power).is_some();
         if !has_ordering {
             self.want(JobKind::Order, |_| order_work(&model, power));
         }
@@ -254,7 +256,7 @@ impl Engine {
                 self.bvh_revision = stamp;
                 return Arrival::Picking;
             }
-            JobOutcome::Ordered(ordering) if stamp == self.model_revision => self.ordering = Some(ordering),
+            JobOutcome::Ordered(ordering) if stamp == self.model_revision => self.orderings.push(ordering),
             JobOutcome::Region(region) if stamp == self.problem_revision => {
                 self.region = region;
                 self.region_revision = stamp;
@@ -271,6 +273,14 @@ impl Engine {
             _ => {}
         }
         Arrival::Nothing
+    }
+
+    /// The ordering for a power of the Laplacian, if it was made.
+    fn ordering(&self, power: u32) -> Option<Arc<Ordering>> {
+        self.orderings
+            .iter()
+            .find(|ordering| ordering.power() == power)
+            .cloned()
     }
 
     /// The revision that a job of this kind would be made for now.
@@ -337,7 +347,8 @@ impl Engine {
     }
 
     fn bind_work(&self, model: &Arc<Model>, document: &Document) -> Option<Work> {
-        let (model, ordering, region) = (Arc::clone(model), self.ordering.clone()?, self.region.clone());
+        let ordering = self.ordering(document.method.operator_power())?;
+        let (model, region) = (Arc::clone(model), self.region.clone());
         let (stiffness, loose, method) = (document.stiffness.clone(), document.loose, document.method.clone());
         let soft: Vec<Option<f64>> = region
             .handles

@@ -118,8 +118,6 @@ pub(crate) fn assemble(laplacian: &Laplacian, domain: &Domain, energy: ArapEnerg
         .collect();
     let mut matrix = ScaledMatrix {
         scale,
-        upper_offsets: vec![0],
-        upper_rows: Vec::new(),
         lower_offsets: vec![0],
         lower_rows: Vec::new(),
         lower_values: Vec::new(),
@@ -129,14 +127,11 @@ pub(crate) fn assemble(laplacian: &Laplacian, domain: &Domain, energy: ArapEnerg
         matrix.lower_rows.push(column as u32);
         matrix.lower_values.push(diagonal[column] * scale * scale);
         for &(other, value) in row {
-            if (other as usize) < column {
-                matrix.upper_rows.push(other);
-            } else {
+            if other as usize > column {
                 matrix.lower_rows.push(other);
                 matrix.lower_values.push(value * scale * matrix.scale[other as usize]);
             }
         }
-        matrix.upper_offsets.push(matrix.upper_rows.len() as u32);
         matrix.lower_offsets.push(matrix.lower_rows.len() as u32);
     }
     System {

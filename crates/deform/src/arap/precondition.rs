@@ -53,16 +53,17 @@ const SHIFTS: [f64; 5] = [0.0, 1e-13, 1e-11, 1e-9, 1e-7];
 const TOLERANCE: f64 = 1e-2;
 
 impl Preconditioner {
-    /// Factors and checks the system; gives each handle's weights besides (see [`Preconditioner::weights`]).
+    /// Factors and checks the system, whose columns stand in blocks that end at `ends`; gives each handle's weights besides (see [`Preconditioner::weights`]).
     pub fn of(
         system: &System,
+        ends: &[u32],
         weights: &WeightInput<'_>,
         cancel: &Cancel,
     ) -> Result<(Self, Vec<f64>), PreconditionError> {
         let mut failed = None;
         for shift in SHIFTS {
             cancel.check().map_err(|_| PreconditionError::Cancelled)?;
-            match Factor::of(&system.matrix, shift, cancel) {
+            match Factor::of(&system.matrix, ends, shift, cancel) {
                 Ok(factor) => return Self::checked(&factor, system, weights, cancel),
                 Err(FactorError::Pivot(column)) => failed = failed.or(Some(column)),
                 Err(FactorError::Memory) => return Err(PreconditionError::Memory),

@@ -25,7 +25,7 @@ impl Factored {
     /// As [`Factor::of`]; a pivot is named by its prism.
     pub fn at(joints: &Joints, pose: &Pose, cancel: &Cancel) -> Result<Self, FactorError> {
         let matrix = gauss_newton(joints, pose);
-        let factor = factor(&matrix, cancel).map_err(|error| match error {
+        let factor = factor(&matrix, &joints.column_ends(DOF), cancel).map_err(|error| match error {
             FactorError::Pivot(column) => FactorError::Pivot(column / DOF),
             other => other,
         })?;
@@ -68,7 +68,7 @@ impl Springs {
     pub fn of(joints: &Joints, cancel: &Cancel) -> Result<Self, FactorError> {
         let matrix = laplacian(joints);
         Ok(Self {
-            factor: factor(&matrix, cancel)?,
+            factor: factor(&matrix, &joints.column_ends(1), cancel)?,
             scale: matrix.scale,
         })
     }
@@ -115,13 +115,13 @@ impl Springs {
     }
 }
 
-fn factor(matrix: &ScaledMatrix, cancel: &Cancel) -> Result<Factor, FactorError> {
+fn factor(matrix: &ScaledMatrix, ends: &[u32], cancel: &Cancel) -> Result<Factor, FactorError> {
     let mut failed = None;
     for shift in SHIFTS {
         if cancel.is_cancelled() {
             return Err(FactorError::Cancelled);
         }
-        match Factor::of(matrix, shift, cancel) {
+        match Factor::of(matrix, ends, shift, cancel) {
             Err(FactorError::Pivot(column)) => failed = failed.or(Some(column)),
             other => return other,
         }

@@ -17,7 +17,7 @@ use super::sweep::Colours;
 use super::system::{Block, own_block};
 use crate::operators::CHUNK;
 use crate::sparse::cholesky::FactorError;
-use crate::sparse::graph::elimination_order;
+use crate::sparse::graph::elimination;
 
 /// Up to so many bodies are solved for directly.
 pub(crate) const DIRECT: usize = 16_000;
@@ -66,13 +66,15 @@ impl Preconditioner {
         if coarse.count() <= direct {
             let (offsets, neighbours) = coarse.graph();
             let mut rank = vec![0; coarse.count()];
-            for (place, &cell) in elimination_order(&offsets, &neighbours).iter().enumerate() {
+            let elimination = elimination(&offsets, &neighbours, cancel).map_err(|_| FactorError::Cancelled)?;
+            for (place, &cell) in elimination.order.iter().enumerate() {
                 rank[cell as usize] = place as u32;
             }
             for cell in &mut cell_of {
                 *cell = rank[*cell as usize];
             }
             coarse = joints.of_cells(&cell_of);
+            coarse.block_ends = elimination.ends;
         }
         let below = Self::of(&coarse, direct, cancel).map_err(|error| match error {
             FactorError::Pivot(cell) => {

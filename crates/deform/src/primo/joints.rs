@@ -34,6 +34,8 @@ pub(crate) struct Joints {
     order: Vec<u32>,
     /// The sum of the solved prisms' areas.
     pub area: f64,
+    /// Where each block of prisms ends that is eliminated at once; empty: each by itself.
+    pub block_ends: Vec<u32>,
 }
 
 /// One joint seen from one of its prisms.
@@ -65,6 +67,14 @@ pub(crate) struct Material<'a> {
 }
 
 impl Joints {
+    /// Where each block of a matrix' columns ends, of which a prism has so many.
+    pub fn column_ends(&self, per_prism: usize) -> Vec<u32> {
+        if self.block_ends.is_empty() {
+            return (1..=self.count()).map(|end| (per_prism * end) as u32).collect();
+        }
+        self.block_ends.iter().map(|end| per_prism as u32 * end).collect()
+    }
+
     /// The joints of `prisms`, in their order.
     pub fn of(prisms: &Prisms, material: &Material) -> Self {
         let Material { surface, topology, .. } = *material;
@@ -101,6 +111,7 @@ impl Joints {
             sides,
             centres,
             order,
+            block_ends: Vec::new(),
             area: prisms.faces.iter().map(|&face| area(surface, face)).sum(),
         };
         joints.pin(prisms, material);
@@ -133,6 +144,7 @@ impl Joints {
             sides: Vec::new(),
             centres: members.iter().map(mean).collect(),
             order: Vec::new(),
+            block_ends: Vec::new(),
             area: self.area,
         };
         coarse.centres.extend_from_slice(&self.centres[count..]);

@@ -38,8 +38,6 @@ pub(crate) fn gauss_newton(joints: &Joints, pose: &Pose) -> ScaledMatrix {
         .collect();
     let mut matrix = ScaledMatrix {
         scale: Vec::with_capacity(DOF * rows.len()),
-        upper_offsets: vec![0],
-        upper_rows: Vec::new(),
         lower_offsets: vec![0],
         lower_rows: Vec::new(),
         lower_values: Vec::new(),
@@ -57,22 +55,18 @@ pub(crate) fn gauss_newton(joints: &Joints, pose: &Pose) -> ScaledMatrix {
     for (prism, row) in rows.iter().enumerate() {
         for k in 0..DOF {
             let first = (DOF * prism) as u32;
-            matrix.upper_rows.extend(first..first + k as u32);
             for l in k..DOF {
                 matrix.lower_rows.push(first + l as u32);
                 matrix.lower_values.push(row.own[l][k]);
             }
             for (other, block) in &row.others {
-                let first = DOF as u32 * other;
-                if (*other as usize) < prism {
-                    matrix.upper_rows.extend(first..first + DOF as u32);
-                } else {
+                if *other as usize > prism {
+                    let first = DOF as u32 * other;
                     matrix.lower_rows.extend(first..first + DOF as u32);
                     // H_ji = H_ijᵀ, so its column k is the row k of H_ij.
                     matrix.lower_values.extend_from_slice(&block[k]);
                 }
             }
-            matrix.upper_offsets.push(matrix.upper_rows.len() as u32);
             matrix.lower_offsets.push(matrix.lower_rows.len() as u32);
         }
     }
@@ -154,27 +148,20 @@ pub(crate) fn cross(m: DVec3) -> DMat3 {
 pub(crate) fn laplacian(joints: &Joints) -> ScaledMatrix {
     let mut matrix = ScaledMatrix {
         scale: Vec::with_capacity(joints.count()),
-        upper_offsets: vec![0],
-        upper_rows: Vec::new(),
         lower_offsets: vec![0],
         lower_rows: Vec::new(),
         lower_values: Vec::new(),
     };
     for prism in 0..joints.count() {
         let start = matrix.lower_rows.len();
-        let above = matrix.upper_rows.len();
         matrix.lower_rows.push(prism as u32);
         matrix.lower_values.push(0.0);
         for side in joints.sides(prism) {
             matrix.lower_values[start] += side.weight;
-            if side.other as usize >= joints.count() {
+            if !(prism + 1..joints.count()).contains(&(side.other as usize)) {
                 continue;
             }
-            if (side.other as usize) < prism {
-                if !matrix.upper_rows[above..].contains(&side.other) {
-                    matrix.upper_rows.push(side.other);
-                }
-            } else if let Some(place) = matrix.lower_rows[start + 1..].iter().position(|&row| row == side.other) {
+            if let Some(place) = matrix.lower_rows[start + 1..].iter().position(|&row| row == side.other) {
                 matrix.lower_values[start + 1 + place] -= side.weight;
             } else {
                 matrix.lower_rows.push(side.other);
@@ -185,7 +172,6 @@ pub(crate) fn laplacian(joints: &Joints) -> ScaledMatrix {
         matrix
             .scale
             .push(if diagonal > 0.0 { diagonal.sqrt().recip() } else { 1.0 });
-        matrix.upper_offsets.push(matrix.upper_rows.len() as u32);
         matrix.lower_offsets.push(matrix.lower_rows.len() as u32);
     }
     matrix.scale_values();

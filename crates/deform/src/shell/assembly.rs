@@ -27,28 +27,23 @@ pub(crate) fn assemble_shell(operator: &ShellOperator, columns: &[u32], column_o
         .collect();
     let mut plate = ScaledMatrix {
         scale: Vec::with_capacity(columns.len()),
-        upper_offsets: vec![0],
-        upper_rows: Vec::with_capacity(chunks.iter().map(|chunk| chunk.upper_rows.len()).sum()),
         lower_offsets: vec![0],
         lower_rows: Vec::with_capacity(chunks.iter().map(|chunk| chunk.lower_rows.len()).sum()),
         lower_values: Vec::with_capacity(chunks.iter().map(|chunk| chunk.lower_rows.len()).sum()),
     };
-    let (mut upper_end, mut lower_end) = (0, 0);
+    let mut lower_end = 0;
     for chunk in chunks {
         let mut first = 0;
-        for (upper, lower) in chunk.counts {
+        for lower in chunk.counts {
             // A vertex without any weight has an empty row: leave it to the factorisation to say so.
             let diagonal = chunk.lower_values[first];
             first += lower as usize;
             plate
                 .scale
                 .push(if diagonal > 0.0 { diagonal.sqrt().recip() } else { 1.0 });
-            upper_end += upper;
             lower_end += lower;
-            plate.upper_offsets.push(upper_end);
             plate.lower_offsets.push(lower_end);
         }
-        plate.upper_rows.extend(chunk.upper_rows);
         plate.lower_rows.extend(chunk.lower_rows);
         plate.lower_values.extend(chunk.lower_values);
     }
@@ -58,9 +53,8 @@ pub(crate) fn assemble_shell(operator: &ShellOperator, columns: &[u32], column_o
 
 #[derive(Default)]
 struct Chunk {
-    /// Entries above the diagonal, and on and below it, of each column.
-    counts: Vec<(u32, u32)>,
-    upper_rows: Vec<u32>,
+    /// Entries on and below the diagonal of each column.
+    counts: Vec<u32>,
     lower_rows: Vec<u32>,
     lower_values: Vec<f64>,
 }
@@ -75,21 +69,16 @@ fn assemble_chunk(
     let mut chunk = Chunk::default();
     let solved = |vertex: u32| column_of[vertex as usize] != CONSTRAINED;
     for column in range {
-        let before = (chunk.upper_rows.len(), chunk.lower_rows.len());
+        let before = chunk.lower_rows.len();
         // The diagonal is met first: each walk starts at the column's own vertex.
         for &(far, value) in expansion.column(operator, columns[column], solved) {
             let row = column_of[far as usize];
-            if (row as usize) < column {
-                chunk.upper_rows.push(row);
-            } else {
+            if row as usize >= column {
                 chunk.lower_rows.push(row);
                 chunk.lower_values.push(value);
             }
         }
-        chunk.counts.push((
-            (chunk.upper_rows.len() - before.0) as u32,
-            (chunk.lower_rows.len() - before.1) as u32,
-        ));
+        chunk.counts.push((chunk.lower_rows.len() - before) as u32);
     }
     chunk
 }
@@ -243,7 +232,6 @@ mod tests {
                 .count();
             assert!(filled <= seen);
         }
-        assert_eq!(plate.upper_rows.len() + columns.len(), plate.lower_rows.len());
     }
 
     #[test]

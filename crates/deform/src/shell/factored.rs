@@ -11,6 +11,7 @@ use crate::operators::CHUNK;
 use crate::shell::assembly::assemble_shell;
 use crate::shell::operator::ShellOperator;
 use crate::shell::refine::{Outcome, solve};
+use crate::sparse::Elimination;
 use crate::sparse::cholesky::{Factor, FactorError};
 use crate::sparse::matrix::CONSTRAINED;
 
@@ -47,15 +48,11 @@ const SHIFTS: [f64; 4] = [0.0, 1e-13, 1e-11, 1e-9];
 const TOLERANCE: f64 = 1e-7;
 
 impl Shell {
-    /// Factors the shell in which the surface vertices `order` are solved for, eliminated in that order; the
+    /// Factors the shell in which the vertices of `elimination` are solved for, eliminated in that order; the
     /// operator's Laplacian has full rows for them and their neighbours.
-    pub fn new(operator: ShellOperator, order: &[u32], cancel: &Cancel) -> Result<Self, ShellError> {
+    pub fn new(operator: ShellOperator, elimination: &Elimination, cancel: &Cancel) -> Result<Self, ShellError> {
         let laplacian = &operator.laplacian;
-        let columns: Vec<u32> = order
-            .iter()
-            .filter_map(|&vertex| laplacian.local(vertex))
-            .map(|local| local as u32)
-            .collect();
+        let columns = laplacian.locals(&elimination.order);
         let mut column_of = vec![CONSTRAINED; laplacian.vertices().len()];
         for (column, &local) in columns.iter().enumerate() {
             column_of[local as usize] = column as u32;
@@ -70,7 +67,7 @@ impl Shell {
         cancel.check().map_err(|_| ShellError::Cancelled)?;
         let mut failed = None;
         for shift in SHIFTS {
-            match Factor::of(&plate, shift, cancel) {
+            match Factor::of(&plate, &elimination.ends, shift, cancel) {
                 Ok(factor) => {
                     let scale = std::mem::take(&mut plate.scale);
                     return Ok(Self {
@@ -140,20 +137,21 @@ impl Shell {
         solve(self, d, self.contraction, cancel)
     }
 
-    /// Solves for the constant 1, compares, and keeps how fast refinement was.
-    pub fn check(&mut self, cancel: &Cancel) -> Result<(), ShellError> {
-        let mut ones = vec![[1.0]; self.operator.field_len()];
-        self.contraction = solve(self, &mut ones, 0.0, cancel).contraction;
+    /// Solves as [`Shell::solve`] and keeps how fast refinement was. The last function of `d` is 1 at every constrained
+    /// place, so its solution is known: where that is missed, the factor is no good.
+    pub fn check<const K: usize>(&mut self, d: &mut [[f64; K]], cancel: &Cancel) -> Result<f64, ShellError> {
+        let outcome = solve(self, d, 0.0, cancel);
+        self.contraction = outcome.contraction;
         cancel.check().map_err(|_| ShellError::Cancelled)?;
         let mut worst = (0.0, 0);
         for &local in &self.columns {
-            let error = (ones[local as usize][0] - 1.0).abs();
+            let error = (d[local as usize][K - 1] - 1.0).abs();
             if error > worst.0 || error.is_nan() {
                 worst = (error, local);
             }
         }
         if worst.0 <= TOLERANCE {
-            Ok(())
+            Ok(outcome.error)
         } else {
             Err(ShellError::Inaccurate {
                 vertex: self.operator.laplacian.vertices()[worst.1 as usize],

@@ -23,6 +23,9 @@ pub(crate) struct Plate {
     energy_blocks: Vec<[[f64; 4]; 4]>,
 }
 
+/// A handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
+pub(crate) type Prescribed = Vec<(u32, [f64; 4])>;
+
 /// How far off a solution may be, relative to its largest value.
 const TOLERANCE: f64 = 1e-7;
 
@@ -37,34 +40,46 @@ impl Plate {
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
-        let (net, solved) = (&partition.net, &partition.solved);
+        let solved = &partition.solved;
         let component_of = |vertex: u32| problem.topology.component(SurfaceVertex(vertex));
         let refuse = |error: ShellError| of_order(options, error.into_bind_error(component_of, solved.len()));
-        let order = ordering.restricted_on(net, solved);
+        let elimination = ordering.elimination(solved);
         cancel.check()?;
         progress.set(0.1);
-        let rows = bent_rows(net, solved, handles);
-        let laplacian = Laplacian::on(net, problem.stiffness, &rows, options.discretisation, &|_, _| 1.0);
-        let diagonal = bounding_box(&problem.surface.positions).map_or(0.0, |bounds| bounds.diagonal());
-        let mut operator = ShellOperator::new(laplacian, options, diagonal);
-        join(&mut operator, net, problem, options, &rows, diagonal);
-        let prescribed = prescribe(&mut operator, problem, partition, handles);
+        let (operator, prescribed) = operator(problem, options, partition, handles);
         cancel.check()?;
         progress.set(0.2);
-        let mut shell = Shell::new(operator, &order, cancel).map_err(refuse)?;
+        let mut shell = Shell::new(operator, &elimination, cancel).map_err(refuse)?;
         progress.set(0.7);
-        shell.check(cancel).map_err(refuse)?;
-        cancel.check()?;
-        progress.set(0.75);
-        let solved_locals: Vec<u32> = solved
-            .iter()
-            .filter_map(|&v| shell.operator.laplacian.local(v))
-            .map(|local| local as u32)
-            .collect();
-        let columns: Vec<Columns> = prescribed
-            .par_iter()
-            .map(|own| solve_handle(&shell, own, &prescribed, &solved_locals, cancel))
-            .collect::<Result<_, _>>()?;
+        let solved_locals = shell.operator.laplacian.locals(solved);
+        // The constant is solved for beside the first handle: one pass over the factor for both.
+        let mut columns = Vec::with_capacity(handles.len());
+        match prescribed.split_first() {
+            None => {
+                let mut ones = vec![[1.0]; shell.operator.field_len()];
+                shell.check(&mut ones, cancel).map_err(refuse)?;
+            }
+            Some((first, others)) => {
+                let mut d = vec![[0.0, 0.0, 0.0, 0.0, 1.0]; shell.operator.field_len()];
+                for &(place, [x, y, z, w]) in first {
+                    d[place as usize] = [x, y, z, w, 1.0];
+                }
+                let error = shell.check(&mut d, cancel).map_err(refuse)?;
+                columns.push(Columns::of(&shell, &d, first, &prescribed, &solved_locals, error));
+                progress.set(0.85);
+                let solve = |own: &Prescribed| {
+                    cancel.check()?;
+                    let mut d = vec![[0.0; 4]; shell.operator.field_len()];
+                    for &(place, coordinates) in own {
+                        d[place as usize] = coordinates;
+                    }
+                    let error = shell.solve(&mut d, cancel).error;
+                    cancel.check()?;
+                    Ok(Columns::of(&shell, &d, own, &prescribed, &solved_locals, error))
+                };
+                columns.extend(others.par_iter().map(solve).collect::<Result<Vec<_>, BindError>>()?);
+            }
+        }
         for column in &columns {
             if column.error.is_nan() || column.error > TOLERANCE {
                 let vertex = column.worst_vertex;
@@ -255,51 +270,62 @@ struct Columns {
     worst_vertex: u32,
 }
 
-fn solve_handle(
-    shell: &Shell,
-    own: &[(u32, [f64; 4])],
-    prescribed: &[Vec<(u32, [f64; 4])>],
-    solved_locals: &[u32],
-    cancel: &Cancel,
-) -> Result<Columns, BindError> {
-    cancel.check()?;
-    let operator = &shell.operator;
-    let first_spring = operator.laplacian.vertices().len();
-    let mut d = vec![[0.0; 4]; operator.field_len()];
-    for &(place, coordinates) in own {
-        d[place as usize] = coordinates;
-    }
-    let error = shell.solve(&mut d, cancel).error;
-    cancel.check()?;
-    let potential = operator.potential(&d);
-    let energy = |handle: &Vec<(u32, [f64; 4])>| {
-        let mut block = [[0.0; 4]; 4];
-        for &(place, coordinates) in handle {
-            let force = match (place as usize).checked_sub(first_spring) {
-                Some(spring) => operator.pull(spring, &d),
-                None => operator.force(place as usize, &potential),
-            };
-            for i in 0..4 {
-                for j in 0..4 {
-                    block[i][j] += coordinates[i] * force[j];
+impl Columns {
+    /// Of a solution whose first four functions are the handle's.
+    fn of<const K: usize>(
+        shell: &Shell,
+        d: &[[f64; K]],
+        own: &Prescribed,
+        prescribed: &[Prescribed],
+        solved_locals: &[u32],
+        error: f64,
+    ) -> Self {
+        let operator = &shell.operator;
+        let first_spring = operator.laplacian.vertices().len();
+        let potential = operator.potential(d);
+        let energy = |handle: &Prescribed| {
+            let mut block = [[0.0; 4]; 4];
+            for &(place, coordinates) in handle {
+                let force = match (place as usize).checked_sub(first_spring) {
+                    Some(spring) => operator.pull(spring, d),
+                    None => operator.force(place as usize, &potential),
+                };
+                for i in 0..4 {
+                    for j in 0..4 {
+                        block[i][j] += coordinates[i] * force[j];
+                    }
                 }
             }
+            block
+        };
+        let row = |&local: &u32| std::array::from_fn(|k| d[local as usize][k] as f32);
+        let worst_vertex = own.first().map_or(0, |&(place, _)| {
+            operator.laplacian.vertices()[operator.local_of(place as usize) as usize]
+        });
+        Self {
+            rows: solved_locals.iter().map(row).collect(),
+            energies: prescribed.iter().map(energy).collect(),
+            error,
+            worst_vertex,
         }
-        block
-    };
-    let rows = solved_locals
-        .iter()
-        .map(|&local| d[local as usize].map(|value| value as f32))
-        .collect();
-    let worst_vertex = own.first().map_or(0, |&(place, _)| {
-        operator.laplacian.vertices()[operator.local_of(place as usize) as usize]
-    });
-    Ok(Columns {
-        rows,
-        energies: prescribed.iter().map(energy).collect(),
-        error,
-        worst_vertex,
-    })
+    }
+}
+
+/// The problem's operator, and each handle's places in a field and their coordinates.
+pub(crate) fn operator(
+    problem: &Problem,
+    options: &Bilaplacian,
+    partition: &Partition,
+    handles: &[Handle],
+) -> (ShellOperator, Vec<Prescribed>) {
+    let net = &partition.net;
+    let rows = bent_rows(net, &partition.solved, handles);
+    let laplacian = Laplacian::on(net, problem.stiffness, &rows, options.discretisation, &|_, _| 1.0);
+    let diagonal = bounding_box(&problem.surface.positions).map_or(0.0, |bounds| bounds.diagonal());
+    let mut operator = ShellOperator::new(laplacian, options, diagonal);
+    join(&mut operator, net, problem, options, &rows, diagonal);
+    let prescribed = prescribe(&mut operator, problem, partition, handles);
+    (operator, prescribed)
 }
 
 /// The vertices where L d can differ from zero: solved ones, handles and their neighbours, ascending. Their rows are

@@ -1,31 +1,26 @@
 //! The sparse Cholesky factor L Lᵀ, supernodal, in the order that the matrix already has.
 //!
-//! Symbolic and numeric parts are two steps, since the pattern outlives the values: faer analyses, `multifrontal`
-//! factors over the subtrees that `forest` cuts, `triangular` solves over the same.
+//! The order comes in blocks of columns (`dissection`, `leaf`), which are the supernodes. `symbolic` finds their rows,
+//! `multifrontal` factors over the subtrees that `forest` cuts, `triangular` solves over the same.
 //!
-//! Measured on horse.ply and once subdivided (45,797 and 183,208 free vertices, one core of a busy machine, processor
-//! time) with faer's own factorisations: 114 and 840 ms supernodal, 720 and 12,300 ms simplicial; solving for three
-//! right-hand sides 18 and 98 ms supernodal, 12 and 74 ms simplicial. A frame solves nothing, so the factorisation
-//! decides. Other relaxations of the supernodes than faer's changed fill (6.4 to 6.8 million numbers) and times by
-//! under a tenth.
+//! A simplicial factorisation of the same systems took 720 and 12,300 ms at 45,797 and 183,208 free vertices where a
+//! supernodal one took 114 and 840 (horse.ply and once subdivided, one core).
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::SymbolicSupernodalParams;
-use faer::sparse::linalg::cholesky::{simplicial, supernodal};
 use pliant_mesh::Cancel;
 
+use crate::sparse::aligned::Aligned;
 use crate::sparse::forest::Forest;
 use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::substitution::{Real, Substitution};
+use crate::sparse::symbolic::Symbolic;
 use crate::sparse::{multifrontal, triangular};
 
 /// A factor of the scaled matrix.
 #[derive(Debug)]
 pub(crate) struct Factor {
-    symbolic: supernodal::SymbolicSupernodalCholesky<u32>,
+    symbolic: Symbolic,
     forest: Forest,
-    values: Vec<f64>,
+    values: Aligned,
 }
 
 /// Why there is no factor.
@@ -40,70 +35,66 @@ pub(crate) enum FactorError {
 }
 
 impl Factor {
-    /// Factors the matrix with `shift` added to its unit diagonal.
-    pub fn of(plate: &ScaledMatrix, shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
-        let symbolic = analyse(plate).ok_or(FactorError::Memory)?;
-        // Whether it fits; then zeros from the system, which are only touched where the factor is written.
-        Vec::<f64>::new()
-            .try_reserve_exact(symbolic.len_val())
-            .map_err(|_| FactorError::Memory)?;
-        let values = vec![0.0; symbolic.len_val()];
-        let forest = Forest::of(&symbolic);
-        let mut factor = Self {
-            symbolic,
-            forest,
-            values,
-        };
+    /// Factors the matrix, whose columns stand in blocks that end at `ends`, with `shift` added to its unit diagonal.
+    pub fn of(plate: &ScaledMatrix, ends: &[u32], shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
+        let mut factor = Self::analysed(plate, ends)?;
         factor.fill(plate, shift, cancel)?;
         Ok(factor)
     }
 
-    /// Factors again, for other values on the same pattern.
+    /// What the factor holds, all zero yet.
+    pub fn analysed(plate: &ScaledMatrix, ends: &[u32]) -> Result<Self, FactorError> {
+        let symbolic = Symbolic::of(plate, ends);
+        let values = Aligned::zeros(symbolic.stored()).ok_or(FactorError::Memory)?;
+        let forest = Forest::of(&symbolic);
+        Ok(Self {
+            symbolic,
+            forest,
+            values,
+        })
+    }
+
+    /// Factors into what [`Factor::analysed`] left empty.
     pub fn fill(&mut self, plate: &ScaledMatrix, shift: f64, cancel: &Cancel) -> Result<(), FactorError> {
-        multifrontal::factor(plate, shift, &self.symbolic, &self.forest, &mut self.values, cancel)
+        multifrontal::factor(
+            plate,
+            shift,
+            &self.symbolic,
+            &self.forest,
+            self.values.get_mut(),
+            cancel,
+        )
     }
 
     /// Its values laid out for solving again and again.
     pub fn substitution<T: Real>(&self) -> Substitution<T> {
-        Substitution::new(&self.symbolic, &self.forest, &self.values)
+        Substitution::new(&self.symbolic, &self.forest, self.values.get())
     }
 
     /// How many numbers the factor stores.
     pub fn stored(&self) -> usize {
-        self.values.len()
+        self.symbolic.stored()
+    }
+
+    /// How many columns it has.
+    pub fn column_count(&self) -> usize {
+        self.symbolic.column_count()
+    }
+
+    /// Multiplications and additions of a factorisation.
+    pub fn work(&self) -> f64 {
+        (0..self.symbolic.block_count()).map(|s| self.symbolic.work(s)).sum()
     }
 
     #[cfg(test)]
-    pub fn parts(&self) -> (&supernodal::SymbolicSupernodalCholesky<u32>, &Forest) {
+    pub fn parts(&self) -> (&Symbolic, &Forest) {
         (&self.symbolic, &self.forest)
     }
 
     /// Solves for K right-hand sides in place.
     pub fn solve<const K: usize>(&self, x: &mut [[f64; K]]) {
-        triangular::solve_in_place(&self.symbolic, &self.forest, &self.values, x);
+        triangular::solve_in_place(&self.symbolic, &self.forest, self.values.get(), x);
     }
-}
-
-fn analyse(plate: &ScaledMatrix) -> Option<supernodal::SymbolicSupernodalCholesky<u32>> {
-    let count = plate.scale.len();
-    let pattern =
-        SymbolicSparseColMatRef::new_unsorted_checked(count, count, &plate.upper_offsets, None, &plate.upper_rows);
-    let mut tree = vec![0_i32; count];
-    let mut column_counts = vec![0_u32; count];
-    let scratch = simplicial::prefactorize_symbolic_cholesky_scratch::<u32>(count, plate.upper_rows.len());
-    let mut memory =
-        MemBuffer::try_new(scratch.or(supernodal::factorize_supernodal_symbolic_cholesky_scratch::<u32>(count)))
-            .ok()?;
-    let tree =
-        simplicial::prefactorize_symbolic_cholesky(&mut tree, &mut column_counts, pattern, MemStack::new(&mut memory));
-    supernodal::factorize_supernodal_symbolic_cholesky(
-        pattern,
-        tree,
-        &column_counts,
-        MemStack::new(&mut memory),
-        SymbolicSupernodalParams::default(),
-    )
-    .ok()
 }
 
 #[cfg(test)]
@@ -115,33 +106,33 @@ pub(crate) mod tests {
     use crate::Ordering;
     use crate::shell::assembly::assemble_shell;
     use crate::shell::operator::ShellOperator;
+    use crate::sparse::Elimination;
     use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
-    use pliant_mesh::{Cancel, Drawn, Progress, Topology, shapes};
+    use pliant_mesh::{Cancel, Drawn, Progress, shapes};
 
     /// The plate's factor with every ninth vertex held, in the order that binding takes.
     pub(crate) fn factor_of(drawn: Drawn) -> Factor {
-        let plate = plate_of(drawn, |topology, columns| {
-            let ordering = Ordering::of(topology, 2, &Progress::new(), &Cancel::new()).unwrap();
-            ordering.restricted(topology, &columns)
-        });
-        Factor::of(&plate, 0.0, &Cancel::new()).unwrap()
+        let (plate, ends) = plate_of(drawn);
+        Factor::of(&plate, &ends, 0.0, &Cancel::new()).unwrap()
     }
 
-    fn plate() -> ScaledMatrix {
-        plate_of(shapes::torus(14, 9), |_, columns| columns)
+    fn plate() -> (ScaledMatrix, Vec<u32>) {
+        plate_of(shapes::torus(14, 9))
     }
 
-    fn plate_of(drawn: Drawn, order: impl FnOnce(&Topology, Vec<u32>) -> Vec<u32>) -> ScaledMatrix {
+    fn plate_of(drawn: Drawn) -> (ScaledMatrix, Vec<u32>) {
         let model = shapes::model(drawn);
         let count = model.surface.positions.len();
         let laplacian = Laplacian::of(&model.surface, &model.topology, &vec![1.0; count]);
-        let columns = order(&model.topology, (0..count as u32).filter(|v| v % 9 != 0).collect());
+        let ordering = Ordering::of(&model.topology, 2, &Progress::new(), &Cancel::new()).unwrap();
+        let solved: Vec<u32> = (0..count as u32).filter(|v| v % 9 != 0).collect();
+        let Elimination { order: columns, ends } = ordering.elimination(&solved);
         let mut column_of = vec![CONSTRAINED; count];
         for (column, &vertex) in columns.iter().enumerate() {
             column_of[vertex as usize] = column as u32;
         }
         let operator = ShellOperator::new(laplacian, &Bilaplacian::default(), 1.0);
-        assemble_shell(&operator, &columns, &column_of)
+        (assemble_shell(&operator, &columns, &column_of), ends)
     }
 
     fn product<const K: usize>(plate: &ScaledMatrix, x: &[[f64; K]]) -> Vec<[f64; K]> {
@@ -161,8 +152,8 @@ pub(crate) mod tests {
     }
 
     fn solving_undoes_multiplying<const K: usize>() {
-        let plate = plate();
-        let factor = Factor::of(&plate, 0.0, &Cancel::new()).unwrap();
+        let (plate, ends) = plate();
+        let factor = Factor::of(&plate, &ends, 0.0, &Cancel::new()).unwrap();
         let x: Vec<[f64; K]> = (0..plate.scale.len())
             .map(|i| std::array::from_fn(|k| ((i * 7 + k * 3) % 11) as f64 - 5.0))
             .collect();
@@ -184,10 +175,10 @@ pub(crate) mod tests {
 
     #[test]
     fn a_matrix_that_is_not_positive_definite_is_refused_with_its_column() {
-        let mut plate = plate();
+        let (mut plate, ends) = plate();
         let diagonal = plate.lower_offsets[5] as usize;
         plate.lower_values[diagonal] = -1.0;
-        let refused = Factor::of(&plate, 0.0, &Cancel::new()).err();
+        let refused = Factor::of(&plate, &ends, 0.0, &Cancel::new()).err();
         assert!(
             matches!(refused, Some(super::FactorError::Pivot(column)) if column >= 5),
             "{refused:?}"
@@ -199,7 +190,7 @@ pub(crate) mod tests {
         let cancel = Cancel::new();
         cancel.cancel();
         assert_eq!(
-            Factor::of(&plate(), 0.0, &cancel).err(),
+            Factor::of(&plate().0, &plate().1, 0.0, &cancel).err(),
             Some(super::FactorError::Cancelled)
         );
     }
@@ -207,17 +198,14 @@ pub(crate) mod tests {
     #[test]
     fn the_bits_of_factor_and_solution_do_not_depend_on_the_number_of_threads() {
         // Large enough for tasks, and for supernodes of more than one block.
-        let plate = plate_of(shapes::icosphere(5), |topology, columns| {
-            let ordering = Ordering::of(topology, 2, &Progress::new(), &Cancel::new()).unwrap();
-            ordering.restricted(topology, &columns)
-        });
+        let (plate, ends) = plate_of(shapes::icosphere(5));
         let outcome = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let factor = Factor::of(&plate, 0.0, &Cancel::new()).unwrap();
+                let factor = Factor::of(&plate, &ends, 0.0, &Cancel::new()).unwrap();
                 let mut x: Vec<[f64; 3]> = (0..plate.scale.len()).map(|i| [1.0, i as f64, -0.3]).collect();
                 factor.solve(&mut x);
-                (factor.values, x)
+                (factor.values.get().to_vec(), x)
             })
         };
         let (values, x) = outcome(1);

@@ -6,21 +6,16 @@
 
 use std::ops::Range;
 
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+use crate::sparse::symbolic::{ROOT, Symbolic};
 
 /// A task has at most one over this of the whole work. Fewer, larger tasks leave less to the top, whose supernodes run
 /// one by one: on two cores at 183,208 free vertices, tasks and top took 413 + 135 ms at 3, 377 + 213 at 5, 364 + 250 at
 /// 8 and 270 + 330 at 24.
 const SHARE: f64 = 4.0;
 
-/// No parent: a root.
-pub(crate) const ROOT: u32 = u32::MAX;
-
 /// The supernodes' tree and its cut.
 #[derive(Debug)]
 pub(crate) struct Forest {
-    /// The parent of each supernode, [`ROOT`] at a root.
-    pub parent: Vec<u32>,
     /// Runs of supernodes, ascending and without gaps: a task's subtree, or one supernode of the top.
     pub parts: Vec<Part>,
     /// The supernodes' patterns, one after the other as the factor has them, in the coordinates of their part: in a
@@ -39,28 +34,18 @@ pub(crate) enum Part {
 
 impl Forest {
     /// Cuts the tree of the factor's supernodes.
-    pub fn of(symbolic: &SymbolicSupernodalCholesky<u32>) -> Self {
-        let count = symbolic.n_supernodes();
-        let mut parent = vec![ROOT; count];
-        let mut work = vec![0.0; count];
+    pub fn of(symbolic: &Symbolic) -> Self {
+        let count = symbolic.block_count();
+        let mut work: Vec<f64> = (0..count).map(|s| symbolic.work(s)).collect();
+        let total: f64 = work.iter().sum();
         let mut first: Vec<usize> = (0..count).collect();
         let mut size = vec![1; count];
-        let supernode_of = |column: u32| symbolic.supernode_end().partition_point(|&end| end <= column);
-        let mut total = 0.0;
-        for s in 0..count {
-            let pattern = pattern(symbolic, s);
-            let width = (symbolic.supernode_end()[s] - symbolic.supernode_begin()[s]) as f64;
-            let height = width + pattern.len() as f64;
-            let own = width * height * height;
-            work[s] += own;
-            total += own;
-            if let Some(&row) = pattern.first() {
-                let above = supernode_of(row);
-                parent[s] = above as u32;
-                work[above] += work[s];
-                first[above] = first[above].min(first[s]);
-                size[above] += size[s];
-            }
+        let parent = &symbolic.parent;
+        for s in (0..count).filter(|&s| parent[s] != ROOT) {
+            let above = parent[s] as usize;
+            work[above] += work[s];
+            first[above] = first[above].min(first[s]);
+            size[above] += size[s];
         }
         let small = |s: usize| work[s] * SHARE <= total;
         let mut parts = Vec::new();
@@ -76,24 +61,24 @@ impl Forest {
         }
         parts.extend((next..count).map(Part::Top));
         let places = places(symbolic, &parts);
-        Self { parent, parts, places }
+        Self { parts, places }
     }
 }
 
-fn places(symbolic: &SymbolicSupernodalCholesky<u32>, parts: &[Part]) -> Vec<u32> {
-    let mut places = symbolic.row_idx().to_vec();
-    let mut outside = vec![0; symbolic.supernode_end().last().map_or(0, |&end| end as usize)];
+fn places(symbolic: &Symbolic, parts: &[Part]) -> Vec<u32> {
+    let mut places = symbolic.rows.clone();
+    let mut outside = vec![0; symbolic.column_count()];
     for part in parts {
         let Part::Task(range) = part else { continue };
         let (start, end) = (
-            columns(symbolic, range.start).start as u32,
-            columns(symbolic, range.end - 1).end as u32,
+            symbolic.columns(range.start).start as u32,
+            symbolic.columns(range.end - 1).end as u32,
         );
-        for (place, &row) in (end - start..).zip(pattern(symbolic, range.end - 1)) {
+        for (place, &row) in (end - start..).zip(symbolic.pattern(range.end - 1)) {
             outside[row as usize] = place;
         }
         for s in range.clone() {
-            for place in &mut places[pattern_range(symbolic, s)] {
+            for place in &mut places[symbolic.pattern_range(s)] {
                 let row = *place;
                 *place = if row < end { row - start } else { outside[row as usize] };
             }
@@ -102,27 +87,12 @@ fn places(symbolic: &SymbolicSupernodalCholesky<u32>, parts: &[Part]) -> Vec<u32
     places
 }
 
-/// Where a supernode's pattern stands among all of them.
-pub(crate) fn pattern_range(symbolic: &SymbolicSupernodalCholesky<u32>, s: usize) -> Range<usize> {
-    let first = symbolic.col_ptr_for_row_idx()[s] as usize;
-    first..first + symbolic.nnz_per_super()[s] as usize
-}
-
-/// The rows below a supernode's own columns, ascending.
-pub(crate) fn pattern(symbolic: &SymbolicSupernodalCholesky<u32>, s: usize) -> &[u32] {
-    &symbolic.row_idx()[pattern_range(symbolic, s)]
-}
-
-/// A supernode's columns.
-pub(crate) fn columns(symbolic: &SymbolicSupernodalCholesky<u32>, s: usize) -> Range<usize> {
-    symbolic.supernode_begin()[s] as usize..symbolic.supernode_end()[s] as usize
-}
-
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
-    use super::{Part, ROOT, columns, pattern};
+    use super::Part;
     use crate::sparse::cholesky::tests::factor_of;
+    use crate::sparse::symbolic::ROOT;
     use pliant_mesh::shapes;
 
     #[test]
@@ -145,20 +115,20 @@ mod tests {
                 if matches!(part, Part::Task(_)) {
                     tasks += 1;
                     for s in range.clone() {
-                        let parent = forest.parent[s];
+                        let parent = symbolic.parent[s];
                         let is_root = s + 1 == range.end;
                         assert!(is_root || (parent as usize) < range.end, "{name}");
                         // Nothing below the columns of another task: what lies outside is in the root's pattern.
-                        let outside = pattern(symbolic, range.end - 1);
-                        let end = columns(symbolic, range.end - 1).end;
-                        let beyond = pattern(symbolic, s).iter().filter(|row| **row as usize >= end);
+                        let outside = symbolic.pattern(range.end - 1);
+                        let end = symbolic.columns(range.end - 1).end;
+                        let beyond = symbolic.pattern(s).iter().filter(|row| **row as usize >= end);
                         assert!(is_root || beyond.clone().all(|row| outside.contains(row)), "{name}");
                     }
                 }
             }
-            assert_eq!(next, symbolic.n_supernodes(), "{name}");
-            assert!(tasks > 1 && forest.parent.contains(&ROOT), "{name}: {tasks}");
-            assert!((0..next).all(|s| pattern(symbolic, s).is_sorted()), "{name}");
+            assert_eq!(next, symbolic.block_count(), "{name}");
+            assert!(tasks > 1 && symbolic.parent.contains(&ROOT), "{name}: {tasks}");
+            assert!((0..next).all(|s| symbolic.pattern(s).is_sorted()), "{name}");
         }
     }
 }

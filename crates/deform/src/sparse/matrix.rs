@@ -4,15 +4,11 @@ use rayon::prelude::*;
 
 use crate::operators::CHUNK;
 
-/// The scaled matrix S A S: the pattern above its diagonal and the values on and below it.
+/// The scaled matrix S A S: the values on and below its diagonal.
 #[derive(Debug)]
 pub(crate) struct ScaledMatrix {
     /// S: one over the root of A's diagonal, one a column.
     pub scale: Vec<f64>,
-    /// Column starts of `upper_rows`.
-    pub upper_offsets: Vec<u32>,
-    /// Rows strictly above the diagonal.
-    pub upper_rows: Vec<u32>,
     /// Column starts of `lower_rows` and `lower_values`.
     pub lower_offsets: Vec<u32>,
     /// Rows on and below the diagonal; the diagonal comes first in its column.

@@ -7,30 +7,30 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
+use crate::sparse::aligned::{Aligned, LINE};
 use crate::sparse::cholesky::FactorError;
-use crate::sparse::forest::{Forest, Part, columns, pattern};
+use crate::sparse::forest::{Forest, Part};
 use crate::sparse::front::eliminate;
 use crate::sparse::matrix::ScaledMatrix;
+use crate::sparse::symbolic::Symbolic;
 
 /// What is factored.
 #[derive(Clone, Copy)]
 struct Job<'a> {
     plate: &'a ScaledMatrix,
     shift: f64,
-    symbolic: &'a SymbolicSupernodalCholesky<u32>,
-    forest: &'a Forest,
+    symbolic: &'a Symbolic,
     cancel: &'a Cancel,
 }
 
-/// Factors the matrix, with `shift` added to its unit diagonal, into `values`.
+/// Factors the matrix, with `shift` added to its unit diagonal, into `values`, which are zero.
 pub(crate) fn factor(
     plate: &ScaledMatrix,
     shift: f64,
-    symbolic: &SymbolicSupernodalCholesky<u32>,
+    symbolic: &Symbolic,
     forest: &Forest,
     values: &mut [f64],
     cancel: &Cancel,
@@ -39,7 +39,6 @@ pub(crate) fn factor(
         plate,
         shift,
         symbolic,
-        forest,
         cancel,
     };
     let rooms = Mutex::new(Vec::new());
@@ -47,8 +46,7 @@ pub(crate) fn factor(
     let mut top = Vec::new();
     let mut rest = values;
     let mut take = |first: usize, end: usize| {
-        let starts = symbolic.col_ptr_for_val();
-        let (slice, tail) = std::mem::take(&mut rest).split_at_mut((starts[end] - starts[first]) as usize);
+        let (slice, tail) = std::mem::take(&mut rest).split_at_mut(symbolic.values(first..end).len());
         rest = tail;
         slice
     };
@@ -65,7 +63,7 @@ pub(crate) fn factor(
             let pooled = rooms.lock().unwrap_or_else(PoisonError::into_inner).pop();
             let mut room = pooled.unwrap_or_else(|| Room::new(plate.scale.len()));
             for s in range {
-                let own = columns(symbolic, s).len() * (columns(symbolic, s).len() + pattern(symbolic, s).len());
+                let own = symbolic.columns(s).len() * (symbolic.columns(s).len() + symbolic.pattern(s).len());
                 let (slice, tail) = values.split_at_mut(own);
                 values = tail;
                 job.supernode(s, slice, &mut room)?;
@@ -101,7 +99,6 @@ struct Left {
 struct Room {
     /// A row's place in the present supernode.
     place: Vec<u32>,
-    panel: Aligned,
     /// What children left, in postorder: the last ones are the next supernode's.
     pending: Vec<Left>,
     spare: Vec<Aligned>,
@@ -112,7 +109,6 @@ impl Room {
     fn new(column_count: usize) -> Self {
         Self {
             place: vec![0; column_count],
-            panel: Aligned::default(),
             pending: Vec::new(),
             spare: Vec::new(),
             places: Vec::new(),
@@ -120,38 +116,9 @@ impl Room {
     }
 }
 
-/// Columns start on lines of this many numbers.
-const LINE: usize = 8;
-
+/// The distance between a square's columns: each starts on a line.
 fn stride(height: usize) -> usize {
     height.next_multiple_of(LINE)
-}
-
-/// Numbers that start on a cache line: kernels treat the first few apart according to where they lie, and that must
-/// not differ from run to run.
-#[derive(Default)]
-struct Aligned {
-    numbers: Vec<f64>,
-    first: usize,
-    len: usize,
-}
-
-impl Aligned {
-    /// `len` zeros.
-    fn clear(&mut self, len: usize) {
-        self.numbers.clear();
-        self.numbers.resize(len + LINE, 0.0);
-        self.first = self.numbers.as_ptr().align_offset(64).min(LINE);
-        self.len = len;
-    }
-
-    fn get(&self) -> &[f64] {
-        &self.numbers[self.first..self.first + self.len]
-    }
-
-    fn get_mut(&mut self) -> &mut [f64] {
-        &mut self.numbers[self.first..self.first + self.len]
-    }
 }
 
 impl Job<'_> {
@@ -160,20 +127,19 @@ impl Job<'_> {
         if self.cancel.is_cancelled() {
             return Err(FactorError::Cancelled);
         }
-        let own = columns(self.symbolic, s);
-        let below = pattern(self.symbolic, s);
+        let own = self.symbolic.columns(s);
+        let below = self.symbolic.pattern(s);
         let (width, size) = (own.len(), below.len());
         let height = width + size;
-        let (panel_stride, square_stride) = (stride(height), stride(size));
+        let square_stride = stride(size);
         for (i, &row) in below.iter().enumerate() {
             room.place[row as usize] = (width + i) as u32;
         }
         for (i, column) in own.clone().enumerate() {
             room.place[column] = i as u32;
         }
-        room.panel.clear(width * panel_stride);
-        let panel = room.panel.get_mut();
-        for (column, target) in own.clone().zip(panel.chunks_mut(panel_stride)) {
+        let panel = values;
+        for (column, target) in own.clone().zip(panel.chunks_mut(height)) {
             let entries = self.plate.lower_offsets[column] as usize..self.plate.lower_offsets[column + 1] as usize;
             for entry in entries {
                 let row = self.plate.lower_rows[entry] as usize;
@@ -185,18 +151,18 @@ impl Job<'_> {
         square.clear(size * square_stride);
         // In postorder they are the last ones; in any other order they are somewhere.
         for pending in (0..room.pending.len()).rev() {
-            if self.forest.parent[room.pending[pending].supernode] as usize != s {
+            if self.symbolic.parent[room.pending[pending].supernode] as usize != s {
                 continue;
             }
             let child = room.pending.remove(pending);
-            let rows = pattern(self.symbolic, child.supernode);
+            let rows = self.symbolic.pattern(child.supernode);
             room.places.clear();
             room.places.extend(rows.iter().map(|&row| room.place[row as usize]));
             add_child(
                 &room.places,
                 child.square.get(),
                 width,
-                (panel, panel_stride),
+                (panel, height),
                 (square.get_mut(), square_stride),
             );
             room.spare.push(child.square);
@@ -205,7 +171,7 @@ impl Job<'_> {
             panel,
             height,
             width,
-            panel_stride,
+            height,
             square.get_mut(),
             square_stride,
             self.cancel,
@@ -214,9 +180,6 @@ impl Job<'_> {
             FactorError::Pivot(place) => FactorError::Pivot(own.start + place),
             other => other,
         })?;
-        for (target, column) in values.chunks_mut(height).zip(panel.chunks(panel_stride)) {
-            target.copy_from_slice(&column[..height]);
-        }
         if size > 0 {
             room.pending.push(Left { supernode: s, square });
         } else {

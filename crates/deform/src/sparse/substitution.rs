@@ -7,11 +7,11 @@
 
 use std::ops::{Add, Mul, Range, Sub};
 
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::sparse::forest::{Forest, Part, columns, pattern, pattern_range};
+use crate::sparse::forest::{Forest, Part};
+use crate::sparse::symbolic::Symbolic;
 
 /// A precision to solve in.
 pub(crate) trait Real:
@@ -90,19 +90,18 @@ type Rows<T> = Vec<Row<T>>;
 
 impl<T: Real> Substitution<T> {
     /// Copies a factor's values.
-    pub fn new(symbolic: &SymbolicSupernodalCholesky<u32>, forest: &Forest, values: &[f64]) -> Self {
-        let starts = symbolic.col_ptr_for_val();
-        let mut first_of = vec![0; symbolic.n_supernodes()];
+    pub fn new(symbolic: &Symbolic, forest: &Forest, values: &[f64]) -> Self {
+        let mut first_of = vec![0; symbolic.block_count()];
         let (mut tasks, mut above) = (Vec::new(), Vec::new());
         for part in &forest.parts {
             match part {
                 Part::Task(range) => {
-                    let own = columns(symbolic, range.start).start..columns(symbolic, range.end - 1).end;
+                    let own = symbolic.columns(range.start).start..symbolic.columns(range.end - 1).end;
                     first_of[range.clone()].fill(own.start);
                     tasks.push(Task {
                         nodes: range.clone(),
                         columns: own,
-                        outside: pattern(symbolic, range.end - 1).to_vec(),
+                        outside: symbolic.pattern(range.end - 1).to_vec(),
                     });
                 }
                 Part::Top(s) => above.push(*s),
@@ -111,8 +110,8 @@ impl<T: Real> Substitution<T> {
         let mut nodes = Vec::with_capacity(first_of.len());
         let mut copied = Vec::with_capacity(values.len());
         for (s, &first) in first_of.iter().enumerate() {
-            let own = columns(symbolic, s);
-            let below = pattern_range(symbolic, s);
+            let own = symbolic.columns(s);
+            let below = symbolic.pattern_range(s);
             nodes.push(Node {
                 start: (own.start - first) as u32,
                 width: own.len() as u32,
@@ -120,7 +119,7 @@ impl<T: Real> Substitution<T> {
                 values: copied.len(),
             });
             let height = own.len() + below.len();
-            let node = &values[starts[s] as usize..starts[s + 1] as usize];
+            let node = &values[symbolic.values(s..s + 1)];
             copy_node(node, own.len(), height, &mut copied);
         }
         Self {
@@ -412,7 +411,7 @@ mod tests {
             let factor = factor_of(drawn);
             let laid_out = factor.substitution::<T>();
             let (symbolic, _) = factor.parts();
-            let count = symbolic.supernode_end().last().map_or(0, |&end| end as usize);
+            let count = symbolic.column_count();
             let mut expected: Vec<[f64; 3]> = (0..count).map(|i| [1.0, (i % 7) as f64, -0.3]).collect();
             let mut found: Vec<Row<T>> = expected
                 .iter()

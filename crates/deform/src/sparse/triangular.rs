@@ -1,25 +1,22 @@
 //! Solving with a supernodal factor, several right-hand sides at once.
 //!
-//! The limit is memory: each solve reads the factor twice. So the right-hand sides stand side by side (`[f64; K]` a
-//! row), each entry of the factor is used for all of them while it is in a register, and its columns are read in the
-//! order in which they lie. The subtrees that `forest` cuts are solved beside each other, each on a copy of its rows
+//! The limit is memory: each solve reads the factor twice. So its columns are read in the order in which they lie, and
+//! used for all right-hand sides while they are in the cache: a supernode's rows are gathered, one field after the other,
+//! for `kernels`. The subtrees that `forest` cuts are solved beside each other, each on a copy of its rows
 //! followed by those that it changes outside; above them it goes on one by one. faer's own parallel solve was 3 to 40
-//! times slower than its sequential one on such factors. Loops compiled for wider vectors gained nothing.
+//! times slower than its sequential one on such factors.
 
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
+use pulp::Arch;
 use rayon::prelude::*;
 
-use crate::sparse::forest::{Forest, Part, columns, pattern, pattern_range};
+use crate::sparse::forest::{Forest, Part};
+use crate::sparse::kernels;
+use crate::sparse::symbolic::Symbolic;
 
 /// Solves L Lᵀ x = b in place.
 ///
 /// `values` are the factor's, `x` has one row a column of the factor.
-pub(crate) fn solve_in_place<const K: usize>(
-    symbolic: &SymbolicSupernodalCholesky<u32>,
-    forest: &Forest,
-    values: &[f64],
-    x: &mut [[f64; K]],
-) {
+pub(crate) fn solve_in_place<const K: usize>(symbolic: &Symbolic, forest: &Forest, values: &[f64], x: &mut [[f64; K]]) {
     let factor = Stored {
         symbolic,
         forest,
@@ -33,8 +30,8 @@ pub(crate) fn solve_in_place<const K: usize>(
             Part::Top(_) => None,
         })
         .collect();
-    let own = |task: &std::ops::Range<usize>| columns(symbolic, task.start).start..columns(symbolic, task.end - 1).end;
-    let outside = |task: &std::ops::Range<usize>| pattern(symbolic, task.end - 1);
+    let own = |task: &std::ops::Range<usize>| symbolic.columns(task.start).start..symbolic.columns(task.end - 1).end;
+    let outside = |task: &std::ops::Range<usize>| symbolic.pattern(task.end - 1);
     let mut parts: Vec<Vec<[f64; K]>> = tasks
         .par_iter()
         .with_max_len(1)
@@ -43,7 +40,7 @@ pub(crate) fn solve_in_place<const K: usize>(
             let mut part = Vec::with_capacity(own.len() + outside(task).len());
             part.extend_from_slice(&x[own.clone()]);
             part.resize(own.len() + outside(task).len(), [0.0; K]);
-            let mut below = room(symbolic, task.clone());
+            let mut below = room::<K>(symbolic, task.clone());
             for s in task.clone() {
                 forward(&factor.supernode(s, own.start), &mut part, &mut below);
             }
@@ -62,7 +59,7 @@ pub(crate) fn solve_in_place<const K: usize>(
         Part::Top(s) => Some(*s),
         Part::Task(_) => None,
     });
-    let mut below = room(symbolic, 0..symbolic.n_supernodes());
+    let mut below = room::<K>(symbolic, 0..symbolic.block_count());
     for s in top.clone() {
         forward(&factor.supernode(s, 0), x, &mut below);
     }
@@ -78,7 +75,7 @@ pub(crate) fn solve_in_place<const K: usize>(
             for (&row, value) in outside(task).iter().zip(&mut part[own.len()..]) {
                 *value = x[row as usize];
             }
-            let mut below = room(symbolic, task.clone());
+            let mut below = room::<K>(symbolic, task.clone());
             for s in task.clone().rev() {
                 backward(&factor.supernode(s, own.start), part, &mut below);
             }
@@ -89,18 +86,17 @@ pub(crate) fn solve_in_place<const K: usize>(
     }
 }
 
-/// Room for the longest pattern among these supernodes: most tasks are small, and so is theirs.
-fn room<const K: usize>(
-    symbolic: &SymbolicSupernodalCholesky<u32>,
-    supernodes: std::ops::Range<usize>,
-) -> Vec<[f64; K]> {
-    let widest = symbolic.nnz_per_super()[supernodes].iter().copied().max();
-    vec![[0.0; K]; widest.unwrap_or(0) as usize]
+/// Room for the K fields on the rows of the highest of these supernodes.
+fn room<const K: usize>(symbolic: &Symbolic, supernodes: std::ops::Range<usize>) -> Vec<f64> {
+    let widest = supernodes
+        .map(|s| symbolic.columns(s).len() + symbolic.pattern(s).len())
+        .max();
+    vec![0.0; K * widest.unwrap_or(0)]
 }
 
 /// The factor as it is stored.
 struct Stored<'a> {
-    symbolic: &'a SymbolicSupernodalCholesky<u32>,
+    symbolic: &'a Symbolic,
     forest: &'a Forest,
     values: &'a [f64],
 }
@@ -118,87 +114,64 @@ struct Supernode<'a> {
 impl<'a> Stored<'a> {
     /// A supernode whose part's first column is `first`.
     fn supernode(&self, s: usize, first: usize) -> Supernode<'a> {
-        let own = columns(self.symbolic, s);
-        let starts = self.symbolic.col_ptr_for_val();
+        let own = self.symbolic.columns(s);
         Supernode {
             start: own.start - first,
             width: own.len(),
-            pattern: &self.forest.places[pattern_range(self.symbolic, s)],
-            values: &self.values[starts[s] as usize..starts[s + 1] as usize],
+            pattern: &self.forest.places[self.symbolic.pattern_range(s)],
+            values: &self.values[self.symbolic.values(s..s + 1)],
         }
-    }
-}
-
-impl<'a> Supernode<'a> {
-    fn column(&self, j: usize) -> &'a [f64] {
-        let height = self.width + self.pattern.len();
-        &self.values[j * height..(j + 1) * height]
     }
 }
 
 /// x ← L⁻¹ x for the supernode's columns, their effect subtracted from the rows below.
-fn forward<const K: usize>(node: &Supernode, x: &mut [[f64; K]], below: &mut [[f64; K]]) {
-    let below = &mut below[..node.pattern.len()];
-    below.fill([0.0; K]);
-    let own = &mut x[node.start..node.start + node.width];
-    for j in 0..node.width {
-        let column = &node.column(j)[j..];
-        let value = own[j].map(|value| value / column[0]);
-        own[j] = value;
-        let (inside, outside) = column[1..].split_at(node.width - j - 1);
-        for (row, &entry) in own[j + 1..].iter_mut().zip(inside) {
-            for k in 0..K {
-                row[k] -= entry * value[k];
-            }
-        }
-        for (row, &entry) in below.iter_mut().zip(outside) {
-            for k in 0..K {
-                row[k] += entry * value[k];
-            }
+fn forward<const K: usize>(node: &Supernode, x: &mut [[f64; K]], room: &mut [f64]) {
+    let own = node.start..node.start + node.width;
+    // Most of a right-hand side that begins at a handle's rim is zero, and so is what it leaves.
+    if x[own.clone()].iter().all(|row| *row == [0.0; K]) {
+        return;
+    }
+    let height = node.width + node.pattern.len();
+    let fields = &mut room[..K * height];
+    for (i, row) in x[own.clone()].iter().enumerate() {
+        for k in 0..K {
+            fields[k * height + i] = row[k];
         }
     }
-    for (&row, sum) in node.pattern.iter().zip(below.iter()) {
+    for field in fields.chunks_exact_mut(height) {
+        field[node.width..].fill(0.0);
+    }
+    Arch::new().dispatch(|| kernels::forward(node.values, node.width, height, fields));
+    for (i, row) in x[own].iter_mut().enumerate() {
+        for k in 0..K {
+            row[k] = fields[k * height + i];
+        }
+    }
+    for (i, &row) in (node.width..).zip(node.pattern) {
         let target = &mut x[row as usize];
         for k in 0..K {
-            target[k] -= sum[k];
+            target[k] += fields[k * height + i];
         }
     }
 }
 
 /// x ← L⁻ᵀ x for the supernode's columns, given the rows below.
-fn backward<const K: usize>(node: &Supernode, x: &mut [[f64; K]], below: &mut [[f64; K]]) {
-    let below = &mut below[..node.pattern.len()];
-    for (&row, value) in node.pattern.iter().zip(below.iter_mut()) {
-        *value = x[row as usize];
-    }
-    let own = &mut x[node.start..node.start + node.width];
-    for j in (0..node.width).rev() {
-        let column = &node.column(j)[j..];
-        let (inside, outside) = column[1..].split_at(node.width - j - 1);
-        let mut value = own[j];
-        let mut sums = [[0.0; K]; 2];
-        let pairs = outside.chunks_exact(2).zip(below.chunks_exact(2));
-        for (entries, rows) in pairs {
-            for k in 0..K {
-                sums[0][k] += entries[0] * rows[0][k];
-                sums[1][k] += entries[1] * rows[1][k];
-            }
-        }
-        if outside.len() % 2 == 1
-            && let (Some(entry), Some(row)) = (outside.last(), below.last())
-        {
-            for k in 0..K {
-                sums[0][k] += entry * row[k];
-            }
-        }
-        for (row, &entry) in own[j + 1..].iter().zip(inside) {
-            for k in 0..K {
-                sums[1][k] += entry * row[k];
-            }
-        }
+fn backward<const K: usize>(node: &Supernode, x: &mut [[f64; K]], room: &mut [f64]) {
+    let height = node.width + node.pattern.len();
+    let own = node.start..node.start + node.width;
+    let fields = &mut room[..K * height];
+    let rows = x[own.clone()]
+        .iter()
+        .chain(node.pattern.iter().map(|&row| &x[row as usize]));
+    for (i, row) in rows.enumerate() {
         for k in 0..K {
-            value[k] = (value[k] - (sums[0][k] + sums[1][k])) / column[0];
+            fields[k * height + i] = row[k];
         }
-        own[j] = value;
+    }
+    Arch::new().dispatch(|| kernels::backward(node.values, node.width, height, fields));
+    for (i, row) in x[own].iter_mut().enumerate() {
+        for k in 0..K {
+            row[k] = fields[k * height + i];
+        }
     }
 }

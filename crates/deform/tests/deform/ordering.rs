@@ -19,11 +19,25 @@ fn a_restricted_order_is_the_solved_vertices_each_once() {
             );
             for stride in [1, 2, 5] {
                 let solved: Vec<u32> = (0..scene.roles.len() as u32).step_by(stride).collect();
-                let mut order = ordering.restricted(topology, &solved);
+                let mut order = ordering.restricted(&solved);
                 order.sort_unstable();
                 assert_eq!(order, solved, "{name} {power} {stride}");
             }
         }
+    }
+}
+
+#[test]
+fn it_does_not_depend_on_the_number_of_threads() {
+    // Large enough for parts that are cut beside each other.
+    let scene = Scene::new(shapes::icosphere(5));
+    for power in 1..=3 {
+        let order = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| Ordering::of(&scene.model.topology, power, &Progress::new(), &Cancel::new()).unwrap())
+        };
+        let one = order(1);
+        assert!([2, 5].into_iter().all(|threads| order(threads) == one), "{power}");
     }
 }
 

@@ -1,0 +1,117 @@
+//! What a factor holds before there are numbers: its blocks of columns and the rows of each.
+//!
+//! The order of elimination comes with its blocks (`dissection`, `leaf`), so nothing has to be detected: a block's rows
+//! are those of its columns in the matrix and those that its children leave, exactly.
+
+use std::ops::Range;
+
+use crate::sparse::matrix::ScaledMatrix;
+
+/// No parent: a root.
+pub(crate) const ROOT: u32 = u32::MAX;
+
+/// The blocks of a factor. Each is stored column-major, its own columns' rows first, then those of its pattern.
+#[derive(Debug)]
+pub(crate) struct Symbolic {
+    /// Where each block's columns end; begins with 0.
+    starts: Vec<u32>,
+    /// Where each block's pattern begins among `rows`, and their end.
+    row_starts: Vec<usize>,
+    /// The rows below each block's own, ascending.
+    pub rows: Vec<u32>,
+    /// Where each block's numbers begin, and their end.
+    value_starts: Vec<usize>,
+    /// The block that holds the first row of each block's pattern, [`ROOT`] where there is none.
+    pub parent: Vec<u32>,
+}
+
+impl Symbolic {
+    /// The factor of `matrix`, whose columns stand in blocks that end at `ends`.
+    pub fn of(matrix: &ScaledMatrix, ends: &[u32]) -> Self {
+        let column_count = matrix.scale.len();
+        let mut symbolic = Self {
+            starts: std::iter::once(0).chain(ends.iter().copied()).collect(),
+            row_starts: vec![0],
+            rows: Vec::new(),
+            value_starts: vec![0],
+            parent: Vec::with_capacity(ends.len()),
+        };
+        let mut block_of = vec![0_u32; column_count];
+        for s in 0..ends.len() {
+            block_of[symbolic.columns(s)].fill(s as u32);
+        }
+        // The children of a block that are done, as a list: the last one, and the one before each.
+        let (mut last_child, mut sibling) = (vec![ROOT; ends.len()], vec![ROOT; ends.len()]);
+        let mut seen = vec![ROOT; column_count];
+        let mut rows = Vec::new();
+        for s in 0..ends.len() {
+            let own = symbolic.columns(s);
+            let end = own.end as u32;
+            rows.clear();
+            let mut meet = |row: u32| {
+                if row >= end && std::mem::replace(&mut seen[row as usize], s as u32) != s as u32 {
+                    rows.push(row);
+                }
+            };
+            let mut child = last_child[s];
+            while child != ROOT {
+                symbolic.pattern(child as usize).iter().copied().for_each(&mut meet);
+                child = sibling[child as usize];
+            }
+            let entries = matrix.lower_offsets[own.start] as usize..matrix.lower_offsets[own.end] as usize;
+            matrix.lower_rows[entries].iter().copied().for_each(&mut meet);
+            rows.sort_unstable();
+            let parent = rows.first().map_or(ROOT, |&row| block_of[row as usize]);
+            if parent != ROOT {
+                sibling[s] = std::mem::replace(&mut last_child[parent as usize], s as u32);
+            }
+            symbolic.parent.push(parent);
+            symbolic.rows.extend_from_slice(&rows);
+            symbolic.row_starts.push(symbolic.rows.len());
+            let stored = own.len() * (own.len() + rows.len());
+            symbolic.value_starts.push(symbolic.value_starts[s] + stored);
+        }
+        symbolic
+    }
+
+    /// How many blocks there are.
+    pub fn block_count(&self) -> usize {
+        self.parent.len()
+    }
+
+    /// How many columns there are.
+    pub fn column_count(&self) -> usize {
+        self.starts[self.parent.len()] as usize
+    }
+
+    /// How many numbers the factor stores.
+    pub fn stored(&self) -> usize {
+        self.value_starts[self.parent.len()]
+    }
+
+    /// A block's columns.
+    pub fn columns(&self, s: usize) -> Range<usize> {
+        self.starts[s] as usize..self.starts[s + 1] as usize
+    }
+
+    /// The rows below a block's own columns, ascending.
+    pub fn pattern(&self, s: usize) -> &[u32] {
+        &self.rows[self.pattern_range(s)]
+    }
+
+    /// Where a block's pattern stands among all of them.
+    pub fn pattern_range(&self, s: usize) -> Range<usize> {
+        self.row_starts[s]..self.row_starts[s + 1]
+    }
+
+    /// Where the numbers of these blocks stand among all of them.
+    pub fn values(&self, blocks: Range<usize>) -> Range<usize> {
+        self.value_starts[blocks.start]..self.value_starts[blocks.end]
+    }
+
+    /// Multiplications and additions of a dense factorisation of a block.
+    pub fn work(&self, s: usize) -> f64 {
+        let (width, below) = (self.columns(s).len() as f64, self.pattern(s).len() as f64);
+        width * (width * width / 3.0 + width * below + below * below)
+    }
+}

@@ -1,0 +1,85 @@
+//! Binding cut into its stages, for those who measure them: nothing else needs them apart.
+
+use pliant_mesh::Cancel;
+
+use crate::handle::Handle;
+use crate::partition::Partition;
+use crate::shell::assembly::assemble_shell;
+use crate::shell::operator::ShellOperator;
+use crate::shell::plate::operator;
+use crate::sparse::Elimination;
+use crate::sparse::cholesky::Factor;
+use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
+use crate::{Bilaplacian, Ordering, Problem};
+
+/// The operator of a linear shell, and the order in which its vertices are eliminated.
+#[derive(Debug)]
+pub struct Operator {
+    operator: ShellOperator,
+    elimination: Elimination,
+}
+
+/// The assembled matrix.
+#[derive(Debug)]
+pub struct Matrix(ScaledMatrix);
+
+/// Its factor, empty or filled.
+#[derive(Debug)]
+pub struct Factored(Factor);
+
+impl Operator {
+    /// The operator of a problem that can be bound.
+    pub fn of(problem: &Problem, options: &Bilaplacian, ordering: &Ordering) -> Option<Self> {
+        let partition = Partition::of(problem).ok()?;
+        let positions = &problem.surface.positions;
+        let handle = |vertices: &Vec<u32>| Handle::new(vertices.clone(), positions);
+        let handles: Vec<Handle> = partition.handles.iter().map(handle).collect();
+        Some(Self {
+            operator: operator(problem, options, &partition, &handles).0,
+            elimination: ordering.elimination(&partition.solved),
+        })
+    }
+
+    /// Its matrix.
+    pub fn assemble(&self) -> Matrix {
+        let laplacian = &self.operator.laplacian;
+        let columns: Vec<u32> = laplacian.locals(&self.elimination.order);
+        let mut column_of = vec![CONSTRAINED; laplacian.vertices().len()];
+        for (column, &local) in columns.iter().enumerate() {
+            column_of[local as usize] = column as u32;
+        }
+        Matrix(assemble_shell(&self.operator, &columns, &column_of))
+    }
+
+    /// What the matrix' factor holds, without its numbers.
+    pub fn analyse(&self, matrix: &Matrix) -> Option<Factored> {
+        Factor::analysed(&matrix.0, &self.elimination.ends).ok().map(Factored)
+    }
+}
+
+impl Factored {
+    /// Factors; `None` where the matrix is not positive definite.
+    pub fn fill(&mut self, matrix: &Matrix) -> Option<()> {
+        self.0.fill(&matrix.0, 0.0, &Cancel::new()).ok()
+    }
+
+    /// Solves for K right-hand sides in place, one row a column of the matrix.
+    pub fn solve<const K: usize>(&self, x: &mut [[f64; K]]) {
+        self.0.solve(x);
+    }
+
+    /// How many numbers it stores.
+    pub fn stored(&self) -> usize {
+        self.0.stored()
+    }
+
+    /// How many columns it has.
+    pub fn column_count(&self) -> usize {
+        self.0.column_count()
+    }
+
+    /// Multiplications and additions of the factorisation.
+    pub fn work(&self) -> f64 {
+        self.0.work()
+    }
+}
