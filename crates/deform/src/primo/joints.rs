@@ -31,7 +31,7 @@ pub(crate) struct Joints {
     /// The rest centre of each body, relative to the origin: prisms', then the fixed ground's and the handles'.
     pub centres: Vec<DVec3>,
     /// The solved prisms by rising triangle.
-    order: Vec<u32>,
+    pub order: Vec<u32>,
     /// The sum of the solved prisms' areas.
     pub area: f64,
     /// Where each block of prisms ends that is eliminated at once; empty: each by itself.

@@ -24,6 +24,19 @@ impl Aligned {
         Some(aligned)
     }
 
+    /// How many numbers it has room for without asking the system.
+    pub fn room(&self) -> usize {
+        self.numbers.capacity().saturating_sub(LINE)
+    }
+
+    /// Nothing yet, with room for `len` numbers.
+    pub fn with_room(len: usize) -> Self {
+        Self {
+            numbers: Vec::with_capacity(len + LINE),
+            ..Self::default()
+        }
+    }
+
     /// Makes it `len` zeros.
     pub fn clear(&mut self, len: usize) {
         self.numbers.clear();

@@ -114,6 +114,20 @@ impl Room {
             places: Vec::new(),
         }
     }
+
+    /// `len` zeros, in the least of the spare squares that holds them. Room is asked for in powers of two, so that it
+    /// is asked for seldom: growing a square moves its pages, which every thread has to be told.
+    fn take(&mut self, len: usize) -> Aligned {
+        let fitting = (0..self.spare.len())
+            .filter(|&spare| self.spare[spare].room() >= len)
+            .min_by_key(|&spare| self.spare[spare].room());
+        let mut square = fitting.map_or_else(
+            || Aligned::with_room(len.next_power_of_two()),
+            |spare| self.spare.swap_remove(spare),
+        );
+        square.clear(len);
+        square
+    }
 }
 
 /// The distance between a square's columns: each starts on a line.
@@ -147,8 +161,7 @@ impl Job<'_> {
             }
             target[column - own.start] += self.shift;
         }
-        let mut square = room.spare.pop().unwrap_or_default();
-        square.clear(size * square_stride);
+        let mut square = room.take(size * square_stride);
         // In postorder they are the last ones; in any other order they are somewhere.
         for pending in (0..room.pending.len()).rev() {
             if self.symbolic.parent[room.pending[pending].supernode] as usize != s {
