@@ -51,7 +51,10 @@ pub(crate) fn forward(values: &[f64], width: usize, height: usize, fields: &mut 
 pub(crate) fn backward(values: &[f64], width: usize, height: usize, fields: &mut [f64]) {
     let mut end = width;
     while end > 0 {
-        let count = if end % COLUMNS == 0 { COLUMNS } else { end % COLUMNS };
+        let count = match end % COLUMNS {
+            0 => COLUMNS,
+            rest => rest,
+        };
         let first = end - count;
         let columns: [&[f64]; COLUMNS] = std::array::from_fn(|c| column(values, height, first + c.min(count - 1)));
         for field in fields.chunks_exact_mut(height) {
