@@ -41,6 +41,8 @@ struct Desktop {
     display: String,
     window: String,
     _program: Running,
+    /// Settings and recovered work of the session, apart from the person's own.
+    _home: tempfile::TempDir,
     _manager: Option<Running>,
     _server: Running,
 }
@@ -48,11 +50,14 @@ struct Desktop {
 impl Desktop {
     fn open(file: &Path) -> Option<Self> {
         let (server, display) = display()?;
+        let home = tempfile::tempdir().unwrap();
         let start = |program: &str, arguments: &[&Path]| {
             let mut command = Command::new(program);
             command
                 .args(arguments)
                 .env("DISPLAY", &display)
+                .env("XDG_CONFIG_HOME", home.path())
+                .env("XDG_STATE_HOME", home.path())
                 .env_remove("WAYLAND_DISPLAY");
             command
                 .stdin(Stdio::null())
@@ -69,6 +74,7 @@ impl Desktop {
             display,
             window: String::new(),
             _program: program,
+            _home: home,
             _manager: manager,
             _server: server,
         };
