@@ -6,12 +6,17 @@ use std::collections::BTreeMap;
 
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{
-    Bilaplacian, Discretisation, Holds, Loose, Method, Ordering, Problem, Role, ShellOrder, SolveError, Triangulation,
+    ArapEnergy, Bilaplacian, Discretisation, Holds, Loose, Method, Ordering, Problem, Role, ShellOrder, SolveError,
+    Triangulation,
 };
 use pliant_mesh::{Cancel, Model, Progress};
 
 /// Steps that a method may take towards its targets; nonlinear ones need not converge in them.
 const STEPS: u32 = 12;
+
+/// Frames of a drag, and the steps that a method takes in each.
+const DRAG_FRAMES: u32 = 10;
+const DRAG_STEPS: u32 = 3;
 
 /// How a trial ended.
 #[derive(Clone, PartialEq, Debug)]
@@ -87,7 +92,7 @@ pub struct Trial {
     soft: Vec<Option<f64>>,
     continuity: Vec<f64>,
     loose: Loose,
-    targets: Vec<DAffine3>,
+    aims: Vec<Aim>,
 }
 
 impl Trial {
@@ -105,8 +110,10 @@ impl Trial {
         if let Some(name) = name {
             method = Method::from_name(name).unwrap();
         }
-        if let Method::Primo(options) = &mut method {
-            options.thickness = 10_f64.powf(chance.between(-3.0, 0.0));
+        match &mut method {
+            Method::Arap(options) => options.energy = ArapEnergy::ALL[chance.below(ArapEnergy::ALL.len())],
+            Method::Primo(options) => options.thickness = 10_f64.powf(chance.between(-3.0, 0.0)),
+            _ => {}
         }
         let around = |centre: DVec3, radius: f64| move |p: DVec3| p.distance(centre) <= radius * diagonal;
         let ball = |chance: &mut Chance, radius: f64| around(model.surface.positions[chance.below(count)], radius);
@@ -189,7 +196,7 @@ impl Trial {
                 .collect();
         }
         let centre = model.bounds().unwrap().centre();
-        let targets = (0..next).map(|_| transform(chance, centre, diagonal)).collect();
+        let aims = (0..next).map(|_| Aim::new(chance, centre, diagonal)).collect();
         Self {
             method,
             roles,
@@ -201,18 +208,32 @@ impl Trial {
             } else {
                 Loose::Rest
             },
-            targets,
+            aims,
         }
     }
 
-    /// Binds and steps; panics where neither a sound shape nor a refusal that names a vertex comes of it.
+    /// Binds and steps to where the handles go; panics where neither a sound shape nor a refusal that names a vertex
+    /// comes of it.
     pub fn run(&self, subject: &mut Subject) -> Outcome {
+        self.go(subject, &[1.0], STEPS, &mut |_| {})
+    }
+
+    /// Binds and follows the handles on their way, a few steps a frame; panics as [`Trial::run`] does, or where a step
+    /// raises the energy. Calls `drawn` with each frame's number as soon as the frame has its shape.
+    pub fn drag(&self, subject: &mut Subject, drawn: &mut dyn FnMut(usize)) -> Outcome {
+        let way: Vec<f64> = (0..=DRAG_FRAMES)
+            .map(|frame| f64::from(frame) / f64::from(DRAG_FRAMES))
+            .collect();
+        self.go(subject, &way, DRAG_STEPS, drawn)
+    }
+
+    fn go(&self, subject: &mut Subject, way: &[f64], steps: u32, drawn: &mut dyn FnMut(usize)) -> Outcome {
         let model = std::sync::Arc::clone(&subject.model);
         let problem = Problem {
             surface: &model.surface,
             topology: &model.topology,
             roles: &self.roles,
-            handle_count: self.targets.len(),
+            handle_count: self.aims.len(),
             stiffness: &self.stiffness,
             holds: Holds {
                 soft: &self.soft,
@@ -237,28 +258,34 @@ impl Trial {
                 return Outcome::Refused(sentence);
             }
         };
-        bound.set_targets(&self.targets).unwrap();
         let mut displacements = vec![DVec3::NAN; bound.vertex_count()];
-        for _ in 0..STEPS {
-            match bound.step(&mut displacements) {
-                Ok(step) => {
-                    assert!(
-                        step.energy >= 0.0 && step.energy.is_finite(),
-                        "an energy of {}",
-                        step.energy
-                    );
-                    if step.finished {
-                        break;
+        for (frame, &share) in way.iter().enumerate() {
+            let targets: Vec<DAffine3> = self.aims.iter().map(|aim| aim.at(share)).collect();
+            bound.set_targets(&targets).unwrap();
+            let mut last = f64::INFINITY;
+            for _ in 0..steps {
+                match bound.step(&mut displacements) {
+                    Ok(step) => {
+                        let energy = step.energy;
+                        assert!(
+                            energy >= 0.0 && energy.is_finite() && energy <= last,
+                            "an energy of {energy} after {last}"
+                        );
+                        last = energy;
+                        if step.finished {
+                            break;
+                        }
                     }
+                    Err(error @ (SolveError::Inaccurate { .. } | SolveError::NotFinite { .. })) => {
+                        assert!(displacements.iter().all(|d| *d == DVec3::ZERO));
+                        return Outcome::Refused(error.to_string());
+                    }
+                    Err(error) => panic!("{error}"),
                 }
-                Err(error @ (SolveError::Inaccurate { .. } | SolveError::NotFinite { .. })) => {
-                    assert!(displacements.iter().all(|d| *d == DVec3::ZERO));
-                    return Outcome::Refused(error.to_string());
-                }
-                Err(error) => panic!("{error}"),
             }
+            drawn(frame);
+            self.check(&model, &targets, &displacements);
         }
-        self.check(&model, &displacements);
         let is_regularised = bound.warnings().iter().any(|said| said.contains("stiffened"));
         Outcome::Bent {
             regularised: if is_regularised {
@@ -270,7 +297,7 @@ impl Trial {
         }
     }
 
-    fn check(&self, model: &Model, displacements: &[DVec3]) {
+    fn check(&self, model: &Model, targets: &[DAffine3], displacements: &[DVec3]) {
         let holds_softly = matches!(self.method, Method::Bilaplacian(_));
         let size = model.bounds().unwrap().diagonal();
         for ((role, rest), displacement) in self.roles.iter().zip(&model.surface.positions).zip(displacements) {
@@ -278,7 +305,7 @@ impl Trial {
             match *role {
                 Role::Fixed => assert_eq!(*displacement, DVec3::ZERO, "what is fixed has moved"),
                 Role::Handle(handle) if self.soft[usize::from(handle)].is_none() || !holds_softly => {
-                    let wanted = self.targets[usize::from(handle)].transform_point3(*rest) - *rest;
+                    let wanted = targets[usize::from(handle)].transform_point3(*rest) - *rest;
                     let apart = displacement.distance(wanted);
                     assert!(
                         apart < 1e-9 * (size + wanted.length() + rest.length()),
@@ -325,22 +352,50 @@ fn method(chance: &mut Chance) -> Method {
     Method::Bilaplacian(options)
 }
 
-fn transform(chance: &mut Chance, centre: DVec3, diagonal: f64) -> DAffine3 {
-    let direction = |chance: &mut Chance| {
-        let mut axis = || chance.between(-1.0, 1.0);
-        DVec3::new(axis(), axis(), axis()).normalize_or(DVec3::X)
-    };
-    let shift = direction(chance) * chance.between(0.0, 1.0) * diagonal;
-    let turn = DQuat::from_axis_angle(direction(chance), chance.between(-3.1, 3.1));
-    let scale = match chance.below(8) {
-        0 => DVec3::new(1.0, -0.5, 2.0),
-        1 => DVec3::ZERO,
-        2 => DVec3::splat(30.0),
-        _ => DVec3::ONE,
-    };
-    DAffine3::from_translation(centre + shift)
-        * DAffine3::from_scale_rotation_translation(scale, turn, DVec3::ZERO)
-        * DAffine3::from_translation(-centre)
+/// Where a handle goes: scaled and turned about a centre, by up to nearly half a turn, and shifted by up to the model's
+/// size; now and then mirrored, shrunk to nothing or blown up.
+#[derive(Clone, Debug)]
+struct Aim {
+    centre: DVec3,
+    scale: DVec3,
+    axis: DVec3,
+    angle: f64,
+    shift: DVec3,
+}
+
+impl Aim {
+    fn new(chance: &mut Chance, centre: DVec3, diagonal: f64) -> Self {
+        let direction = |chance: &mut Chance| {
+            let mut axis = || chance.between(-1.0, 1.0);
+            DVec3::new(axis(), axis(), axis()).normalize_or(DVec3::X)
+        };
+        let shift = direction(chance) * chance.between(0.0, 1.0) * diagonal;
+        let (axis, angle) = (direction(chance), chance.between(-3.1, 3.1));
+        let scale = match chance.below(8) {
+            0 => DVec3::new(1.0, -0.5, 2.0),
+            1 => DVec3::ZERO,
+            2 => DVec3::splat(30.0),
+            _ => DVec3::ONE,
+        };
+        Self {
+            centre,
+            scale,
+            axis,
+            angle,
+            shift,
+        }
+    }
+
+    /// The transform after this share of the way, from rest at 0 to the aim at 1.
+    fn at(&self, share: f64) -> DAffine3 {
+        DAffine3::from_translation(self.centre + self.shift * share)
+            * DAffine3::from_scale_rotation_translation(
+                DVec3::ONE.lerp(self.scale, share),
+                DQuat::from_axis_angle(self.axis, self.angle * share),
+                DVec3::ZERO,
+            )
+            * DAffine3::from_translation(-self.centre)
+    }
 }
 
 /// Numbers that look like chance (Steele, Lea & Flood 2014, splitmix64) and are the same everywhere.

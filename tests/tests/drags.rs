@@ -1,0 +1,24 @@
+//! Drags by chance over every scan, by ARAP and PriMo: always finite, the handles met, no step raising the energy.
+//!
+//! `cargo run --release -p pliant-tests --example drags -- 1000` goes on from here, with the frames' times.
+
+use pliant_tests::trials::{Outcome, Trial, scans};
+
+#[test]
+fn sixty_drags_end_in_a_sound_shape_or_in_a_refusal_with_a_place() {
+    let mut subjects = scans();
+    let count = subjects.len() as u64;
+    let (mut bent, mut refused) = (0, Vec::new());
+    for seed in 0..if count > 0 { 60 } else { 0 } {
+        let subject = &mut subjects[(seed % count) as usize];
+        let method = if seed / count % 3 == 2 { "primo" } else { "arap" };
+        let trial = Trial::with(seed, &subject.model, Some(method));
+        let mut frames = 0;
+        match trial.drag(subject, &mut |_| frames += 1) {
+            Outcome::Bent { .. } => bent += u32::from(frames > 10),
+            Outcome::Refused(sentence) => refused.push(format!("{} {:?}: {sentence}", subject.name, trial.method)),
+        }
+    }
+    // Refusing everything is no way to pass.
+    assert!(count == 0 || bent > 40, "{bent} {refused:#?}");
+}
