@@ -116,6 +116,32 @@ fn slides(turn: DVec3) -> DMat3 {
     DMat3::IDENTITY + cross * first + cross * cross * second
 }
 
+/// Each handle's motion from rest, and from where it was.
+pub(crate) struct Screws {
+    pub from_rest: Vec<Screw>,
+    pub onwards: Vec<Screw>,
+}
+
+impl Screws {
+    /// For handles that moved as `old` says and are now to move as `new` says.
+    pub fn of(handles: &[HandleFrame], old: &[Motion], new: &[Motion]) -> Self {
+        let frames = || handles.iter().zip(old.iter().zip(new));
+        Self {
+            from_rest: frames()
+                .map(|(handle, (_, new))| Screw::of(handle.linear(new), new.shift, handle.centre))
+                .collect(),
+            onwards: frames().map(|(handle, (old, new))| handle.onwards(old, new)).collect(),
+        }
+    }
+}
+
+/// Which shape or pose a start is carried from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Origin {
+    Rest,
+    Current,
+}
+
 /// A handle in coordinates relative to the solver's origin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HandleFrame {

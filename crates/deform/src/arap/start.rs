@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::cells::{quad, vector};
 use super::shape::Guesses;
 use super::{ArapSolver, State, domain};
-use crate::blend::{Screw, carried};
+use crate::blend::{Origin, Screw, Screws, carried};
 use crate::handle::Motion;
 use crate::operators::CHUNK;
 
@@ -21,18 +21,7 @@ impl ArapSolver {
     /// Makes the better of two starts the current shape for `motions`.
     pub(super) fn start(&mut self, motions: &[Motion]) {
         let was_at_rest = self.motions.iter().all(Motion::is_rest);
-        let from_rest: Vec<Screw> = self
-            .handles
-            .iter()
-            .zip(motions)
-            .map(|(handle, motion)| Screw::of(handle.linear(motion), motion.shift, handle.centre))
-            .collect();
-        let onwards: Vec<Screw> = self
-            .handles
-            .iter()
-            .zip(self.motions.iter().zip(motions))
-            .map(|(handle, (old, new))| handle.onwards(old, new))
-            .collect();
+        let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
         self.motions.copy_from_slice(motions);
         self.history.drop_pending();
         if !was_at_rest {
@@ -94,11 +83,4 @@ impl ArapSolver {
         }
         self.cells.evaluate(&mut self.trial, Guesses::Own, &mut self.scratch);
     }
-}
-
-/// What a start is made of.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Origin {
-    Rest,
-    Current,
 }

@@ -4,33 +4,15 @@ use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
 
 use super::PrimoSolver;
-use crate::blend::{Screw, carried};
+use crate::blend::{Origin, Screw, Screws, carried};
 use crate::handle::Motion;
 use crate::operators::CHUNK;
-
-/// What a start is made of.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Origin {
-    Rest,
-    Current,
-}
 
 impl PrimoSolver {
     /// Makes the better of two starts the current pose for `motions`.
     pub(super) fn start(&mut self, motions: &[Motion]) {
         let was_at_rest = self.motions.iter().all(Motion::is_rest);
-        let from_rest: Vec<Screw> = self
-            .handles
-            .iter()
-            .zip(motions)
-            .map(|(handle, motion)| Screw::of(handle.linear(motion), motion.shift, handle.centre))
-            .collect();
-        let onwards: Vec<Screw> = self
-            .handles
-            .iter()
-            .zip(self.motions.iter().zip(motions))
-            .map(|(handle, (old, new))| handle.onwards(old, new))
-            .collect();
+        let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
         self.motions.copy_from_slice(motions);
         if !was_at_rest {
             self.carry(&onwards, Origin::Current);
