@@ -2,6 +2,7 @@
 
 mod arap;
 mod bilaplacian;
+mod iteration;
 mod primo;
 
 use pliant_deform::Method;

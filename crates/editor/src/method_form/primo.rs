@@ -3,7 +3,7 @@
 use pliant_deform::Primo;
 use serde_json::{Map, Value, json};
 
-use super::{MethodOption, OptionKind};
+use super::{MethodOption, OptionKind, iteration};
 use crate::edit_error::EditError;
 use crate::edit_node::Members;
 
@@ -17,23 +17,8 @@ pub(super) const OPTIONS: &[MethodOption] = &[
             unit: "diagonals",
         },
     },
-    MethodOption {
-        name: "tolerance",
-        says: "iteration ends where a step lowers the energy by less than this share of it, 1e-12 to 0.1; default 1e-4",
-        takes: OptionKind::Number {
-            range: [1e-12, 0.1],
-            default: 1e-4,
-            unit: "of the energy",
-        },
-    },
-    MethodOption {
-        name: "max_iterations",
-        says: "iteration ends after so many steps a frame, 1 to 100000; default 500",
-        takes: OptionKind::Whole {
-            range: [1, 100_000],
-            default: 500,
-        },
-    },
+    iteration::TOLERANCE,
+    iteration::MAX_ITERATIONS,
 ];
 
 pub(super) fn read(members: &Members<'_>, options: &mut Primo) -> Result<(), EditError> {
@@ -43,19 +28,7 @@ pub(super) fn read(members: &Members<'_>, options: &mut Primo) -> Result<(), Edi
             _ => return Err(node.out_of_range("a number from 0.001 to 1")),
         };
     }
-    if let Some(node) = members.get("tolerance") {
-        options.tolerance = match node.number()? {
-            number if (1e-12..=0.1).contains(&number) => number,
-            _ => return Err(node.out_of_range("a number from 1e-12 to 0.1")),
-        };
-    }
-    if let Some(node) = members.get("max_iterations") {
-        options.max_iterations = match node.whole()? {
-            number @ 1..=100_000 => number as u32,
-            _ => return Err(node.out_of_range("a whole number from 1 to 100000")),
-        };
-    }
-    Ok(())
+    iteration::read(members, &mut options.tolerance, &mut options.max_iterations)
 }
 
 /// Adds what differs from the defaults.
