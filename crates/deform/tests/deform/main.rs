@@ -7,6 +7,7 @@ mod components;
 mod continuity;
 mod energies;
 mod laws;
+mod nonlinear;
 mod operators;
 mod ordering;
 mod plate;

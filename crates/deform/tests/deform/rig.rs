@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Bound, Holds, Loose, Method, Ordering, Problem, Role};
-use pliant_mesh::{Cancel, Drawn, Model, Progress, SurfaceVertex, shapes};
+use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, shapes};
 
 /// A shape and the roles, stiffness and options on it.
 pub struct Scene {
@@ -142,4 +142,46 @@ pub fn turned(centre: DVec3, angle_rad: f64, shift: DVec3) -> DAffine3 {
     DAffine3::from_translation(centre + shift)
         * DAffine3::from_axis_angle(DVec3::new(0.6, 0.48, 0.64), angle_rad)
         * DAffine3::from_translation(-centre)
+}
+
+/// Steps until finished; the last displacements and every step's energy.
+pub fn settle(bound: &mut Bound, targets: &[DAffine3]) -> (Vec<DVec3>, Vec<f64>) {
+    let mut displacements = vec![DVec3::NAN; bound.vertex_count()];
+    bound.set_targets(targets).unwrap();
+    let mut energies = Vec::new();
+    loop {
+        let step = bound.step(&mut displacements).unwrap();
+        energies.push(step.energy);
+        assert!(step.energy >= 0.0 && step.energy.is_finite());
+        assert!(displacements.iter().all(|d| d.is_finite()));
+        if step.finished {
+            return (displacements, energies);
+        }
+    }
+}
+
+/// Scales about `centre`.
+pub fn scaled(centre: DVec3, scale: DVec3) -> DAffine3 {
+    DAffine3::from_translation(centre) * DAffine3::from_scale(scale) * DAffine3::from_translation(-centre)
+}
+
+/// Turns and moves each handle differently, by about half a turn and half the size.
+pub fn far(scene: &Scene) -> Vec<DAffine3> {
+    let (centre, size) = (scene.model.bounds().unwrap().centre(), scene.diagonal());
+    (0..scene.handle_count)
+        .map(|h| turned(centre, 1.5 + h as f64, DVec3::new(0.3, -0.2, 0.1 * h as f64) * size))
+        .collect()
+}
+
+/// The mirror image in x.
+pub fn mirrored(drawn: &Drawn) -> Drawn {
+    let mut image = drawn.clone();
+    for p in &mut image.positions {
+        p.x = -p.x;
+    }
+    for corners in &mut image.triangles {
+        let [a, b, c]: [DrawnVertex; 3] = *corners;
+        *corners = [a, c, b];
+    }
+    image
 }
