@@ -17,8 +17,10 @@ pub(crate) mod eigen;
 pub(crate) mod face_terms;
 mod flips;
 mod intrinsic;
+mod mollification;
 pub(crate) mod net;
 mod principal;
+mod surface_net;
 mod tufted;
 
 use std::collections::BTreeMap;

@@ -5,10 +5,8 @@ use rayon::prelude::*;
 
 use crate::Discretisation;
 use crate::operators::CHUNK;
+use crate::operators::mollification::lack;
 use crate::operators::net::Net;
-
-/// By how much two edges of a triangle are made to exceed the third, in units of the longest.
-pub(crate) const MOLLIFICATION: f64 = 1e-5;
 
 /// ½ cot 60°: an equilateral triangle's weight on each of its edges.
 const HALF_COTANGENT_60: f64 = 0.288_675_134_594_812_9;
@@ -70,12 +68,10 @@ impl Metric {
                 mollified: false,
             };
         }
-        let sum = lengths[0] + lengths[1] + lengths[2];
-        let longest = lengths[0].max(lengths[1]).max(lengths[2]);
-        let excess = MOLLIFICATION * longest - (sum - 2.0 * longest);
-        let mollified = excess > 0.0;
+        let lack = lack(lengths);
+        let mollified = lack > 0.0;
         let lengths = if mollified {
-            lengths.map(|length| length + excess)
+            lengths.map(|length| length + lack)
         } else {
             lengths
         };

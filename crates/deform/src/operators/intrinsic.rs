@@ -9,9 +9,9 @@
 
 use pliant_mesh::SurfaceVertex;
 
-use crate::operators::face_terms::MOLLIFICATION;
 use crate::operators::flips::{Sides, flip_to_delaunay};
-use crate::operators::net::SurfaceNet;
+use crate::operators::mollification::lack;
+use crate::operators::surface_net::SurfaceNet;
 use crate::operators::tufted::{cover, edges};
 
 /// An intrinsic triangulation of a surface's vertices.
@@ -119,8 +119,7 @@ fn mollified_lengths(net: &SurfaceNet) -> (Vec<[f64; 3]>, usize) {
     let mut lacks = vec![0.0_f64; net.topology.components().len()];
     let mut count = 0;
     for (face, lengths) in lengths.iter().enumerate() {
-        let longest = lengths[0].max(lengths[1]).max(lengths[2]);
-        let lack = MOLLIFICATION * longest - (lengths[0] + lengths[1] + lengths[2] - 2.0 * longest);
+        let lack = lack(*lengths);
         if lack > 0.0 {
             count += 1;
             lacks[component(face)] = lacks[component(face)].max(lack);
@@ -168,7 +167,8 @@ mod tests {
     use pliant_mesh::{Drawn, Model, shapes};
 
     use super::Intrinsic;
-    use crate::operators::net::{Net, SurfaceNet};
+    use crate::operators::net::Net;
+    use crate::operators::surface_net::SurfaceNet;
     use crate::{Discretisation, Laplacian, Triangulation};
 
     fn laplacian(model: &Model, triangulation: Triangulation) -> Laplacian {

@@ -3,11 +3,11 @@
 //! Either the surface's own triangles, measured in space or along stretched axes, or intrinsic ones on the same vertices,
 //! whose edges run straight within the surface and need not be edges of it.
 
-use glam::{DMat3, DVec3};
-use pliant_mesh::{Surface, SurfaceVertex, Topology, edge_lengths};
+use pliant_mesh::{Surface, SurfaceVertex, Topology};
 
 use crate::operators::intrinsic::Intrinsic;
 use crate::operators::principal::stretches;
+use crate::operators::surface_net::SurfaceNet;
 use crate::{Bilaplacian, Method, Problem, Triangulation};
 
 /// Triangles with edge lengths over the surface's vertices.
@@ -17,15 +17,6 @@ pub(crate) enum Net<'a> {
     Surface(SurfaceNet<'a>),
     /// Others on its vertices.
     Intrinsic(Box<Intrinsic>, &'a Topology),
-}
-
-/// The surface's own triangles.
-#[derive(Clone, Debug)]
-pub(crate) struct SurfaceNet<'a> {
-    pub surface: &'a Surface,
-    pub topology: &'a Topology,
-    /// Of each component, the map of its edges before they are measured; empty: none.
-    pub stretches: Vec<DMat3>,
 }
 
 /// A graph over the surface's vertices.
@@ -151,19 +142,6 @@ impl<'a> Net<'a> {
                 Some("the intrinsic triangulation could not be made Delaunay throughout: some weights stay negative")
             }
             _ => None,
-        }
-    }
-}
-
-impl SurfaceNet<'_> {
-    /// A triangle's edge lengths, entry `i` opposite corner `i`.
-    pub fn lengths(&self, face: u32) -> [f64; 3] {
-        let corners = self.surface.triangles[face as usize];
-        let [a, b, c] = corners.map(|corner| self.surface.positions[corner.index()]);
-        match self.stretches.get(self.topology.component(corners[0]) as usize) {
-            None => edge_lengths([a, b, c]),
-            // Differences first: a map of positions far from the origin would cost digits.
-            Some(stretch) => edge_lengths([DVec3::ZERO, *stretch * (b - a), *stretch * (c - a)]),
         }
     }
 }

@@ -10,7 +10,7 @@ use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
 
 use crate::operators::flips::Sides;
-use crate::operators::net::SurfaceNet;
+use crate::operators::surface_net::SurfaceNet;
 
 /// The sides of triangles, numbered 3 f + i for the one opposite corner i of triangle f, by the edge that they lie on.
 pub(crate) fn edges(net: &SurfaceNet) -> impl Iterator<Item = Vec<u32>> + use<> {
