@@ -56,7 +56,7 @@ fn measure(file: &str, threads: usize, energy: ArapEnergy, reach: Option<&String
         };
         problem.bind(&ordering, &progress, &cancel).unwrap()
     };
-    let (bind_ms, mut bound) = timed(|| bind(&method(energy, 1e-4)));
+    let (bind_ms, mut bound) = timed(|| bind(&method(energy, Arap::default().tolerance)));
     let mut displacements = vec![DVec3::ZERO; roles.len()];
     let mut exactly = bind(&exact);
 

@@ -7,7 +7,7 @@
 //!
 //! Parts: `domain` numbers the vertices, `rims` and `spokes` make the two energies' `cells` and `bending` adds the smooth
 //! one's term, `shape` evaluates them, `matrix` and `precondition` make the global step and the handles' weights, `start`
-//! chooses where to begin, `history` gives the direction and `descent` takes the step.
+//! chooses where to begin, `springs` are the soft handles, `history` gives the direction and `descent` takes the step.
 
 mod bending;
 mod cells;
@@ -20,10 +20,12 @@ mod precondition;
 mod rims;
 mod shape;
 mod spokes;
+mod springs;
 mod start;
 
 use glam::DVec3;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex};
+use rayon::prelude::*;
 
 pub use self::options::{Arap, ArapEnergy};
 
@@ -32,10 +34,13 @@ use self::domain::Domain;
 use self::history::{Field, History};
 use self::precondition::{MapRoom, PreconditionError, Preconditioner, WeightInput};
 use self::shape::{Guesses, IDENTITY, Scratch, Shape};
+use self::springs::Springs;
 use crate::blend::HandleFrame;
 use crate::handle::{Handle, Motion};
+use crate::operators::CHUNK;
 use crate::partition::Partition;
 use crate::sparse::Elimination;
+use crate::sums::CHUNKS_A_TASK;
 use crate::{BindError, Laplacian, Ordering, Problem, Role};
 
 /// The bound method, with the shape it is at.
@@ -44,12 +49,13 @@ pub(crate) struct ArapSolver {
     options: Arap,
     domain: Domain,
     cells: Cells,
+    springs: Springs,
     preconditioner: Preconditioner,
     /// Handles' harmonic weights, one row a cell.
     weights: Vec<f64>,
     /// The handles in coordinates relative to `world_origin`.
     handles: Vec<HandleFrame>,
-    /// Of each handle: its surface vertices with their coordinates, and the local ones among them.
+    /// Of each hard handle: its surface vertices with their coordinates, and the local ones among them.
     prescribed: Vec<Vec<Prescribed>>,
     /// Rest positions of the local vertices relative to the first handle's centre.
     rest: Vec<DVec3>,
@@ -60,14 +66,17 @@ pub(crate) struct ArapSolver {
     history: History,
     /// Uphill, in units of `unit`.
     direction: Field,
+    /// How far against it the last step went, while the gradient there is not known; `trial` is then where it began.
+    taken: Option<f64>,
     /// The length that single-precision fields are measured in: about the model's.
     unit: f64,
     /// The motions that `current` is a shape for.
     motions: Vec<Motion>,
     state: State,
-    /// How many targets were set since the rest shape, and the energy of the last blend from it.
-    drag_frames: u32,
-    blend_energy: f64,
+    /// How many targets to go before the blend from the rest shape is looked at again, and how many it is passed over
+    /// when it loses.
+    until_blend: u32,
+    patience: u32,
     mollified_faces: usize,
 }
 
@@ -120,12 +129,18 @@ impl ArapSolver {
                 rims::cells(surface, topology, problem.stiffness, &domain)
             }
         };
+        let bending = match options.energy {
+            ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => 0.0,
+            ArapEnergy::Smooth => bending::stiffness(surface, &domain, options.smoothness),
+        };
+        let springs = Springs::of(problem, partition, handles, &domain, &laplacian, bending);
         let system = match options.energy {
-            ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => matrix::assemble(&laplacian, &domain, options.energy),
+            ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => {
+                matrix::assemble(&laplacian, &domain, springs.all(), options.energy)
+            }
             ArapEnergy::Smooth => {
-                bending::add(&mut cells, surface, &laplacian, &domain, options.smoothness);
-                let bending = bending::stiffness(surface, &domain, options.smoothness);
-                matrix::assemble_plate(laplacian, &domain, bending)
+                bending::add(&mut cells, surface, &laplacian, &domain, bending);
+                matrix::assemble_plate(laplacian, &domain, springs.all(), bending)
             }
         };
         cancel.check()?;
@@ -172,6 +187,8 @@ impl ArapSolver {
                 };
                 handle.vertices.iter().map(of).collect()
             })
+            .zip(&partition.soft)
+            .map(|(own, soft): (Vec<Prescribed>, _)| if soft.is_some() { Vec::new() } else { own })
             .collect();
         let rest: Vec<DVec3> = domain.vertices.iter().map(|&v| world_rest(v) - world_origin).collect();
         let at_rest = Shape::at_rest(domain.vertices.len(), domain.cell_count, domain.solved_count);
@@ -180,6 +197,7 @@ impl ArapSolver {
         Ok(Self {
             options: options.clone(),
             cells,
+            springs,
             preconditioner,
             weights,
             handles: handles
@@ -197,11 +215,12 @@ impl ArapSolver {
             map_room: MapRoom::default(),
             history: History::default(),
             direction: Field::new(),
+            taken: None,
             unit,
             motions: vec![Motion::default(); handles.len()],
             state: State::Converged,
-            drag_frames: 0,
-            blend_energy: 0.0,
+            until_blend: 0,
+            patience: 1,
             mollified_faces,
             domain,
         })
@@ -240,25 +259,31 @@ impl ArapSolver {
         if scale > 0.0 { energy / scale } else { 0.0 }
     }
 
-    /// The energy of any displacements, one a surface vertex.
-    pub fn energy_of(&self, displacements: &[DVec3]) -> f64 {
+    /// The energy of any displacements, one a surface vertex, while the handles are to go as in `motions`.
+    pub fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
         let mut shape = self.current.clone();
         for (own, &vertex) in shape.displacements.iter_mut().zip(&self.domain.vertices) {
             *own = quad(displacements[vertex as usize], 0.0);
         }
-        self.cells.evaluate(&mut shape, Guesses::Own, &mut Scratch::default());
+        self.cells.measure(&mut shape, Guesses::Own, &mut Scratch::default());
+        let mut springs = self.springs.clone();
+        springs.aim(motions);
+        springs.add_energy(&mut shape);
         self.relative(shape.energy)
     }
 
     /// Back to the rest shape.
     pub fn rest(&mut self) {
         self.motions.fill(Motion::default());
+        self.springs.aim(&self.motions);
         self.current.displacements.fill([0.0; 4]);
         self.current.rotations.fill(IDENTITY);
         self.current.gradient.fill([0.0; 4]);
         self.current.energy = 0.0;
         self.history.clear();
-        self.drag_frames = 0;
+        self.taken = None;
+        self.until_blend = 0;
+        self.patience = 1;
         self.state = State::Converged;
     }
 
@@ -273,12 +298,18 @@ impl ArapSolver {
                 self.descend();
             }
         });
-        for (&vertex, &own) in self.domain.vertices[..self.domain.solved_count]
-            .iter()
-            .zip(&self.current.displacements)
-        {
-            displacements[vertex as usize] = vector(own);
-        }
+        let (domain, current) = (&self.domain, &self.current);
+        displacements
+            .par_chunks_mut(CHUNK)
+            .zip(domain.local_of.par_chunks(CHUNK))
+            .with_min_len(CHUNKS_A_TASK)
+            .for_each(|(displacements, locals)| {
+                for (displacement, &local) in displacements.iter_mut().zip(locals) {
+                    if (local as usize) < domain.solved_count {
+                        *displacement = vector(current.displacements[local as usize]);
+                    }
+                }
+            });
         let energy = self.current.energy;
         if !energy.is_finite() {
             // The gate refuses it; the next targets begin afresh.

@@ -43,7 +43,7 @@ pub struct Step {
     /// Whether further steps to the same targets do nothing: it converged, or met the method's limit.
     pub finished: bool,
     /// The deformation energy, 0 at rest, which has no unit and does not change with the model's scale: for the linear
-    /// shell ½ dᵀ A d (see [`crate::Bilaplacian`]) and what soft handles' springs hold, for ARAP its energy over ½ Σ w |e|² of the rest shape. Components
+    /// shell ½ dᵀ A d (see [`crate::Bilaplacian`]) and what soft handles' springs hold, for ARAP its energy and its springs' over ½ Σ w |e|² of the rest shape. Components
     /// without a handle are left out.
     pub energy: f64,
     /// How many steps were taken towards these targets, this one included.
@@ -226,7 +226,7 @@ impl Bound {
         }
         match &self.solver {
             Solver::Plate(plate) => Some(plate.energy_of(&self.motions, displacements)),
-            Solver::Arap(arap) => Some(arap.energy_of(displacements)),
+            Solver::Arap(arap) => Some(arap.energy_of(&self.motions, displacements)),
             // Its energy is the prisms', not the vertices'.
             Solver::Primo(_) => None,
         }

@@ -68,14 +68,12 @@ impl<'a> Partition<'a> {
         let follows = problem.loose == Loose::Follow && !handles.is_empty();
         let mut warnings = warnings(problem, &loose, &indices(&|c| driven[c] && !held[c]), follows);
         let soft = match problem.method {
-            Method::Bilaplacian(_) => (0..problem.handle_count)
+            Method::Bilaplacian(_) | Method::Arap(_) => (0..problem.handle_count)
                 .map(|handle| problem.holds.weight(handle as u16))
                 .collect(),
-            _ => {
-                warnings.extend(unheeded(problem));
-                vec![None; problem.handle_count]
-            }
+            Method::Primo(_) => vec![None; problem.handle_count],
         };
+        warnings.extend(unheeded(problem));
         warnings.extend(net.warning().map(str::to_owned));
         Ok(Self {
             solved: influenced(problem, &net, &handles, &soft),
@@ -168,13 +166,17 @@ fn influenced(problem: &Problem, net: &Net, handles: &[Vec<u32>], soft: &[Option
         .collect()
 }
 
-/// What is said where the method has neither soft handles nor a choice of continuity.
+/// What is said where the method has no soft handles or no choice of continuity.
 fn unheeded(problem: &Problem) -> Option<String> {
     let name = problem.method.name();
-    let soft = problem.holds.soft.iter().position(Option::is_some);
+    let soft = match problem.method {
+        Method::Bilaplacian(_) => return None,
+        Method::Arap(_) => None,
+        Method::Primo(_) => problem.holds.soft.iter().position(Option::is_some),
+    };
     match soft {
         Some(handle) => Some(format!(
-            "handle {handle} is soft, and {name} holds every handle hard: take bilaplacian for soft handles"
+            "handle {handle} is soft, and {name} holds every handle hard: take arap or bilaplacian for soft handles"
         )),
         None if problem
             .holds

@@ -27,9 +27,8 @@ pub(crate) fn stiffness(surface: &Surface, domain: &Domain, smoothness: f64) -> 
     smoothness * area
 }
 
-/// Adds the term to all cells; `laplacian` has full rows for them.
-pub(crate) fn add(cells: &mut Cells, surface: &Surface, laplacian: &Laplacian, domain: &Domain, smoothness: f64) {
-    let stiffness = stiffness(surface, domain, smoothness);
+/// Adds the term of κ A = `stiffness` to all cells; `laplacian` has full rows for them.
+pub(crate) fn add(cells: &mut Cells, surface: &Surface, laplacian: &Laplacian, domain: &Domain, stiffness: f64) {
     cells.bending = domain.vertices[..domain.cell_count]
         .iter()
         .map(|&vertex| {

@@ -27,8 +27,9 @@ pub(crate) struct Cells {
     pub ends: Vec<u32>,
     /// G_iv and w_iv of each entry.
     pub towards: Vec<Quad>,
-    /// G_vi and w_iv of each entry of a solved cell.
-    pub back: Vec<Quad>,
+    /// G_vi and w_iv of each entry of a solved cell. **f32**: they enter the gradient alone, whose length a line search
+    /// on the energy measures.
+    pub back: Vec<[f32; 4]>,
     /// Σ_v G_iv of each solved cell.
     pub own: Vec<Quad>,
     /// S⁰'s entries xx, xy, xz, yy, yz, zz of each cell.
@@ -63,7 +64,7 @@ impl Cells {
             self.ends.push(entry.end);
             self.towards.push(quad(entry.towards, entry.weight));
             if solved == Solved::Yes {
-                self.back.push(quad(entry.back, entry.weight));
+                self.back.push(quad(entry.back, entry.weight).map(|value| value as f32));
             }
         }
         if solved == Solved::Yes {

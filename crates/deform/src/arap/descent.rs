@@ -24,6 +24,7 @@ impl ArapSolver {
     /// that the last step improved by less than that too. A plain local/global step always descends, in exact
     /// arithmetic: where even that fails, rounding is all that is left.
     pub(super) fn descend(&mut self) {
+        self.finish_step();
         self.map_gradient();
         loop {
             let factors = self.history.factors();
@@ -46,6 +47,16 @@ impl ArapSolver {
             }
             self.history.clear();
         }
+    }
+
+    /// Finds the gradient where the last step ended, and remembers what the step has shown.
+    fn finish_step(&mut self) {
+        let Some(length) = self.taken.take() else { return };
+        self.cells.find_gradient(&mut self.current, &self.scratch);
+        self.springs.add_gradient(&mut self.current);
+        let (old, new) = (&self.trial.gradient, &self.current.gradient);
+        self.history
+            .stepped(length, &self.direction, old, new, self.unit.recip());
     }
 
     /// The gradient in the memory's units, where displacements are measured in `unit`, and the plain step for it.
@@ -77,12 +88,11 @@ impl ArapSolver {
         for _ in 0..TRIALS {
             moved(&self.current, &self.direction, -length * self.unit, &mut self.trial);
             let guesses = Guesses::Given(&self.current.rotations);
-            self.cells.evaluate(&mut self.trial, guesses, &mut self.scratch);
+            self.cells.measure(&mut self.trial, guesses, &mut self.scratch);
+            self.springs.add_energy(&mut self.trial);
             let after = self.trial.energy;
             if after <= before + SUFFICIENT * length * slope && after < before {
-                let (old, new) = (&self.current.gradient, &self.trial.gradient);
-                self.history
-                    .stepped(length, &self.direction, old, new, self.unit.recip());
+                self.taken = Some(length);
                 std::mem::swap(&mut self.current, &mut self.trial);
                 return true;
             }

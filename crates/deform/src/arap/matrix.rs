@@ -3,6 +3,7 @@
 
 use super::domain::Domain;
 use super::spokes::{floored, largest_weights};
+use super::springs::Spring;
 use crate::shell::assembly::assemble_shell;
 use crate::shell::operator::ShellOperator;
 use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
@@ -13,6 +14,7 @@ pub(crate) struct System {
     /// S A S, A the majorising quadratic's matrix.
     pub matrix: ScaledMatrix,
     coupling: Coupling,
+    springs: Vec<Spring>,
 }
 
 enum Coupling {
@@ -27,8 +29,17 @@ enum Coupling {
 }
 
 impl System {
-    /// −A_sc x for the values `x` of constrained local vertices: the right-hand side whose solution extends them.
+    /// −A_sc x for the values `x` of constrained local vertices, and W x for those that a soft handle wants of its solved
+    /// ones: the right-hand side whose solution extends them.
     pub fn pull(&self, x: &impl Fn(u32) -> f64) -> Vec<f64> {
+        let mut pull = self.pull_of_constrained(x);
+        for spring in &self.springs {
+            pull[spring.local as usize] += spring.strength * x(spring.local);
+        }
+        pull
+    }
+
+    fn pull_of_constrained(&self, x: &impl Fn(u32) -> f64) -> Vec<f64> {
         match &self.coupling {
             Coupling::Edges(edges) => {
                 let mut pull = vec![0.0; self.matrix.scale.len()];
@@ -56,7 +67,7 @@ impl System {
 }
 
 /// The thin plate that also stretches, −L + `bending` L M⁻¹ L; `laplacian` has full rows for all cells.
-pub(crate) fn assemble_plate(laplacian: Laplacian, domain: &Domain, bending: f64) -> System {
+pub(crate) fn assemble_plate(laplacian: Laplacian, domain: &Domain, springs: &[Spring], bending: f64) -> System {
     let domain_of: Vec<u32> = laplacian
         .vertices()
         .iter()
@@ -72,7 +83,11 @@ pub(crate) fn assemble_plate(laplacian: Laplacian, domain: &Domain, bending: f64
     }
     let mut operator = ShellOperator::new(laplacian, &Bilaplacian::default(), 1.0);
     (operator.stretching, operator.bending) = (1.0, bending);
+    let hung: Vec<u32> = springs.iter().map(|spring| columns[spring.local as usize]).collect();
+    let strengths: Vec<f64> = springs.iter().map(|spring| spring.strength).collect();
+    operator.springs.add(column_of.len(), &hung, &strengths);
     System {
+        springs: springs.to_vec(),
         matrix: assemble_shell(&operator, &columns, &column_of),
         coupling: Coupling::Plate {
             operator: Box::new(operator),
@@ -83,7 +98,7 @@ pub(crate) fn assemble_plate(laplacian: Laplacian, domain: &Domain, bending: f64
 }
 
 /// Assembles the Laplacian −L of the energy; `laplacian` has full rows for the solved vertices at least.
-pub(crate) fn assemble(laplacian: &Laplacian, domain: &Domain, energy: ArapEnergy) -> System {
+pub(crate) fn assemble(laplacian: &Laplacian, domain: &Domain, springs: &[Spring], energy: ArapEnergy) -> System {
     let largest = match energy {
         ArapEnergy::Spokes => largest_weights(laplacian),
         ArapEnergy::SpokesAndRims | ArapEnergy::Smooth => Vec::new(),
@@ -112,6 +127,9 @@ pub(crate) fn assemble(laplacian: &Laplacian, domain: &Domain, energy: ArapEnerg
         diagonal.push(sum);
         rows.push(row);
     }
+    for spring in springs {
+        diagonal[spring.local as usize] += spring.strength;
+    }
     let scale: Vec<f64> = diagonal
         .iter()
         .map(|&value| if value > 0.0 { value.sqrt().recip() } else { 1.0 })
@@ -135,6 +153,7 @@ pub(crate) fn assemble(laplacian: &Laplacian, domain: &Domain, energy: ArapEnerg
         matrix.lower_offsets.push(matrix.lower_rows.len() as u32);
     }
     System {
+        springs: springs.to_vec(),
         matrix,
         coupling: Coupling::Edges(constrained),
     }

@@ -33,8 +33,8 @@ impl Default for Arap {
         Self {
             energy: ArapEnergy::default(),
             smoothness: 0.01,
-            tolerance: 1e-4,
-            max_iterations: 500,
+            tolerance: 1e-7,
+            max_iterations: 1000,
         }
     }
 }

@@ -1,7 +1,8 @@
 //! A shape under an energy: where the vertices are, how the cells are turned, what it costs and which way is down.
 //!
 //! Two passes over the cells. The first gathers a cell's displaced ring into its matrix S, fits eight cells' rotations
-//! at once, and sums the energy; the second gathers the ring's turns into the gradient. Both run on whatever vectors
+//! at once, and sums the energy; the second gathers the ring's turns into the gradient, which a shape that new targets
+//! leave behind does without. Both run on whatever vectors
 //! the machine has (see [`crate::lanes`]).
 
 use glam::{DMat3, DQuat, DVec3};
@@ -13,7 +14,7 @@ use crate::lanes::{self, LANES, Lanes, Matrices, Quaternions};
 use crate::operators::CHUNK;
 use crate::rotation::fit_anew;
 
-/// A shape; energy and gradient belong to the displacements once they were evaluated.
+/// A shape; rotations and energy belong to the displacements once they were measured, the gradient once that was found.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shape {
     /// Of each local vertex, in world units; the fourth number is zero.
@@ -29,13 +30,16 @@ pub(crate) struct Shape {
 /// Room for an evaluation, kept from one to the next.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
-    /// R − 1 of each cell, column by column.
-    turns: Vec<[Quad; 3]>,
+    /// R − 1 of each cell, column by column. **f32**: each is read by all its neighbours, and for the gradient alone.
+    turns: Vec<Turn>,
     /// Σ_v w_iv D_v of each cell.
     laplacians: Vec<Quad>,
     /// The bending force of each cell.
     moments: Vec<Quad>,
 }
+
+/// R − 1, column by column.
+type Turn = [[f32; 4]; 3];
 
 /// Where a fit starts.
 #[derive(Clone, Copy, Debug)]
@@ -64,11 +68,17 @@ pub(crate) const IDENTITY: Quad = [0.0, 0.0, 0.0, 1.0];
 impl Cells {
     /// Fits the rotations to the displacements, and finds energy and gradient.
     pub fn evaluate(&self, shape: &mut Shape, guesses: Guesses<'_>, scratch: &mut Scratch) {
+        self.measure(shape, guesses, scratch);
+        self.find_gradient(shape, scratch);
+    }
+
+    /// Fits the rotations to the displacements, and finds the energy.
+    pub fn measure(&self, shape: &mut Shape, guesses: Guesses<'_>, scratch: &mut Scratch) {
         let Shape {
             displacements,
             rotations,
-            gradient,
             energy,
+            ..
         } = shape;
         let displacements = displacements.as_slice();
         let Scratch {
@@ -119,8 +129,18 @@ impl Cells {
         let sum = partial.iter().sum::<f64>() + constant;
         // Rounding alone can carry it below; what is not a number stays so.
         *energy = if sum < 0.0 { 0.0 } else { sum };
-        let (turns, laplacians, moments) = (&*turns, &*laplacians, &*moments);
-        gradient
+    }
+
+    /// Finds the gradient of the shape that was measured with this scratch last.
+    pub fn find_gradient(&self, shape: &mut Shape, scratch: &Scratch) {
+        let Scratch {
+            turns,
+            laplacians,
+            moments,
+        } = scratch;
+        let arch = Arch::new();
+        shape
+            .gradient
             .par_chunks_mut(CHUNK)
             .enumerate()
             .for_each(|(chunk, gradient)| {
@@ -208,16 +228,17 @@ impl Cells {
                 }
                 for column in 0..3 {
                     for row in 0..3 {
-                        turns[start + lane][column][row] = turned[column][row].0[lane];
+                        turns[start + lane][column][row] = turned[column][row].0[lane] as f32;
                     }
                 }
             }
             if !self.bending.is_empty() {
-                for place in start..start + count {
+                for (lane, place) in (start..start + count).enumerate() {
                     let [x, y, z, factor] = self.bending[first + place];
-                    let turned = times_turn(&turns[place], [x, y, z, 0.0]);
-                    let moment = minus(laplacians[place], turned);
-                    moments[place] = moment.map(|value| value * factor);
+                    for row in 0..3 {
+                        let [a, b, c] = [0, 1, 2].map(|column| turned[column][row].0[lane]);
+                        moments[place][row] = factor * (laplacians[place][row] - (a * x + b * y + c * z));
+                    }
                 }
             }
         }
@@ -248,20 +269,20 @@ impl Cells {
 
     /// The gradient of the solved vertices from `first` on.
     #[inline(always)]
-    fn descend(&self, first: usize, gradient: &mut [Quad], turns: &[[Quad; 3]], laplacians: &[Quad], moments: &[Quad]) {
+    fn descend(&self, first: usize, gradient: &mut [Quad], turns: &[Turn], laplacians: &[Quad], moments: &[Quad]) {
         for (place, gradient) in gradient.iter_mut().enumerate() {
             let cell = first + place;
             let mut sum = minus(times_turn(&turns[cell], self.own[cell]), laplacians[cell]);
             let around = self.around(cell);
             for (&end, &back) in self.ends[around.clone()].iter().zip(&self.back[around.clone()]) {
-                sum = minus(sum, times_turn(&turns[end as usize], back));
+                sum = minus(sum, times_turn(&turns[end as usize], back.map(f64::from)));
             }
             if !moments.is_empty() {
                 let own = moments[cell];
                 for (&end, back) in self.ends[around.clone()].iter().zip(&self.back[around]) {
                     let other = minus(moments[end as usize], own);
                     for row in 0..4 {
-                        sum[row] += other[row] * back[3];
+                        sum[row] += other[row] * f64::from(back[3]);
                     }
                 }
             }
@@ -293,7 +314,7 @@ struct GradientPass<'a> {
     cells: &'a Cells,
     first: usize,
     gradient: &'a mut [Quad],
-    turns: &'a [[Quad; 3]],
+    turns: &'a [Turn],
     laplacians: &'a [Quad],
     moments: &'a [Quad],
 }
@@ -318,7 +339,7 @@ impl WithSimd for GradientPass<'_> {
 /// Where a chunk's results go.
 struct Out<'a> {
     rotations: &'a mut [Quad],
-    turns: &'a mut [[Quad; 3]],
+    turns: &'a mut [Turn],
     laplacians: &'a mut [Quad],
     moments: &'a mut [Quad],
 }
@@ -336,16 +357,17 @@ fn refit(s: &Matrices, guess: Quaternions, lane: usize, rotation: &mut Quaternio
 
 /// (R − 1) v; the fourth number is nothing.
 #[inline(always)]
-fn times_turn(turn: &[Quad; 3], v: Quad) -> Quad {
+fn times_turn(turn: &Turn, v: Quad) -> Quad {
     let mut product = [0.0; 4];
     for row in 0..4 {
-        product[row] = turn[0][row] * v[0] + turn[1][row] * v[1] + turn[2][row] * v[2];
+        let [a, b, c] = turn.map(|column| f64::from(column[row]));
+        product[row] = a * v[0] + b * v[1] + c * v[2];
     }
     product
 }
 
 #[inline(always)]
-fn minus(a: Quad, b: Quad) -> Quad {
+pub(crate) fn minus(a: Quad, b: Quad) -> Quad {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
 }
 
@@ -399,7 +421,8 @@ mod tests {
             let spokes = spokes::cells(surface, &laplacian, &domain);
             check(surface, topology, &stiffness, &domain, &spokes, "spokes");
             let mut smooth = rims;
-            bending::add(&mut smooth, surface, &laplacian, &domain, 0.05);
+            let bends = bending::stiffness(surface, &domain, 0.05);
+            bending::add(&mut smooth, surface, &laplacian, &domain, bends);
             check(surface, topology, &stiffness, &domain, &smooth, "smooth");
         }
     }

@@ -10,12 +10,9 @@ use crate::blend::{Origin, Screw, Screws, carried};
 use crate::handle::Motion;
 use crate::operators::CHUNK;
 
-/// Below this share of the last blend's energy the carried shape is taken without asking: a blend costs as much as the
-/// step after it, and along a drag its energy changes slowly.
-const PROMISING: f64 = 0.5;
-
-/// Every so many targets the blend is looked at whatever it had: a drag may have turned back.
-const RECONSIDERED: u32 = 8;
+/// The blend from the rest shape is passed over for so many targets at most: it costs as much as the step after it and
+/// hardly ever wins along a drag, but a drag may turn back.
+const PATIENCE: u32 = 8;
 
 impl ArapSolver {
     /// Makes the better of two starts the current shape for `motions`.
@@ -23,24 +20,32 @@ impl ArapSolver {
         let was_at_rest = self.motions.iter().all(Motion::is_rest);
         let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
         self.motions.copy_from_slice(motions);
+        self.springs.aim(motions);
         self.history.drop_pending();
-        if !was_at_rest {
-            self.carry(&onwards, Origin::Current);
+        self.taken = None;
+        self.state = State::Descending;
+        if was_at_rest {
+            self.history.clear();
+            self.carry(&from_rest, Origin::Rest);
             std::mem::swap(&mut self.current, &mut self.trial);
+            (self.until_blend, self.patience) = (0, 1);
+            return;
         }
-        self.drag_frames += 1;
-        let could_win = self.current.energy >= PROMISING * self.blend_energy;
-        if !(was_at_rest || could_win || self.drag_frames.is_multiple_of(RECONSIDERED)) {
-            self.state = State::Descending;
+        self.carry(&onwards, Origin::Current);
+        std::mem::swap(&mut self.current, &mut self.trial);
+        if self.until_blend > 0 {
+            self.until_blend -= 1;
             return;
         }
         self.carry(&from_rest, Origin::Rest);
-        self.blend_energy = self.trial.energy;
-        if was_at_rest || self.trial.energy < self.current.energy || !self.current.energy.is_finite() {
+        if self.trial.energy < self.current.energy || !self.current.energy.is_finite() {
             self.history.clear();
             std::mem::swap(&mut self.current, &mut self.trial);
+            self.patience = 1;
+        } else {
+            self.patience = PATIENCE.min(2 * self.patience);
         }
-        self.state = State::Descending;
+        self.until_blend = self.patience - 1;
     }
 
     /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles where they go.
@@ -82,5 +87,7 @@ impl ArapSolver {
             }
         }
         self.cells.evaluate(&mut self.trial, Guesses::Own, &mut self.scratch);
+        self.springs.add_energy(&mut self.trial);
+        self.springs.add_gradient(&mut self.trial);
     }
 }

@@ -18,8 +18,8 @@ impl Default for Primo {
     fn default() -> Self {
         Self {
             thickness: 0.05,
-            tolerance: 1e-4,
-            max_iterations: 500,
+            tolerance: 1e-7,
+            max_iterations: 1000,
         }
     }
 }

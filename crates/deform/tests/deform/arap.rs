@@ -15,8 +15,10 @@ fn scene(drawn: Drawn, energy: ArapEnergy) -> Scene {
 fn the_energy_never_rises_and_handles_go_where_they_are_told() {
     for energy in ArapEnergy::ALL {
         for (name, drawn) in shapes::classes() {
-            for fixed in [true, false] {
-                let scene = scene(drawn.clone(), energy).with_ends(fixed);
+            for (fixed, soft) in [(true, None), (false, None), (true, Some(3.0)), (false, Some(3.0))] {
+                let mut scene = scene(drawn.clone(), energy).with_ends(fixed);
+                scene.soft = vec![None; scene.handle_count];
+                scene.soft[0] = soft;
                 let bound = &mut scene.bind();
                 for targets in [
                     far(&scene),
@@ -35,6 +37,7 @@ fn the_energy_never_rises_and_handles_go_where_they_are_told() {
                     for (vertex, role) in scene.roles.iter().enumerate() {
                         let expected = match role {
                             Role::Fixed => DVec3::ZERO,
+                            Role::Handle(0) if soft.is_some() => continue,
                             Role::Handle(handle) => {
                                 let p = scene.positions()[vertex];
                                 targets[usize::from(*handle)].transform_point3(p) - p

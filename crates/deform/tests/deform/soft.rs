@@ -1,10 +1,11 @@
 //! Soft handles: weights that mean the same on every mesh, hard handles at one end and none at the other.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{BindError, Holds, Role, ShellOrder};
+use pliant_deform::{ArapEnergy, BindError, Holds, Role, ShellOrder};
 use pliant_mesh::{Cancel, Progress, shapes};
 
-use crate::rig::{Scene, apart, back_substitute, step, turned};
+use crate::nonlinear::{Iterative, scene};
+use crate::rig::{Scene, apart, back_substitute, settle, step, turned};
 use crate::shell::of_order;
 
 /// A square plate held at its rim, a square in it the handle.
@@ -48,6 +49,48 @@ fn a_heavier_weight_comes_nearer_from_nothing_to_a_hard_handle() {
             heights[3] > 0.1 && heights[3] < 0.9,
             "a weight of 1 gives way: {order:?} {heights:?}"
         );
+    }
+}
+
+#[test]
+fn a_heavier_weight_comes_nearer_as_rigid_as_possible_too() {
+    for energy in ArapEnergy::ALL {
+        let method = Iterative::Arap(energy);
+        let tube = |weight: Option<f64>| {
+            let mut scene = scene(shapes::tube(12, 16, 4.0), method)
+                .with(Role::Fixed, |p| p.z < 0.5)
+                .with(Role::Handle(0), |p| p.z > 3.5);
+            scene.soft = vec![weight];
+            scene
+        };
+        let target = turned(DVec3::Z * 3.5, 0.8, DVec3::X);
+        let (hard, _) = settle(&mut tube(None).bind(), &[target]);
+        let size = tube(None).diagonal();
+        let errors = [1e-6, 1e-3, 0.1, 1.0, 10.0, 1e3, 1e9].map(|weight| {
+            let scene = tube(Some(weight));
+            let (soft, _) = settle(&mut scene.bind(), &[target]);
+            let handle = scene.roles.iter().map(|role| matches!(role, Role::Handle(_)));
+            let own = handle.zip(soft.iter().zip(&hard)).filter(|(is_own, _)| *is_own);
+            own.map(|(_, (a, b))| a.distance_squared(*b)).sum::<f64>().sqrt() / size
+        });
+        assert!(
+            errors.windows(2).all(|pair| pair[1] < pair[0]) && errors[6] < 1e-5 && errors[0] > 0.1,
+            "{energy:?} {errors:?}"
+        );
+    }
+}
+
+#[test]
+fn soft_handles_that_move_alike_carry_everything_rigidly() {
+    for energy in ArapEnergy::ALL {
+        let mut scene = scene(shapes::torus(20, 10), Iterative::Arap(energy)).with_ends(false);
+        scene.soft = vec![Some(0.1); scene.handle_count];
+        let motion = turned(DVec3::X, 2.0, DVec3::new(1.0, -3.0, 0.5));
+        let (shape, _) = settle(&mut scene.bind(), &vec![motion; scene.handle_count]);
+        for (p, d) in scene.positions().iter().zip(&shape) {
+            let error = (*p + *d).distance(motion.transform_point3(*p)) / scene.diagonal();
+            assert!(error < 1e-6, "{energy:?}: {error:e}");
+        }
     }
 }
 
@@ -154,7 +197,7 @@ fn a_weight_that_is_none_is_refused_and_another_method_says_that_it_holds_hard()
         })
     ));
     scene.soft.pop();
-    scene.method = pliant_deform::Method::from_name("arap").unwrap();
+    scene.method = pliant_deform::Method::from_name("primo").unwrap();
     let bound = scene.bind();
     assert!(
         bound.warnings().iter().any(|said| said.contains("handle 0 is soft")),

@@ -6,20 +6,20 @@ use crate::edit_node::Members;
 
 pub(super) const TOLERANCE: MethodOption = MethodOption {
     name: "tolerance",
-    says: "iteration ends where a step lowers the energy by less than this share of it, 1e-12 to 0.1; default 1e-4",
+    says: "iteration ends where a step lowers the energy by less than this share of it, 1e-12 to 0.1; default 1e-7",
     takes: OptionKind::Number {
         range: [1e-12, 0.1],
-        default: 1e-4,
+        default: 1e-7,
         unit: "of the energy",
     },
 };
 
 pub(super) const MAX_ITERATIONS: MethodOption = MethodOption {
     name: "max_iterations",
-    says: "iteration ends after so many steps a frame, 1 to 100000; default 500",
+    says: "iteration ends after so many steps a frame, 1 to 100000; default 1000",
     takes: OptionKind::Whole {
         range: [1, 100_000],
-        default: 500,
+        default: 1000,
     },
 };
 

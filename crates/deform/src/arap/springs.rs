@@ -1,0 +1,94 @@
+//! Soft handles: a spring from each of their vertices to where its handle wants it.
+//!
+//! Their vertices are solved for like free ones, and E gains ½ Σ W_i |d_i − c_i|² with the strengths W of
+//! [`crate::Holds`]: what a membrane of stiffness 1 opposes and, where the energy is smooth, a plate of stiffness κ A.
+//! That is a quadratic as it stands, so the majorising one has the same W on its diagonal.
+
+use super::cells::{Quad, quad};
+use super::domain::Domain;
+use super::shape::{Shape, minus};
+use crate::handle::{Handle, Motion};
+use crate::partition::Partition;
+use crate::{Laplacian, Problem};
+
+/// The springs of all soft handles.
+#[derive(Clone, Debug)]
+pub(crate) struct Springs {
+    springs: Vec<Spring>,
+    /// c of each.
+    wanted: Vec<Quad>,
+}
+
+/// A spring.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spring {
+    /// The solved vertex that it pulls at.
+    pub local: u32,
+    /// W_i.
+    pub strength: f64,
+    handle: usize,
+    coordinates: [f64; 4],
+}
+
+impl Springs {
+    /// Those of the handles that `partition` has soft; `laplacian` has rows for their vertices, and the energy bends with
+    /// the stiffness `bending`.
+    pub fn of(
+        problem: &Problem,
+        partition: &Partition,
+        handles: &[Handle],
+        domain: &Domain,
+        laplacian: &Laplacian,
+        bending: f64,
+    ) -> Self {
+        let mut springs = Vec::new();
+        for (number, (handle, weight)) in handles.iter().zip(&partition.soft).enumerate() {
+            let Some(weight) = *weight else { continue };
+            let own = |&vertex: &u32| {
+                let area = laplacian.inverse_areas()[laplacian.local(vertex)?].recip();
+                Some((vertex, area))
+            };
+            let vertices: Vec<(u32, f64)> = handle.vertices.iter().filter_map(own).collect();
+            let square_wave_number = std::f64::consts::PI.powi(2) / vertices.iter().map(|(_, area)| area).sum::<f64>();
+            let resistance = square_wave_number + bending * square_wave_number.powi(2);
+            springs.extend(vertices.into_iter().map(|(vertex, area)| Spring {
+                local: domain.local_of[vertex as usize],
+                strength: weight * resistance * area,
+                handle: number,
+                coordinates: handle.coordinates(problem.surface.positions[vertex as usize]),
+            }));
+        }
+        let wanted = vec![[0.0; 4]; springs.len()];
+        Self { springs, wanted }
+    }
+
+    /// All of them.
+    pub fn all(&self) -> &[Spring] {
+        &self.springs
+    }
+
+    /// The handles are to go so.
+    pub fn aim(&mut self, motions: &[Motion]) {
+        for (wanted, spring) in self.wanted.iter_mut().zip(&self.springs) {
+            *wanted = quad(motions[spring.handle].displace(spring.coordinates), 0.0);
+        }
+    }
+
+    /// Adds what they hold to a shape's energy.
+    pub fn add_energy(&self, shape: &mut Shape) {
+        for (spring, wanted) in self.springs.iter().zip(&self.wanted) {
+            let [x, y, z, _] = minus(shape.displacements[spring.local as usize], *wanted);
+            shape.energy += 0.5 * spring.strength * (x * x + y * y + z * z);
+        }
+    }
+
+    /// Adds how they pull to a shape's gradient.
+    pub fn add_gradient(&self, shape: &mut Shape) {
+        for (spring, wanted) in self.springs.iter().zip(&self.wanted) {
+            let beyond = minus(shape.displacements[spring.local as usize], *wanted);
+            for (own, beyond) in shape.gradient[spring.local as usize].iter_mut().zip(beyond) {
+                *own += spring.strength * beyond;
+            }
+        }
+    }
+}
