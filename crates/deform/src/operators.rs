@@ -23,8 +23,6 @@ mod principal;
 mod surface_net;
 mod tufted;
 
-use std::collections::BTreeMap;
-
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
 use rayon::prelude::*;
 
@@ -49,6 +47,22 @@ pub struct Laplacian {
     weights: Vec<f64>,
     inverse_areas: Vec<f64>,
     mollified_faces: usize,
+}
+
+/// Cuts the entries of compressed rows into those of [`CHUNK`] rows each.
+fn row_chunks<'a, T: Send>(entries: &'a mut [T], offsets: &[u32]) -> rayon::vec::IntoIter<&'a mut [T]> {
+    let mut rest = entries;
+    let mut chunks = Vec::with_capacity(offsets.len() / CHUNK + 1);
+    for rows in offsets[..offsets.len() - 1]
+        .chunks(CHUNK)
+        .enumerate()
+        .map(|(chunk, rows)| chunk * CHUNK..chunk * CHUNK + rows.len())
+    {
+        let (own, tail) = std::mem::take(&mut rest).split_at_mut((offsets[rows.end] - offsets[rows.start]) as usize);
+        chunks.push(own);
+        rest = tail;
+    }
+    chunks.into_par_iter()
 }
 
 /// A surface vertex that has no local number.
@@ -87,33 +101,39 @@ impl Laplacian {
         discretisation: Discretisation,
         factor: &(dyn Fn([SurfaceVertex; 3], [f64; 3]) -> f64 + Sync),
     ) -> Self {
-        let mut local_of = vec![ABSENT; net.vertex_count()];
-        for &row in rows {
-            local_of[row as usize] = 0;
-            for neighbour in net.neighbours(SurfaceVertex(row)) {
-                local_of[neighbour.index()] = 0;
-            }
-        }
-        let mut vertices = Vec::new();
+        let mut is_row = vec![false; net.vertex_count()];
+        rows.iter().for_each(|&row| is_row[row as usize] = true);
+        let mut local_of: Vec<u32> = (0..net.vertex_count() as u32)
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|vertex| {
+                let near = || net.neighbours(SurfaceVertex(vertex)).iter().any(|n| is_row[n.index()]);
+                if is_row[vertex as usize] || near() { 0 } else { ABSENT }
+            })
+            .collect();
+        let mut vertices = Vec::with_capacity(local_of.len());
+        let mut offsets = Vec::with_capacity(local_of.len() + 1);
+        offsets.push(0);
+        let mut end = 0;
         for (vertex, local) in local_of.iter_mut().enumerate() {
             if *local != ABSENT {
                 *local = vertices.len() as u32;
                 vertices.push(vertex as u32);
+                if is_row[vertex] {
+                    end += net.neighbours(SurfaceVertex(vertex as u32)).len() as u32;
+                }
+                offsets.push(end);
             }
         }
-        let mut offsets = vec![0; vertices.len() + 1];
-        let mut neighbours = Vec::new();
-        let mut next_row = rows.iter().peekable();
-        for (local, &vertex) in vertices.iter().enumerate() {
-            if next_row.next_if_eq(&&vertex).is_some() {
-                neighbours.extend(
-                    net.neighbours(SurfaceVertex(vertex))
-                        .iter()
-                        .map(|n| local_of[n.index()]),
-                );
+        let mut neighbours = vec![0; end as usize];
+        let chunks = vertices.par_chunks(CHUNK).zip(row_chunks(&mut neighbours, &offsets));
+        chunks.for_each(|(vertices, list)| {
+            let full = vertices.iter().filter(|&&vertex| is_row[vertex as usize]);
+            let found = full.flat_map(|&vertex| net.neighbours(SurfaceVertex(vertex)));
+            for (place, neighbour) in list.iter_mut().zip(found) {
+                *place = local_of[neighbour.index()];
             }
-            offsets[local + 1] = neighbours.len() as u32;
-        }
+        });
         let mut operator = Self {
             vertices,
             offsets,
@@ -137,17 +157,14 @@ impl Laplacian {
     /// Cotangents per face first, then gathered per row: both sides of an edge add up the same numbers in the same
     /// order, so the weights are symmetric to the last bit.
     fn fill(&mut self, net: &Net, local_of: &[u32], common_area: Option<f64>, face: impl Fn(u32) -> FaceTerms + Sync) {
-        let mut needed = vec![false; net.face_count()];
-        for (local, &vertex) in self.vertices.iter().enumerate() {
-            if self.is_full(local) {
-                for &face in net.faces(SurfaceVertex(vertex)) {
-                    needed[face as usize] = true;
-                }
-            }
-        }
-        let faces: Vec<u32> = (0..needed.len())
-            .filter(|&face| needed[face])
-            .map(|face| face as u32)
+        let full = |vertex: SurfaceVertex| match local_of[vertex.index()] {
+            ABSENT => false,
+            local => self.is_full(local as usize),
+        };
+        let faces: Vec<u32> = (0..net.face_count() as u32)
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .filter(|&face| net.corners(face).into_iter().any(full))
             .collect();
         let terms: Vec<FaceTerms> = faces
             .par_iter()
@@ -159,22 +176,17 @@ impl Laplacian {
         for (slot, &face) in faces.iter().enumerate() {
             slot_of_face[face as usize] = slot as u32;
         }
-        let mut rows: Vec<(&mut [f64], f64)> = Vec::with_capacity(self.vertices.len());
         let mut weights = vec![0.0; self.neighbours.len()];
-        let mut rest = weights.as_mut_slice();
-        for local in 0..self.vertices.len() {
-            let (row, tail) = rest.split_at_mut((self.offsets[local + 1] - self.offsets[local]) as usize);
-            rows.push((row, 0.0));
-            rest = tail;
-        }
-        rows.par_iter_mut()
-            .with_min_len(CHUNK)
-            .enumerate()
-            .for_each(|(local, (row, area))| {
+        let mut areas = vec![0.0; self.vertices.len()];
+        let chunks = areas.par_chunks_mut(CHUNK).zip(row_chunks(&mut weights, &self.offsets));
+        chunks.enumerate().for_each(|(chunk, (areas, mut weights))| {
+            for (local, area) in (chunk * CHUNK..).zip(areas) {
                 let vertex = SurfaceVertex(self.vertices[local]);
                 let neighbours = self.neighbours(local);
+                let (row, rest) = std::mem::take(&mut weights).split_at_mut(neighbours.len());
+                weights = rest;
                 if neighbours.is_empty() {
-                    return;
+                    continue;
                 }
                 for &face in net.faces(vertex) {
                     let terms = &terms[slot_of_face[face as usize] as usize];
@@ -184,20 +196,18 @@ impl Laplacian {
                         // The edge from here to another corner lies opposite the third one. An intrinsic triangle may
                         // have this vertex twice, and an edge from it to itself is none.
                         for other in (0..3).filter(|&corner| corners[corner] != vertex) {
-                            if let Ok(place) = neighbours.binary_search(&local_of[corners[other].index()]) {
+                            let number = local_of[corners[other].index()];
+                            if let Some(place) = neighbours.iter().position(|&neighbour| neighbour == number) {
                                 row[place] += terms.half_cotangents[3 - own - other];
                             }
                         }
                     }
                 }
-            });
-        let mut areas: Vec<f64> = rows
-            .into_iter()
-            .map(|(row, area)| match common_area {
-                Some(common) if !row.is_empty() => common,
-                _ => area,
-            })
-            .collect();
+                if let Some(common) = common_area {
+                    *area = common;
+                }
+            }
+        });
         self.weights = weights;
         self.floor_areas(net.topology(), &mut areas);
         self.inverse_areas = areas
@@ -207,18 +217,17 @@ impl Laplacian {
     }
 
     fn floor_areas(&self, topology: &Topology, areas: &mut [f64]) {
-        let mut sums = BTreeMap::<u32, (f64, f64)>::new();
-        let component = |local: usize| topology.component(SurfaceVertex(self.vertices[local]));
+        let mut sums = vec![(0.0, 0.0); topology.components().len()];
+        let component = |local: usize| topology.component(SurfaceVertex(self.vertices[local])) as usize;
         for local in (0..areas.len()).filter(|&local| self.is_full(local)) {
-            let sum = sums.entry(component(local)).or_default();
+            let sum = &mut sums[component(local)];
             *sum = (sum.0 + areas[local], sum.1 + 1.0);
         }
         for local in (0..areas.len()).filter(|&local| self.is_full(local)) {
-            if let Some((area, count)) = sums.get(&component(local)) {
-                // A component of no area at all still has a shape to solve on: its lengths are all that matters then.
-                let mean = if *area > 0.0 { area / count } else { 1.0 };
-                areas[local] = areas[local].max(AREA_FLOOR * mean);
-            }
+            let (area, count) = sums[component(local)];
+            // A component of no area at all still has a shape to solve on: its lengths are all that matters then.
+            let mean = if area > 0.0 { area / count } else { 1.0 };
+            areas[local] = areas[local].max(AREA_FLOOR * mean);
         }
     }
 
@@ -242,7 +251,11 @@ impl Laplacian {
     /// The local numbers of those of these surface vertices that have one.
     pub(crate) fn locals(&self, surface_vertices: &[u32]) -> Vec<u32> {
         let local = |&vertex: &u32| self.local(vertex).map(|local| local as u32);
-        surface_vertices.iter().filter_map(local).collect()
+        surface_vertices
+            .par_iter()
+            .with_min_len(CHUNK)
+            .filter_map(local)
+            .collect()
     }
 
     /// The local neighbours of `local`, ascending; none where the row is not full.

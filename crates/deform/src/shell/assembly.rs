@@ -25,34 +25,52 @@ pub(crate) fn assemble_shell(operator: &ShellOperator, columns: &[u32], column_o
             },
         )
         .collect();
-    let mut plate = ScaledMatrix {
-        scale: Vec::with_capacity(columns.len()),
-        lower_offsets: vec![0],
-        lower_rows: Vec::with_capacity(chunks.iter().map(|chunk| chunk.lower_rows.len()).sum()),
-        lower_values: Vec::with_capacity(chunks.iter().map(|chunk| chunk.lower_rows.len()).sum()),
-    };
-    let mut lower_end = 0;
-    for chunk in chunks {
-        let mut first = 0;
-        for lower in chunk.counts {
-            // A vertex without any weight has an empty row: leave it to the factorisation to say so.
-            let diagonal = chunk.lower_values[first];
-            first += lower as usize;
-            plate
-                .scale
-                .push(if diagonal > 0.0 { diagonal.sqrt().recip() } else { 1.0 });
-            lower_end += lower;
-            plate.lower_offsets.push(lower_end);
-        }
-        plate.lower_rows.extend(chunk.lower_rows);
-        plate.lower_values.extend(chunk.lower_values);
+    let scale: Vec<f64> = chunks.iter().flat_map(|chunk| chunk.scale.iter().copied()).collect();
+    let mut lower_offsets = Vec::with_capacity(columns.len() + 1);
+    lower_offsets.push(0);
+    let mut end = 0;
+    for count in chunks.iter().flat_map(|chunk| &chunk.counts) {
+        end += count;
+        lower_offsets.push(end);
     }
-    plate.scale_values();
-    plate
+    let (mut lower_rows, mut lower_values) = (vec![0; end as usize], vec![0.0; end as usize]);
+    let (mut rows_left, mut values_left) = (lower_rows.as_mut_slice(), lower_values.as_mut_slice());
+    let mut targets = Vec::with_capacity(chunks.len());
+    for chunk in &chunks {
+        let (rows, rows_behind) = rows_left.split_at_mut(chunk.lower_rows.len());
+        let (values, values_behind) = values_left.split_at_mut(chunk.lower_values.len());
+        targets.push((rows, values));
+        (rows_left, values_left) = (rows_behind, values_behind);
+    }
+    targets
+        .into_par_iter()
+        .zip(&chunks)
+        .for_each(|((rows, values), chunk)| {
+            rows.copy_from_slice(&chunk.lower_rows);
+            let mut first = 0;
+            for (&own, &count) in chunk.scale.iter().zip(&chunk.counts) {
+                let entries = first..first + count as usize;
+                let found = chunk.lower_rows[entries.clone()]
+                    .iter()
+                    .zip(&chunk.lower_values[entries.clone()]);
+                for (target, (&row, &value)) in values[entries.clone()].iter_mut().zip(found) {
+                    *target = value * (own * scale[row as usize]);
+                }
+                first = entries.end;
+            }
+        });
+    ScaledMatrix {
+        scale,
+        lower_offsets,
+        lower_rows,
+        lower_values,
+    }
 }
 
 #[derive(Default)]
 struct Chunk {
+    /// One over the root of the diagonal of each column.
+    scale: Vec<f64>,
     /// Entries on and below the diagonal of each column.
     counts: Vec<u32>,
     lower_rows: Vec<u32>,
@@ -79,6 +97,11 @@ fn assemble_chunk(
             }
         }
         chunk.counts.push((chunk.lower_rows.len() - before) as u32);
+        // A vertex without any weight has an empty row: leave it to the factorisation to say so.
+        let diagonal = chunk.lower_values[before];
+        chunk
+            .scale
+            .push(if diagonal > 0.0 { diagonal.sqrt().recip() } else { 1.0 });
     }
     chunk
 }
