@@ -66,7 +66,15 @@ fn measure(file: &str, threads: usize, clock: fn() -> f64) {
     let (substitute_ms, ()) = median.of(times, || factor.solve(&mut x));
     drop((x, factor, matrix, operator));
     let (bind_ms, mut bound) = median.of(times, || problem(&roles).bind(&ordering, &progress, &cancel).unwrap());
-    let (rebind_ms, _) = median.of(times, || problem(&stroked).bind(&ordering, &progress, &cancel).unwrap());
+    let former = problem(&roles).rebind(&ordering, None, &progress, &cancel).unwrap();
+    let remains = former.remains();
+    drop(former);
+    let (rebind_ms, _) = median.of(times, || {
+        problem(&stroked)
+            .rebind(&ordering, remains.as_ref(), &progress, &cancel)
+            .unwrap()
+    });
+    drop(remains);
     bound.set_targets(&[DAffine3::from_translation(DVec3::X)]).unwrap();
     let mut displacements = vec![DVec3::ZERO; count];
     let (solve_ms, _) = median.of(times, || bound.step_by_back_substitution(&mut displacements).unwrap());

@@ -1,5 +1,7 @@
 //! A problem bound to a method: new transforms in, displacements out.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DVec3};
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
@@ -10,7 +12,8 @@ use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
 use crate::primo::PrimoSolver;
 use crate::shell::bases::FRAME_CHUNK;
-use crate::shell::plate::{Plate, repairs};
+use crate::shell::plate::{Known, Plate, repairs};
+use crate::sparse::cholesky::{Renewable, Renewal};
 use crate::{BindError, HandleBases, Method, Ordering, Problem, SolveError};
 
 /// A bound problem: everything that does not depend on the handles' transforms is solved.
@@ -25,6 +28,21 @@ pub struct Bound {
     solver: Solver,
     followers: Vec<Follower>,
     warnings: Vec<String>,
+}
+
+/// The factor of a bound linear shell, of which [`Problem::rebind`] takes over what is the same. Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Remains(Arc<Renewable>);
+
+impl Remains {
+    pub(crate) fn factored(&self) -> &Renewable {
+        &self.0
+    }
+
+    /// The share of the factor's numbers that were taken over from `other`, 0 to 1.
+    pub fn share_of(&self, other: &Self) -> f64 {
+        self.0.share_of(&other.0)
+    }
 }
 
 /// What the method computed; later methods join as variants.
@@ -54,6 +72,7 @@ impl Bound {
     pub(crate) fn bind(
         problem: &Problem,
         ordering: &Ordering,
+        renewal: Renewal,
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
@@ -77,7 +96,8 @@ impl Bound {
             .collect();
         let solver = match problem.method {
             Method::Bilaplacian(options) => {
-                let plate = Plate::bind(problem, options, &partition, &handles, ordering, progress, cancel)?;
+                let known = Known { ordering, renewal };
+                let plate = Plate::bind(problem, options, &partition, &handles, known, progress, cancel)?;
                 partition.warnings.extend(plate.warnings());
                 Solver::Plate(Box::new(plate))
             }
@@ -107,6 +127,15 @@ impl Bound {
             ),
             warnings: partition.warnings,
         })
+    }
+
+    /// What binding a problem that differs in a few vertices' roles can take over, where the method has a factor that
+    /// can be renewed: the linear shell. There is much only where [`Problem::rebind`] bound it.
+    pub fn remains(&self) -> Option<Remains> {
+        match &self.solver {
+            Solver::Plate(plate) => Some(Remains(Arc::clone(plate.factored()))),
+            Solver::Arap(_) | Solver::Primo(_) => None,
+        }
     }
 
     /// Sets where the handles are to go: one affine map of world positions a handle, from rest.

@@ -31,7 +31,7 @@ pub mod stages;
 mod sums;
 
 pub use arap::{Arap, ArapEnergy};
-pub use bound::{Bound, Step};
+pub use bound::{Bound, Remains, Step};
 pub use error::{BindError, SolveError};
 pub use holds::{CONTINUITY_RANGE, Holds};
 pub use method::Method;

@@ -2,7 +2,8 @@
 
 use pliant_mesh::{Cancel, Progress, Surface, Topology};
 
-use crate::{BindError, Bound, Holds, Method, Ordering};
+use crate::sparse::cholesky::Renewal;
+use crate::{BindError, Bound, Holds, Method, Ordering, Remains};
 
 /// What a surface vertex does.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -63,6 +64,23 @@ impl Problem<'_> {
     /// [`BindError::Cancelled`] once `cancel` is raised, which is looked at between the steps and many times within a
     /// factorisation.
     pub fn bind(&self, ordering: &Ordering, progress: &Progress, cancel: &Cancel) -> Result<Bound, BindError> {
-        Bound::bind(self, ordering, progress, cancel)
+        Bound::bind(self, ordering, Renewal::Never, progress, cancel)
+    }
+
+    /// As [`Problem::bind`], and with the same result to the bit, for who binds again and again: what `remains` of an
+    /// earlier binding and is not touched by what changed since is not factored again. What is kept for that takes about
+    /// as much memory as the factor.
+    ///
+    /// # Errors
+    /// As [`Problem::bind`].
+    pub fn rebind(
+        &self,
+        ordering: &Ordering,
+        remains: Option<&Remains>,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Bound, BindError> {
+        let renewal = Renewal::From(remains.map(Remains::factored));
+        Bound::bind(self, ordering, renewal, progress, cancel)
     }
 }

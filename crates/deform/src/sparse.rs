@@ -1,6 +1,5 @@
 //! Sparse symmetric systems: the order of elimination, the scaled matrix, its Cholesky factor and the solves with it.
 
-mod aligned;
 mod bisection;
 pub(crate) mod cholesky;
 mod dissection;
@@ -9,11 +8,15 @@ mod front;
 pub(crate) mod graph;
 mod kernels;
 mod leaf;
+mod line;
 pub(crate) mod matrix;
 mod multifrontal;
 mod ordering;
+mod passes;
+mod reuse;
 pub(crate) mod substitution;
 mod symbolic;
+mod tiles;
 mod triangular;
 
 pub(crate) use ordering::Elimination;

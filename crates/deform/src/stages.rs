@@ -53,7 +53,7 @@ impl Operator {
 
     /// What the matrix' factor holds, without its numbers.
     pub fn analyse(&self, matrix: &Matrix) -> Option<Factored> {
-        Factor::analysed(&matrix.0, &self.elimination.ends).ok().map(Factored)
+        Some(Factored(Factor::analysed(&matrix.0, &self.elimination.ends)))
     }
 }
 

@@ -9,7 +9,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{BindError, Bound, Holds, Ordering, Problem, SolveError, Step};
+use pliant_deform::{BindError, Bound, Holds, Ordering, Problem, Remains, SolveError, Step};
 use pliant_mesh::{Bvh, Cancel, Model, Progress, Surface, SurfaceVertex};
 
 use crate::document::{Document, HandleId, sum_of_shapes};
@@ -60,6 +60,8 @@ pub(crate) struct Engine {
     pub(crate) region: Region,
     region_revision: Revision,
     bound: Option<Arc<Mutex<Bound>>>,
+    /// What the next binding can take over of the last one.
+    remains: Option<Remains>,
     bound_revision: Revision,
     pub(crate) warnings: Vec<String>,
 }
@@ -105,6 +107,7 @@ impl Engine {
             region: Region::still(0),
             region_revision: Revision(0),
             bound: None,
+            remains: None,
             bound_revision: Revision(0),
             warnings: Vec::new(),
         }
@@ -124,7 +127,7 @@ impl Engine {
         self.region = Region::still(model.surface.positions.len());
         self.model = Some(model);
         self.model_revision = self.next_revision();
-        (self.bvh, self.bound) = (None, None);
+        (self.bvh, self.bound, self.remains) = (None, None, None);
         self.orderings.clear();
         self.picked = None;
         self.warnings.clear();
@@ -263,6 +266,7 @@ impl Engine {
             }
             JobOutcome::Bound(bound) if stamp == self.problem_revision => {
                 self.warnings = bound.warnings().to_vec();
+                self.remains = bound.remains();
                 self.bound = Some(Arc::new(Mutex::new(*bound)));
                 self.bound_revision = stamp;
             }
@@ -357,6 +361,7 @@ impl Engine {
             .collect();
         let continuity = document.continuity.clone();
         let revision = self.problem_revision.0;
+        let remains = self.remains.clone();
         Some(Box::new(move |progress, cancel| {
             let ones;
             let stiffness: &[f64] = match &stiffness {
@@ -380,7 +385,7 @@ impl Engine {
                 method: &method,
                 revision,
             };
-            match problem.bind(&ordering, progress, cancel) {
+            match problem.rebind(&ordering, remains.as_ref(), progress, cancel) {
                 Ok(bound) => JobOutcome::Bound(Box::new(bound)),
                 Err(BindError::Cancelled(_)) => JobOutcome::Cancelled,
                 Err(error) => JobOutcome::Failed(

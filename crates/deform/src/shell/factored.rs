@@ -3,6 +3,8 @@
 //! A factorisation that succeeds proves nothing: condition numbers reach 1e15 on real scans. So every solve is refined
 //! (see `refine`), and every bind solves for the constant 1, whose solution is known, and refuses where it is missed.
 
+use std::sync::Arc;
+
 use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
@@ -12,7 +14,7 @@ use crate::shell::assembly::assemble_shell;
 use crate::shell::operator::ShellOperator;
 use crate::shell::refine::{Outcome, solve};
 use crate::sparse::Elimination;
-use crate::sparse::cholesky::{Factor, FactorError};
+use crate::sparse::cholesky::{Factor, FactorError, Renewable, Renewal};
 use crate::sparse::matrix::CONSTRAINED;
 
 /// The factored shell over the local vertices of its Laplacian.
@@ -21,14 +23,11 @@ pub(crate) struct Shell {
     pub operator: ShellOperator,
     /// The local vertex of each column of the factor.
     columns: Vec<u32>,
-    scale: Vec<f64>,
     /// The column of each of the operator's springs.
     spring_columns: Vec<u32>,
-    factor: Factor,
+    factored: Arc<Renewable>,
     /// [`Outcome::contraction`] of the check.
     contraction: f64,
-    /// What was added to the scaled matrix' unit diagonal to factor it; 0 where nothing had to be.
-    pub shift: f64,
 }
 
 /// Where the system could not be factored or solved, as a surface vertex.
@@ -50,7 +49,12 @@ const TOLERANCE: f64 = 1e-7;
 impl Shell {
     /// Factors the shell in which the vertices of `elimination` are solved for, eliminated in that order; the
     /// operator's Laplacian has full rows for them and their neighbours.
-    pub fn new(operator: ShellOperator, elimination: &Elimination, cancel: &Cancel) -> Result<Self, ShellError> {
+    pub fn new(
+        operator: ShellOperator,
+        elimination: Elimination,
+        renewal: Renewal,
+        cancel: &Cancel,
+    ) -> Result<Self, ShellError> {
         let laplacian = &operator.laplacian;
         let columns = laplacian.locals(&elimination.order);
         let mut column_of = vec![CONSTRAINED; laplacian.vertices().len()];
@@ -63,35 +67,25 @@ impl Shell {
             .iter()
             .map(|&local| column_of[local as usize])
             .collect();
-        let mut plate = assemble_shell(&operator, &columns, &column_of);
+        let plate = assemble_shell(&operator, &columns, &column_of);
         cancel.check().map_err(|_| ShellError::Cancelled)?;
-        let mut failed = None;
-        for shift in SHIFTS {
-            match Factor::of(&plate, &elimination.ends, shift, cancel) {
-                Ok(factor) => {
-                    let scale = std::mem::take(&mut plate.scale);
-                    return Ok(Self {
-                        operator,
-                        columns,
-                        scale,
-                        spring_columns,
-                        factor,
-                        contraction: 0.0,
-                        shift,
-                    });
-                }
-                Err(FactorError::Pivot(column)) => failed = failed.or(Some(column)),
-                Err(FactorError::Memory) => return Err(ShellError::OutOfMemory),
-                Err(FactorError::Cancelled) => return Err(ShellError::Cancelled),
+        match Renewable::of(plate, elimination, &SHIFTS, renewal, cancel) {
+            Ok(factored) => Ok(Self {
+                operator,
+                columns,
+                spring_columns,
+                factored: Arc::new(factored),
+                contraction: 0.0,
+            }),
+            Err(FactorError::Memory) => Err(ShellError::OutOfMemory),
+            Err(FactorError::Cancelled) => Err(ShellError::Cancelled),
+            Err(FactorError::Pivot(column)) => {
+                let local = columns.get(column).map_or(0, |&local| local as usize);
+                Err(ShellError::NotPositiveDefinite {
+                    vertex: operator.laplacian.vertices()[local],
+                })
             }
-            cancel.check().map_err(|_| ShellError::Cancelled)?;
         }
-        let local = failed
-            .and_then(|column| columns.get(column))
-            .map_or(0, |&local| local as usize);
-        Err(ShellError::NotPositiveDefinite {
-            vertex: operator.laplacian.vertices()[local],
-        })
     }
 
     /// The local vertices that are solved for.
@@ -101,12 +95,22 @@ impl Shell {
 
     /// The factor of S A S, or nearly so.
     pub fn factor(&self) -> &Factor {
-        &self.factor
+        &self.factored.factor
+    }
+
+    /// What a shell that is nearly the same can take over.
+    pub fn factored(&self) -> &Arc<Renewable> {
+        &self.factored
+    }
+
+    /// What was added to the scaled matrix' unit diagonal to factor it; 0 where nothing had to be.
+    pub fn shift(&self) -> f64 {
+        self.factored.shift
     }
 
     /// S: the scale of each column.
     pub fn scale(&self) -> &[f64] {
-        &self.scale
+        self.factored.scale()
     }
 
     /// S (W (c − d) − A d) on the solved vertices, by differences along edges and springs.
@@ -116,7 +120,7 @@ impl Shell {
             .columns
             .par_iter()
             .with_min_len(CHUNK)
-            .zip(&self.scale)
+            .zip(self.scale())
             .map(|(&local, &scale)| {
                 self.operator
                     .force(local as usize, &potential)
@@ -126,7 +130,7 @@ impl Shell {
         for (spring, &column) in self.spring_columns.iter().enumerate() {
             let pull = self.operator.pull(spring, d);
             for k in 0..K {
-                residual[column as usize][k] += self.scale[column as usize] * pull[k];
+                residual[column as usize][k] += self.scale()[column as usize] * pull[k];
             }
         }
         residual

@@ -1,5 +1,7 @@
 //! The linear shell's method: what binding it computes, and its two ways to a frame.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
 use rayon::prelude::*;
@@ -10,6 +12,7 @@ use crate::partition::Partition;
 use crate::shell::continuity::join;
 use crate::shell::factored::{Shell, ShellError};
 use crate::shell::operator::ShellOperator;
+use crate::sparse::cholesky::{Renewable, Renewal};
 use crate::{Bilaplacian, BindError, HandleBases, Laplacian, Ordering, Problem, SolveError};
 
 /// The bound linear shell.
@@ -21,6 +24,13 @@ pub(crate) struct Plate {
     prescribed: Vec<Vec<(u32, [f64; 4])>>,
     /// E = ½ Σ_hk tr(X_hᵀ G_hk X_k) over the motions' 4×3 matrices X; row-major, one 4×4 block a pair of handles.
     energy_blocks: Vec<[[f64; 4]; 4]>,
+}
+
+/// What was computed before.
+#[derive(Clone, Copy)]
+pub(crate) struct Known<'a> {
+    pub ordering: &'a Ordering,
+    pub renewal: Renewal<'a>,
 }
 
 /// A handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
@@ -36,20 +46,20 @@ impl Plate {
         options: &Bilaplacian,
         partition: &Partition,
         handles: &[Handle],
-        ordering: &Ordering,
+        known: Known,
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
         let solved = &partition.solved;
         let component_of = |vertex: u32| problem.topology.component(SurfaceVertex(vertex));
         let refuse = |error: ShellError| of_order(options, error.into_bind_error(component_of, solved.len()));
-        let elimination = ordering.elimination(solved);
+        let elimination = known.ordering.elimination(solved);
         cancel.check()?;
         progress.set(0.1);
         let (operator, prescribed) = operator(problem, options, partition, handles);
         cancel.check()?;
         progress.set(0.2);
-        let mut shell = Shell::new(operator, &elimination, cancel).map_err(refuse)?;
+        let mut shell = Shell::new(operator, elimination, known.renewal, cancel).map_err(refuse)?;
         progress.set(0.7);
         let solved_locals = shell.operator.laplacian.locals(solved);
         // The constant is solved for beside the first handle: one pass over the factor for both.
@@ -112,6 +122,11 @@ impl Plate {
         })
     }
 
+    /// What binding nearly the same problem can take over.
+    pub fn factored(&self) -> &Arc<Renewable> {
+        self.shell.factored()
+    }
+
     /// The handles' bases.
     pub fn bases(&self) -> &HandleBases {
         &self.bases
@@ -122,10 +137,10 @@ impl Plate {
         let mut sentences: Vec<String> = repairs(self.shell.operator.laplacian.mollified_faces())
             .into_iter()
             .collect();
-        if self.shell.shift > 0.0 {
+        if self.shell.shift() > 0.0 {
             sentences.push(format!(
                 "the shell was barely stable on this mesh: it was stiffened by {:.0e} of its diagonal and refined",
-                self.shell.shift
+                self.shell.shift()
             ));
         }
         sentences

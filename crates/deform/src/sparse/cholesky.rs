@@ -1,16 +1,21 @@
-//! The sparse Cholesky factor L Lᵀ, supernodal, in the order that the matrix already has.
+//! The sparse Cholesky factor L Lᵀ, block by block, in the order that the matrix already has.
 //!
-//! The order comes in blocks of columns (`dissection`, `leaf`), which are the supernodes. `symbolic` finds their rows,
-//! `multifrontal` factors over the subtrees that `forest` cuts, `triangular` solves over the same.
+//! The order comes in blocks of columns (`dissection`, `leaf`). `symbolic` finds their rows, `multifrontal` factors over
+//! the parts that `forest` cuts, `triangular` solves over the same.
 //!
 //! A simplicial factorisation of the same systems took 720 and 12,300 ms at 45,797 and 183,208 free vertices where a
 //! supernodal one took 114 and 840 (horse.ply and once subdivided, one core).
 
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
 use pliant_mesh::Cancel;
 
-use crate::sparse::aligned::Aligned;
+use crate::sparse::Elimination;
 use crate::sparse::forest::Forest;
 use crate::sparse::matrix::ScaledMatrix;
+use crate::sparse::multifrontal::{Left, Numbers};
+use crate::sparse::reuse::{Named, equal_parts};
 use crate::sparse::substitution::{Real, Substitution};
 use crate::sparse::symbolic::Symbolic;
 use crate::sparse::{multifrontal, triangular};
@@ -20,7 +25,27 @@ use crate::sparse::{multifrontal, triangular};
 pub(crate) struct Factor {
     symbolic: Symbolic,
     forest: Forest,
-    values: Aligned,
+    /// One a part; none before the factor is filled.
+    numbers: Vec<Numbers>,
+}
+
+/// What of a factor is for the next one, of nearly the same matrix.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Renewal<'a> {
+    /// Nothing: there will be none. Half the memory.
+    Never,
+    /// What parts left is kept; what the former factor, if there is one, has to the bit is taken from there.
+    From(Option<&'a Renewable>),
+}
+
+/// A factor that remembers what it was made from, so that one of nearly the same matrix can take over what is equal.
+#[derive(Debug)]
+pub(crate) struct Renewable {
+    pub factor: Factor,
+    plate: ScaledMatrix,
+    elimination: Elimination,
+    /// What was added to the matrix' unit diagonal.
+    pub shift: f64,
 }
 
 /// Why there is no factor.
@@ -37,38 +62,32 @@ pub(crate) enum FactorError {
 impl Factor {
     /// Factors the matrix, whose columns stand in blocks that end at `ends`, with `shift` added to its unit diagonal.
     pub fn of(plate: &ScaledMatrix, ends: &[u32], shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
-        let mut factor = Self::analysed(plate, ends)?;
+        let mut factor = Self::analysed(plate, ends);
         factor.fill(plate, shift, cancel)?;
         Ok(factor)
     }
 
-    /// What the factor holds, all zero yet.
-    pub fn analysed(plate: &ScaledMatrix, ends: &[u32]) -> Result<Self, FactorError> {
+    /// What the factor is to hold, without numbers.
+    pub fn analysed(plate: &ScaledMatrix, ends: &[u32]) -> Self {
         let symbolic = Symbolic::of(plate, ends);
-        let values = Aligned::zeros(symbolic.stored()).ok_or(FactorError::Memory)?;
         let forest = Forest::of(&symbolic);
-        Ok(Self {
+        Self {
             symbolic,
             forest,
-            values,
-        })
+            numbers: Vec::new(),
+        }
     }
 
     /// Factors into what [`Factor::analysed`] left empty.
     pub fn fill(&mut self, plate: &ScaledMatrix, shift: f64, cancel: &Cancel) -> Result<(), FactorError> {
-        multifrontal::factor(
-            plate,
-            shift,
-            &self.symbolic,
-            &self.forest,
-            self.values.get_mut(),
-            cancel,
-        )
+        let (symbolic, forest) = (&self.symbolic, &self.forest);
+        self.numbers = multifrontal::factor(plate, shift, symbolic, forest, &[], Left::Dropped, cancel)?;
+        Ok(())
     }
 
     /// Its values laid out for solving again and again.
     pub fn substitution<T: Real>(&self) -> Substitution<T> {
-        Substitution::new(&self.symbolic, &self.forest, self.values.get())
+        Substitution::new(&self.symbolic, &self.forest, &self.numbers)
     }
 
     /// How many numbers the factor stores.
@@ -93,7 +112,87 @@ impl Factor {
 
     /// Solves for K right-hand sides in place.
     pub fn solve<const K: usize>(&self, x: &mut [[f64; K]]) {
-        triangular::solve_in_place(&self.symbolic, &self.forest, self.values.get(), x);
+        triangular::solve_in_place(&self.symbolic, &self.forest, &self.numbers, x);
+    }
+}
+
+impl Renewable {
+    /// Factors the matrix whose columns are those of `elimination`, with the first of `shifts` with which that goes.
+    /// The refusal is that of the first.
+    pub fn of(
+        plate: ScaledMatrix,
+        elimination: Elimination,
+        shifts: &[f64],
+        renewal: Renewal,
+        cancel: &Cancel,
+    ) -> Result<Self, FactorError> {
+        let mut factor = Factor::analysed(&plate, &elimination.ends);
+        let new = Named {
+            plate: &plate,
+            elimination: &elimination,
+            symbolic: &factor.symbolic,
+            forest: &factor.forest,
+        };
+        let mut refused = None;
+        for &shift in shifts {
+            let (known, fate) = match renewal {
+                Renewal::Never => (Vec::new(), Left::Dropped),
+                Renewal::From(Some(former)) if former.shift.to_bits() == shift.to_bits() => {
+                    (former.known_to(new), Left::Kept)
+                }
+                Renewal::From(_) => (Vec::new(), Left::Kept),
+            };
+            let (symbolic, forest) = (&factor.symbolic, &factor.forest);
+            match multifrontal::factor(&plate, shift, symbolic, forest, &known, fate, cancel) {
+                Ok(numbers) => {
+                    factor.numbers = numbers;
+                    return Ok(Self {
+                        factor,
+                        plate,
+                        elimination,
+                        shift,
+                    });
+                }
+                Err(error @ FactorError::Pivot(_)) => refused = refused.or(Some(error)),
+                Err(other) => return Err(other),
+            }
+        }
+        Err(refused.unwrap_or(FactorError::Memory))
+    }
+
+    /// The numbers of the parts that another matrix has to the bit.
+    fn known_to(&self, new: Named) -> Vec<Option<Numbers>> {
+        let old = Named {
+            plate: &self.plate,
+            elimination: &self.elimination,
+            symbolic: &self.factor.symbolic,
+            forest: &self.factor.forest,
+        };
+        let equal = equal_parts(new, old);
+        equal
+            .into_iter()
+            .map(|part| Some(self.factor.numbers[part?].clone()))
+            .collect()
+    }
+
+    /// The share of the numbers that are `other`'s.
+    pub fn share_of(&self, other: &Self) -> f64 {
+        let theirs: BTreeSet<_> = other
+            .factor
+            .numbers
+            .iter()
+            .map(|numbers| Arc::as_ptr(&numbers.panels))
+            .collect();
+        let is_shared = |numbers: &&Numbers| theirs.contains(&Arc::as_ptr(&numbers.panels));
+        let lines = |numbers: &Numbers| numbers.panels.len();
+        let shared: usize = self.factor.numbers.iter().filter(is_shared).map(lines).sum();
+        let all: usize = self.factor.numbers.iter().map(lines).sum();
+        shared as f64 / all.max(1) as f64
+    }
+
+    /// S: the scale of each column.
+    pub fn scale(&self) -> &[f64] {
+        &self.plate.scale
     }
 }
 
@@ -205,7 +304,8 @@ pub(crate) mod tests {
                 let factor = Factor::of(&plate, &ends, 0.0, &Cancel::new()).unwrap();
                 let mut x: Vec<[f64; 3]> = (0..plate.scale.len()).map(|i| [1.0, i as f64, -0.3]).collect();
                 factor.solve(&mut x);
-                (factor.values.get().to_vec(), x)
+                let lines = factor.numbers.iter().flat_map(|numbers| numbers.panels.iter());
+                (lines.flat_map(|line| line.0).collect::<Vec<f64>>(), x)
             })
         };
         let (values, x) = outcome(1);

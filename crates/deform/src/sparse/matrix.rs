@@ -21,6 +21,12 @@ pub(crate) struct ScaledMatrix {
 pub(crate) const CONSTRAINED: u32 = u32::MAX;
 
 impl ScaledMatrix {
+    /// A column's rows on and below the diagonal, and their values.
+    pub fn column(&self, column: usize) -> (&[u32], &[f64]) {
+        let entries = self.lower_offsets[column] as usize..self.lower_offsets[column + 1] as usize;
+        (&self.lower_rows[entries.clone()], &self.lower_values[entries])
+    }
+
     /// Turns the values of A into those of S A S.
     pub fn scale_values(&mut self) {
         let scale = &self.scale;

@@ -1,226 +1,326 @@
-//! The numeric factorisation, supernode by supernode from the leaves (Duff & Reid 1983).
+//! The numeric factorisation, block by block from the leaves (Duff & Reid 1983).
 //!
-//! A supernode gathers its columns of the matrix and what its children left, factors them densely (`front`), and leaves
-//! to its parent what they take from the rows below. Subtrees need nothing from each other, so they run beside each
-//! other; above them the supernodes are few and large and run one by one, each in parallel inside. faer's own
-//! factorisation does one supernode after the other, looking left; a second thread inside it made it slower.
+//! A block gathers its columns of the matrix and what its children left, is factored densely (`front`), and leaves to
+//! its parent what it takes from the rows below. The parts that `forest` cuts need nothing from each other but what
+//! children leave, so they run beside each other; large fronts are worked on by several threads inside.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use pliant_mesh::Cancel;
-use rayon::prelude::*;
 
-use crate::sparse::aligned::{Aligned, LINE};
 use crate::sparse::cholesky::FactorError;
-use crate::sparse::forest::{Forest, Part};
-use crate::sparse::front::eliminate;
+use crate::sparse::forest::Forest;
+use crate::sparse::front::{factor_panel, square};
+use crate::sparse::line::{LANES, Line, Shape, strips, triangle};
 use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::symbolic::Symbolic;
 
+/// A part's numbers.
+#[derive(Clone, Debug)]
+pub(crate) struct Numbers {
+    /// The panels of its blocks, one after the other.
+    pub panels: Arc<Vec<Line>>,
+    /// What its last block leaves to the part above, where that is kept.
+    left: Option<Arc<Vec<Line>>>,
+}
+
+/// What becomes of what parts leave.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Left {
+    /// It is given back as soon as it was taken in.
+    Dropped,
+    /// It stays for a factorisation of nearly the same matrix.
+    Kept,
+}
+
 /// What is factored.
-#[derive(Clone, Copy)]
 struct Job<'a> {
     plate: &'a ScaledMatrix,
     shift: f64,
     symbolic: &'a Symbolic,
+    forest: &'a Forest,
     cancel: &'a Cancel,
+    done: Vec<OnceLock<Arc<Vec<Line>>>>,
+    left: Vec<Mutex<Option<Arc<Vec<Line>>>>>,
+    fate: Left,
+    rooms: Mutex<Vec<Room>>,
 }
 
-/// Factors the matrix, with `shift` added to its unit diagonal, into `values`, which are zero.
+/// Factors the matrix, with `shift` added to its unit diagonal; takes over the parts that are `known`, one entry a part.
 pub(crate) fn factor(
     plate: &ScaledMatrix,
     shift: f64,
     symbolic: &Symbolic,
     forest: &Forest,
-    values: &mut [f64],
+    known: &[Option<Numbers>],
+    fate: Left,
     cancel: &Cancel,
-) -> Result<(), FactorError> {
+) -> Result<Vec<Numbers>, FactorError> {
+    let count = forest.parts.len();
+    let needed = |part: usize| forest.parts[part].parent.is_some();
+    let known = |part: usize| {
+        let numbers = known.get(part)?.as_ref()?;
+        (numbers.left.is_some() || !needed(part)).then_some(numbers)
+    };
     let job = Job {
         plate,
         shift,
         symbolic,
+        forest,
         cancel,
+        done: (0..count)
+            .map(|part| known(part).map_or_else(OnceLock::new, |numbers| OnceLock::from(Arc::clone(&numbers.panels))))
+            .collect(),
+        left: (0..count)
+            .map(|part| Mutex::new(known(part).and_then(|numbers| numbers.left.clone())))
+            .collect(),
+        fate,
+        rooms: Mutex::default(),
     };
-    let rooms = Mutex::new(Vec::new());
-    let mut tasks = Vec::new();
-    let mut top = Vec::new();
-    let mut rest = values;
-    let mut take = |first: usize, end: usize| {
-        let (slice, tail) = std::mem::take(&mut rest).split_at_mut(symbolic.values(first..end).len());
-        rest = tail;
-        slice
-    };
-    for part in &forest.parts {
-        match part {
-            Part::Task(range) => tasks.push((range.clone(), take(range.start, range.end))),
-            Part::Top(s) => top.push((*s, take(*s, s + 1))),
+    let failures = Mutex::new(Vec::new());
+    forest.upwards(|part| {
+        if job.done[part].get().is_some() {
+            return;
         }
+        if let Err(error) = job.part(part) {
+            failures.lock().unwrap_or_else(PoisonError::into_inner).push(error);
+        }
+    });
+    // The first column that fails, whoever came to it first.
+    let failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let of = |error: &FactorError| match error {
+        FactorError::Pivot(column) => *column,
+        FactorError::Memory => usize::MAX - 1,
+        FactorError::Cancelled => usize::MAX,
+    };
+    if let Some(error) = failures.into_iter().min_by_key(of) {
+        return Err(error);
     }
-    let left: Vec<Result<Option<Left>, FactorError>> = tasks
-        .into_par_iter()
-        .with_max_len(1)
-        .map(|(range, mut values)| {
-            let pooled = rooms.lock().unwrap_or_else(PoisonError::into_inner).pop();
-            let mut room = pooled.unwrap_or_else(|| Room::new(plate.scale.len()));
-            for s in range {
-                let own = symbolic.columns(s).len() * (symbolic.columns(s).len() + symbolic.pattern(s).len());
-                let (slice, tail) = values.split_at_mut(own);
-                values = tail;
-                job.supernode(s, slice, &mut room)?;
-            }
-            let left = room.pending.pop();
-            rooms.lock().unwrap_or_else(PoisonError::into_inner).push(room);
-            Ok(left)
+    let numbers = job.done.into_iter().zip(job.left).filter_map(|(panels, left)| {
+        let left = left.into_inner().unwrap_or_else(PoisonError::into_inner);
+        Some(Numbers {
+            panels: panels.into_inner()?,
+            left,
         })
-        .collect();
-    let mut left = left.into_iter();
-    let mut top = top.into_iter();
-    let mut room = Room::new(plate.scale.len());
-    for part in &forest.parts {
-        match part {
-            Part::Task(_) => room.pending.extend(left.next().transpose()?.flatten()),
-            Part::Top(_) => {
-                if let Some((s, values)) = top.next() {
-                    job.supernode(s, values, &mut room)?;
-                }
-            }
-        }
-    }
-    Ok(())
+    });
+    Ok(numbers.collect())
 }
 
-/// What a supernode leaves to its parent: a square on the rows of its pattern, of which the lower triangle counts.
-struct Left {
-    supernode: usize,
-    square: Aligned,
-}
-
-/// Room for one supernode after the other.
+/// Room for one block after the other.
+#[derive(Default)]
 struct Room {
-    /// A row's place in the present supernode.
+    /// A row's place in the present block.
     place: Vec<u32>,
-    /// What children left, in postorder: the last ones are the next supernode's.
-    pending: Vec<Left>,
-    spare: Vec<Aligned>,
+    /// What blocks of this part left, each with its block: the last ones are the next block's.
+    pending: Vec<(usize, Vec<Line>)>,
+    spare: Vec<Vec<Line>>,
     places: Vec<u32>,
 }
 
 impl Room {
-    fn new(column_count: usize) -> Self {
-        Self {
-            place: vec![0; column_count],
-            pending: Vec::new(),
-            spare: Vec::new(),
-            places: Vec::new(),
-        }
-    }
-
-    /// `len` zeros, in the least of the spare squares that holds them. Room is asked for in powers of two, so that it
-    /// is asked for seldom: growing a square moves its pages, which every thread has to be told.
-    fn take(&mut self, len: usize) -> Aligned {
+    /// So many lines of whatever, in the least of the spare squares that holds them. Room is asked for in powers of two,
+    /// so that it is asked for seldom.
+    fn take(&mut self, lines: usize) -> Vec<Line> {
         let fitting = (0..self.spare.len())
-            .filter(|&spare| self.spare[spare].room() >= len)
-            .min_by_key(|&spare| self.spare[spare].room());
+            .filter(|&spare| self.spare[spare].capacity() >= lines)
+            .min_by_key(|&spare| self.spare[spare].capacity());
         let mut square = fitting.map_or_else(
-            || Aligned::with_room(len.next_power_of_two()),
+            || Vec::with_capacity(lines.next_power_of_two()),
             |spare| self.spare.swap_remove(spare),
         );
-        square.clear(len);
+        square.resize(lines, Line::ZERO);
         square
     }
 }
 
-/// The distance between a square's columns: each starts on a line.
-fn stride(height: usize) -> usize {
-    height.next_multiple_of(LINE)
-}
-
 impl Job<'_> {
-    /// Factors one supernode into its part of the values, given what its children left in the room.
-    fn supernode(&self, s: usize, values: &mut [f64], room: &mut Room) -> Result<(), FactorError> {
+    fn part(&self, part: usize) -> Result<(), FactorError> {
+        let children = &self.forest.parts[part].children;
+        if children.iter().any(|&child| self.done[child].get().is_none()) {
+            // Whatever befell it has been said.
+            return Ok(());
+        }
+        let given: Vec<(usize, Option<Arc<Vec<Line>>>)> = children
+            .iter()
+            .map(|&child| {
+                let mut left = self.left[child].lock().unwrap_or_else(PoisonError::into_inner);
+                let given = match self.fate {
+                    Left::Dropped => left.take(),
+                    Left::Kept => left.clone(),
+                };
+                (self.forest.parts[child].blocks.end - 1, given)
+            })
+            .collect();
+        let given: Vec<(usize, &[Line])> = given
+            .iter()
+            .map(|(root, left)| (*root, left.as_ref().map_or(&[][..], |left| left.as_slice())))
+            .collect();
+        let pooled = self.rooms.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut room = pooled.unwrap_or_default();
+        room.place.resize(self.plate.scale.len(), 0);
+        let blocks = self.forest.parts[part].blocks.clone();
+        let lines = blocks.clone().map(|s| self.symbolic.shape(s).lines()).sum();
+        let mut panels = Vec::new();
+        panels.try_reserve_exact(lines).map_err(|_| FactorError::Memory)?;
+        for s in blocks.clone() {
+            // A part with children is one block.
+            let left = self.block(s, &mut panels, &given, &mut room)?;
+            if s + 1 < blocks.end {
+                room.pending.push((s, left));
+            } else if !left.is_empty() {
+                // Rooms are larger than what stands in them.
+                let left = match self.fate {
+                    Left::Dropped => left,
+                    Left::Kept => {
+                        let exact = left.clone();
+                        room.spare.push(left);
+                        exact
+                    }
+                };
+                *self.left[part].lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(left));
+            }
+        }
+        let _ = self.done[part].set(Arc::new(panels));
+        self.rooms.lock().unwrap_or_else(PoisonError::into_inner).push(room);
+        Ok(())
+    }
+
+    /// Appends one block's panel, given what its children left here and in the room; returns what it leaves.
+    fn block(
+        &self,
+        s: usize,
+        panels: &mut Vec<Line>,
+        given: &[(usize, &[Line])],
+        room: &mut Room,
+    ) -> Result<Vec<Line>, FactorError> {
         if self.cancel.is_cancelled() {
             return Err(FactorError::Cancelled);
         }
         let own = self.symbolic.columns(s);
         let below = self.symbolic.pattern(s);
-        let (width, size) = (own.len(), below.len());
-        let height = width + size;
-        let square_stride = stride(size);
-        for (i, &row) in below.iter().enumerate() {
-            room.place[row as usize] = (width + i) as u32;
-        }
+        let shape = self.symbolic.shape(s);
         for (i, column) in own.clone().enumerate() {
             room.place[column] = i as u32;
         }
-        let panel = values;
-        for (column, target) in own.clone().zip(panel.chunks_mut(height)) {
-            let entries = self.plate.lower_offsets[column] as usize..self.plate.lower_offsets[column + 1] as usize;
-            for entry in entries {
-                let row = self.plate.lower_rows[entry] as usize;
-                target[room.place[row] as usize] += self.plate.lower_values[entry];
-            }
-            target[column - own.start] += self.shift;
+        for (i, &row) in below.iter().enumerate() {
+            room.place[row as usize] = (own.len() + i) as u32;
         }
-        let mut square = room.take(size * square_stride);
-        // In postorder they are the last ones; in any other order they are somewhere.
+        let start = panels.len();
+        panels.resize(start + shape.lines(), Line::ZERO);
+        let panel = &mut panels[start..];
+        for (c, column) in own.clone().enumerate() {
+            let (rows, values) = self.plate.column(column);
+            for (&row, &value) in rows.iter().zip(values) {
+                let place = room.place[row as usize] as usize;
+                let (strip, lane) = shape.row(place);
+                panel[strip + c].0[lane] += value;
+            }
+            let (strip, lane) = shape.row(c);
+            panel[strip + c].0[lane] += self.shift;
+        }
+        // In postorder the children are the last ones; in any other order they are somewhere.
+        let mut children = Vec::new();
         for pending in (0..room.pending.len()).rev() {
-            if self.symbolic.parent[room.pending[pending].supernode] as usize != s {
-                continue;
+            if self.symbolic.parent[room.pending[pending].0] as usize == s {
+                children.push(room.pending.remove(pending));
             }
-            let child = room.pending.remove(pending);
-            let rows = self.symbolic.pattern(child.supernode);
-            room.places.clear();
-            room.places.extend(rows.iter().map(|&row| room.place[row as usize]));
-            add_child(
-                &room.places,
-                child.square.get(),
-                width,
-                (panel, height),
-                (square.get_mut(), square_stride),
-            );
-            room.spare.push(child.square);
         }
-        eliminate(
-            panel,
-            height,
-            width,
-            height,
-            square.get_mut(),
-            square_stride,
-            self.cancel,
-        )
-        .map_err(|error| match error {
+        let all = given
+            .iter()
+            .copied()
+            .chain(children.iter().map(|(child, square)| (*child, square.as_slice())));
+        for (child, square) in all.clone() {
+            places_of(self.symbolic.pattern(child), &room.place, &mut room.places);
+            add_to_panel(&room.places, square, shape, panel);
+        }
+        factor_panel(shape, panel, self.cancel).map_err(|error| match error {
             FactorError::Pivot(place) => FactorError::Pivot(own.start + place),
             other => other,
         })?;
-        if size > 0 {
-            room.pending.push(Left { supernode: s, square });
+        let mut left = if shape.below > 0 {
+            room.take(triangle(strips(shape.below)))
         } else {
-            room.spare.push(square);
+            Vec::new()
+        };
+        square(shape, panel, &mut left, self.cancel);
+        for (child, square) in all {
+            places_of(self.symbolic.pattern(child), &room.place, &mut room.places);
+            add_to_square(&room.places, square, shape.width, &mut left);
         }
-        Ok(())
+        room.spare.extend(children.into_iter().map(|(_, square)| square));
+        Ok(left)
     }
 }
 
-/// Adds a child's square, whose rows have the ascending `places` here, to the panel and to the square beside it.
-fn add_child(
+fn places_of(rows: &[u32], place: &[u32], places: &mut Vec<u32>) {
+    places.clear();
+    places.extend(rows.iter().map(|&row| place[row as usize]));
+}
+
+/// Subtracts the columns of a child's square that are the block's own, from its panel. The child's rows have the
+/// ascending `places` here.
+fn add_to_panel(places: &[u32], square: &[Line], shape: Shape, panel: &mut [Line]) {
+    let split = places.partition_point(|&place| (place as usize) < shape.width);
+    for (strip, rows) in places.chunks(LANES).enumerate() {
+        let lines = &square[triangle(strip)..triangle(strip + 1)];
+        let mut targets = [(0, 0); LANES];
+        for (target, &place) in targets.iter_mut().zip(rows) {
+            *target = shape.row(place as usize);
+        }
+        scatter(lines, 0, &places[..split], strip, rows.len(), |lane, place, value| {
+            let (start, target) = targets[lane];
+            panel[start + place].0[target & (LANES - 1)] -= value;
+        });
+    }
+}
+
+/// Adds the other columns of a child's square to the square that the block leaves.
+fn add_to_square(places: &[u32], square: &[Line], width: usize, left: &mut [Line]) {
+    let split = places.partition_point(|&place| (place as usize) < width);
+    for (strip, rows) in places.chunks(LANES).enumerate().skip(split / LANES) {
+        let lines = &square[triangle(strip)..triangle(strip + 1)];
+        let mut targets = [(0, 0); LANES];
+        for (target, &place) in targets.iter_mut().zip(rows) {
+            let row = (place as usize).wrapping_sub(width);
+            if (place as usize) >= width {
+                *target = (triangle(row / LANES), row % LANES);
+            }
+        }
+        scatter(lines, split, places, strip, rows.len(), |lane, place, value| {
+            let (start, target) = targets[lane];
+            left[start + place - width].0[target & (LANES - 1)] += value;
+        });
+    }
+}
+
+/// Goes through a strip's numbers on and below the diagonal, in its columns from `first` on to the end of `places`.
+#[inline(always)]
+fn scatter(
+    lines: &[Line],
+    first: usize,
     places: &[u32],
-    child: &[f64],
-    width: usize,
-    (panel, panel_stride): (&mut [f64], usize),
-    (square, square_stride): (&mut [f64], usize),
+    strip: usize,
+    rows: usize,
+    mut take: impl FnMut(usize, usize, f64),
 ) {
-    let child_stride = stride(places.len());
-    for (c, (&place, column)) in places.iter().zip(child.chunks(child_stride.max(1))).enumerate() {
-        let place = place as usize;
-        let (target, skipped) = if place < width {
-            (&mut panel[place * panel_stride..(place + 1) * panel_stride], 0)
-        } else {
-            let first = (place - width) * square_stride;
-            (&mut square[first..first + square_stride], width)
-        };
-        for (&row, &value) in places[c..].iter().zip(&column[c..]) {
-            target[row as usize - skipped] += value;
+    let diagonal = strip * LANES;
+    let full = diagonal.min(places.len()).max(first);
+    if rows == LANES {
+        for c in first..full {
+            for lane in 0..LANES {
+                take(lane, places[c] as usize, lines[c].0[lane]);
+            }
+        }
+    } else {
+        for c in first..full {
+            for lane in 0..rows {
+                take(lane, places[c] as usize, lines[c].0[lane]);
+            }
+        }
+    }
+    for c in full..places.len().min(diagonal + rows) {
+        for lane in c - diagonal..rows {
+            take(lane, places[c] as usize, lines[c].0[lane]);
         }
     }
 }

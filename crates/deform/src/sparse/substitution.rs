@@ -3,14 +3,17 @@
 //! An iterative method solves once a step and only needs a direction, so half the bytes are enough. Each supernode's
 //! columns stand in blocks of up to four, row by row: a row's four numbers meet four finished values in registers, and
 //! what is below is read and written once for four columns. The right-hand sides are rows of four, x, y, z and nothing,
-//! which is one vector in single precision. The subtrees that `forest` cuts run beside each other, as in `triangular`.
+//! which is one vector in single precision. The parts that `forest` cuts run beside each other, as in `triangular`.
 
-use std::ops::{Add, Mul, Range, Sub};
+use std::ops::{Add, Mul, Sub};
+use std::sync::{Mutex, PoisonError};
 
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
-use crate::sparse::forest::{Forest, Part};
+use crate::sparse::forest::Forest;
+use crate::sparse::line::{Line, Shape};
+use crate::sparse::multifrontal::Numbers;
+use crate::sparse::passes::up_and_down;
 use crate::sparse::symbolic::Symbolic;
 
 /// A precision to solve in.
@@ -53,10 +56,7 @@ pub(crate) type Row<T> = [T; 4];
 pub(crate) struct Substitution<T> {
     nodes: Vec<Node>,
     values: Vec<T>,
-    places: Vec<u32>,
-    tasks: Vec<Task>,
-    /// Supernodes above the tasks, ascending.
-    top: Vec<Node>,
+    forest: Forest,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -64,70 +64,45 @@ struct Node {
     /// Its first column within its part.
     start: u32,
     width: u32,
-    /// Where its rows below begin among `places`, and how many they are.
+    /// Where its rows below begin among the forest's places, and how many they are.
     pattern: (u32, u32),
     values: usize,
-}
-
-/// A subtree that depends on nothing outside.
-#[derive(Debug)]
-struct Task {
-    nodes: Range<usize>,
-    columns: Range<usize>,
-    /// The columns outside that it changes.
-    outside: Vec<u32>,
 }
 
 /// Room for a solve, kept from one to the next.
 #[derive(Debug, Default)]
 pub(crate) struct Room<T> {
-    /// Of each task: its rows and those that it changes outside, and room for one supernode's rows below.
-    tasks: Vec<(Rows<T>, Rows<T>)>,
-    below: Rows<T>,
+    desks: Vec<Rows<T>>,
+    below: Mutex<Vec<Rows<T>>>,
 }
 
 type Rows<T> = Vec<Row<T>>;
 
 impl<T: Real> Substitution<T> {
     /// Copies a factor's values.
-    pub fn new(symbolic: &Symbolic, forest: &Forest, values: &[f64]) -> Self {
-        let mut first_of = vec![0; symbolic.block_count()];
-        let (mut tasks, mut above) = (Vec::new(), Vec::new());
-        for part in &forest.parts {
-            match part {
-                Part::Task(range) => {
-                    let own = symbolic.columns(range.start).start..symbolic.columns(range.end - 1).end;
-                    first_of[range.clone()].fill(own.start);
-                    tasks.push(Task {
-                        nodes: range.clone(),
-                        columns: own,
-                        outside: symbolic.pattern(range.end - 1).to_vec(),
-                    });
-                }
-                Part::Top(s) => above.push(*s),
+    pub fn new(symbolic: &Symbolic, forest: &Forest, numbers: &[Numbers]) -> Self {
+        let mut nodes = Vec::with_capacity(symbolic.block_count());
+        let mut copied = Vec::with_capacity(symbolic.stored());
+        for (part, numbers) in forest.parts.iter().zip(numbers) {
+            let mut panels = numbers.panels.as_slice();
+            for s in part.blocks.clone() {
+                let below = symbolic.pattern_range(s);
+                let shape = symbolic.shape(s);
+                nodes.push(Node {
+                    start: (symbolic.columns(s).start - part.columns.start) as u32,
+                    width: shape.width as u32,
+                    pattern: (below.start as u32, below.len() as u32),
+                    values: copied.len(),
+                });
+                let (panel, tail) = panels.split_at(shape.lines());
+                panels = tail;
+                copy_node(panel, shape, &mut copied);
             }
         }
-        let mut nodes = Vec::with_capacity(first_of.len());
-        let mut copied = Vec::with_capacity(values.len());
-        for (s, &first) in first_of.iter().enumerate() {
-            let own = symbolic.columns(s);
-            let below = symbolic.pattern_range(s);
-            nodes.push(Node {
-                start: (own.start - first) as u32,
-                width: own.len() as u32,
-                pattern: (below.start as u32, below.len() as u32),
-                values: copied.len(),
-            });
-            let height = own.len() + below.len();
-            let node = &values[symbolic.values(s..s + 1)];
-            copy_node(node, own.len(), height, &mut copied);
-        }
         Self {
-            top: above.into_iter().map(|s| nodes[s]).collect(),
             nodes,
             values: copied,
-            places: forest.places.clone(),
-            tasks,
+            forest: forest.clone(),
         }
     }
 
@@ -138,49 +113,33 @@ impl<T: Real> Substitution<T> {
 
     /// Solves L Lᵀ x = b in place, one row a column of the factor.
     pub fn solve(&self, x: &mut [Row<T>], room: &mut Room<T>) {
-        room.tasks.resize_with(self.tasks.len(), Default::default);
         let arch = Arch::new();
-        let pass = |nodes: &[Node], way: Way, x: &mut [Row<T>], below: &mut Vec<Row<T>>| {
+        let Room { desks, below } = room;
+        let spare = &*below;
+        let pass = |part: usize, way: Way, x: &mut [Row<T>]| {
+            let mut below = spare
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .pop()
+                .unwrap_or_default();
             arch.dispatch(Pass {
                 factor: self,
-                nodes,
+                nodes: &self.nodes[self.forest.parts[part].blocks.clone()],
                 way,
                 x,
-                below,
+                below: &mut below,
             });
+            spare.lock().unwrap_or_else(PoisonError::into_inner).push(below);
         };
-        room.tasks
-            .par_iter_mut()
-            .zip(&self.tasks)
-            .with_max_len(1)
-            .for_each(|((part, below), task)| {
-                part.clear();
-                part.extend_from_slice(&x[task.columns.clone()]);
-                part.resize(task.columns.len() + task.outside.len(), Row::default());
-                pass(&self.nodes[task.nodes.clone()], Way::Forward, part, below);
-            });
-        // What the tasks change outside is added up in their order, whoever was done first.
-        for (task, (part, _)) in self.tasks.iter().zip(&room.tasks) {
-            for (&row, change) in task.outside.iter().zip(&part[task.columns.len()..]) {
-                let row = &mut x[row as usize];
-                *row = plus(*row, *change);
-            }
-        }
-        pass(&self.top, Way::Forward, x, &mut room.below);
-        pass(&self.top, Way::Backward, x, &mut room.below);
-        room.tasks
-            .par_iter_mut()
-            .zip(&self.tasks)
-            .with_max_len(1)
-            .for_each(|((part, below), task)| {
-                for (&row, value) in task.outside.iter().zip(&mut part[task.columns.len()..]) {
-                    *value = x[row as usize];
-                }
-                pass(&self.nodes[task.nodes.clone()], Way::Backward, part, below);
-            });
-        for (task, (part, _)) in self.tasks.iter().zip(&room.tasks) {
-            x[task.columns.clone()].copy_from_slice(&part[..task.columns.len()]);
-        }
+        up_and_down(
+            &self.forest,
+            x,
+            desks,
+            Row::default(),
+            |row, change| *row = plus(*row, change),
+            |part, rows| pass(part, Way::Forward, rows),
+            |part, rows| pass(part, Way::Backward, rows),
+        );
     }
 
     /// x ← L⁻¹ x for the supernode's columns, their effect subtracted from the rows below.
@@ -241,7 +200,7 @@ impl<T: Real> Substitution<T> {
     #[inline(always)]
     fn places_of(&self, node: &Node) -> &[u32] {
         let (start, count) = node.pattern;
-        &self.places[start as usize..(start + count) as usize]
+        &self.forest.places[start as usize..(start + count) as usize]
     }
 }
 
@@ -313,18 +272,18 @@ fn numbers(width: usize, height: usize) -> usize {
 }
 
 /// Appends a supernode's columns as blocks, diagonals as their inverses.
-fn copy_node<T: Real>(values: &[f64], width: usize, height: usize, copied: &mut Vec<T>) {
+fn copy_node<T: Real>(panel: &[Line], shape: Shape, copied: &mut Vec<T>) {
     let mut done = 0;
-    while done < width {
-        let block = block(width - done);
-        for row in done..height {
+    while done < shape.width {
+        let block = block(shape.width - done);
+        for row in done..shape.width + shape.below {
+            let (start, lane) = shape.row(row);
             for column in done..done + block {
-                let value = values[column * height + row];
-                copied.push(T::of(match row.cmp(&column) {
-                    std::cmp::Ordering::Less => 0.0,
-                    std::cmp::Ordering::Equal => value.recip(),
-                    std::cmp::Ordering::Greater => value,
-                }));
+                copied.push(if row < column {
+                    T::default()
+                } else {
+                    T::of(panel[start + column].0[lane])
+                });
             }
         }
         done += block;

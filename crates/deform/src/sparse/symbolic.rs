@@ -5,12 +5,13 @@
 
 use std::ops::Range;
 
+use crate::sparse::line::{LANES, Shape};
 use crate::sparse::matrix::ScaledMatrix;
 
 /// No parent: a root.
 pub(crate) const ROOT: u32 = u32::MAX;
 
-/// The blocks of a factor. Each is stored column-major, its own columns' rows first, then those of its pattern.
+/// The blocks of a factor.
 #[derive(Debug)]
 pub(crate) struct Symbolic {
     /// Where each block's columns end; begins with 0.
@@ -19,8 +20,6 @@ pub(crate) struct Symbolic {
     row_starts: Vec<usize>,
     /// The rows below each block's own, ascending.
     pub rows: Vec<u32>,
-    /// Where each block's numbers begin, and their end.
-    value_starts: Vec<usize>,
     /// The block that holds the first row of each block's pattern, [`ROOT`] where there is none.
     pub parent: Vec<u32>,
 }
@@ -33,7 +32,6 @@ impl Symbolic {
             starts: std::iter::once(0).chain(ends.iter().copied()).collect(),
             row_starts: vec![0],
             rows: Vec::new(),
-            value_starts: vec![0],
             parent: Vec::with_capacity(ends.len()),
         };
         let mut block_of = vec![0_u32; column_count];
@@ -68,8 +66,6 @@ impl Symbolic {
             symbolic.parent.push(parent);
             symbolic.rows.extend_from_slice(&rows);
             symbolic.row_starts.push(symbolic.rows.len());
-            let stored = own.len() * (own.len() + rows.len());
-            symbolic.value_starts.push(symbolic.value_starts[s] + stored);
         }
         symbolic
     }
@@ -84,9 +80,17 @@ impl Symbolic {
         self.starts[self.parent.len()] as usize
     }
 
-    /// How many numbers the factor stores.
+    /// How many numbers the factor stores, those that fill strips up among them.
     pub fn stored(&self) -> usize {
-        self.value_starts[self.parent.len()]
+        (0..self.block_count()).map(|s| LANES * self.shape(s).lines()).sum()
+    }
+
+    /// A block's columns and the rows below them.
+    pub fn shape(&self, s: usize) -> Shape {
+        Shape {
+            width: self.columns(s).len(),
+            below: self.pattern_range(s).len(),
+        }
     }
 
     /// A block's columns.
@@ -102,11 +106,6 @@ impl Symbolic {
     /// Where a block's pattern stands among all of them.
     pub fn pattern_range(&self, s: usize) -> Range<usize> {
         self.row_starts[s]..self.row_starts[s + 1]
-    }
-
-    /// Where the numbers of these blocks stand among all of them.
-    pub fn values(&self, blocks: Range<usize>) -> Range<usize> {
-        self.value_starts[blocks.start]..self.value_starts[blocks.end]
     }
 
     /// Multiplications and additions of a dense factorisation of a block.

@@ -1,177 +1,150 @@
-//! Solving with a supernodal factor, several right-hand sides at once.
+//! Solving with a factor, several right-hand sides at once.
 //!
-//! The limit is memory: each solve reads the factor twice. So its columns are read in the order in which they lie, and
-//! used for all right-hand sides while they are in the cache: a supernode's rows are gathered, one field after the other,
-//! for `kernels`. The subtrees that `forest` cuts are solved beside each other, each on a copy of its rows
-//! followed by those that it changes outside; above them it goes on one by one. faer's own parallel solve was 3 to 40
-//! times slower than its sequential one on such factors.
+//! The limit is memory: each solve reads the factor twice. So it is read in the order in which it lies, a line meeting
+//! all right-hand sides at once. The parts that `forest` cuts are solved beside each other: a part hands what its
+//! rows take to the part above on the way up, and gets what it needs from there on the way down, so nothing is shared
+//! and nothing is added up in an order that could vary. faer's own parallel solve was 3 to 40 times slower than its
+//! sequential one on such factors.
+
+use std::sync::{Mutex, PoisonError};
 
 use pulp::Arch;
-use rayon::prelude::*;
 
-use crate::sparse::forest::{Forest, Part};
-use crate::sparse::kernels;
+use crate::sparse::forest::Forest;
+use crate::sparse::kernels::{Backward, Forward, Strip};
+use crate::sparse::line::{LANES, Line, Shape};
+use crate::sparse::multifrontal::Numbers;
+use crate::sparse::passes::up_and_down;
 use crate::sparse::symbolic::Symbolic;
 
-/// Solves L Lᵀ x = b in place.
-///
-/// `values` are the factor's, `x` has one row a column of the factor.
-pub(crate) fn solve_in_place<const K: usize>(symbolic: &Symbolic, forest: &Forest, values: &[f64], x: &mut [[f64; K]]) {
-    let factor = Stored {
-        symbolic,
-        forest,
-        values,
+/// Room for one block's rows.
+#[derive(Default)]
+struct Room<const K: usize> {
+    x: Vec<Strip<K>>,
+    rows: Vec<[f64; K]>,
+    sums: Vec<Strip<K>>,
+}
+
+/// Solves L Lᵀ x = b in place; `x` has one row a column of the factor.
+pub(crate) fn solve_in_place<const K: usize>(
+    symbolic: &Symbolic,
+    forest: &Forest,
+    numbers: &[Numbers],
+    x: &mut [[f64; K]],
+) {
+    let rooms = Mutex::new(Vec::<Room<K>>::new());
+    let with_room = |run: &mut dyn FnMut(&mut Room<K>)| {
+        let pooled = rooms.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut room = pooled.unwrap_or_default();
+        run(&mut room);
+        rooms.lock().unwrap_or_else(PoisonError::into_inner).push(room);
     };
-    let tasks: Vec<_> = forest
-        .parts
-        .iter()
-        .filter_map(|part| match part {
-            Part::Task(range) => Some(range.clone()),
-            Part::Top(_) => None,
-        })
-        .collect();
-    let own = |task: &std::ops::Range<usize>| symbolic.columns(task.start).start..symbolic.columns(task.end - 1).end;
-    let outside = |task: &std::ops::Range<usize>| symbolic.pattern(task.end - 1);
-    let mut parts: Vec<Vec<[f64; K]>> = tasks
-        .par_iter()
-        .with_max_len(1)
-        .map(|task| {
-            let own = own(task);
-            let mut part = Vec::with_capacity(own.len() + outside(task).len());
-            part.extend_from_slice(&x[own.clone()]);
-            part.resize(own.len() + outside(task).len(), [0.0; K]);
-            let mut below = room::<K>(symbolic, task.clone());
-            for s in task.clone() {
-                forward(&factor.supernode(s, own.start), &mut part, &mut below);
-            }
-            part
-        })
-        .collect();
-    // What the tasks change outside is added up in their order, whoever was done first.
-    for (task, part) in tasks.iter().zip(&parts) {
-        for (&row, change) in outside(task).iter().zip(&part[own(task).len()..]) {
-            for k in 0..K {
-                x[row as usize][k] += change[k];
-            }
-        }
-    }
-    let top = forest.parts.iter().filter_map(|part| match part {
-        Part::Top(s) => Some(*s),
-        Part::Task(_) => None,
-    });
-    let mut below = room::<K>(symbolic, 0..symbolic.block_count());
-    for s in top.clone() {
-        forward(&factor.supernode(s, 0), x, &mut below);
-    }
-    for s in top.rev() {
-        backward(&factor.supernode(s, 0), x, &mut below);
-    }
-    tasks
-        .par_iter()
-        .zip(&mut parts)
-        .with_max_len(1)
-        .for_each(|(task, part)| {
-            let own = own(task);
-            for (&row, value) in outside(task).iter().zip(&mut part[own.len()..]) {
-                *value = x[row as usize];
-            }
-            let mut below = room::<K>(symbolic, task.clone());
-            for s in task.clone().rev() {
-                backward(&factor.supernode(s, own.start), part, &mut below);
+    let block = |part: usize, s: usize| {
+        let first = symbolic.columns(s).start - forest.parts[part].columns.start;
+        (symbolic.shape(s), first, &forest.places[symbolic.pattern_range(s)])
+    };
+    let up = |part: usize, rows: &mut [[f64; K]]| {
+        with_room(&mut |room| {
+            let mut panels = numbers[part].panels.as_slice();
+            for s in forest.parts[part].blocks.clone() {
+                let (shape, first, places) = block(part, s);
+                let (panel, tail) = panels.split_at(shape.lines());
+                panels = tail;
+                forward(shape, panel, first, places, rows, room);
             }
         });
-    for (task, part) in tasks.iter().zip(&parts) {
-        let own = own(task);
-        x[own.clone()].copy_from_slice(&part[..own.len()]);
-    }
-}
-
-/// Room for the K fields on the rows of the highest of these supernodes.
-fn room<const K: usize>(symbolic: &Symbolic, supernodes: std::ops::Range<usize>) -> Vec<f64> {
-    let widest = supernodes
-        .map(|s| symbolic.columns(s).len() + symbolic.pattern(s).len())
-        .max();
-    vec![0.0; K * widest.unwrap_or(0)]
-}
-
-/// The factor as it is stored.
-struct Stored<'a> {
-    symbolic: &'a Symbolic,
-    forest: &'a Forest,
-    values: &'a [f64],
-}
-
-/// Columns with one pattern: a dense triangle on `rows`' own columns and a dense block below it.
-struct Supernode<'a> {
-    start: usize,
-    width: usize,
-    /// The rows below the triangle.
-    pattern: &'a [u32],
-    /// Column-major, `width + pattern.len()` high.
-    values: &'a [f64],
-}
-
-impl<'a> Stored<'a> {
-    /// A supernode whose part's first column is `first`.
-    fn supernode(&self, s: usize, first: usize) -> Supernode<'a> {
-        let own = self.symbolic.columns(s);
-        Supernode {
-            start: own.start - first,
-            width: own.len(),
-            pattern: &self.forest.places[self.symbolic.pattern_range(s)],
-            values: &self.values[self.symbolic.values(s..s + 1)],
+    };
+    let down = |part: usize, rows: &mut [[f64; K]]| {
+        with_room(&mut |room| {
+            let mut panels = numbers[part].panels.as_slice();
+            for s in forest.parts[part].blocks.clone().rev() {
+                let (shape, first, places) = block(part, s);
+                let (tail, panel) = panels.split_at(panels.len() - shape.lines());
+                panels = tail;
+                backward(shape, panel, first, places, rows, room);
+            }
+        });
+    };
+    let add = |row: &mut [f64; K], change: [f64; K]| {
+        for k in 0..K {
+            row[k] += change[k];
         }
-    }
+    };
+    up_and_down(forest, x, &mut Vec::new(), [0.0; K], add, up, down);
 }
 
-/// x ← L⁻¹ x for the supernode's columns, their effect subtracted from the rows below.
-fn forward<const K: usize>(node: &Supernode, x: &mut [[f64; K]], room: &mut [f64]) {
-    let own = node.start..node.start + node.width;
+/// x ← L⁻¹ x for the block's columns, their effect subtracted from the rows below.
+fn forward<const K: usize>(
+    shape: Shape,
+    panel: &[Line],
+    first: usize,
+    places: &[u32],
+    x: &mut [[f64; K]],
+    room: &mut Room<K>,
+) {
+    let own = first..first + shape.width;
     // Most of a right-hand side that begins at a handle's rim is zero, and so is what it leaves.
     if x[own.clone()].iter().all(|row| *row == [0.0; K]) {
         return;
     }
-    let height = node.width + node.pattern.len();
-    let fields = &mut room[..K * height];
+    room.x.clear();
+    room.x.resize(shape.strips(), [Line::ZERO; K]);
     for (i, row) in x[own.clone()].iter().enumerate() {
         for k in 0..K {
-            fields[k * height + i] = row[k];
+            room.x[i / LANES][k].0[i % LANES] = row[k];
         }
     }
-    for field in fields.chunks_exact_mut(height) {
-        field[node.width..].fill(0.0);
-    }
-    Arch::new().dispatch(|| kernels::forward(node.values, node.width, height, fields));
-    for (i, row) in x[own].iter_mut().enumerate() {
-        for k in 0..K {
-            row[k] = fields[k * height + i];
-        }
-    }
-    for (i, &row) in (node.width..).zip(node.pattern) {
-        let target = &mut x[row as usize];
-        for k in 0..K {
-            target[k] += fields[k * height + i];
+    Arch::new().dispatch(Forward {
+        shape,
+        panel,
+        x: &mut room.x,
+        rows: &mut room.rows,
+    });
+    x[own].copy_from_slice(&room.rows);
+    for (places, strip) in places.chunks(LANES).zip(&room.x[shape.own()..]) {
+        for (lane, &place) in places.iter().enumerate() {
+            let row = &mut x[place as usize];
+            for k in 0..K {
+                row[k] -= strip[k].0[lane];
+            }
         }
     }
 }
 
-/// x ← L⁻ᵀ x for the supernode's columns, given the rows below.
-fn backward<const K: usize>(node: &Supernode, x: &mut [[f64; K]], room: &mut [f64]) {
-    let height = node.width + node.pattern.len();
-    let own = node.start..node.start + node.width;
-    let fields = &mut room[..K * height];
-    let rows = x[own.clone()]
-        .iter()
-        .chain(node.pattern.iter().map(|&row| &x[row as usize]));
-    for (i, row) in rows.enumerate() {
+/// x ← L⁻ᵀ x for the block's columns, given the rows below.
+fn backward<const K: usize>(
+    shape: Shape,
+    panel: &[Line],
+    first: usize,
+    places: &[u32],
+    x: &mut [[f64; K]],
+    room: &mut Room<K>,
+) {
+    let own = first..first + shape.width;
+    room.x.clear();
+    room.x.resize(shape.strips(), [Line::ZERO; K]);
+    for (i, row) in x[own.clone()].iter().enumerate() {
         for k in 0..K {
-            fields[k * height + i] = row[k];
+            room.x[i / LANES][k].0[i % LANES] = row[k];
         }
     }
-    Arch::new().dispatch(|| kernels::backward(node.values, node.width, height, fields));
+    for (places, strip) in places.chunks(LANES).zip(&mut room.x[shape.own()..]) {
+        for (lane, &place) in places.iter().enumerate() {
+            let row = &x[place as usize];
+            for k in 0..K {
+                strip[k].0[lane] = row[k];
+            }
+        }
+    }
+    Arch::new().dispatch(Backward {
+        shape,
+        panel,
+        x: &mut room.x,
+        sums: &mut room.sums,
+    });
     for (i, row) in x[own].iter_mut().enumerate() {
         for k in 0..K {
-            row[k] = fields[k * height + i];
+            row[k] = room.x[i / LANES][k].0[i % LANES];
         }
     }
 }

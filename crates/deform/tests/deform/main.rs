@@ -12,6 +12,7 @@ mod operators;
 mod ordering;
 mod plate;
 mod primo;
+mod rebind;
 mod rig;
 mod robust;
 mod shell;
