@@ -17,7 +17,7 @@ struct OverlayLine {
 fn vs_overlay_line(@builtin(vertex_index) corner: u32, line: OverlayLine) -> LineFragment {
     let start_colour = premultiplied_from_srgb(line.start_colour, 1.0);
     let end_colour = premultiplied_from_srgb(line.end_colour, 1.0);
-    return widened(corner, line.start, line.end, line.width_px, start_colour, end_colour, line.hidden_share);
+    return widened(corner, line.start, line.end, line.width_px, 0.0, start_colour, end_colour, line.hidden_share);
 }
 
 @fragment

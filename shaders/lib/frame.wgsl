@@ -17,6 +17,10 @@ struct Frame {
     perspective: f32,
     // 1 when faces are flat, 0 when normals are interpolated.
     flatness: f32,
+    // Pixels of the picture that marks take for a point.
+    pixels_per_point: f32,
+    padding: f32,
+    padding_to_16: vec2f,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -4,8 +4,11 @@ struct LineFragment {
     @location(0) colour: vec4f,
     // Distance from the line's middle, interpolated on the screen.
     @location(1) @interpolate(linear) across_px: f32,
-    @location(2) half_width_px: f32,
-    @location(3) hidden_share: f32,
+    // Distance from its start, along it.
+    @location(2) @interpolate(linear) along_px: f32,
+    @location(3) length_px: f32,
+    @location(4) half_width_px: f32,
+    @location(5) hidden_share: f32,
 }
 
 // `a`, or where it lies before the near plane (z > w), the point on the way to `b` that does not.
@@ -18,12 +21,23 @@ fn before_the_eye(a: vec4f, b: vec4f) -> vec4f {
     return mix(a, b, inside_a / (inside_a - inside_b));
 }
 
-// The strip's corner 0 to 3. Colours are linear and premultiplied.
+// The depth of a point `px` of its own distance's pixels nearer to the eye: a strip that faces the eye is else half
+// swallowed by a surface that leans.
+fn depth_nearer_by(position_clip: vec4f, px: f32) -> f32 {
+    let from_view = transpose(frame.view_from_world);
+    let distance = mix(1.0, position_clip.w, frame.perspective);
+    let step_world = from_view[2].xyz * (px * distance / frame.scale_px);
+    let nearer = position_clip + frame.clip_from_world * vec4f(step_world, 0.0);
+    return min(nearer.z / max(nearer.w, 1e-9), 1.0);
+}
+
+// The strip's corner 0 to 3, reaching beyond the line's ends by `cap_px`. Colours are linear and premultiplied.
 fn widened(
     corner: u32,
     start: vec3f,
     end: vec3f,
     width_px: f32,
+    cap_px: f32,
     start_colour: vec4f,
     end_colour: vec4f,
     hidden_share: f32,
@@ -43,19 +57,29 @@ fn widened(
     // A pixel more on each side for the fading border.
     let half_width_px = 0.5 * width_px;
     let reach_px = half_width_px + 1.0;
-    let offset_px = vec2f(-direction.y, direction.x) * side * reach_px;
+    let cap_reach_px = select(0.0, cap_px + 1.0, cap_px > 0.0) * select(-1.0, 1.0, at_end);
+    let offset_px = vec2f(-direction.y, direction.x) * side * reach_px + direction * cap_reach_px;
 
     var out: LineFragment;
     var position = select(start_clip, end_clip, at_end);
-    position = vec4f(position.xy + offset_px / half_size_px * position.w, position.z * 1.0015, position.w);
+    let depth = depth_nearer_by(position, 3.0 * reach_px);
+    position = vec4f(position.xy + offset_px / half_size_px * position.w, depth * position.w, position.w);
     out.position_clip = position;
     out.colour = select(start_colour, end_colour, at_end);
     out.across_px = side * reach_px;
+    out.along_px = select(0.0, length_px, at_end) + cap_reach_px;
+    out.length_px = length_px;
     out.half_width_px = half_width_px;
     out.hidden_share = hidden_share;
     return out;
 }
 
+// How far beyond the nearer end; less than 0 between both.
+fn beyond_px(in: LineFragment) -> f32 {
+    return max(-in.along_px, in.along_px - in.length_px);
+}
+
 fn coverage(in: LineFragment) -> f32 {
-    return clamp(in.half_width_px + 0.5 - abs(in.across_px), 0.0, 1.0);
+    let away_px = length(vec2f(in.across_px, max(beyond_px(in), 0.0)));
+    return clamp(in.half_width_px + 0.5 - away_px, 0.0, 1.0);
 }

@@ -132,16 +132,14 @@ pub fn picture(renderer: &Renderer, scale: &Scale, pixels_per_point: f32) -> Res
     renderer.read_texture(&texture)
 }
 
-/// Lays a picture with premultiplied alpha over another, its lower left corner `margin_px` from that one's.
+/// Lays a picture with premultiplied alpha over another, its upper left corner `margin_px` from that one's.
 pub fn lay_over(under: &mut Image, over: &Image, margin_px: u32) {
     for y in 0..over.height.min(under.height) {
         for x in 0..over.width.min(under.width) {
-            let (Some(to_x), Some(to_y)) = (
-                (margin_px + x < under.width).then_some(margin_px + x),
-                (under.height + y).checked_sub(over.height + margin_px),
-            ) else {
+            let (to_x, to_y) = (margin_px + x, margin_px + y);
+            if to_x >= under.width || to_y >= under.height {
                 continue;
-            };
+            }
             let from = 4 * (y as usize * over.width as usize + x as usize);
             let to = 4 * (to_y as usize * under.width as usize + to_x as usize);
             let left = 255 - u32::from(over.rgba[from + 3]);

@@ -5,7 +5,7 @@ pub mod drawing;
 pub mod engine;
 mod error;
 pub mod files;
-mod legend;
+pub mod legend;
 mod picture_file;
 pub mod report;
 mod staging;

@@ -6,7 +6,7 @@
 
 use std::f64::consts::TAU;
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, DVec4};
 use pliant_mesh::{DistanceSearch, SurfaceVertex};
 
 use crate::picking::{Pick, Picking};
@@ -58,7 +58,7 @@ impl Brush {
         mut visit: impl FnMut(SurfaceVertex, f64),
     ) {
         if size.metric == BrushMetric::Through {
-            return sweep(picking, [from_px, to_px], size.radius_px, visit);
+            return self.sweep(picking, [from_px, to_px], size.radius_px, visit);
         }
         let steps = ((to_px - from_px).length() / (size.radius_px * SPACING).max(1.0))
             .ceil()
@@ -119,6 +119,50 @@ impl Brush {
         }
     }
 
+    /// Calls `visit` once for every vertex that appears within `radius_px` of the way from one point of the viewport to
+    /// the other, whatever hides it.
+    fn sweep(
+        &mut self,
+        picking: &Picking<'_>,
+        [from_px, to_px]: [DVec2; 2],
+        radius_px: f64,
+        mut visit: impl FnMut(SurfaceVertex, f64),
+    ) {
+        let along = to_px - from_px;
+        let length_squared = along.length_squared();
+        let mut meet = |vertex: SurfaceVertex| {
+            let Some(seen_px) = picking.sight.project(picking.position(vertex)) else {
+                return;
+            };
+            let share = if length_squared > 0.0 {
+                ((seen_px - from_px).dot(along) / length_squared).clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
+            let off_px = seen_px.distance(from_px + along * share);
+            if off_px <= radius_px {
+                visit(vertex, off_px / radius_px);
+            }
+        };
+        let triangles = &picking.model.surface.triangles;
+        // The hierarchy of a shape that has moved on would miss what moved under the brush.
+        if !picking.is_current {
+            (0..picking.model.surface.positions.len() as u32).for_each(|vertex| meet(SurfaceVertex(vertex)));
+            return;
+        }
+        self.begin(picking.model.surface.positions.len());
+        let (seen, dab) = (&mut self.seen, self.dab);
+        picking
+            .bvh
+            .triangles_within(&tube(picking, from_px, to_px, radius_px), |triangle| {
+                for vertex in triangles[triangle as usize] {
+                    if std::mem::replace(&mut seen[vertex.index()], dab) != dab {
+                        meet(vertex);
+                    }
+                }
+            });
+    }
+
     fn begin(&mut self, vertex_count: usize) {
         if self.seen.len() != vertex_count || self.dab == u32::MAX {
             self.seen = vec![0; vertex_count];
@@ -142,60 +186,75 @@ impl Brush {
     }
 }
 
-/// Calls `visit` for every vertex that appears within `radius_px` of the way from one point of the viewport to the
-/// other, whatever hides it.
-fn sweep(
-    picking: &Picking<'_>,
-    [from_px, to_px]: [DVec2; 2],
-    radius_px: f64,
-    mut visit: impl FnMut(SurfaceVertex, f64),
-) {
-    let along = to_px - from_px;
-    let length_squared = along.length_squared();
-    for vertex in (0..picking.model.surface.positions.len() as u32).map(SurfaceVertex) {
-        let Some(seen_px) = picking.camera.project(picking.position(vertex), picking.viewport_px) else {
-            continue;
-        };
-        let share = if length_squared > 0.0 {
-            ((seen_px - from_px).dot(along) / length_squared).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        let off_px = seen_px.distance(from_px + along * share);
-        if off_px <= radius_px {
-            visit(vertex, off_px / radius_px);
-        }
-    }
+/// The planes of what appears in the rectangle around the way of a disc, their normals inwards.
+fn tube(picking: &Picking<'_>, from_px: DVec2, to_px: DVec2, radius_px: f64) -> [DVec4; 4] {
+    let along = (to_px - from_px).normalize_or(DVec2::X) * radius_px;
+    let across = along.perp();
+    let corners = [
+        from_px - along - across,
+        to_px + along - across,
+        to_px + along + across,
+        from_px - along + across,
+    ];
+    let ray = |position_px: DVec2| picking.camera.ray(position_px, picking.viewport_px);
+    let middle = ray(0.5 * (from_px + to_px));
+    std::array::from_fn(|corner| {
+        let (here, next) = (ray(corners[corner]), ray(corners[(corner + 1) % 4]));
+        let side = next.origin + next.direction - here.origin;
+        let normal = side.cross(here.direction).normalize_or_zero();
+        let plane = normal.extend(-normal.dot(here.origin));
+        let is_inside = plane.dot((middle.origin + middle.direction).extend(1.0)) >= 0.0;
+        if is_inside { plane } else { -plane }
+    })
 }
 
 /// Whether any triangle at the vertex shows the eye the side that was met.
 pub(crate) fn faces(picking: &Picking<'_>, vertex: SurfaceVertex, position: DVec3, front: bool) -> bool {
-    let sight = -picking.camera.towards_eye(position);
+    let to_eye = picking.sight.towards_eye(position);
     picking.model.topology.faces(vertex).iter().any(|&face| {
         let [a, b, c] = picking.corners(face);
-        let outward = (b - a).cross(c - a).dot(sight);
-        if front { outward <= 0.0 } else { outward >= 0.0 }
+        let outward = (b - a).cross(c - a).dot(to_eye);
+        if front { outward >= 0.0 } else { outward <= 0.0 }
     })
 }
 
-/// The brush's outline on the surface around a pick, a closed line; where the surface ends it runs on in the plane
-/// of the screen.
-pub(crate) fn ring(picking: &Picking<'_>, position_px: DVec2, pick: &Pick, radius_px: f64) -> Vec<DVec3> {
+/// The brush's outline around a pick, a closed line. A brush that reaches through keeps its circle on the screen; any
+/// other lies on the surface, leaning as what it covers leans. Where the surface ends the line runs on in the brush's
+/// own plane.
+pub(crate) fn ring(picking: &Picking<'_>, position_px: DVec2, pick: &Pick, size: &BrushSize) -> Vec<DVec3> {
     let px = picking.camera.world_per_px(pick.point, picking.viewport_px);
-    let radius = radius_px * px;
+    let radius = size.radius_px * px;
+    let axes = picking.camera.axes();
+    let normal = match size.metric {
+        BrushMetric::Through => axes.z_axis,
+        BrushMetric::Screen | BrushMetric::Surface => leaning(picking, position_px, pick, size.radius_px, radius),
+    };
+    let (right, up) = normal.any_orthonormal_pair();
     // Lifted towards the eye, so that the surface does not swallow it.
     let lifted = |point: DVec3| point + picking.camera.towards_eye(point) * px;
     (0..RING_SEGMENTS)
         .map(|step| {
             let angle_rad = TAU * step as f64 / RING_SEGMENTS as f64;
-            let offset_px = DVec2::from_angle(angle_rad) * radius_px;
-            let ray = picking.camera.ray(position_px + offset_px, picking.viewport_px);
-            let on_surface = picking.along(ray).map(|pick| pick.point);
+            let in_plane = pick.point + (right * angle_rad.cos() + up * angle_rad.sin()) * radius;
+            let seen_px = picking.sight.project(in_plane);
+            let ray = seen_px.map(|seen_px| picking.camera.ray(seen_px, picking.viewport_px));
+            let on_surface = ray.and_then(|ray| picking.along(ray)).map(|pick| pick.point);
             let near = on_surface.filter(|point| point.distance(pick.point) <= 2.5 * radius);
-            lifted(near.unwrap_or_else(|| {
-                let forward = picking.camera.forward();
-                ray.origin + ray.direction * ((pick.point - ray.origin).dot(forward) / ray.direction.dot(forward))
-            }))
+            lifted(near.unwrap_or(in_plane))
         })
         .collect()
+}
+
+/// How the surface leans under the brush: the mean normal of what is seen within it, so that a rough scan does not make
+/// the ring flicker.
+fn leaning(picking: &Picking<'_>, position_px: DVec2, pick: &Pick, radius_px: f64, radius: f64) -> DVec3 {
+    const SAMPLES: usize = 12;
+    let around = (0..SAMPLES).filter_map(|sample| {
+        let angle_rad = TAU * sample as f64 / SAMPLES as f64;
+        let share = if sample % 2 == 0 { 0.4 } else { 0.75 };
+        picking.at(position_px + DVec2::from_angle(angle_rad) * radius_px * share)
+    });
+    let near = around.filter(|other| other.point.distance(pick.point) <= radius);
+    let sum: DVec3 = near.map(|other| other.normal).sum();
+    (sum + pick.normal).normalize_or(pick.normal)
 }

@@ -7,6 +7,8 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 use glam::{DMat3, DMat4, DQuat, DVec2, DVec3, DVec4};
 
+use crate::sight::Sight;
+
 /// Which axis of the world points up on the screen.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum UpAxis {
@@ -291,19 +293,7 @@ impl Camera {
 
     /// Where a point of the world appears in the viewport; `None` behind the eye.
     pub fn project(&self, world: DVec3, viewport_px: DVec2) -> Option<DVec2> {
-        let in_view = self.axes().transpose() * (world - self.eye());
-        let depth = match self.projection {
-            Projection::Perspective => -in_view.z,
-            Projection::Orthographic => self.distance,
-        };
-        if depth <= 0.0 {
-            return None;
-        }
-        let offset = in_view.truncate() * (self.focal_px(viewport_px) / depth);
-        Some(DVec2::new(
-            0.5 * viewport_px.x + offset.x,
-            0.5 * viewport_px.y - offset.y,
-        ))
+        Sight::of(self, viewport_px).project(world)
     }
 
     /// World units that one point of the screen spans at the depth of `world` (never below that of the near plane).
@@ -430,7 +420,7 @@ impl Camera {
     }
 
     /// Points of the screen per unit of view-space slope.
-    fn focal_px(&self, viewport_px: DVec2) -> f64 {
+    pub(crate) fn focal_px(&self, viewport_px: DVec2) -> f64 {
         0.5 * viewport_px.y / (0.5 * self.fov_y_rad).tan()
     }
 }

@@ -1,6 +1,7 @@
 //! The colours of regions and handles on the surface.
 
 use pliant_deform::Role;
+use pliant_mesh::SurfaceVertex;
 
 use crate::document::{HandleId, Paint};
 use crate::editor::Editor;
@@ -24,46 +25,42 @@ impl Editor {
     ///
     /// To be fetched again when [`SceneView::regions_revision`](crate::SceneView::regions_revision) has grown.
     pub fn region_colours(&self, out: &mut Vec<[u8; 4]>) {
+        out.clear();
+        let colour = self.region_colour();
+        out.extend((0..self.document.paint.len() as u32).map(|vertex| colour(SurfaceVertex(vertex))));
+    }
+
+    /// The vertices whose colour may have changed since a revision of the regions; `None`: all of them.
+    pub fn recoloured_since(&self, regions_revision: u64) -> Option<&[SurfaceVertex]> {
+        self.recolouring.since(regions_revision)
+    }
+
+    /// What tells the colour of a vertex: see [`Editor::region_colours`].
+    pub fn region_colour(&self) -> impl Fn(SurfaceVertex) -> [u8; 4] {
         const FREE: [u8; 4] = [96, 150, 222, 255];
         const STILL: [u8; 4] = [178, 178, 178, 96];
         const FIXED: [u8; 4] = [112, 112, 116, 255];
-        if self.mode == crate::ToolMode::PaintStiffness {
-            out.clear();
-            let count = self.document.paint.len();
-            match &self.document.stiffness {
-                Some(field) => out.extend(field.iter().map(|&value| stiffness_colour(value))),
-                None => out.resize(count, stiffness_colour(1.0)),
-            }
-            return;
+        let handles = &self.document.handles;
+        let largest = handles.iter().map(|handle| usize::from(handle.id.0) + 1).max();
+        let mut of_handle = vec![STILL; largest.unwrap_or(0)];
+        for handle in handles.iter().filter(|handle| handle.visible) {
+            of_handle[usize::from(handle.id.0)] = handle.colour;
         }
-        let largest = self
-            .document
-            .handles
-            .iter()
-            .map(|handle| usize::from(handle.id.0) + 1)
-            .max()
-            .unwrap_or(0);
-        let mut of_handle = vec![STILL; largest];
-        for handle in &self.document.handles {
-            if handle.visible {
-                of_handle[usize::from(handle.id.0)] = handle.colour;
+        let shows_stiffness = self.mode == crate::ToolMode::PaintStiffness;
+        move |vertex| {
+            if shows_stiffness {
+                let field = self.document.stiffness.as_ref();
+                return stiffness_colour(field.map_or(1.0, |field| field[vertex.index()]));
+            }
+            match self.document.paint[vertex.index()] {
+                Paint::Fixed => FIXED,
+                Paint::Free => FREE,
+                Paint::Handle(HandleId(id)) => of_handle.get(usize::from(id)).copied().unwrap_or(STILL),
+                Paint::Bare => match self.engine.region.roles.get(vertex.index()) {
+                    Some(Role::Free) => FREE,
+                    _ => STILL,
+                },
             }
         }
-        out.clear();
-        out.extend(
-            self.document
-                .paint
-                .iter()
-                .enumerate()
-                .map(|(vertex, paint)| match *paint {
-                    Paint::Fixed => FIXED,
-                    Paint::Free => FREE,
-                    Paint::Handle(HandleId(id)) => of_handle.get(usize::from(id)).copied().unwrap_or(STILL),
-                    Paint::Bare => match self.engine.region.roles.get(vertex) {
-                        Some(Role::Free) => FREE,
-                        _ => STILL,
-                    },
-                }),
-        );
     }
 }

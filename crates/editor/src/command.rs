@@ -81,6 +81,8 @@ pub enum Command {
     ToggleWireframe,
     /// Marks edges that a closed surface lacks, or not.
     ToggleBorders,
+    /// Shows or hides the handles' outlines and the border of what is held.
+    ToggleOutlines,
     /// Shows or hides the ground's grid.
     ToggleGrid,
     /// Changes between perspective and orthographic.
@@ -623,6 +625,12 @@ impl Command {
             Command::ToggleBorders,
             "Borders",
             "Marks edges where the surface ends, and those that more than two triangles share.",
+            &[],
+        ),
+        listed(
+            Command::ToggleOutlines,
+            "Outlines",
+            "Shows or hides the outlines of handles, and the line where the region meets what is held.",
             &[],
         ),
         listed(

@@ -58,6 +58,10 @@ impl Editor {
         let shows_stiffness = self.mode == crate::ToolMode::PaintStiffness;
         let reshown = std::mem::replace(&mut self.showed_stiffness, shows_stiffness) != shows_stiffness;
         self.known_stiffness = self.document.stiffness.clone();
+        let reselected = std::mem::replace(&mut self.known_selected, self.selected) != self.selected;
+        if reselected || recoloured || !Arc::ptr_eq(&self.known_roles, &self.engine.region.roles) {
+            self.rims_revision += 1;
+        }
         if restiffened
             || reshown
             || repainted
@@ -66,6 +70,10 @@ impl Editor {
         {
             self.known_roles = Arc::clone(&self.engine.region.roles);
             self.regions_revision += 1;
+            self.recolouring.whole(self.regions_revision);
+        } else if self.recolouring.is_pending() {
+            self.regions_revision += 1;
+            self.recolouring.part(self.regions_revision);
         }
         self.note_camera();
         if self.known_camera != self.camera {

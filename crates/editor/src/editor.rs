@@ -14,6 +14,8 @@ use crate::engine::{Arrival, Engine, Finality, moved_alone};
 use crate::history::{HISTORY_BYTES, History};
 use crate::overlay::Overlay;
 use crate::picking::{Pick, Picking};
+use crate::recolouring::Recolouring;
+use crate::sight::Sight;
 use crate::tool::{Tool, ToolMode};
 use crate::transaction::Transaction;
 use crate::{
@@ -31,12 +33,15 @@ pub struct Editor {
     /// What the present revisions belong to.
     pub(crate) known: Document,
     pub(crate) known_roles: Arc<Vec<Role>>,
+    pub(crate) known_selected: Option<HandleId>,
     pub(crate) known_camera: Camera,
     pub(crate) known_stiffness: Option<Arc<Vec<f64>>>,
     pub(crate) showed_stiffness: bool,
     /// Whether paint has changed during the stroke that goes on.
     pub(crate) repainted: bool,
+    pub(crate) recolouring: Recolouring,
     pub(crate) regions_revision: u64,
+    pub(crate) rims_revision: u64,
     pub(crate) camera_revision: u64,
     pub(crate) camera: Camera,
     pub(crate) camera_history: CameraHistory,
@@ -86,13 +91,16 @@ impl Editor {
             history: History::new(Arc::clone(&document.from_rest), HISTORY_BYTES),
             known: document.clone(),
             known_roles: Arc::default(),
+            known_selected: None,
             known_camera: Camera::default(),
             known_stiffness: None,
             showed_stiffness: false,
             repainted: false,
+            recolouring: Recolouring::default(),
             document,
             file_name: String::new(),
             regions_revision: 0,
+            rims_revision: 0,
             camera_revision: 0,
             camera: Camera::default(),
             camera_history: CameraHistory::default(),
@@ -155,6 +163,7 @@ impl Editor {
             shape_revision: self.shape_counter,
             displacements: &self.document.from_file,
             regions_revision: self.regions_revision,
+            rims_revision: self.rims_revision,
             overlay_revision: self.overlay.revision,
             camera_revision: self.camera_revision,
             brush_ring: &self.overlay.ring,
@@ -248,6 +257,8 @@ impl Editor {
             surface: self.engine.picked.as_deref()?,
             camera: &self.camera,
             viewport_px: self.viewport_px,
+            sight: Sight::of(&self.camera, self.viewport_px),
+            is_current: self.engine.is_picking_current(),
         })
     }
 
@@ -462,6 +473,8 @@ impl Editor {
         self.known = self.document.clone();
         self.shape_counter += 1;
         self.regions_revision += 1;
+        self.recolouring.whole(self.regions_revision);
+        self.rims_revision += 1;
         self.frame_all();
         if let Some(camera) = beginning.as_ref().and_then(Beginning::camera) {
             self.camera = camera;

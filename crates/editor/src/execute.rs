@@ -78,6 +78,7 @@ impl Editor {
             | Command::ToggleFlat
             | Command::ToggleWireframe
             | Command::ToggleBorders
+            | Command::ToggleOutlines
             | Command::ToggleRegions
             | Command::SetOrientation(_)
             | Command::SetStrokeShape(_)
@@ -206,6 +207,7 @@ impl Editor {
             Command::ToggleFlat => self.look.flat = !self.look.flat,
             Command::ToggleWireframe => self.look.wireframe = !self.look.wireframe,
             Command::ToggleBorders => self.look.borders = !self.look.borders,
+            Command::ToggleOutlines => self.look.outlines = !self.look.outlines,
             Command::ToggleRegions => self.look.regions = !self.look.regions,
             Command::ToggleGrid => self.look.grid = !self.look.grid,
             Command::ToggleProjection => {

@@ -15,6 +15,8 @@ pub struct Look {
     pub borders: bool,
     /// Whether the regions' colours are shown.
     pub regions: bool,
+    /// Whether handles are outlined, and the line is drawn where the free region meets what is held.
+    pub outlines: bool,
     /// Whether the ground's grid is shown.
     pub grid: bool,
 }
@@ -28,6 +30,7 @@ impl Default for Look {
             wireframe: false,
             borders: false,
             regions: true,
+            outlines: true,
             grid: true,
         }
     }
@@ -69,13 +72,13 @@ pub enum Clay {
 }
 
 impl Clay {
-    /// Every clay with its name in a menu.
+    /// Every clay with its name, which menus begin with a capital.
     pub const NAMES: [(&'static str, Self); 6] = [
-        ("Clay", Self::Clay),
-        ("Plaster", Self::Plaster),
-        ("Wax", Self::Wax),
-        ("Bronze", Self::Bronze),
-        ("Porcelain", Self::Porcelain),
-        ("Graphite", Self::Graphite),
+        ("clay", Self::Clay),
+        ("plaster", Self::Plaster),
+        ("wax", Self::Wax),
+        ("bronze", Self::Bronze),
+        ("porcelain", Self::Porcelain),
+        ("graphite", Self::Graphite),
     ];
 }

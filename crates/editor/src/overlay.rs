@@ -65,7 +65,7 @@ impl Editor {
         {
             is_over_surface = true;
             if self.mode != ToolMode::Select && self.stroke_shape == StrokeShape::Brush && !self.wants_pivot {
-                outline = ring(&picking, position_px, &pick, self.brush_radius_px);
+                outline = ring(&picking, position_px, &pick, &self.brush_size());
             }
         }
         let overlay = &mut self.overlay;

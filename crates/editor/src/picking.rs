@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::{Bvh, Model, Surface, SurfaceVertex};
 
 use crate::camera::{Camera, Ray};
+use crate::sight::Sight;
 
 /// A point of the surface under the pointer.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -33,6 +34,10 @@ pub(crate) struct Picking<'a> {
     pub(crate) surface: &'a Surface,
     pub(crate) camera: &'a Camera,
     pub(crate) viewport_px: DVec2,
+    /// The camera, ready to look at many points.
+    pub(crate) sight: Sight,
+    /// Whether rays are answered from the present shape.
+    pub(crate) is_current: bool,
 }
 
 impl Picking<'_> {

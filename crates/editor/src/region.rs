@@ -10,9 +10,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::{Loose, Role};
-use pliant_mesh::{Cancel, Cancelled, DistanceSearch, Model, Surface, SurfaceVertex, Topology, face_area};
+use pliant_mesh::{Cancel, Cancelled, ContourLine, DistanceSearch, Model, Surface, SurfaceVertex, Topology, face_area};
 
 use crate::document::{HandleId, Paint};
+use crate::rim::rims;
 use crate::{Counts, Reach};
 
 /// What the region follows from; shared with the job that measures it.
@@ -35,6 +36,8 @@ pub struct Region {
     pub handles: Arc<Vec<HandleId>>,
     /// Numbers of vertices by role.
     pub counts: Counts,
+    /// The lines between roles.
+    pub(crate) rims: Arc<Vec<ContourLine>>,
     /// The rest shape, where it is another than the file's.
     pub(crate) rest_surface: Option<Arc<Surface>>,
 }
@@ -49,6 +52,7 @@ impl Region {
                 fixed: vertex_count,
                 ..Counts::default()
             },
+            rims: Arc::new(Vec::new()),
             rest_surface: None,
         }
     }
@@ -122,10 +126,13 @@ impl Region {
             }
             roles[vertex] = role;
         }
+        cancel.check()?;
+        let rims = rims(surface, &roles);
         Ok(Self {
             roles: Arc::new(roles),
             handles: Arc::new(handles),
             counts,
+            rims: Arc::new(rims),
             rest_surface,
         })
     }

@@ -28,6 +28,9 @@ pub struct SceneView<'a> {
     /// Grows when the colours of regions and handles changed: fetch them by
     /// [`Editor::region_colours`](crate::Editor::region_colours).
     pub regions_revision: u64,
+    /// Grows when the lines between regions changed, or the selected handle: fetch them by
+    /// [`Editor::rims`](crate::Editor::rims).
+    pub rims_revision: u64,
     /// Grows when anything of the overlay (ring, gizmo) changed.
     pub overlay_revision: u64,
     /// Grows when the camera changed.

@@ -189,3 +189,25 @@ fn a_trackball_rolls_and_the_turntable_levels_again() {
         "levelling looks where one looked"
     );
 }
+
+#[test]
+fn the_ring_lies_on_the_surface_and_is_as_far_from_its_middle_as_the_brush_reaches() {
+    let mut rig = Rig::open(shapes::icosphere(5));
+    rig.command(Command::View(NamedView::Front));
+    rig.command(Command::SetTool(ToolMode::PaintFree));
+    for off_px in [DVec2::ZERO, DVec2::new(90.0, -60.0)] {
+        rig.move_to(CENTRE_PX + off_px);
+        let view = rig.editor.view();
+        let ring = view.brush_ring;
+        let middle = ring.iter().sum::<DVec3>() / ring.len() as f64;
+        let radius = view.brush_radius_px * view.camera.world_per_px(middle, rig::VIEWPORT_PX);
+        for point in ring {
+            assert!((point.length() - 1.0).abs() < 0.01, "on the sphere: {}", point.length());
+            assert!(
+                (point.distance(middle) / radius - 1.0).abs() < 0.1,
+                "{} of {radius}",
+                point.distance(middle)
+            );
+        }
+    }
+}

@@ -4,7 +4,7 @@
 //! f32 throughout. Boxes are f32, relative to a centre and scaled to the unit cube, and rounded outward; positions and
 //! all tests on them are f64. So a surface at geographic coordinates is hit as exactly as one at the origin.
 
-use glam::{DVec3, Vec3A};
+use glam::{DVec3, DVec4, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::leaf_collapser::collapse;
@@ -137,6 +137,34 @@ impl Bvh {
         );
         out.sort_unstable();
         out.dedup();
+    }
+
+    /// Visits the triangles that may reach into the convex space before all `planes` (a point p is before one if its
+    /// product with (p, 1) is not negative): every one that does, and some beside it.
+    pub fn triangles_within(&self, planes: &[DVec4], mut visit: impl FnMut(u32)) {
+        // In the boxes' space the same planes have other lengths and distances.
+        let planes: Vec<DVec4> = planes
+            .iter()
+            .map(|plane| {
+                let normal = plane.truncate() / self.space.scale;
+                normal.extend(plane.w + plane.truncate().dot(self.space.centre))
+            })
+            .collect();
+        let is_apart = |node_box: &Aabb| {
+            let (min, max) = (node_box.min.as_dvec3(), node_box.max.as_dvec3());
+            planes.iter().any(|plane| {
+                let farthest = DVec3::select(plane.truncate().cmpge(DVec3::ZERO), max, min);
+                plane.dot(farthest.extend(1.0)) < 0.0
+            })
+        };
+        self.walk(
+            |node_box| if is_apart(node_box) { f64::INFINITY } else { 0.0 },
+            |triangle| {
+                visit(triangle);
+                f64::MAX
+            },
+            f64::MAX,
+        );
     }
 
     /// The vertex nearest to `point` in a straight line, of several the lowest, and its distance; `None` of an empty

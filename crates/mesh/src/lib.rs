@@ -12,6 +12,7 @@ mod areas;
 mod boundary;
 mod bvh;
 mod components;
+mod contours;
 mod diagnosis;
 mod distance;
 mod distortion;
@@ -35,6 +36,7 @@ mod weld;
 
 pub use bvh::{Bvh, Hit};
 pub use components::Component;
+pub use contours::{ContourLine, Crossing, contours};
 pub use diagnosis::{Diagnosis, Example};
 pub use distance::{DistanceSearch, distances_along_surface};
 pub use distortion::Distortion;

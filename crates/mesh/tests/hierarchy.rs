@@ -134,3 +134,28 @@ fn an_empty_and_a_flat_hierarchy_answer() {
         "no direction, no hit"
     );
 }
+
+#[test]
+fn planes_find_every_triangle_with_a_corner_before_them_and_few_others() {
+    for (class, drawn) in shapes::classes() {
+        let model = shapes::model(drawn);
+        let positions = &model.surface.positions;
+        let bvh = Bvh::build(positions, &model.surface.triangles);
+        let bounds = model.bounds().unwrap();
+        for direction in directions().step_by(5) {
+            let at = bounds.centre() + 0.2 * bounds.diagonal() * direction;
+            let across = direction.any_orthonormal_vector();
+            let planes =
+                [direction, across, (direction + across).normalize()].map(|normal| normal.extend(-normal.dot(at)));
+            let is_before = |p: DVec3| planes.iter().all(|plane| plane.dot(p.extend(1.0)) >= 0.0);
+            let mut visits = vec![0; model.surface.triangles.len()];
+            bvh.triangles_within(&planes, |triangle| visits[triangle as usize] += 1);
+            for (triangle, visits) in model.surface.triangles.iter().zip(&visits) {
+                let reaches = triangle.iter().any(|v| is_before(positions[v.index()]));
+                assert!(*visits <= 1 && (*visits == 1 || !reaches), "{class}");
+            }
+            let nothing = [direction.extend(-direction.dot(bounds.centre()) - 2.0 * bounds.diagonal())];
+            bvh.triangles_within(&nothing, |_| panic!("{class}: nothing lies that far away"));
+        }
+    }
+}

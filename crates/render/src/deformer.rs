@@ -6,6 +6,7 @@
 //! Normals are then the area-weighted means of the moved triangles, the file's own turned along as on the processor.
 //! All is f32: against f64 that costs a few units in the last place of the positions' own size.
 
+use crate::bindings::bind_group;
 use crate::buffers::{filled, refill};
 use crate::guard::guarded;
 use crate::shaders::Shader;
@@ -287,17 +288,6 @@ fn layout(device: &wgpu::Device, types: &[wgpu::BufferBindingType]) -> wgpu::Bin
 }
 
 fn group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
-    let entries: Vec<wgpu::BindGroupEntry<'_>> = buffers
-        .iter()
-        .enumerate()
-        .map(|(binding, buffer)| wgpu::BindGroupEntry {
-            binding: binding as u32,
-            resource: buffer.as_entire_binding(),
-        })
-        .collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("deform"),
-        layout,
-        entries: &entries,
-    })
+    let resources: Vec<_> = buffers.iter().map(|buffer| buffer.as_entire_binding()).collect();
+    bind_group(device, "deform", layout, &resources)
 }

@@ -1,10 +1,11 @@
 //! The studio that materials mirror: drawn into two cubes when a material is first shown.
 
+use crate::bindings::bind_group;
 use crate::buffers::filled;
 use crate::guard::guarded;
 use crate::shaders::Shader;
 use crate::uniforms::EnvironmentUniform;
-use crate::{RenderError, Renderer};
+use crate::{RenderError, Renderer, whole_texture};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// The mirrored cube: 64 pixels a side blur to 4 at roughness 1, as `material.wgsl` looks it up.
@@ -50,24 +51,13 @@ pub(crate) fn environment(renderer: &Renderer) -> Result<wgpu::BindGroup, Render
             mipmap_filter: wgpu::MipmapFilterMode::Linear,
             ..Default::default()
         });
-        Ok(device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("studio"),
-            layout: &renderer.pipelines.environment_layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::TextureView(&view(&mirrored)),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(&view(&matt)),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 2,
-                    resource: wgpu::BindingResource::Sampler(&sampler),
-                },
-            ],
-        }))
+        let resources = [
+            wgpu::BindingResource::TextureView(&view(&mirrored)),
+            wgpu::BindingResource::TextureView(&view(&matt)),
+            wgpu::BindingResource::Sampler(&sampler),
+        ];
+        let layout = &renderer.pipelines.environment_layout;
+        Ok(bind_group(device, "studio", layout, &resources))
     })
 }
 
@@ -97,27 +87,7 @@ fn fill(
     samples: u32,
 ) -> Result<(), RenderError> {
     let (device, queue) = (renderer.device(), renderer.queue());
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(entry),
-        layout: None,
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("vs_environment"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: Default::default(),
-        depth_stencil: None,
-        multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(entry),
-            compilation_options: Default::default(),
-            targets: &[Some(FORMAT.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
-    });
+    let pipeline = whole_texture::pipeline(device, module, ["vs_environment", entry], FORMAT);
     let layout = pipeline.get_bind_group_layout(0);
     let levels = texture.mip_level_count();
     let mut encoder = device.create_command_encoder(&Default::default());
@@ -133,14 +103,7 @@ fn fill(
                 padding: [0.0; 2],
             };
             let buffer = filled(device, queue, "studio uniform", wgpu::BufferUsages::UNIFORM, &[uniform])?;
-            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("studio uniform"),
-                layout: &layout,
-                entries: &[wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: buffer.as_entire_binding(),
-                }],
-            });
+            let group = bind_group(device, "studio uniform", &layout, &[buffer.as_entire_binding()]);
             let view = texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2),
                 base_mip_level: level,
@@ -149,19 +112,7 @@ fn fill(
                 array_layer_count: Some(1),
                 ..Default::default()
             });
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some(entry),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations::default(),
-                })],
-                ..Default::default()
-            });
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..3, 0..1);
+            whole_texture::draw(&mut encoder, &pipeline, &group, &view);
         }
     }
     queue.submit([encoder.finish()]);

@@ -18,7 +18,7 @@ pub struct Frame<'a> {
 }
 
 /// How surfaces look.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Style {
     /// What the surface is made of.
     pub shading: Shading,
@@ -30,8 +30,27 @@ pub struct Style {
     pub wireframe: Wireframe,
     /// Whether edges that a closed surface lacks are marked.
     pub borders: Borders,
+    /// Whether the surface's own lines are drawn.
+    pub outlines: Outlines,
+    /// How many of the picture's pixels borders and outlines take for a point.
+    pub pixels_per_point: f32,
     /// What is behind it.
     pub background: Background,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self {
+            shading: Shading::default(),
+            region_share: 0.0,
+            faces: Faces::default(),
+            wireframe: Wireframe::default(),
+            borders: Borders::default(),
+            outlines: Outlines::default(),
+            pixels_per_point: 1.0,
+            background: Background::default(),
+        }
+    }
 }
 
 /// What a surface seems to be made of.
@@ -82,6 +101,16 @@ pub enum Borders {
     #[default]
     Off,
     /// Edges of one triangle in one colour, those of more than two in another ([`crate::border`]).
+    On,
+}
+
+/// Lines that were given to a surface ([`crate::Surface::update_lines`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Outlines {
+    /// None.
+    #[default]
+    Off,
+    /// Drawn where no surface hides them.
     On,
 }
 

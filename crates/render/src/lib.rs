@@ -11,6 +11,7 @@
 //!
 //! Invariant: no mesh type, no solver, no egui, no camera, no files.
 
+mod bindings;
 mod buffers;
 mod deformer;
 mod edges;
@@ -34,15 +35,17 @@ mod shaders;
 mod studio;
 mod surface;
 mod surface_data;
+mod surface_line;
 mod target;
 mod texture;
 mod timer;
 mod uniforms;
 mod view;
+mod whole_texture;
 
 pub use deformer::{Deformer, DeformerData, StoredNormals};
 pub use error::{NoGpu, RenderError};
-pub use frame::{Background, Borders, Faces, Frame, Shading, Style, Wireframe};
+pub use frame::{Background, Borders, Faces, Frame, Outlines, Shading, Style, Wireframe};
 pub use grid::Grid;
 pub use headless::{Headless, device_descriptor};
 pub use image::Image;
@@ -55,6 +58,7 @@ pub use renderer::Renderer;
 pub use studio::Matcap;
 pub use surface::{Outfit, ShapeData, Surface};
 pub use surface_data::{ColourSpace, SurfaceData};
+pub use surface_line::{EdgePoint, SurfaceLine};
 pub use target::{Samples, Target};
 pub use texture::{Encoding, TextureData};
 pub use view::View;

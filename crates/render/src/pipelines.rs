@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::guard::guarded;
 use crate::shaders::Shader;
-use crate::uniforms::{BorderEdge, LookVertex, OverlayLineInstance, OverlayVertex};
+use crate::uniforms::{LookVertex, OverlayLineInstance, OverlayVertex, SurfaceLineInstance};
 use crate::{RenderError, Samples, Target};
 
 /// The format of triangle numbers.
@@ -32,7 +32,7 @@ pub(crate) enum Pipeline {
     Normals,
     Material(Alpha, Look),
     Wireframe,
-    Border(Part),
+    SurfaceLines(Part),
     Background,
     Grid,
     OverlayTriangles(Part),
@@ -93,11 +93,13 @@ pub(crate) const fn material_buffers(look: Look) -> [Option<wgpu::VertexBufferLa
     ]
 }
 
-/// The instance buffer of borders.
-pub(crate) const BORDER_BUFFER: wgpu::VertexBufferLayout<'static> = {
-    const ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Uint32x2, 1 => Unorm8x4];
+/// The instance buffer of lines on the surface.
+pub(crate) const SURFACE_LINE_BUFFER: wgpu::VertexBufferLayout<'static> = {
+    const ATTRIBUTES: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
+        0 => Uint32x2, 1 => Uint32x2, 2 => Float32x2, 3 => Float32, 4 => Float32, 5 => Unorm8x4
+    ];
     wgpu::VertexBufferLayout {
-        array_stride: size_of::<BorderEdge>() as u64,
+        array_stride: size_of::<SurfaceLineInstance>() as u64,
         step_mode: wgpu::VertexStepMode::Instance,
         attributes: &ATTRIBUTES,
     }
@@ -205,7 +207,7 @@ impl Pipelines {
             }
             Pipeline::Material(..) => vec![frame, surface, &self.material_layout, &self.environment_layout],
             Pipeline::Wireframe | Pipeline::Id => vec![frame, surface],
-            Pipeline::Border(_) => vec![frame, surface, &self.positions_layout],
+            Pipeline::SurfaceLines(_) => vec![frame, surface, &self.positions_layout],
             // The grid's uniform stands in the surface's place and has its form.
             Pipeline::Grid => vec![frame, surface],
             Pipeline::Background | Pipeline::OverlayTriangles(_) | Pipeline::OverlayLines(_) => vec![frame],
@@ -307,7 +309,9 @@ impl Description {
                 topology: wgpu::PrimitiveTopology::LineList,
                 ..light(Shader::Wireframe, "vs_wireframe", "fs_wireframe")
             },
-            Pipeline::Border(part) => mark(Shader::Border, "vs_border", BORDER_BUFFER, strip, part),
+            Pipeline::SurfaceLines(part) => {
+                mark(Shader::SurfaceLine, "vs_surface_line", SURFACE_LINE_BUFFER, strip, part)
+            }
             Pipeline::Background => Self {
                 colour: OPAQUE,
                 ..light(Shader::Background, "vs_background", "fs_background")

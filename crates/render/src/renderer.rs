@@ -2,19 +2,21 @@
 
 use std::collections::HashMap;
 
+use crate::bindings::bind_group;
 use crate::buffers::{Streamed, filled, refill};
 use crate::environment::environment;
 use crate::guard::guarded;
 use crate::overlay::OverlayBatch;
 use crate::pipelines::{Alpha, Part, Pipeline, Pipelines};
 use crate::surface::{Joining, Run};
+use crate::surface_line::LineSet;
 use crate::target::Attachments;
 use crate::texture::TextureMaker;
 use crate::timer::Timer;
 use crate::uniforms::{FrameUniform, GridUniform};
 use crate::{
-    Background, Borders, Encoding, Faces, Frame, Matcap, Material, RenderError, Samples, Shading, Surface, Target,
-    TextureData, Wireframe, studio,
+    Background, Borders, Encoding, Faces, Frame, Matcap, Material, Outlines, RenderError, Samples, Shading, Surface,
+    Target, TextureData, Wireframe, studio,
 };
 
 /// The pipelines of one device. Make one a device and keep it.
@@ -247,24 +249,17 @@ impl Renderer {
         )?;
         let group = guarded(&self.device, "while making bind groups", || {
             let sampler = self.textures.sampler([crate::Wrap::Clamp; 2]);
-            Ok(self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("clay"),
-                layout: &self.pipelines.clay_layout,
-                entries: &[
-                    wgpu::BindGroupEntry {
-                        binding: 0,
-                        resource: uniform.as_entire_binding(),
-                    },
-                    wgpu::BindGroupEntry {
-                        binding: 1,
-                        resource: wgpu::BindingResource::TextureView(&view),
-                    },
-                    wgpu::BindGroupEntry {
-                        binding: 2,
-                        resource: wgpu::BindingResource::Sampler(&sampler),
-                    },
-                ],
-            }))
+            let resources = [
+                uniform.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&view),
+                wgpu::BindingResource::Sampler(&sampler),
+            ];
+            Ok(bind_group(
+                &self.device,
+                "clay",
+                &self.pipelines.clay_layout,
+                &resources,
+            ))
         })?;
         self.clays.insert(matcap, group);
         Ok(())
@@ -328,14 +323,19 @@ impl Renderer {
                     pass.draw_indexed(0..edges.index_count, 0, 0..1);
                 }
             }
+            let draw_lines = |pass: &mut wgpu::RenderPass<'_>, lines: &LineSet, part| {
+                set(pass, Pipeline::SurfaceLines(part));
+                pass.set_bind_group(2, &lines.positions, &[]);
+                pass.set_vertex_buffer(0, lines.lines.slice(..));
+                pass.draw(0..4, 0..lines.count);
+            };
+            if style.outlines == Outlines::On {
+                let outlines = surface.outlines().iter().flatten();
+                outlines.for_each(|lines| draw_lines(pass, lines, Part::Visible));
+            }
             if style.borders == Borders::On {
-                for borders in (0..surface.pages().len()).filter_map(|page| surface.borders(page)) {
-                    pass.set_bind_group(2, &borders.positions, &[]);
-                    pass.set_vertex_buffer(0, borders.edges.slice(..));
-                    for part in Part::BOTH {
-                        set(pass, Pipeline::Border(part));
-                        pass.draw(0..4, 0..borders.count);
-                    }
+                for lines in surface.borders().iter().flatten() {
+                    Part::BOTH.into_iter().for_each(|part| draw_lines(pass, lines, part));
                 }
             }
         }
@@ -412,27 +412,14 @@ impl Renderer {
             let samplers = material
                 .maps()
                 .map(|map| self.textures.sampler(map.map_or_else(Default::default, |map| map.wrap)));
-            let mut entries = vec![wgpu::BindGroupEntry {
-                binding: 0,
-                resource: uniform.as_entire_binding(),
-            }];
+            let mut resources = vec![uniform.as_entire_binding()];
             for (map, sampler) in material.maps().iter().zip(&samplers) {
                 let view = map.and_then(|map| views.get(map.texture)).unwrap_or(&self.white);
-                let binding = entries.len() as u32;
-                entries.push(wgpu::BindGroupEntry {
-                    binding,
-                    resource: wgpu::BindingResource::TextureView(view),
-                });
-                entries.push(wgpu::BindGroupEntry {
-                    binding: binding + 1,
-                    resource: wgpu::BindingResource::Sampler(sampler),
-                });
+                resources.push(wgpu::BindingResource::TextureView(view));
+                resources.push(wgpu::BindingResource::Sampler(sampler));
             }
-            Ok(self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("material"),
-                layout: &self.pipelines.material_layout,
-                entries: &entries,
-            }))
+            let layout = &self.pipelines.material_layout;
+            Ok(bind_group(&self.device, "material", layout, &resources))
         })
     }
 }
@@ -460,8 +447,8 @@ impl Ready<'_> {
             pipelines.push(Pipeline::Wireframe);
         }
         for part in Part::BOTH {
-            if style.borders == Borders::On {
-                pipelines.push(Pipeline::Border(part));
+            if style.borders == Borders::On || style.outlines == Outlines::On {
+                pipelines.push(Pipeline::SurfaceLines(part));
             }
             if !self.overlays.vertices.is_empty() {
                 pipelines.push(Pipeline::OverlayTriangles(part));
@@ -493,14 +480,7 @@ fn matcap(shading: Shading) -> Matcap {
 }
 
 fn uniform_group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffer: &wgpu::Buffer) -> wgpu::BindGroup {
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout,
-        entries: &[wgpu::BindGroupEntry {
-            binding: 0,
-            resource: buffer.as_entire_binding(),
-        }],
-    })
+    bind_group(device, "uniform", layout, &[buffer.as_entire_binding()])
 }
 
 fn frame_uniform(frame: &Frame<'_>, size_px: [u32; 2], background_span: [f32; 2]) -> FrameUniform {
@@ -524,6 +504,8 @@ fn frame_uniform(frame: &Frame<'_>, size_px: [u32; 2], background_span: [f32; 2]
             Faces::Smooth => 0.0,
             Faces::Flat => 1.0,
         },
+        pixels_per_point: frame.style.pixels_per_point,
+        ..bytemuck::Zeroable::zeroed()
     }
 }
 

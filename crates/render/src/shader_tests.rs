@@ -8,11 +8,11 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
 use super::Shader;
 use crate::pipelines::{
-    BORDER_BUFFER, Look, OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SHAPE_BUFFERS, material_buffers,
+    Look, OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SHAPE_BUFFERS, SURFACE_LINE_BUFFER, material_buffers,
 };
 use crate::uniforms::{
-    BorderEdge, ClayUniform, DeformUniform, EnvironmentUniform, FrameUniform, GridUniform, LookVertex, MapUniform,
-    MaterialUniform, OverlayLineInstance, OverlayVertex, SurfaceUniform,
+    ClayUniform, DeformUniform, EnvironmentUniform, FrameUniform, GridUniform, LookVertex, MapUniform, MaterialUniform,
+    OverlayLineInstance, OverlayVertex, SurfaceLineInstance, SurfaceUniform,
 };
 
 #[test]
@@ -104,6 +104,9 @@ fn uniform_structs_are_laid_out_alike() {
         scale_px: f32,
         perspective: f32,
         flatness: f32,
+        pixels_per_point: f32,
+        padding: f32,
+        padding_to_16: [f32; 2],
     });
     let frameless = [Shader::Mipmap, Shader::Environment, Shader::Deform];
     for shader in Shader::ALL.into_iter().filter(|shader| !frameless.contains(shader)) {
@@ -120,7 +123,7 @@ fn uniform_structs_are_laid_out_alike() {
         Shader::Material,
         Shader::SurfaceId,
         Shader::Wireframe,
-        Shader::Border,
+        Shader::SurfaceLine,
     ] {
         assert_eq!(wgsl_layout(shader, "Surface"), surface, "{}", shader.file_name());
     }
@@ -192,7 +195,7 @@ fn vertex_buffers_have_what_shaders_read() {
         let own: Vec<_> = buffers[3].iter().cloned().collect();
         assert_attributes(Shader::Material, "LookVertex", &own);
     }
-    assert_attributes(Shader::Border, "BorderEdge", &[BORDER_BUFFER]);
+    assert_attributes(Shader::SurfaceLine, "SurfaceLine", &[SURFACE_LINE_BUFFER]);
     assert_attributes(Shader::OverlayTriangle, "OverlayVertex", &[OVERLAY_TRIANGLE_BUFFER]);
     assert_attributes(Shader::OverlayLine, "OverlayLine", &[OVERLAY_LINE_BUFFER]);
 }
@@ -224,8 +227,15 @@ fn vertex_structs_have_their_members_where_their_buffers_say() {
     for buffer in material_buffers(Look::Own)[3].iter() {
         assert_eq!(offsets(buffer), look.map(|offset| offset as u64));
     }
-    let border = [offset_of!(BorderEdge, ends), offset_of!(BorderEdge, colour)];
-    assert_eq!(offsets(&BORDER_BUFFER), border.map(|offset| offset as u64));
+    let line = [
+        offset_of!(SurfaceLineInstance, start),
+        offset_of!(SurfaceLineInstance, end),
+        offset_of!(SurfaceLineInstance, shares),
+        offset_of!(SurfaceLineInstance, width_points),
+        offset_of!(SurfaceLineInstance, hidden_share),
+        offset_of!(SurfaceLineInstance, colour),
+    ];
+    assert_eq!(offsets(&SURFACE_LINE_BUFFER), line.map(|offset| offset as u64));
 }
 
 fn validated(shader: Shader) -> (naga::Module, ModuleInfo) {

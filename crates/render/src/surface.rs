@@ -10,8 +10,15 @@ use crate::pages::{Attributes, Page, PageLimits, page_chunks};
 use crate::partition::{ChunkBounds, Partition};
 use crate::pipelines::{Alpha, Look};
 use crate::surface_data::{checked, textures_exist};
-use crate::uniforms::{BorderEdge, LookVertex, SurfaceUniform};
-use crate::{AlphaMode, ColourSpace, Material, RenderError, Renderer, SurfaceData, TextureData, View, border};
+use crate::surface_line::LineSet;
+use crate::uniforms::{LookVertex, SurfaceUniform};
+use crate::{
+    AlphaMode, ColourSpace, EdgePoint, Material, RenderError, Renderer, SurfaceData, SurfaceLine, TextureData, View,
+    border,
+};
+
+/// Alpha of the parts of borders that surfaces hide, as a share of the visible parts'.
+const HIDDEN_BORDERS: f32 = 0.22;
 
 /// A triangle mesh in GPU buffers; its topology is fixed, its vertices may move and change colour.
 #[derive(Debug)]
@@ -30,15 +37,9 @@ pub struct Surface {
     group: wgpu::BindGroup,
     materials: Vec<wgpu::BindGroup>,
     /// For each page.
-    borders: OnceLock<Vec<Option<Borders>>>,
-}
-
-/// A page's odd edges.
-#[derive(Debug)]
-pub(crate) struct Borders {
-    pub(crate) edges: wgpu::Buffer,
-    pub(crate) count: u32,
-    pub(crate) positions: wgpu::BindGroup,
+    borders: OnceLock<Vec<Option<LineSet>>>,
+    /// For each page.
+    outlines: Vec<Option<LineSet>>,
 }
 
 /// A new shape for a [`Surface`], with what can be computed beforehand on another thread.
@@ -166,6 +167,7 @@ impl Surface {
             group,
             materials: renderer.material_groups(data.materials, data.textures)?,
             borders: OnceLock::new(),
+            outlines: Vec::new(),
         })
     }
 
@@ -235,6 +237,48 @@ impl Surface {
     /// As [`Surface::update_positions`].
     pub fn update_regions(&self, renderer: &Renderer, regions: &[[u8; 4]]) -> Result<(), RenderError> {
         self.update(renderer, "region colours", |page| &page.regions, regions)
+    }
+
+    /// Sets the region colours of some ranges of vertices, taken from `regions`, which has one a vertex.
+    ///
+    /// # Errors
+    /// As [`Surface::update_positions`].
+    pub fn update_some_regions(
+        &self,
+        renderer: &Renderer,
+        regions: &[[u8; 4]],
+        ranges: &[Range<usize>],
+    ) -> Result<(), RenderError> {
+        let Some(page) = self.whole_page().filter(|_| regions.len() == self.vertex_count) else {
+            return self.update_regions(renderer, regions);
+        };
+        guarded(renderer.device(), "while uploading", || {
+            for range in ranges {
+                if let Some(some) = regions.get(range.clone()) {
+                    let start = size_of_val(&regions[..range.start]) as u64;
+                    renderer
+                        .queue()
+                        .write_buffer(&page.regions, start, bytemuck::cast_slice(some));
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Replaces the lines that [`crate::Outlines::On`] draws, later ones over earlier ones.
+    ///
+    /// # Errors
+    /// [`RenderError::NoSuch`] for a vertex that does not exist; memory.
+    pub fn update_lines(&mut self, renderer: &Renderer, lines: &[SurfaceLine]) -> Result<(), RenderError> {
+        let mut vertices = lines.iter().flat_map(|line| line.ends).flat_map(|end| end.vertices);
+        let count = self.vertex_count;
+        if let Some(vertex) = vertices.find(|&vertex| vertex as usize >= count) {
+            let (what, number) = ("vertex", vertex as usize);
+            return Err(RenderError::NoSuch { what, number, count });
+        }
+        let sets = (self.pages.iter()).map(|page| LineSet::new(renderer, page, lines.iter().copied(), 0.0));
+        self.outlines = sets.collect::<Result<_, _>>()?;
+        Ok(())
     }
 
     /// Gives the surface other materials: as many as it was made with, with the same alpha.
@@ -370,9 +414,14 @@ impl Surface {
         pass.set_vertex_buffer(3, own.unwrap_or(&self.shared_look).slice(..));
     }
 
-    /// A page's borders, where there are any.
-    pub(crate) fn borders(&self, page: usize) -> Option<&Borders> {
-        self.borders.get()?.get(page)?.as_ref()
+    /// The pages' borders, where there are any.
+    pub(crate) fn borders(&self) -> &[Option<LineSet>] {
+        self.borders.get().map_or(&[], Vec::as_slice)
+    }
+
+    /// The pages' outlines, where there are any.
+    pub(crate) fn outlines(&self) -> &[Option<LineSet>] {
+        &self.outlines
     }
 
     /// Makes the edges unless they are there.
@@ -387,7 +436,7 @@ impl Surface {
             return Ok(());
         }
         let odd = odd_edges(&self.triangles, self.vertex_count, self.twins.as_deref());
-        let made = self.pages.iter().map(|page| borders(renderer, page, &odd));
+        let made = (self.pages.iter()).map(|page| LineSet::new(renderer, page, border_lines(&odd), HIDDEN_BORDERS));
         let _ = self.borders.set(made.collect::<Result<Vec<_>, _>>()?);
         Ok(())
     }
@@ -399,40 +448,20 @@ impl Surface {
     }
 }
 
-/// The odd edges whose ends are both on a page; an edge on several is drawn as often.
-fn borders(renderer: &Renderer, page: &Page, odd: &[Odd]) -> Result<Option<Borders>, RenderError> {
-    let (device, queue) = (renderer.device(), renderer.queue());
-    let instances: Vec<BorderEdge> = odd
-        .iter()
-        .filter_map(|odd| {
-            let (ends, colour) = match odd {
-                Odd::Border(ends) => (ends, border::OPEN),
-                Odd::Branching(ends) => (ends, border::BRANCHING),
-            };
-            Some(BorderEdge {
-                ends: [page.vertex(ends[0])?, page.vertex(ends[1])?],
-                colour,
-            })
-        })
-        .collect();
-    if instances.is_empty() {
-        return Ok(None);
-    }
-    let positions = guarded(device, "while making bind groups", || {
-        Ok(device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("positions"),
-            layout: &renderer.pipelines.positions_layout,
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: page.positions.as_entire_binding(),
-            }],
-        }))
-    })?;
-    Ok(Some(Borders {
-        edges: filled(device, queue, "borders", wgpu::BufferUsages::VERTEX, &instances)?,
-        count: instances.len() as u32,
-        positions,
-    }))
+/// The odd edges as lines; one whose ends are on several pages is drawn as often.
+fn border_lines(odd: &[Odd]) -> impl Iterator<Item = SurfaceLine> {
+    const WIDTH_POINTS: f32 = 2.6;
+    odd.iter().map(|odd| {
+        let (ends, colour) = match odd {
+            Odd::Border(ends) => (ends, border::OPEN),
+            Odd::Branching(ends) => (ends, border::BRANCHING),
+        };
+        SurfaceLine {
+            ends: ends.map(EdgePoint::at),
+            colour,
+            width_points: WIDTH_POINTS,
+        }
+    })
 }
 
 /// Texture coordinates and colours side by side, where the data has any.

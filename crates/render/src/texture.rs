@@ -2,9 +2,10 @@
 
 use std::borrow::Cow;
 
+use crate::bindings::bind_group;
 use crate::guard::guarded;
 use crate::shaders::Shader;
-use crate::{RenderError, Wrap};
+use crate::{RenderError, Wrap, whole_texture};
 
 /// An image of four bytes a pixel (alpha straight), rows from the top.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,29 +50,7 @@ impl TextureMaker {
             label: Some(Shader::Mipmap.file_name()),
             source: wgpu::ShaderSource::Wgsl(Shader::Mipmap.composed().into()),
         });
-        let pipeline = |format: wgpu::TextureFormat| {
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some("mipmap"),
-                layout: None,
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some("vs_mipmap"),
-                    compilation_options: Default::default(),
-                    buffers: &[],
-                },
-                primitive: Default::default(),
-                depth_stencil: None,
-                multisample: Default::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some("fs_mipmap"),
-                    compilation_options: Default::default(),
-                    targets: &[Some(format.into())],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        };
+        let pipeline = |format| whole_texture::pipeline(device, &module, ["vs_mipmap", "fs_mipmap"], format);
         let mipmap_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("mipmap"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -163,33 +142,12 @@ impl TextureMaker {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let layout = pipeline.get_bind_group_layout(0);
         for level in 1..texture.mip_level_count() {
-            let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("mipmap"),
-                layout: &layout,
-                entries: &[
-                    wgpu::BindGroupEntry {
-                        binding: 0,
-                        resource: wgpu::BindingResource::TextureView(&view_of(level - 1)),
-                    },
-                    wgpu::BindGroupEntry {
-                        binding: 1,
-                        resource: wgpu::BindingResource::Sampler(&self.mipmap_sampler),
-                    },
-                ],
-            });
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("mipmap"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &view_of(level),
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations::default(),
-                })],
-                ..Default::default()
-            });
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..3, 0..1);
+            let resources = [
+                wgpu::BindingResource::TextureView(&view_of(level - 1)),
+                wgpu::BindingResource::Sampler(&self.mipmap_sampler),
+            ];
+            let group = bind_group(&self.device, "mipmap", &layout, &resources);
+            whole_texture::draw(&mut encoder, pipeline, &group, &view_of(level));
         }
         self.queue.submit([encoder.finish()]);
     }

@@ -16,6 +16,9 @@ pub(crate) struct FrameUniform {
     pub(crate) scale_px: f32,
     pub(crate) perspective: f32,
     pub(crate) flatness: f32,
+    pub(crate) pixels_per_point: f32,
+    pub(crate) padding: f32,
+    pub(crate) padding_to_16: [f32; 2],
 }
 
 /// `Surface` in `shaders/lib/surface_vertex.wgsl`.
@@ -110,11 +113,15 @@ pub(crate) struct LookVertex {
     pub(crate) colour: [u8; 4],
 }
 
-/// `BorderEdge` in `shaders/border.wgsl`.
+/// `SurfaceLine` in `shaders/surface_line.wgsl`.
 #[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
-pub(crate) struct BorderEdge {
-    pub(crate) ends: [u32; 2],
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub(crate) struct SurfaceLineInstance {
+    pub(crate) start: [u32; 2],
+    pub(crate) end: [u32; 2],
+    pub(crate) shares: [f32; 2],
+    pub(crate) width_points: f32,
+    pub(crate) hidden_share: f32,
     pub(crate) colour: [u8; 4],
 }
 

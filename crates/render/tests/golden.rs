@@ -6,76 +6,59 @@
 
 mod rig;
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use glam::Vec3;
 use pliant_render::{
-    AlphaMode, Borders, Encoding, Faces, Frame, Grid, Image, Lighting, Map, Matcap, Material, MaterialGroup, Overlay,
-    OverlayLine, OverlayTriangle, Renderer, Samples, Shading, Style, Surface, SurfaceData, TextureData, View,
-    Wireframe, border, region,
+    AlphaMode, Background, Borders, EdgePoint, Encoding, Faces, Frame, Grid, Lighting, Map, Matcap, Material,
+    MaterialGroup, Outlines, Overlay, OverlayLine, OverlayTriangle, Renderer, Samples, Shading, Style, Surface,
+    SurfaceData, SurfaceLine, TextureData, View, Wireframe, border, region,
 };
-use rig::{SIZE_PX, Shape, oblique_view, renderer};
+use rig::{SIZE_PX, Shape, golden, oblique_view, renderer};
 
-/// How far a byte may be from the kept picture's, and how many of a picture's pixels may be farther: another version
-/// of the same driver may round otherwise along contours.
-const BYTE_TOLERANCE: u8 = 6;
-const STRAY_SHARE: f64 = 0.01;
-
-fn kept(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/{name}.png"))
+/// What a picture shows, beside its surface: most show it plainly from the same place.
+struct Shot<'a> {
+    view: View,
+    style: Style,
+    grid: Option<&'a Grid>,
+    overlays: &'a [Overlay],
 }
 
-fn compare(renderer: &Renderer, name: &str, image: &Image) {
-    let (path, Image { width, height, rgba }) = (kept(name), image);
-    let ours = image::RgbaImage::from_raw(*width, *height, rgba.clone()).unwrap();
-    if std::env::var_os("PLIANT_KEEP_PICTURES").is_some() {
-        ours.save(path).unwrap();
-        return;
-    }
-    if !renderer.device_name().contains("llvmpipe") {
-        #[expect(clippy::print_stderr, reason = "a skipped test says so")]
-        {
-            eprintln!(
-                "skipped: the picture {name} was made by llvmpipe, not {}",
-                renderer.device_name()
-            );
+impl Default for Shot<'_> {
+    fn default() -> Self {
+        Self {
+            view: oblique_view(),
+            style: Style::default(),
+            grid: None,
+            overlays: &[],
         }
-        return;
-    }
-    let theirs = image::open(&path)
-        .unwrap_or_else(|error| panic!("{name}: {error}"))
-        .into_rgba8();
-    assert_eq!(ours.dimensions(), theirs.dimensions(), "{name}");
-    let strays = ours.pixels().zip(theirs.pixels()).filter(|(a, b)| {
-        let apart = a.0.iter().zip(b.0).map(|(&a, b)| a.abs_diff(b));
-        apart.max().unwrap() > BYTE_TOLERANCE
-    });
-    let strays = strays.count();
-    if strays as f64 > STRAY_SHARE * f64::from(width * height) {
-        let new = path.with_extension("new.png");
-        ours.save(&new).unwrap();
-        panic!("{name}: {strays} pixels differ; look at {}", new.display());
     }
 }
 
-fn pictured(
-    renderer: &mut Renderer,
-    name: &str,
-    view: &View,
-    style: &Style,
-    surface: &Surface,
-    grid: Option<&Grid>,
-    overlays: &[Overlay],
-) {
-    let frame = Frame {
-        view,
-        style,
-        surfaces: &[surface],
-        grid,
-        overlays,
-    };
-    let image = renderer.draw_to_image(SIZE_PX, Samples::Four, &frame).unwrap();
-    compare(renderer, name, &image);
+impl Shot<'_> {
+    fn of(shading: Shading) -> Self {
+        Self {
+            style: Style {
+                shading,
+                ..Style::default()
+            },
+            ..Self::default()
+        }
+    }
+
+    /// Draws it and compares it with the picture of this name.
+    fn compare(&self, renderer: &mut Renderer, name: &str, surface: &Surface) {
+        let frame = Frame {
+            view: &self.view,
+            style: &self.style,
+            surfaces: &[surface],
+            grid: self.grid,
+            overlays: self.overlays,
+        };
+        let image = renderer.draw_to_image(SIZE_PX, Samples::Four, &frame).unwrap();
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden");
+        golden::compare(renderer, &folder, name, &image);
+    }
 }
 
 /// The ring, a third of it painted.
@@ -101,20 +84,9 @@ fn painted_ring(renderer: &Renderer) -> Surface {
 fn clays() {
     let Some(mut headless) = renderer() else { return };
     let surface = painted_ring(&headless.renderer);
-    for (name, matcap) in Matcap::NAMES {
-        let style = Style {
-            shading: Shading::Clay(matcap),
-            ..Style::default()
-        };
-        pictured(
-            &mut headless.renderer,
-            name,
-            &oblique_view(),
-            &style,
-            &surface,
-            None,
-            &[],
-        );
+    for matcap in Matcap::ALL {
+        let name = format!("{matcap:?}").to_lowercase();
+        Shot::of(Shading::Clay(matcap)).compare(&mut headless.renderer, &name, &surface);
     }
 }
 
@@ -122,77 +94,63 @@ fn clays() {
 fn modes() {
     let Some(mut headless) = renderer() else { return };
     let surface = painted_ring(&headless.renderer);
-    let plain = Style::default();
-    let styles = [
-        (
-            "regions",
-            Style {
-                region_share: 1.0,
-                ..plain
-            },
-        ),
-        (
-            "painted",
-            Style {
-                shading: Shading::Painted,
-                region_share: 1.0,
-                ..plain
-            },
-        ),
-        (
-            "zebra",
-            Style {
-                shading: Shading::Zebra,
-                ..plain
-            },
-        ),
-        (
-            "normals",
-            Style {
-                shading: Shading::Normals,
-                ..plain
-            },
-        ),
-        (
-            "flat",
-            Style {
-                faces: Faces::Flat,
-                ..plain
-            },
-        ),
-        (
-            "wireframe",
-            Style {
-                wireframe: Wireframe::On,
-                ..plain
-            },
-        ),
-        (
-            "borders",
-            Style {
-                borders: Borders::On,
-                ..plain
-            },
-        ),
-        (
-            "transparent",
-            Style {
-                background: pliant_render::Background::Transparent,
-                ..plain
-            },
-        ),
+    type Change = fn(&mut Style);
+    let modes: [(&str, Change); 8] = [
+        ("regions", |style| style.region_share = 1.0),
+        ("painted", |style| {
+            style.shading = Shading::Painted;
+            style.region_share = 1.0;
+        }),
+        ("zebra", |style| style.shading = Shading::Zebra),
+        ("normals", |style| style.shading = Shading::Normals),
+        ("flat", |style| style.faces = Faces::Flat),
+        ("wireframe", |style| style.wireframe = Wireframe::On),
+        ("borders", |style| style.borders = Borders::On),
+        ("transparent", |style| style.background = Background::Transparent),
     ];
-    for (name, style) in styles {
-        pictured(
-            &mut headless.renderer,
-            name,
-            &oblique_view(),
-            &style,
-            &surface,
-            None,
-            &[],
-        );
+    for (name, change) in modes {
+        let mut shot = Shot::default();
+        change(&mut shot.style);
+        shot.compare(&mut headless.renderer, name, &surface);
     }
+}
+
+#[test]
+fn outlines() {
+    let Some(mut headless) = renderer() else { return };
+    let renderer = &mut headless.renderer;
+    let mut surface = painted_ring(renderer);
+    // Around the ring's tube between two of its rows, over the middles of edges.
+    let (across, row) = (20, 6);
+    let between = |k: u32, to: u32| EdgePoint {
+        vertices: [row * across + k % across, (row + 1) * across + to % across],
+        share: 0.5,
+    };
+    let lines = |colour, width_points| {
+        (0..across).flat_map(move |k| {
+            let [diagonal, side] = [between(k, k + 1), between(k + 1, k + 1)];
+            [[between(k, k), diagonal], [diagonal, side]].map(|ends| SurfaceLine {
+                ends,
+                colour,
+                width_points,
+            })
+        })
+    };
+    let lines: Vec<SurfaceLine> = lines([24, 25, 28, 255], 6.0)
+        .chain(lines([232, 184, 48, 255], 3.4))
+        .collect();
+    surface.update_lines(renderer, &lines).unwrap();
+    let mut shot = Shot::default();
+    shot.style.outlines = Outlines::On;
+    shot.compare(renderer, "outlines", &surface);
+    let missing = SurfaceLine {
+        ends: [EdgePoint {
+            vertices: [0, u32::MAX],
+            share: 0.5,
+        }; 2],
+        ..lines[0]
+    };
+    assert!(surface.update_lines(renderer, &[missing]).is_err());
 }
 
 #[test]
@@ -206,15 +164,12 @@ fn orthographic() {
         borders: Borders::On,
         ..Style::default()
     };
-    pictured(
-        &mut headless.renderer,
-        "orthographic",
-        &view,
-        &style,
-        &surface,
-        None,
-        &[],
-    );
+    Shot {
+        view,
+        style,
+        ..Shot::default()
+    }
+    .compare(&mut headless.renderer, "orthographic", &surface);
 }
 
 #[test]
@@ -231,16 +186,11 @@ fn ground() {
         colour: [168, 176, 190, 110],
         axis_colours: [[190, 84, 90, 200], [84, 126, 196, 200]],
     };
-    let style = Style::default();
-    pictured(
-        &mut headless.renderer,
-        "ground",
-        &oblique_view(),
-        &style,
-        &surface,
-        Some(&grid),
-        &[],
-    );
+    Shot {
+        grid: Some(&grid),
+        ..Shot::default()
+    }
+    .compare(&mut headless.renderer, "ground", &surface);
 }
 
 #[test]
@@ -264,16 +214,11 @@ fn marks() {
         ],
         hidden_share: 0.35,
     };
-    let style = Style::default();
-    pictured(
-        &mut headless.renderer,
-        "marks",
-        &oblique_view(),
-        &style,
-        &surface,
-        None,
-        &[marks],
-    );
+    Shot {
+        overlays: &[marks],
+        ..Shot::default()
+    }
+    .compare(&mut headless.renderer, "marks", &surface);
 }
 
 #[test]
@@ -310,15 +255,11 @@ fn odd_edges() {
         ..Style::default()
     };
     assert_eq!(border::OPEN[3], 255);
-    pictured(
-        &mut headless.renderer,
-        "odd-edges",
-        &oblique_view(),
-        &style,
-        &surface,
-        None,
-        &[],
-    );
+    Shot {
+        style,
+        ..Shot::default()
+    }
+    .compare(&mut headless.renderer, "odd-edges", &surface);
 }
 
 /// A sphere of one material over the longitudes and latitudes of its images.
@@ -434,15 +375,11 @@ fn materials() {
     for (name, material) in cases {
         let surface = ball(&headless.renderer, material, &[]);
         let name = format!("material-{name}");
-        pictured(
-            &mut headless.renderer,
-            &name,
-            &oblique_view(),
-            &style,
-            &surface,
-            None,
-            &[],
-        );
+        Shot {
+            style,
+            ..Shot::default()
+        }
+        .compare(&mut headless.renderer, &name, &surface);
     }
 }
 
@@ -576,14 +513,10 @@ fn maps() {
     for (name, material, texture) in cases {
         let surface = ball(&headless.renderer, material, &[texture]);
         let name = format!("map-{name}");
-        pictured(
-            &mut headless.renderer,
-            &name,
-            &oblique_view(),
-            &style,
-            &surface,
-            None,
-            &[],
-        );
+        Shot {
+            style,
+            ..Shot::default()
+        }
+        .compare(&mut headless.renderer, &name, &surface);
     }
 }

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::builder::RangedU64ValueParser;
+use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use pliant_deform::Method;
+use pliant_editor::Clay;
 
 use crate::version::VERSION;
 
@@ -112,8 +113,8 @@ pub struct RenderArguments {
     #[arg(long, value_enum, default_value = "clay")]
     pub shading: Shading,
     /// Which clay `--shading clay` and `regions` take
-    #[arg(long, value_enum, default_value = "clay")]
-    pub clay: ClayName,
+    #[arg(long, default_value = "clay", value_parser = clay())]
+    pub clay: Clay,
     /// How depth looks
     #[arg(long, value_enum, default_value = "perspective")]
     pub projection: ProjectionName,
@@ -126,6 +127,10 @@ pub struct RenderArguments {
     /// Mark edges where the surface ends, and those that more than two triangles share
     #[arg(long)]
     pub borders: bool,
+    /// Outline the edit's handles, and draw the line where the free region meets what is held; `--shading regions` does
+    /// so, too
+    #[arg(long)]
+    pub outlines: bool,
     /// Draw the ground's grid
     #[arg(long)]
     pub grid: bool,
@@ -181,17 +186,6 @@ pub enum Shading {
     Normals,
 }
 
-/// A clay.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-pub enum ClayName {
-    Clay,
-    Plaster,
-    Wax,
-    Bronze,
-    Porcelain,
-    Graphite,
-}
-
 /// How depth looks in a picture.
 #[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
 pub enum ProjectionName {
@@ -221,6 +215,14 @@ impl std::str::FromStr for PictureSize {
             None => Err("a size is WIDTHxHEIGHT, such as 1280x800, each from 1 to 16384".to_owned()),
         }
     }
+}
+
+/// Reads a clay by its name.
+fn clay() -> impl TypedValueParser<Value = Clay> {
+    PossibleValuesParser::new(Clay::NAMES.map(|(name, _)| name)).map(|chosen| {
+        let called = Clay::NAMES.into_iter().find(|(name, _)| *name == chosen);
+        called.map_or(Clay::default(), |(_, clay)| clay)
+    })
 }
 
 fn unit_number(text: &str) -> Result<f64, String> {

@@ -4,14 +4,12 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use pliant_editor::{
-    Camera, Clay, Editor, Event, InlineExecutor, JobKind, Look, NamedView, Projection, Shading, UpAxis,
-};
+use pliant_editor::{Camera, Editor, Event, InlineExecutor, JobKind, Look, NamedView, Projection, Shading, UpAxis};
 use pliant_mesh::WeldOptions;
-use pliant_render::{Background, Frame, Headless, RenderError, Samples};
+use pliant_render::{Background, Frame, Headless, RenderError, Samples, SurfaceLine};
 
 use super::apply::read_edit;
-use super::arguments::{self, ClayName, PictureSize, ProjectionName, RenderArguments, Up, View};
+use super::arguments::{self, PictureSize, ProjectionName, RenderArguments, Up, View};
 use super::{Console, on_threads};
 use crate::drawing::{self, Drawing, Scale};
 use crate::engine::{self, Loaded};
@@ -72,18 +70,12 @@ fn look(arguments: &RenderArguments) -> Look {
     };
     Look {
         shading,
-        clay: match arguments.clay {
-            ClayName::Clay => Clay::Clay,
-            ClayName::Plaster => Clay::Plaster,
-            ClayName::Wax => Clay::Wax,
-            ClayName::Bronze => Clay::Bronze,
-            ClayName::Porcelain => Clay::Porcelain,
-            ClayName::Graphite => Clay::Graphite,
-        },
+        clay: arguments.clay,
         flat: arguments.flat,
         wireframe: arguments.wireframe,
         borders: arguments.borders,
         regions: arguments.shading == arguments::Shading::Regions,
+        outlines: arguments.outlines || arguments.shading == arguments::Shading::Regions,
         grid: arguments.grid,
     }
 }
@@ -115,6 +107,7 @@ fn pictures(arguments: &RenderArguments, watch: &Watch) -> Result<Vec<Vec<u8>>, 
     };
     let colours = drawing::drawn_colours(model, &colours);
     surface.update_regions(&renderer, &colours).map_err(refuse)?;
+    surface.update_lines(&renderer, &shape.outlines).map_err(refuse)?;
     if look.shading == Shading::Material {
         let dress = drawing.wardrobe.decode();
         surface.wear(dress.upload(&renderer).map_err(refuse)?).map_err(refuse)?;
@@ -136,16 +129,14 @@ fn pictures(arguments: &RenderArguments, watch: &Watch) -> Result<Vec<Vec<u8>>, 
     // The rest shape is framed, whatever the edit does, so that before and after compare.
     camera.frame(&model.surface.positions, size_px);
     camera.distance *= ROOM_FOR_THE_EDIT;
-    let mut style = drawing::style(&look);
+    // Marks are as large as on a screen of the usual size, and smaller in a small picture.
+    let pixels_per_point = (height as f32 / 620.0).clamp(0.7, 8.0);
+    let mut style = drawing::style(&look, pixels_per_point);
     if arguments.transparent {
         style.background = Background::Transparent;
     }
     let legend = match &scale {
-        // As large as on a screen of the usual size, and smaller in a small picture.
-        Some((_, scale)) => {
-            let points = (height as f32 / 620.0).clamp(0.7, 8.0);
-            Some(legend::picture(&renderer, scale, points).map_err(refuse)?)
-        }
+        Some((_, scale)) => Some(legend::picture(&renderer, scale, pixels_per_point).map_err(refuse)?),
         None => None,
     };
     let low = match camera.up {
@@ -185,10 +176,11 @@ fn pictures(arguments: &RenderArguments, watch: &Watch) -> Result<Vec<Vec<u8>>, 
 /// How much farther the eye stands than the rest shape alone wants, since the bent one is to be seen whole, too.
 const ROOM_FOR_THE_EDIT: f64 = 1.2;
 
-/// What is drawn, per surface vertex.
+/// What is drawn.
 struct Shape {
     displacements: Arc<Vec<DVec3>>,
     region_colours: Vec<[u8; 4]>,
+    outlines: Vec<SurfaceLine>,
     stiffness: Option<Vec<f64>>,
 }
 
@@ -231,6 +223,7 @@ fn shape(arguments: &RenderArguments, loaded: &Loaded, watch: &Watch) -> Result<
     Ok(Shape {
         displacements,
         region_colours,
+        outlines: drawing::outlines(&editor, &loaded.model),
         stiffness: editor.document().stiffness().map(<[f64]>::to_vec),
     })
 }

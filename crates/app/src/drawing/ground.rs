@@ -10,7 +10,10 @@ const SPACING_PX: f64 = 26.0;
 const REACH_STEPS: f64 = 40.0;
 const REACH_DISTANCES: f64 = 4.0;
 
-const LINES: [u8; 4] = [168, 176, 190, 62];
+/// How much of the lines' alpha is left from below, where they lie before the model.
+const SHARE_FROM_BELOW: f32 = 0.4;
+
+const LINES: [u8; 4] = [168, 176, 190, 48];
 /// Muted x, y and z, in the gizmo's order.
 const AXES: [[u8; 4]; 3] = [[190, 84, 90, 190], [112, 158, 72, 190], [84, 126, 196, 190]];
 
@@ -42,6 +45,12 @@ pub fn ground(camera: &Camera, viewport_px: DVec2, ground: f64, centre: DVec3) -
         direction[axis] = 1.0;
         direction
     };
+    let share = match camera.projection {
+        Projection::Perspective if camera.eye()[up] < ground => SHARE_FROM_BELOW,
+        Projection::Orthographic if camera.forward()[up] > 0.0 => SHARE_FROM_BELOW,
+        Projection::Perspective | Projection::Orthographic => 1.0,
+    };
+    let fainter = |[r, g, b, a]: [u8; 4]| [r, g, b, (f32::from(a) * share) as u8];
     Grid {
         middle: (middle - centre).as_vec3().to_array(),
         along: [along(u), along(v)],
@@ -49,7 +58,7 @@ pub fn ground(camera: &Camera, viewport_px: DVec2, ground: f64, centre: DVec3) -
         reach: span.max(REACH_STEPS * step) as f32,
         fine_share: fine_share as f32,
         axes: [u, v].map(|axis| (-middle[axis] / step) as f32),
-        colour: LINES,
-        axis_colours: [AXES[u], AXES[v]],
+        colour: fainter(LINES),
+        axis_colours: [u, v].map(|axis| fainter(AXES[axis])),
     }
 }

@@ -4,9 +4,11 @@
 //! drawn vertices share a normal. A [`Pose`] is one shape in the renderer's f32, relative to the drawing's centre;
 //! making one is pure computation, so the window does it away from its own thread.
 
+mod drawn_colours;
 mod field;
 mod ground;
 mod normals;
+mod outlines;
 mod pose;
 mod stage;
 mod textures;
@@ -18,8 +20,10 @@ use pliant_io::Appearance;
 use pliant_mesh::{Model, bounding_box};
 use pliant_render::{ColourSpace, MaterialGroup, Partition, RenderError, Renderer, Surface, SurfaceData};
 
+pub use drawn_colours::{drawn_colours, recolour};
 pub use field::{Field, Scale, Tick, colour_at, colours};
 pub use ground::ground;
+pub use outlines::outlines;
 pub use pose::Pose;
 pub use stage::{field, overlays, style, view};
 pub use textures::{Dress, Wardrobe};
@@ -126,20 +130,6 @@ fn twins(model: &Model) -> Vec<u32> {
                 *first
             }
             None => drawn as u32,
-        })
-        .collect()
-}
-
-/// Colours of surface vertices, handed down to the drawn vertices; drawn vertices that belong to no kept triangle get
-/// a transparent one.
-pub fn drawn_colours(model: &Model, surface_colours: &[[u8; 4]]) -> Vec<[u8; 4]> {
-    model
-        .surface_of_drawn
-        .iter()
-        .map(|vertex| {
-            vertex
-                .and_then(|vertex| surface_colours.get(vertex.index()).copied())
-                .unwrap_or_default()
         })
         .collect()
 }

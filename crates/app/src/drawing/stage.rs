@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3};
 use pliant_editor::{Camera, Clay, Look, SceneView, Shading};
-use pliant_render::{Borders, Faces, Matcap, Overlay, OverlayLine, OverlayTriangle, Style, View, Wireframe};
+use pliant_render::{Borders, Faces, Matcap, Outlines, Overlay, OverlayLine, OverlayTriangle, Style, View, Wireframe};
 
 use super::field::Field;
 
@@ -34,8 +34,8 @@ pub fn field(shading: Shading) -> Option<Field> {
     }
 }
 
-/// The renderer's style for how a person wants the surface shown.
-pub fn style(look: &Look) -> Style {
+/// The renderer's style for how a person wants the surface shown, in a picture of so many pixels a point.
+pub fn style(look: &Look, pixels_per_point: f32) -> Style {
     let (shading, region_share) = match look.shading {
         Shading::Clay => (pliant_render::Shading::Clay(matcap(look.clay)), 1.0),
         // The file's colours stay to be seen under the paint.
@@ -56,6 +56,8 @@ pub fn style(look: &Look) -> Style {
         faces: if look.flat { Faces::Flat } else { Faces::Smooth },
         wireframe: if look.wireframe { Wireframe::On } else { Wireframe::Off },
         borders: if look.borders { Borders::On } else { Borders::Off },
+        outlines: if look.outlines { Outlines::On } else { Outlines::Off },
+        pixels_per_point,
         ..Style::default()
     }
 }

@@ -559,11 +559,7 @@ impl Application {
         }
         let shown = self.editor.view();
         if let Some(scale) = self.viewport.scale() {
-            legend::paint(
-                ui.painter(),
-                rect.left_bottom() + vec2(14.0, -14.0 - legend::SIZE.y),
-                scale,
-            );
+            legend::paint(ui.painter(), rect.left_top() + vec2(14.0, 14.0), scale);
         }
         if let Some(readout) = &shown.readout
             && let Some(at_px) = shown.camera.project(readout.at, shown.viewport_px)

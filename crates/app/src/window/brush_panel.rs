@@ -42,59 +42,45 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                 }
                 ui.end_row();
                 ui.label("Measured");
-                ui.horizontal(|ui| {
-                    for (metric, name, hover) in [
-                        (
-                            BrushMetric::Screen,
-                            "as seen",
-                            "What the disc on the screen covers and faces you.",
-                        ),
-                        (
-                            BrushMetric::Surface,
-                            "along surface",
-                            "What is near along the surface: into folds and round edges, seen or not.",
-                        ),
-                        (
-                            BrushMetric::Through,
-                            "through",
-                            "Everything that the disc on the screen covers, however far behind.",
-                        ),
-                    ] {
-                        if ui
-                            .selectable_label(view.brush_metric == metric, name)
-                            .on_hover_text(hover)
-                            .clicked()
-                        {
-                            commands.push(Command::SetBrushMetric(metric));
-                        }
-                    }
-                });
+                const METRICS: [(BrushMetric, &str, &str); 3] = [
+                    (
+                        BrushMetric::Screen,
+                        "as seen",
+                        "What the disc on the screen covers and faces you.",
+                    ),
+                    (
+                        BrushMetric::Surface,
+                        "along surface",
+                        "What is near along the surface: into folds and round edges, seen or not.",
+                    ),
+                    (
+                        BrushMetric::Through,
+                        "through",
+                        "Everything that the disc on the screen covers, however far behind.",
+                    ),
+                ];
+                if let Some(metric) = choice(ui, view.brush_metric, &METRICS) {
+                    commands.push(Command::SetBrushMetric(metric));
+                }
                 ui.end_row();
             }
             StrokeShape::Lasso | StrokeShape::Box => {
                 ui.label("Takes");
-                ui.horizontal(|ui| {
-                    for (depth, name, hover) in [
-                        (
-                            Depth::Visible,
-                            "what is seen",
-                            "Only what faces you and is hidden by nothing.",
-                        ),
-                        (
-                            Depth::Through,
-                            "all through",
-                            "Everything inside, to the back of the model.",
-                        ),
-                    ] {
-                        if ui
-                            .selectable_label(view.depth == depth, name)
-                            .on_hover_text(hover)
-                            .clicked()
-                        {
-                            commands.push(Command::SetDepth(depth));
-                        }
-                    }
-                });
+                const DEPTHS: [(Depth, &str, &str); 2] = [
+                    (
+                        Depth::Visible,
+                        "what is seen",
+                        "Only what faces you and is hidden by nothing.",
+                    ),
+                    (
+                        Depth::Through,
+                        "all through",
+                        "Everything inside, to the back of the model.",
+                    ),
+                ];
+                if let Some(depth) = choice(ui, view.depth, &DEPTHS) {
+                    commands.push(Command::SetDepth(depth));
+                }
                 ui.end_row();
             }
             StrokeShape::Component => {}
@@ -105,27 +91,32 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     }
 }
 
+/// A row of things to choose from, each with its name and what it means; what was clicked.
+fn choice<T: Copy + PartialEq>(ui: &mut egui::Ui, present: T, choices: &[(T, &str, &str)]) -> Option<T> {
+    let row = ui.horizontal(|ui| {
+        let clicked = choices.iter().filter(|(value, name, hover)| {
+            let label = ui.selectable_label(present == *value, *name);
+            label.on_hover_text(*hover).clicked()
+        });
+        clicked.last().map(|(value, ..)| *value)
+    });
+    row.inner
+}
+
 fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressure: Option<f64>, commands: &mut Outbox) {
     let mut changed = *brush;
-    ui.horizontal(|ui| {
-        for (action, name, hover) in [
-            (StiffnessAction::Paint, "Paint", "Takes the surface towards the value."),
-            (StiffnessAction::Smooth, "Smooth", "Evens the stiffness out."),
-            (
-                StiffnessAction::Erase,
-                "Erase",
-                "Takes the surface back to 1. So does painting with Ctrl held.",
-            ),
-        ] {
-            if ui
-                .selectable_label(brush.action == action, name)
-                .on_hover_text(hover)
-                .clicked()
-            {
-                changed.action = action;
-            }
-        }
-    });
+    const ACTIONS: [(StiffnessAction, &str, &str); 3] = [
+        (StiffnessAction::Paint, "Paint", "Takes the surface towards the value."),
+        (StiffnessAction::Smooth, "Smooth", "Evens the stiffness out."),
+        (
+            StiffnessAction::Erase,
+            "Erase",
+            "Takes the surface back to 1. So does painting with Ctrl held.",
+        ),
+    ];
+    if let Some(action) = choice(ui, brush.action, &ACTIONS) {
+        changed.action = action;
+    }
     egui::Grid::new("stiffness")
         .num_columns(2)
         .spacing([8.0, 4.0])

@@ -320,7 +320,9 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     ui.menu_button("Clay", |ui| {
         for (name, clay) in Clay::NAMES {
             let chosen = look.shading == Shading::Clay && look.clay == clay;
-            if ui.selectable_label(chosen, name).clicked() {
+            let (initial, rest) = name.split_at(1);
+            let title = initial.to_uppercase() + rest;
+            if ui.selectable_label(chosen, title).clicked() {
                 commands.push(Command::SetClay(clay));
                 ui.close();
             }
@@ -348,6 +350,7 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     choice(ui, Command::ToggleWireframe, look.wireframe);
     choice(ui, Command::ToggleBorders, look.borders);
     choice(ui, Command::ToggleRegions, look.regions);
+    choice(ui, Command::ToggleOutlines, look.outlines);
     choice(ui, Command::ToggleGrid, look.grid);
     ui.separator();
     let up = view.camera.up;

@@ -72,6 +72,10 @@ struct Shown {
     /// The height of the file's lowest point along each axis, in world units.
     lowest: DVec3,
     colours: Colours,
+    /// One a drawn vertex, where they are regions.
+    drawn_colours: Vec<[u8; 4]>,
+    /// Which of the editor's rims it has.
+    rims: Option<u64>,
     scale: Option<Arc<Scale>>,
     /// How often its materials changed.
     outfits: u64,
@@ -109,6 +113,7 @@ struct DrawnKey {
     shape: usize,
     colours: Colours,
     outfits: u64,
+    rims: u64,
     overlay: u64,
     camera: u64,
     look: Look,
@@ -203,6 +208,8 @@ impl Viewport {
             displacements,
             lowest,
             colours: Colours::None,
+            drawn_colours: Vec::new(),
+            rims: None,
             scale: None,
             outfits: 0,
         });
@@ -282,6 +289,7 @@ impl Viewport {
             Smoothness::Moving | Smoothness::Resting => Samples::Four,
         };
         self.update_regions(editor, &view)?;
+        self.update_rims(editor, &view)?;
         let factor = match smooth {
             Smoothness::Moving => self.coarseness.factor(),
             Smoothness::Resting => 1,
@@ -324,6 +332,7 @@ impl Viewport {
                 .map_or(0, |shown| Arc::as_ptr(&shown.displacements) as usize),
             colours: self.surface.as_ref().map_or(Colours::None, |shown| shown.colours),
             outfits: self.surface.as_ref().map_or(0, |shown| shown.outfits),
+            rims: view.rims_revision,
             overlay: view.overlay_revision,
             camera: view.camera_revision,
             look: view.look,
@@ -346,17 +355,38 @@ impl Viewport {
         if shown.colours == wanted {
             return Ok(());
         }
-        let mut colours = Vec::new();
-        if let Colours::Stiffness(_) = wanted {
-            let scale = Arc::new(Scale::of(Field::Stiffness, model));
-            colours = drawing::colours(Field::Stiffness, &scale, model, &shown.displacements, stiffness);
-            shown.scale = Some(scale);
+        let renderer = self.gpu.read();
+        if let (Colours::Regions(known), Colours::Regions(_)) = (shown.colours, wanted)
+            && let Some(vertices) = editor.recoloured_since(known)
+        {
+            let ranges = drawing::recolour(model, vertices, editor.region_colour(), &mut shown.drawn_colours);
+            let colours = &shown.drawn_colours;
+            shown.surface.update_some_regions(&renderer, colours, &ranges)?;
         } else {
-            editor.region_colours(&mut colours);
+            let mut colours = Vec::new();
+            if let Colours::Stiffness(_) = wanted {
+                let scale = Arc::new(Scale::of(Field::Stiffness, model));
+                colours = drawing::colours(Field::Stiffness, &scale, model, &shown.displacements, stiffness);
+                shown.scale = Some(scale);
+            } else {
+                editor.region_colours(&mut colours);
+            }
+            shown.drawn_colours = drawing::drawn_colours(model, &colours);
+            shown.surface.update_regions(&renderer, &shown.drawn_colours)?;
         }
-        let colours = drawing::drawn_colours(model, &colours);
-        shown.surface.update_regions(&self.gpu.read(), &colours)?;
         shown.colours = wanted;
+        Ok(())
+    }
+
+    fn update_rims(&mut self, editor: &Editor, view: &SceneView<'_>) -> Result<(), RenderError> {
+        let (Some(shown), Some(model)) = (&mut self.surface, view.model) else {
+            return Ok(());
+        };
+        if shown.rims != Some(view.rims_revision) && view.look.outlines {
+            let lines = drawing::outlines(editor, model);
+            shown.surface.update_lines(&self.gpu.read(), &lines)?;
+            shown.rims = Some(view.rims_revision);
+        }
         Ok(())
     }
 
@@ -373,12 +403,13 @@ impl Viewport {
         let eye = drawing::view(view.camera, view.viewport_px, centre);
         // Marks keep their width on the screen when the picture has fewer pixels.
         let drawn_share = f64::from(key.size_px[1]) / view.viewport_px.y.max(1.0);
-        let overlays = drawing::overlays(view, centre, drawn_share as f32);
+        let pixels_per_point = drawn_share as f32;
+        let overlays = drawing::overlays(view, centre, pixels_per_point);
         let surfaces: Vec<&Surface> = self.surface.iter().map(|shown| &shown.surface).collect();
         let ground = self.surface.as_ref().and_then(|shown| shown.ground(view));
         let frame = Frame {
             view: &eye,
-            style: &drawing::style(&key.look),
+            style: &drawing::style(&key.look, pixels_per_point),
             surfaces: &surfaces,
             grid: ground.as_ref(),
             overlays: &overlays,
@@ -399,7 +430,8 @@ impl Viewport {
             return Ok(None);
         };
         let size_px = key.size_px.map(|side| side.max(1) * kind.scale.max(1));
-        let mut style = drawing::style(&view.look);
+        let pixels_per_point = key.pixels_per_point * kind.scale.max(1) as f32;
+        let mut style = drawing::style(&view.look, pixels_per_point);
         let mut ground = shown.ground(&view);
         if kind.ground == Ground::Transparent {
             (style.background, ground) = (Background::Transparent, None);
@@ -413,9 +445,8 @@ impl Viewport {
         };
         let mut image = renderer.draw_to_image(size_px, Samples::Four, &frame)?;
         if let Some(scale) = self.scale() {
-            let points = key.pixels_per_point * kind.scale as f32;
-            let legend = legend::picture(&renderer, scale, points)?;
-            legend::lay_over(&mut image, &legend, (14.0 * points) as u32);
+            let legend = legend::picture(&renderer, scale, pixels_per_point)?;
+            legend::lay_over(&mut image, &legend, (14.0 * pixels_per_point) as u32);
         }
         Ok(Some(image))
     }

@@ -116,7 +116,7 @@ fn vertices_inside(picking: &Picking<'_>, polygon: &[DVec2], depth: Depth) -> Ve
         .map(SurfaceVertex)
         .filter(|&vertex| {
             let position = picking.position(vertex);
-            let Some(px) = picking.camera.project(position, picking.viewport_px) else {
+            let Some(px) = picking.sight.project(position) else {
                 return false;
             };
             // Where the line of sight through the vertex begins: the eye itself, but for an orthographic view.

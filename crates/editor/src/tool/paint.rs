@@ -164,11 +164,11 @@ impl PaintStroke {
             return;
         }
         document.apply_shape();
-        editor.repainted = true;
         let painted = Arc::make_mut(&mut document.paint);
-        for vertex in changed {
+        for vertex in &changed {
             painted[vertex.index()] = self.paint;
         }
+        editor.recolouring.add(&changed);
     }
 }
 

@@ -1,6 +1,8 @@
 //! Verbs for tests that draw: a shared device, simple shapes, views and colours.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
+pub mod golden;
+
 use std::sync::{Mutex, MutexGuard, OnceLock};
 
 use glam::{Mat4, Vec3};

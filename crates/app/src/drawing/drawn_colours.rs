@@ -1,0 +1,57 @@
+//! Colours of surface vertices, handed down to the drawn ones.
+
+use std::ops::Range;
+
+use pliant_mesh::{Model, SurfaceVertex};
+use rayon::prelude::*;
+
+/// Drawn vertices are recoloured and uploaded in blocks of so many.
+const BLOCK: usize = 1024;
+
+/// The colour of each drawn vertex; those that belong to no kept triangle get a transparent one.
+pub fn drawn_colours(model: &Model, surface_colours: &[[u8; 4]]) -> Vec<[u8; 4]> {
+    model
+        .surface_of_drawn
+        .par_iter()
+        .with_min_len(8192)
+        .map(|vertex| {
+            vertex
+                .and_then(|vertex| surface_colours.get(vertex.index()).copied())
+                .unwrap_or_default()
+        })
+        .collect()
+}
+
+/// Gives the drawn vertices behind some surface vertices their new colours, and tells which ranges of `drawn_colours`
+/// (one a drawn vertex) changed.
+pub fn recolour(
+    model: &Model,
+    vertices: &[SurfaceVertex],
+    colour: impl Fn(SurfaceVertex) -> [u8; 4],
+    drawn_colours: &mut [[u8; 4]],
+) -> Vec<Range<usize>> {
+    let mut is_touched = vec![false; drawn_colours.len().div_ceil(BLOCK)];
+    for &vertex in vertices {
+        let colour = colour(vertex);
+        // A drawn vertex belongs to a triangle behind one of the surface's around the vertex.
+        for &face in model.topology.faces(vertex) {
+            let triangle = model.drawn_triangle_of_surface[face as usize];
+            for drawn in model.drawn.triangles[triangle as usize] {
+                let is_behind = model.surface_of_drawn[drawn.index()] == Some(vertex);
+                if let (true, Some(present)) = (is_behind, drawn_colours.get_mut(drawn.index())) {
+                    *present = colour;
+                    is_touched[drawn.index() / BLOCK] = true;
+                }
+            }
+        }
+    }
+    let mut ranges: Vec<Range<usize>> = Vec::new();
+    for block in (0..is_touched.len()).filter(|&block| is_touched[block]) {
+        let range = block * BLOCK..((block + 1) * BLOCK).min(drawn_colours.len());
+        match ranges.last_mut() {
+            Some(last) if last.end == range.start => last.end = range.end,
+            _ => ranges.push(range),
+        }
+    }
+    ranges
+}
