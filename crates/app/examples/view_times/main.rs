@@ -1,16 +1,20 @@
 //! `view_times TRIANGLES [TRIANGLES ..]`: how long the view takes at each size, a JSON object a line: getting ready, a
-//! moved shape, a frame on the processor's side and on the device's, and an answer to the pointer.
+//! moved shape, a frame on the processor's side and on the device's, an answer to the pointer, and a dab of the brush.
 
 #![expect(clippy::print_stdout, reason = "its output is the measurement")]
 
-use std::f64::consts::TAU;
+mod brush;
+mod deform;
+mod ring;
+
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::{DVec2, DVec3};
 use pliant_app::drawing::{self, Drawing};
 use pliant_editor::{Camera, Look, Shading};
 use pliant_io::Appearance;
-use pliant_mesh::{Bvh, Cancel, Drawn, DrawnVertex, Model, Progress, WeldOptions};
+use pliant_mesh::{Bvh, Cancel, Model, Progress, WeldOptions};
 use pliant_render::{Frame, Headless, Samples, Surface, Target};
 
 const SIZE_PX: [u32; 2] = [1280, 800];
@@ -25,11 +29,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
     let model = Model::weld(
-        knobbly_ring(triangles),
+        ring::knobbly_ring(triangles),
         &WeldOptions::default(),
         &Progress::default(),
         &Cancel::default(),
     )?;
+    let model = Arc::new(model);
     let (drawing_ms, drawing) = timed(|| Drawing::new(&model, Appearance::default()));
     let rest = vec![DVec3::ZERO; model.surface.positions.len()];
     let bent: Vec<DVec3> = model
@@ -73,6 +78,25 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
         .collect();
     picks.sort_by(f64::total_cmp);
 
+    println!(
+        "{{\"triangles\": {triangles}, \"ready_ms\": {drawing_ms:.1}, \"upload_ms\": {upload_ms:.1}, \
+         \"pose_ms\": {pose_ms:.1}, \"move_ms\": {move_ms:.2}, \"bvh_ms\": {build_ms:.0}, \"refit_ms\": {refit_ms:.1}, \
+         \"pick_median_ms\": {:.4}, \"pick_worst_ms\": {:.4}, \"gpu_mb\": {:.0}}}",
+        picks[picks.len() / 2],
+        picks[picks.len() - 1],
+        surface.gpu_bytes() as f64 * 1e-6
+    );
+    // A device whose buffers are too small for it deforms on the processor.
+    if let Ok([processor_ms, device_ms]) = deform::frame_ms(&model, &drawing, &mut renderer, &mut surface) {
+        println!(
+            "{{\"triangles\": {triangles}, \"deform_on_processor_ms\": {processor_ms:.1}, \
+             \"deform_on_device_ms\": {device_ms:.1}}}"
+        );
+    }
+    for row in brush::rows(&model, &drawing, &renderer, &mut surface)? {
+        println!("{{\"triangles\": {triangles}, {row}}}");
+    }
+    surface.update_shape(&renderer, &pose.data())?;
     let mut near = camera;
     near.distance *= 0.12;
     near.target += DVec3::X * 0.9;
@@ -122,14 +146,6 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
             );
         }
     }
-    println!(
-        "{{\"triangles\": {triangles}, \"ready_ms\": {drawing_ms:.1}, \"upload_ms\": {upload_ms:.1}, \
-         \"pose_ms\": {pose_ms:.1}, \"move_ms\": {move_ms:.2}, \"bvh_ms\": {build_ms:.0}, \"refit_ms\": {refit_ms:.1}, \
-         \"pick_median_ms\": {:.4}, \"pick_worst_ms\": {:.4}, \"gpu_mb\": {:.0}}}",
-        picks[picks.len() / 2],
-        picks[picks.len() - 1],
-        surface.gpu_bytes() as f64 * 1e-6
-    );
     Ok(())
 }
 
@@ -141,8 +157,9 @@ fn frames(
     look: &Look,
     surface: &Surface,
 ) -> Result<(f64, f64), pliant_render::RenderError> {
-    let style = drawing::style(look);
+    let style = drawing::style(look, 1.0);
     let (mut processor, mut device) = (Vec::new(), Vec::new());
+    let start = Instant::now();
     for number in 0..=FRAMES {
         let frame = Frame {
             view,
@@ -159,35 +176,12 @@ fn frames(
             processor.push(ms);
             device.extend(renderer.device_ms());
         }
-    }
-    Ok((median(processor), median(device)))
-}
-
-/// A ring with knobs, of about so many triangles.
-fn knobbly_ring(triangles: usize) -> Drawn {
-    let across = ((triangles as f64 / 5.0).sqrt() as u32).max(3);
-    let around = (triangles as u32 / (2 * across)).max(3);
-    let mut positions = Vec::new();
-    for i in 0..around {
-        let turn = TAU * f64::from(i) / f64::from(around);
-        let outward = DVec3::new(turn.cos(), turn.sin(), 0.0);
-        for k in 0..across {
-            let lap = TAU * f64::from(k) / f64::from(across);
-            let normal = outward * lap.cos() + DVec3::Z * lap.sin();
-            let knobs =
-                0.03 * (9.0 * turn).sin() * (5.0 * lap).cos() + 0.004 * (70.0 * turn).cos() * (40.0 * lap).cos();
-            positions.push(outward * 0.85 + normal * (0.35 + knobs));
+        // A software device with millions of triangles has been watched long enough by then.
+        if number >= 3 && start.elapsed().as_secs() >= 3 {
+            break;
         }
     }
-    let v = |i: u32, k: u32| DrawnVertex((i % around) * across + k % across);
-    let quads = (0..around).flat_map(|i| (0..across).map(move |k| (i, k)));
-    let triangles = quads.flat_map(|(i, k)| {
-        [
-            [v(i, k), v(i + 1, k), v(i + 1, k + 1)],
-            [v(i, k), v(i + 1, k + 1), v(i, k + 1)],
-        ]
-    });
-    Drawn::once(positions, triangles.collect())
+    Ok((median(processor), median(device)))
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
