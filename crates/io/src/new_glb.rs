@@ -1,9 +1,10 @@
-//! A new glTF from the other kinds: one node, one mesh, a primitive for each material, all over the same vertices.
+//! A new glTF from the other kinds: a node and a mesh for each named part, a primitive for each material in it.
 //!
-//! Vertices keep the order and number of the drawn ones. Where the shape stands so far out that f32 would round it,
+//! A file of one part keeps the order and number of the drawn vertices; of several, each takes the vertices that it
+//! uses, in their order, so that those on a rim between two come twice. Where the shape stands so far out that f32 would round it,
 //! the vertices are taken relative to its centre and the node carries the way there.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use glam::{DVec3, Vec3};
 use pliant_mesh::{DrawnVertex, bounding_box};
@@ -13,7 +14,7 @@ use crate::appearance::{AlphaMode, Material, Wrap};
 use crate::gltf::join_glb;
 use crate::image::mime_type;
 use crate::new_faces::coarse_in_f32;
-use crate::new_mesh::NewMesh;
+use crate::new_mesh::{NewMesh, Parting};
 use crate::save::{OutputFile, Saved};
 use crate::{Format, SaveError};
 
@@ -64,6 +65,9 @@ struct Built {
     warnings: Vec<String>,
 }
 
+/// More parts than this are joined: viewers draw each by itself.
+const MOST_PARTS: usize = 1024;
+
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 const UNSIGNED_BYTE: u32 = 5121;
@@ -87,54 +91,55 @@ fn build(mesh: &NewMesh<'_>, format: Format) -> Result<Built, SaveError> {
         .iter()
         .map(|&position| (position - centre).as_vec3())
         .collect();
-    let by_material = triangles_by_material(mesh, &positions, &mut out.warnings);
-    if by_material.is_empty() {
+    let parts = parts(mesh, &positions, &mut out.warnings);
+    if parts.is_empty() {
         return Err(SaveError::CannotHold {
             what: "a shape without triangles".to_owned(),
             format,
             remedy: "save it as the kind it was".to_owned(),
         });
     }
-    let attributes = attributes(&mut out, mesh, &positions);
+    let normals = unit_normals(mesh);
     let mut looks = Looks::default();
-    let mut primitives = Vec::new();
-    for (material, triangles) in &by_material {
-        let indices = indices(&mut out, triangles, positions.len());
-        let mut primitive = json!({ "attributes": attributes, "indices": indices });
-        if let Some(material) = mesh.appearance.materials.get(*material) {
-            primitive["material"] = looks.material(&mut out, mesh, material).into();
+    let mut number = vec![u32::MAX; positions.len()];
+    let (mut nodes, mut meshes) = (Vec::new(), Vec::new());
+    for (place, part) in parts.iter().enumerate() {
+        let vertices = match parts.len() {
+            1 => (0..positions.len() as u32).collect(),
+            _ => part.vertices(),
+        };
+        for (own, &v) in (0..).zip(&vertices) {
+            number[v as usize] = own;
         }
-        primitives.push(primitive);
-    }
-    let mut names: Vec<&str> = mesh
-        .appearance
-        .groups
-        .iter()
-        .map(|group| group.node_name.as_str())
-        .collect();
-    names.dedup();
-    if names.len() > 1 {
-        out.warnings.push(format!(
-            "{format} output joins the file's groups: save as .obj to keep them."
-        ));
-    }
-    let name = if let [name] = names[..]
-        && !name.is_empty()
-    {
-        name
-    } else {
-        stem(mesh.name)
-    };
-    let mut node = json!({ "name": name, "mesh": 0 });
-    if centre != DVec3::ZERO {
-        node["translation"] = json!(centre.to_array());
+        let attributes = attributes(&mut out, mesh, &positions, &normals, &vertices);
+        let mut primitives = Vec::new();
+        for (material, triangles) in &part.triangles {
+            let corners = triangles.as_flattened().iter().map(|corner| number[corner.index()]);
+            let indices = indices(&mut out, corners, vertices.len());
+            let mut primitive = json!({ "attributes": attributes, "indices": indices });
+            if let Some(known) = mesh.appearance.materials.get(*material) {
+                primitive["material"] = looks.material(&mut out, mesh, *material, known).into();
+            }
+            primitives.push(primitive);
+        }
+        let name = if part.name.is_empty() {
+            stem(mesh.name)
+        } else {
+            part.name
+        };
+        let mut node = json!({ "name": name, "mesh": place });
+        if centre != DVec3::ZERO {
+            node["translation"] = json!(centre.to_array());
+        }
+        nodes.push(node);
+        meshes.push(json!({ "name": name, "primitives": primitives }));
     }
     let mut root = json!({
         "asset": { "version": "2.0", "generator": "Pliant" },
         "scene": 0,
-        "scenes": [{ "nodes": [0] }],
-        "nodes": [node],
-        "meshes": [{ "name": name, "primitives": primitives }],
+        "scenes": [{ "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
+        "nodes": nodes,
+        "meshes": meshes,
         "buffers": [{ "byteLength": out.bin.len() }],
         "bufferViews": out.views,
         "accessors": out.accessors,
@@ -144,29 +149,72 @@ fn build(mesh: &NewMesh<'_>, format: Format) -> Result<Built, SaveError> {
     Ok(out)
 }
 
-/// The triangles of each material, those with a vertex that glTF can't hold left out.
-fn triangles_by_material(
-    mesh: &NewMesh<'_>,
-    positions: &[Vec3],
-    warnings: &mut Vec<String>,
-) -> BTreeMap<usize, Vec<[DrawnVertex; 3]>> {
-    let mut by_material: BTreeMap<usize, Vec<[DrawnVertex; 3]>> = BTreeMap::new();
+/// What becomes a node.
+struct Part<'a> {
+    name: &'a str,
+    /// Its triangles by material.
+    triangles: BTreeMap<usize, Vec<[DrawnVertex; 3]>>,
+}
+
+impl Part<'_> {
+    /// The vertices that it uses, ascending.
+    fn vertices(&self) -> Vec<u32> {
+        let corners = self.triangles.values().flatten().flatten();
+        let mut vertices: Vec<u32> = corners.map(|corner| corner.0).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        vertices
+    }
+}
+
+/// The parts in the order in which the file first names them, triangles with a vertex that glTF can't hold left out.
+fn parts<'a>(mesh: &'a NewMesh<'_>, positions: &[Vec3], warnings: &mut Vec<String>) -> Vec<Part<'a>> {
+    let groups = &mesh.appearance.groups;
+    let mut names: Vec<&str> = Vec::new();
+    let mut place_of: HashMap<&str, usize> = HashMap::new();
+    for group in groups {
+        place_of.entry(&group.node_name).or_insert_with(|| {
+            names.push(&group.node_name);
+            names.len() - 1
+        });
+    }
+    let is_parted = mesh.parting == Parting::ByName && names.len() <= MOST_PARTS;
+    if !is_parted {
+        let lost = (names.len() > 1).then(|| {
+            format!(
+                "The file's {} groups became one mesh: save as .obj to keep them apart.",
+                names.len()
+            )
+        });
+        warnings.extend(lost);
+        names.truncate(usize::from(names.len() == 1));
+    }
+    if names.is_empty() {
+        names.push("");
+    }
+    let mut parts: Vec<Part<'_>> = names
+        .into_iter()
+        .map(|name| Part {
+            name,
+            triangles: BTreeMap::new(),
+        })
+        .collect();
     let mut left_out = 0;
-    let groups = mesh
-        .appearance
-        .groups
-        .iter()
-        .map(|group| (group.material, group.triangles.clone()));
-    let ungrouped = mesh
-        .appearance
-        .groups
+    let grouped = groups.iter().map(|group| {
+        let place = if is_parted {
+            place_of[group.node_name.as_str()]
+        } else {
+            0
+        };
+        (place, group.material, group.triangles.clone())
+    });
+    let ungrouped = groups
         .is_empty()
-        .then_some((usize::MAX, 0..mesh.triangles.len() as u32));
-    for (material, range) in groups.chain(ungrouped) {
-        let triangles = &mesh.triangles[range.start as usize..range.end as usize];
-        for triangle in triangles {
+        .then_some((0, usize::MAX, 0..mesh.triangles.len() as u32));
+    for (place, material, range) in grouped.chain(ungrouped) {
+        for triangle in &mesh.triangles[range.start as usize..range.end as usize] {
             if triangle.iter().all(|corner| positions[corner.index()].is_finite()) {
-                by_material.entry(material).or_default().push(*triangle);
+                parts[place].triangles.entry(material).or_default().push(*triangle);
             } else {
                 left_out += 1;
             }
@@ -177,57 +225,66 @@ fn triangles_by_material(
             "glTF output leaves out {left_out} triangles with a vertex that is not a finite number."
         ));
     }
-    by_material
+    parts.retain(|part| !part.triangles.is_empty());
+    if parts.len() > 1 {
+        let mut is_used = vec![false; positions.len()];
+        let corners = parts
+            .iter()
+            .flat_map(|part| part.triangles.values().flatten().flatten());
+        corners.for_each(|corner| is_used[corner.index()] = true);
+        let unused = is_used.iter().filter(|is_used| !**is_used).count();
+        if unused > 0 {
+            warnings.push(format!(
+                "glTF output leaves out the vertices that no triangle uses ({unused}): save as .obj to keep them."
+            ));
+        }
+    }
+    parts
 }
 
-/// The accessors of the vertices' attributes.
-fn attributes(out: &mut Built, mesh: &NewMesh<'_>, positions: &[Vec3]) -> Value {
+/// The accessors of the attributes of `vertices`.
+fn attributes(out: &mut Built, mesh: &NewMesh<'_>, positions: &[Vec3], normals: &[Vec3], vertices: &[u32]) -> Value {
     let looks = &mesh.appearance;
+    let count = vertices.len();
+    let each = || vertices.iter().map(|&v| v as usize);
     // A vertex that is not finite is used by no triangle; it keeps its number and stands with the first sound one.
-    let stand_in = positions
-        .iter()
-        .copied()
-        .find(|position| position.is_finite())
-        .unwrap_or(Vec3::ZERO);
-    let sound = |&position: &Vec3| if position.is_finite() { position } else { stand_in };
-    let sound: Vec<Vec3> = positions.iter().map(sound).collect();
-    let low = sound.iter().copied().fold(Vec3::INFINITY, Vec3::min);
-    let high = sound.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
+    let stand_in = each().map(|v| positions[v]).find(|position| position.is_finite());
+    let stand_in = stand_in.unwrap_or(Vec3::ZERO);
+    let sound = |v: usize| {
+        if positions[v].is_finite() {
+            positions[v]
+        } else {
+            stand_in
+        }
+    };
+    let low = each().map(sound).fold(Vec3::INFINITY, Vec3::min);
+    let high = each().map(sound).fold(Vec3::NEG_INFINITY, Vec3::max);
+    let floats =
+        |kind: &str, view: usize| json!({ "bufferView": view, "componentType": FLOAT, "count": count, "type": kind });
+    let view = out.view(each().flat_map(|v| sound(v).to_array()), f32::to_le_bytes, ARRAY_BUFFER);
+    let mut position = floats("VEC3", view);
+    position["min"] = json!(low.as_dvec3().to_array());
+    position["max"] = json!(high.as_dvec3().to_array());
+    let position = out.accessor(position);
     let view = out.view(
-        sound.iter().flat_map(|position| position.to_array()),
+        each().flat_map(|v| normals[v].to_array()),
         f32::to_le_bytes,
         ARRAY_BUFFER,
     );
-    let position = out.accessor(json!({
-        "bufferView": view, "componentType": FLOAT, "count": positions.len(), "type": "VEC3",
-        "min": low.as_dvec3().to_array(), "max": high.as_dvec3().to_array(),
-    }));
-    let normals = unit_normals(mesh);
-    let view = out.view(
-        normals.iter().flat_map(|normal| normal.to_array()),
-        f32::to_le_bytes,
-        ARRAY_BUFFER,
-    );
-    let normal = out.accessor(json!({
-        "bufferView": view, "componentType": FLOAT, "count": normals.len(), "type": "VEC3",
-    }));
+    let normal = out.accessor(floats("VEC3", view));
     let mut attributes = json!({ "POSITION": position, "NORMAL": normal });
     if let Some(uvs) = &looks.uvs {
-        let numbers = uvs
-            .iter()
-            .flatten()
-            .map(|&number| if number.is_finite() { number } else { 0.0 });
+        let finite = |number: f32| if number.is_finite() { number } else { 0.0 };
+        let numbers = each().flat_map(|v| uvs[v].map(finite));
         let view = out.view(numbers, f32::to_le_bytes, ARRAY_BUFFER);
-        attributes["TEXCOORD_0"] = out
-            .accessor(json!({ "bufferView": view, "componentType": FLOAT, "count": uvs.len(), "type": "VEC2" }))
-            .into();
+        attributes["TEXCOORD_0"] = out.accessor(floats("VEC2", view)).into();
     }
     if let Some(colours) = &looks.colours {
-        let view = out.view(colours.iter().flatten().copied(), u8::to_le_bytes, ARRAY_BUFFER);
+        let view = out.view(each().flat_map(|v| colours[v]), u8::to_le_bytes, ARRAY_BUFFER);
         attributes["COLOR_0"] = out
             .accessor(json!({
                 "bufferView": view, "componentType": UNSIGNED_BYTE, "normalized": true,
-                "count": colours.len(), "type": "VEC4",
+                "count": count, "type": "VEC4",
             }))
             .into();
     }
@@ -259,9 +316,9 @@ fn unit_normals(mesh: &NewMesh<'_>) -> Vec<Vec3> {
     (0..mesh.positions.len()).map(normal).collect()
 }
 
-/// The accessor of a primitive's triangles.
-fn indices(out: &mut Built, triangles: &[[DrawnVertex; 3]], vertex_count: usize) -> usize {
-    let corners = triangles.as_flattened().iter().map(|corner| corner.0);
+/// The accessor of the corners of a primitive's triangles.
+fn indices(out: &mut Built, corners: impl ExactSizeIterator<Item = u32>, vertex_count: usize) -> usize {
+    let count = corners.len();
     // The largest number of each type is kept for restarting strips.
     let is_short = vertex_count <= usize::from(u16::MAX);
     let view = if is_short {
@@ -275,7 +332,7 @@ fn indices(out: &mut Built, triangles: &[[DrawnVertex; 3]], vertex_count: usize)
     };
     let kind = if is_short { UNSIGNED_SHORT } else { UNSIGNED_INT };
     out.accessor(json!({
-        "bufferView": view, "componentType": kind, "count": triangles.len() * 3, "type": "SCALAR",
+        "bufferView": view, "componentType": kind, "count": count, "type": "SCALAR",
     }))
 }
 
@@ -313,6 +370,8 @@ impl Built {
 #[derive(Default)]
 struct Looks {
     materials: Vec<Value>,
+    /// The written material of each of the appearance's.
+    material_of: BTreeMap<usize, usize>,
     textures: Vec<Value>,
     samplers: Vec<Value>,
     images: Vec<Value>,
@@ -321,7 +380,10 @@ struct Looks {
 }
 
 impl Looks {
-    fn material(&mut self, out: &mut Built, mesh: &NewMesh<'_>, material: &Material) -> usize {
+    fn material(&mut self, out: &mut Built, mesh: &NewMesh<'_>, number: usize, material: &Material) -> usize {
+        if let Some(&known) = self.material_of.get(&number) {
+            return known;
+        }
         let unit = |number: f32| {
             f64::from(if number.is_finite() {
                 number.clamp(0.0, 1.0)
@@ -355,6 +417,7 @@ impl Looks {
             }
         }
         self.materials.push(value);
+        self.material_of.insert(number, self.materials.len() - 1);
         self.materials.len() - 1
     }
 

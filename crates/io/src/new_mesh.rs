@@ -25,8 +25,19 @@ pub(crate) struct NewMesh<'a> {
     pub file_vertex: &'a [FileVertex],
     /// How many vertices the file that was read has.
     pub file_vertex_count: usize,
+    /// Whether named parts stay apart, in kinds that need vertices of their own for that.
+    pub parting: Parting,
     /// Looks, with the normals already carried along with the deformation.
     pub appearance: Appearance,
+}
+
+/// What becomes of named parts in a kind of file in which parts do not share vertices.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Parting {
+    /// Each name is a part of its own.
+    ByName,
+    /// All become one, so that vertices keep their order and number.
+    Joined,
 }
 
 /// Faces as the file has them, triangles among them: a face with n corners is n − 2 of the drawn triangles, in order.
@@ -53,7 +64,13 @@ impl Polygons {
 
 impl<'a> NewMesh<'a> {
     /// The moved shape with `appearance`, whose normals are carried along here.
-    pub fn of(moved: &Moved<'a>, mut appearance: Appearance, name: &'a str, polygons: Option<Polygons>) -> Self {
+    pub fn of(
+        moved: &Moved<'a>,
+        mut appearance: Appearance,
+        name: &'a str,
+        polygons: Option<Polygons>,
+        parting: Parting,
+    ) -> Self {
         if let Some(normals) = appearance.normals.as_mut()
             && !moved.is_nothing()
         {
@@ -74,6 +91,7 @@ impl<'a> NewMesh<'a> {
             polygons,
             file_vertex: &moved.drawn.file_vertex,
             file_vertex_count: moved.drawn.file_vertex_count,
+            parting,
             appearance,
         }
     }

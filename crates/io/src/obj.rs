@@ -31,7 +31,7 @@ pub(crate) use write::write_new;
 /// An OBJ file as stored.
 #[derive(Debug)]
 pub(crate) struct Stored {
-    bytes: Arc<[u8]>,
+    bytes: Arc<Vec<u8>>,
     /// Without its positions, corners and faces, which the drawn set and `polygons` replace.
     statements: Statements,
     /// The `vt` of each drawn vertex; empty where none has one.

@@ -24,7 +24,7 @@ pub(crate) use write::write_new;
 /// An OFF file as stored.
 #[derive(Debug)]
 pub(crate) struct Stored {
-    bytes: Arc<[u8]>,
+    bytes: Arc<Vec<u8>>,
     /// Without its positions and faces, which the drawn set and `polygons` replace.
     records: Records,
     /// The faces, where one has more than three corners.

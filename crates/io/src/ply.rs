@@ -29,7 +29,7 @@ pub(crate) use write::write_new;
 /// A PLY file as stored.
 #[derive(Debug)]
 pub(crate) struct Stored {
-    bytes: Arc<[u8]>,
+    bytes: Arc<Vec<u8>>,
     header: Header,
     vertex_element: Option<usize>,
     columns: Columns,

@@ -14,7 +14,7 @@ use serde::Serialize;
 use crate::difference::{self, Difference};
 use crate::moved::{Moved, bit_equal};
 use crate::new_faces::{lost, lost_where};
-use crate::new_mesh::{NewMesh, Polygons};
+use crate::new_mesh::{NewMesh, Parting, Polygons};
 use crate::save::{MorphTarget, OutputFile, Placement, Save, Saved};
 use crate::{Appearance, Format, ReadError, SaveError, gltf, new_glb, obj, off, ply, stl};
 
@@ -52,7 +52,7 @@ pub struct Summary {
 #[derive(Debug)]
 pub struct Scene {
     format: Format,
-    bytes: Arc<[u8]>,
+    bytes: Arc<Vec<u8>>,
     stored: Stored,
 }
 
@@ -68,7 +68,7 @@ enum Stored {
 /// What a format's reader gets.
 pub(crate) struct Source<'a> {
     /// The file. A reader may keep a clone and point into it.
-    pub bytes: &'a Arc<[u8]>,
+    pub bytes: &'a Arc<Vec<u8>>,
     /// The file's name, for messages.
     pub name: &'a str,
     /// Its neighbours.
@@ -98,7 +98,7 @@ pub fn read(
     cancel: &Cancel,
 ) -> Result<Opened, ReadError> {
     cancel.check()?;
-    let bytes: Arc<[u8]> = bytes.into();
+    let bytes = Arc::new(bytes);
     let source = Source {
         bytes: &bytes,
         name,
@@ -185,6 +185,10 @@ impl Scene {
 
     /// The file as `save` asks for it. Nothing moved and the same kind: the very bytes that were read.
     pub fn save(&self, save: &Save<'_>) -> Result<Saved, SaveError> {
+        self.save_parted(save, Parting::ByName)
+    }
+
+    fn save_parted(&self, save: &Save<'_>, parting: Parting) -> Result<Saved, SaveError> {
         let moved = Moved::of(save.drawn, save.positions)?;
         let own = |(bytes, warnings)| Saved {
             files: vec![OutputFile {
@@ -209,7 +213,7 @@ impl Scene {
             (Stored::Stl(stored), Format::Stl) => stored.write(&moved).map(own),
             (Stored::Off(stored), Format::Off) => stored.write(&moved).map(own),
             (_, format) => {
-                let mesh = NewMesh::of(&moved, self.appearance(), save.name, self.polygons());
+                let mesh = NewMesh::of(&moved, self.appearance(), save.name, self.polygons(), parting);
                 let mut saved = match format {
                     Format::Glb => new_glb::write_new(&mesh),
                     Format::Gltf => new_glb::write_new_gltf(&mesh),
@@ -238,10 +242,12 @@ impl Scene {
         if let Stored::Gltf(stored) = &self.stored {
             return stored.save_as_morph(save, &moved, target);
         }
-        let rest = self.save(&Save {
+        // Joined, the written vertices are the drawn ones.
+        let at_rest = Save {
             positions: &save.drawn.positions,
             ..*save
-        })?;
+        };
+        let rest = self.save_parted(&at_rest, Parting::Joined)?;
         let fault = |what: String| SaveError::CannotHold {
             what,
             format: save.format,

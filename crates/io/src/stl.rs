@@ -22,7 +22,7 @@ pub(crate) use write::write_new;
 /// An STL file as stored.
 #[derive(Debug)]
 pub(crate) struct Stored {
-    bytes: Arc<[u8]>,
+    bytes: Arc<Vec<u8>>,
     layout: Layout,
     facet_count: usize,
     notes: Vec<String>,

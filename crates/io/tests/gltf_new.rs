@@ -116,3 +116,36 @@ fn a_cloud_of_points_is_refused_in_words() {
     let refused = try_save(&opened, &opened.drawn.positions, "out.glb", Placement::SameFolder);
     assert!(matches!(refused, Err(SaveError::CannotHold { .. })), "{refused:?}");
 }
+
+#[test]
+fn named_parts_become_nodes_that_keep_their_names_and_triangles() {
+    let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nv 9 9 9\ng left\nf 1 2 3 4\n\
+               g right\nf 2 5 6 3\ng left\nf 1 3 6\n";
+    let opened = try_open(obj.as_bytes(), Format::Obj, &Folder::default()).unwrap();
+    let positions = moved(&opened, |_| true, bent);
+    let saved = save(&opened, &positions, "out.glb");
+    let again = open(&saved.files[0].bytes);
+    let triangles_of = |opened: &Opened, positions: &[DVec3], name: &str| -> Vec<[DVec3; 3]> {
+        let looks = opened.scene.appearance();
+        let groups = looks.groups.iter().filter(|group| group.node_name == name);
+        groups
+            .flat_map(|group| group.triangles.clone())
+            .map(|t| opened.drawn.triangles[t as usize].map(|v| positions[v.index()]))
+            .collect()
+    };
+    for (name, count) in [("left", 3), ("right", 2)] {
+        let before = triangles_of(&opened, &positions, name);
+        let after = triangles_of(&again, &again.drawn.positions, name);
+        assert_eq!((before.len(), after.len()), (count, count), "{name}");
+        assert_near(after.as_flattened(), before.as_flattened(), 4.0);
+    }
+    assert_eq!(again.scene.summary().nodes, 2);
+    // Two vertices stand on the rim between the parts, and one is used by none.
+    assert_eq!(again.drawn.positions.len(), 9);
+    assert!(
+        saved
+            .warnings
+            .iter()
+            .any(|warning| warning.contains("no triangle uses (1)"))
+    );
+}

@@ -23,7 +23,7 @@ use crate::scene::Source;
 #[derive(Debug)]
 pub(super) struct Document {
     /// The whole file.
-    pub file: Arc<[u8]>,
+    pub file: Arc<Vec<u8>>,
     /// Where a GLB's parts stand in it; `None` for a `.gltf`.
     pub container: Option<Container>,
     /// A byte-order mark in front of a `.gltf`'s text.
