@@ -127,8 +127,8 @@ fn turning(mean: DMat3) -> Option<DMat3> {
     (mean.is_finite() && off > UNTURNED).then_some(mean)
 }
 
-/// Numbers the groups of moved twins. Sorting by a hash instead of filling a table keeps it parallel, and the result
-/// does not depend on the hash beyond the groups' numbers.
+/// Numbers the groups of moved twins by their first vertex, so that neighbours' sums stand near each other: numbered as
+/// the hashes fall, every sum would miss the cache. Sorting by a hash instead of filling a table keeps it parallel.
 fn group(drawn: &Drawn, positions: &[DVec3], normals: &[DVec3]) -> (Vec<u32>, usize) {
     // Adding zero makes 0 of -0, which exporters mix across a seam.
     let bits = |x: f64| (x + 0.0).to_bits();
@@ -143,23 +143,27 @@ fn group(drawn: &Drawn, positions: &[DVec3], normals: &[DVec3]) -> (Vec<u32>, us
         .map(|v| (hash(key(v)), v as u32))
         .collect();
     moved.par_sort_unstable();
+    // First the lowest twin of each, which is itself where it has none.
     let mut group_of = vec![NO_GROUP; positions.len()];
-    let mut group_count = 0;
     for run in moved.chunk_by(|a, b| a.0 == b.0) {
         for (k, &(_, v)) in run.iter().enumerate() {
             let twin = run[..k]
                 .iter()
                 .find(|&&(_, other)| key(other as usize) == key(v as usize));
-            group_of[v as usize] = match twin {
-                Some(&(_, other)) => group_of[other as usize],
-                None => {
-                    group_count += 1;
-                    group_count as u32 - 1
-                }
-            };
+            group_of[v as usize] = twin.map_or(v, |&(_, other)| group_of[other as usize]);
         }
     }
-    (group_of, group_count)
+    // A twin is never above, so its number is known already.
+    let mut group_count = 0;
+    for v in 0..group_of.len() {
+        if group_of[v] == v as u32 {
+            group_of[v] = group_count;
+            group_count += 1;
+        } else if group_of[v] != NO_GROUP {
+            group_of[v] = group_of[group_of[v] as usize];
+        }
+    }
+    (group_of, group_count as usize)
 }
 
 /// A multiplicative hash of the key's words.

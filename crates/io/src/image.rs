@@ -23,8 +23,9 @@ pub(crate) const LONGEST_SIDE_PX: u32 = 16_384;
 /// Decodes a PNG, JPEG, WebP or KTX2 (with Basis Universal in it), told by its first bytes. Images beyond 16384 pixels
 /// a side are refused.
 pub fn decode_image(encoded: &[u8]) -> Result<Rgba8, ImageError> {
+    // A decoder may end its sentence with a line's end.
     let failed = |error: &dyn std::fmt::Display| ImageError {
-        reason: error.to_string(),
+        reason: error.to_string().split_whitespace().collect::<Vec<_>>().join(" "),
     };
     if mime_type(encoded) == Some("image/ktx2") {
         return crate::ktx2::decode(encoded);

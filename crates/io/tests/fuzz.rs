@@ -14,8 +14,8 @@ fn every_sound_file_is_read_and_no_broken_one_panics() {
     let sound = corpus(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus"));
     assert!(sound.len() >= 12);
     let mut chance = Chance(1);
-    let beside = Beside(vec![7; 600]);
     for file in &sound {
+        let beside = Beside(vec![7; 600]);
         let outcome = exercise(&file.bytes, file.kind, Format::Glb, &beside, || {});
         assert_eq!(outcome, Outcome::Read, "{}", file.name);
     }
@@ -25,6 +25,7 @@ fn every_sound_file_is_read_and_no_broken_one_panics() {
         let file = chance.of(&sound);
         let bytes = broken(file, &sound, &mut chance);
         let other = *chance.of(&Format::ALL);
+        let beside = Beside::of(&sound, &mut chance);
         read += usize::from(exercise(&bytes, file.kind, other, &beside, || {}) == Outcome::Read);
     }
     assert!(

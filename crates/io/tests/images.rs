@@ -47,6 +47,30 @@ fn every_kind_gives_its_pixels() {
 }
 
 #[test]
+fn whatever_length_a_ktx2_tells_of_its_keys_it_is_read_and_no_further() {
+    let sound = include_bytes!("corpus/ramp-uastc.ktx2");
+    let pixels = decode_image(sound).unwrap().pixels;
+    for length in 0..60_u32 {
+        let mut file = sound.to_vec();
+        file[60..64].copy_from_slice(&length.to_le_bytes());
+        assert!(decode_image(&file).unwrap().pixels == pixels, "{length}");
+    }
+}
+
+#[test]
+fn jpeg_gives_nearly_its_pixels() {
+    let picture = image::RgbImage::from_fn(16, 16, |x, y| image::Rgb([40 + 4 * x as u8, 200 - 4 * y as u8, 90]));
+    let mut out = Cursor::new(Vec::new());
+    picture.write_to(&mut out, ImageFormat::Jpeg).unwrap();
+    let decoded = decode_image(&out.into_inner()).unwrap();
+    assert_eq!((decoded.width, decoded.height), (16, 16));
+    for (found, wanted) in decoded.pixels.chunks_exact(4).zip(picture.pixels()) {
+        let off = (0..3).map(|k| found[k].abs_diff(wanted.0[k])).max().unwrap();
+        assert!(off <= 24 && found[3] == 255, "{found:?} for {wanted:?}");
+    }
+}
+
+#[test]
 fn broken_images_are_refused_in_a_sentence_and_never_panic() {
     let mut random = 1_u64;
     let mut next = move |below: usize| {

@@ -256,3 +256,15 @@ fn a_new_file_holds_colours_and_polygons_and_as_many_digits_as_the_place_needs()
     let saved = save_as(&opened, &far, Format::Ply);
     assert_eq!(open(&saved.files[0].bytes, Format::Ply).drawn.positions, far);
 }
+
+#[test]
+fn any_number_of_records_that_take_no_bytes_is_passed_over() {
+    for name in ["face", "tristrips", "vertex", "other"] {
+        let file = format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+             element {name} 18446744073709551615\nelement face 1\nproperty list uchar int vertex_index\nend_header\n\
+             0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+        );
+        assert_eq!(open(file.as_bytes(), Format::Ply).drawn.triangles.len(), 1, "{name}");
+    }
+}

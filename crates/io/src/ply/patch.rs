@@ -65,22 +65,17 @@ impl Edits {
         let mut edits = Vec::new();
         for (vertex, new) in moved.of_file().iter().enumerate() {
             let Some(new) = new else { continue };
-            let mut numbers = new
-                .to_array()
-                .map(Some)
-                .into_iter()
-                .chain([None; 3])
-                .collect::<Vec<_>>();
+            let mut numbers = [None; 6];
+            numbers[..3].copy_from_slice(&new.to_array().map(Some));
             for (axis, number) in numbers[..3].iter().enumerate() {
                 check(element, stored.columns[axis], vertex, *number)?;
             }
             if let Some(frames) = &frames {
                 let normal = frames.carry_normal(DrawnVertex(vertex as u32), rest[vertex]);
                 if normal != rest[vertex] && normal.is_finite() {
-                    numbers.splice(3.., normal.to_array().map(Some));
+                    numbers[3..].copy_from_slice(&normal.to_array().map(Some));
                 }
             }
-            let numbers = std::array::from_fn(|slot| numbers[slot]);
             edits.push(Edit { vertex, numbers });
         }
         Ok(Self(edits))

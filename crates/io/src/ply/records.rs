@@ -93,6 +93,8 @@ pub(super) fn read(source: &Source<'_>, header: &Header) -> Result<Records, Read
                 records.vertex_element = Some(index);
                 read_vertices(source, header, element, &mut walk, &mut records)?;
             }
+            // Such records take no bytes, so nothing bounds their count.
+            _ if element.properties.is_empty() => {}
             "face" => read_faces(source, element, &mut walk, &mut records)?,
             "tristrips" => read_strips(source, element, &mut walk, &mut records)?,
             _ => pass_over(source, header, element, &mut walk)?,
@@ -186,9 +188,6 @@ fn read_all(
 }
 
 fn pass_over(source: &Source<'_>, header: &Header, element: &Element, walk: &mut Walk<'_>) -> Result<(), ReadError> {
-    if element.properties.is_empty() {
-        return Ok(());
-    }
     match element.stride() {
         Some(stride) if header.encoding != Encoding::Ascii => {
             walk.skip(stride.saturating_mul(element.count as usize));
@@ -227,6 +226,12 @@ fn read_vertices(
         Kind::Scalar(scalar) => scalar.integer_range().map_or(1.0, |[_, most]| most.recip()),
         Kind::List { .. } => 1.0,
     });
+    // The count was held against the bytes that are left.
+    let count = element.count as usize;
+    records.positions.reserve_exact(count);
+    records.normals.reserve_exact(if has_normals { count } else { 0 });
+    records.colours.reserve_exact(if has_colours { count } else { 0 });
+    records.uvs.reserve_exact(if has_uvs { count } else { 0 });
     let mut take = |values: &[f64; COLUMN_NAMES.len()]| {
         records.positions.push(DVec3::new(values[0], values[1], values[2]));
         if has_normals {
@@ -323,6 +328,11 @@ fn read_faces(
 ) -> Result<(), ReadError> {
     let list = corner_list(element);
     let mut strange = None;
+    // Most faces are triangles; the count was held against the bytes that are left.
+    records.face_ends.reserve_exact(element.count as usize);
+    records
+        .corners
+        .reserve_exact((3 * element.count).min(walk.left()) as usize);
     read_all(source, element, walk, |walk| {
         let first = records.corners.len();
         let corners = &mut records.corners;

@@ -56,7 +56,7 @@ pub fn corpus(folder: &Path) -> Vec<Sound> {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         let kind = match Format::of_name(&name) {
             Ok(format) => Kind::Mesh(Format::ALL.iter().position(|other| *other == format).unwrap()),
-            Err(_) if [".png", ".webp", ".ktx2"].iter().any(|end| name.ends_with(end)) => Kind::Image,
+            Err(_) if [".png", ".jpg", ".webp", ".ktx2"].iter().any(|end| name.ends_with(end)) => Kind::Image,
             Err(_) => continue,
         };
         let bytes = std::fs::read(&path).unwrap();
@@ -65,8 +65,26 @@ pub fn corpus(folder: &Path) -> Vec<Sound> {
     files.into_values().collect()
 }
 
-/// Neighbours in memory, which may be broken, too.
+/// A file's neighbours, in memory: whichever is asked for, it has these bytes.
 pub struct Beside(pub Vec<u8>);
+
+const LIBRARY: &str = "# looks\nnewmtl red\nKd 0.5 0.25 1e-1\nd 0.75\nTr 0.25\nmap_Kd -s 2 2 1 -o 0.5 0 0 -clamp on skin.png\n\
+newmtl b\nPr 0.5\nPm 1\nNs 96.0\nillum 2\nmap_Kd -bm 1.0 art\\\\my skin.png\n";
+
+impl Beside {
+    /// Neighbours of a run: a library of materials, broken, or a buffer without sense.
+    pub fn of(sound: &[Sound], chance: &mut Chance) -> Self {
+        if chance.below(2) == 0 {
+            return Self(vec![7; 600]);
+        }
+        let library = Sound {
+            name: "library.mtl".to_owned(),
+            kind: Kind::Image,
+            bytes: LIBRARY.into(),
+        };
+        Self(broken(&library, sound, chance))
+    }
+}
 
 impl Resolver for Beside {
     fn read(&self, uri: &str) -> Result<Vec<u8>, String> {
