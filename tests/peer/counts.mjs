@@ -20,11 +20,46 @@ const THREE = await load('build/three.module.js');
 const { GLTFLoader } = await load('examples/jsm/loaders/GLTFLoader.js');
 const { MeshoptDecoder } = await load('examples/jsm/libs/meshopt_decoder.module.js');
 
+// Draco as three.js' own decoder reads it, without the browser's workers that its loader stands on.
+const dracoFolder = resolve(root, 'examples/jsm/libs/draco/gltf');
+const dracoText = readFileSync(resolve(dracoFolder, 'draco_decoder.js'), 'utf8');
+const script = new Function('require', '__filename', '__dirname', `${dracoText}; return DracoDecoderModule;`);
+const draco = await script(require, resolve(dracoFolder, 'draco_decoder.js'), dracoFolder)();
+const dracoLoader = {
+    preload() {},
+    decodeDracoFile(data, done, ids) {
+        const bytes = new Int8Array(data);
+        const decoder = new draco.Decoder();
+        const mesh = new draco.Mesh();
+        const status = decoder.DecodeArrayToMesh(bytes, bytes.length, mesh);
+        if (!status.ok()) {
+            throw new Error(status.error_msg());
+        }
+        const geometry = new THREE.BufferGeometry();
+        for (const [name, id] of Object.entries(ids)) {
+            const attribute = decoder.GetAttributeByUniqueId(mesh, id);
+            const numbers = new draco.DracoFloat32Array();
+            decoder.GetAttributeFloatForAllPoints(mesh, attribute, numbers);
+            const array = Float32Array.from({ length: numbers.size() }, (_, k) => numbers.GetValue(k));
+            geometry.setAttribute(name, new THREE.BufferAttribute(array, attribute.num_components()));
+        }
+        const corners = new draco.DracoInt32Array();
+        const index = [];
+        for (let face = 0; face < mesh.num_faces(); face += 1) {
+            decoder.GetFaceFromMesh(mesh, face, corners);
+            index.push(corners.GetValue(0), corners.GetValue(1), corners.GetValue(2));
+        }
+        geometry.setIndex(index);
+        done(geometry);
+    },
+};
+
 async function counts(path) {
     const folder = dirname(resolve(path));
     const manager = new THREE.LoadingManager();
     const loader = new GLTFLoader(manager);
     loader.setMeshoptDecoder(MeshoptDecoder);
+    loader.setDRACOLoader(dracoLoader);
     // No pictures: a texture of nothing stands for each.
     loader.register((parser) => {
         parser.loadTextureImage = async () => new THREE.Texture();

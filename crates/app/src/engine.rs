@@ -12,7 +12,7 @@ use std::time::Instant;
 use glam::DVec3;
 use pliant_deform::{Bound, Method, Ordering, Problem, SolveError};
 use pliant_editor::{Beginning, Setup};
-use pliant_io::{Format, MorphTarget, OutputFile, Save, Saved, Scene};
+use pliant_io::{Format, MorphTarget, Opened, OutputFile, Save, Saved, Scene};
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 
 use crate::AppError;
@@ -36,12 +36,21 @@ pub struct Loaded {
 /// # Errors
 /// A file that can't be read; [`AppError::Interrupted`] soon after `cancel` is raised.
 pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
+    let opened = open(path, watch)?;
+    welded(opened, path, weld, watch)
+}
+
+/// Reads a file without welding it.
+///
+/// # Errors
+/// As [`load`].
+pub fn open(path: &Path, watch: &Watch) -> Result<Opened, AppError> {
     if is_project(path) {
         return Err(AppError::ProjectAsFile(path.to_owned()));
     }
     Format::of_name(&path.to_string_lossy())?;
     watch.begin("reading");
-    load_bytes(files::read(path)?, path, weld, watch)
+    open_bytes(files::read(path)?, path, watch)
 }
 
 /// Reads and welds a file's bytes; `path` is where its neighbours stand and what it is called.
@@ -49,11 +58,19 @@ pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, Ap
 /// # Errors
 /// As [`load`].
 pub fn load_bytes(bytes: Vec<u8>, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
+    let opened = open_bytes(bytes, path, watch)?;
+    welded(opened, path, weld, watch)
+}
+
+fn open_bytes(bytes: Vec<u8>, path: &Path, watch: &Watch) -> Result<Opened, AppError> {
     let name = path.to_string_lossy();
     let format = Format::of_name(&name)?;
     let progress = watch.begin("reading");
     let opened = pliant_io::read(bytes, format, &name, &Neighbours::of(path), &progress, &watch.cancel);
-    let opened = opened.map_err(AppError::Read)?;
+    opened.map_err(AppError::Read)
+}
+
+fn welded(opened: Opened, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
     let progress = watch.begin("welding");
     let model = Model::weld(opened.drawn, weld, &progress, &watch.cancel).map_err(|_| AppError::Interrupted)?;
     Ok(Loaded {

@@ -3,7 +3,8 @@
 //! medians of several rounds. `cargo xtask bench files` makes a table of them.
 //!
 //! Saving is what it takes to make the bytes of the file as its own kind with every vertex moved; writing them to disk
-//! is the disk's.
+//! is the disk's. Memory is told in multiples of the file, which is in it: the most that was held while the file was
+//! read, while it was looked at (`pliant info`) and while it was opened to be edited, and what is held once it is open.
 
 #![allow(
     clippy::print_stdout,
@@ -11,12 +12,20 @@
     reason = "an example speaks, and fails loudly"
 )]
 
+mod counting;
+
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 use std::time::Instant;
+
+use counting::{Counting, HELD, PEAK};
 
 use glam::DVec3;
 use pliant_io::{Format, Opened, Placement, Resolver, Save, read};
-use pliant_mesh::{Cancel, Progress};
+use pliant_mesh::{Cancel, Model, Progress, Survey, WeldOptions};
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
 
 /// Bench files have no neighbours.
 struct Alone;
@@ -91,14 +100,49 @@ fn measure(path: &Path) {
         std::hint::black_box(opened.scene.save(&save).expect("a file that can be saved"));
         start.elapsed().as_secs_f64()
     });
-    let megabytes = std::fs::metadata(path).map_or(0.0, |metadata| metadata.len() as f64 / 1e6);
+    drop((opened, positions));
+    let size = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
+    let read_again = || open(std::fs::read(path).expect("a file that can be read"), format, &name);
+    let welding = WeldOptions::default();
+    let (triangles, read_peak, _) = memory(|| {
+        let opened = read_again();
+        (opened.drawn.triangles.len(), opened)
+    });
+    let (look_s, look_peak, _) = memory(|| {
+        let opened = read_again();
+        let start = Instant::now();
+        let survey = Survey::of(opened.drawn, &welding, &Progress::new(), &Cancel::new());
+        (start.elapsed().as_secs_f64(), (opened.scene, survey))
+    });
+    let (weld_s, edit_peak, edit_held) = memory(|| {
+        let opened = read_again();
+        let start = Instant::now();
+        let model = Model::weld(opened.drawn, &welding, &Progress::new(), &Cancel::new());
+        (start.elapsed().as_secs_f64(), (opened.scene, model))
+    });
+    let (megabytes, of_file) = (size as f64 / 1e6, |bytes: usize| bytes as f64 / size as f64);
     println!(
-        "{{\"file\":\"{name}\",\"megabytes\":{megabytes:.1},\"triangles\":{},\"plain_mb_s\":{:.0},\"load_mb_s\":{:.0},\"save_mb_s\":{:.0}}}",
-        opened.drawn.triangles.len(),
+        "{{\"file\":\"{name}\",\"megabytes\":{megabytes:.1},\"triangles\":{triangles},\"plain_mb_s\":{:.0},\"load_mb_s\":{:.0},\"save_mb_s\":{:.0},\"survey_ms\":{:.0},\"weld_ms\":{:.0},\"read_peak\":{:.2},\"survey_peak\":{:.2},\"open_peak\":{:.2},\"open_held\":{:.2}}}",
         megabytes / plain_s,
         megabytes / read_s,
         megabytes / save_s,
+        look_s * 1e3,
+        weld_s * 1e3,
+        of_file(read_peak),
+        of_file(look_peak),
+        of_file(edit_peak),
+        of_file(edit_held),
     );
+}
+
+/// What `work` gives first, the most bytes that it held at once, and what its second result holds at the end.
+fn memory<T, Kept>(work: impl FnOnce() -> (T, Kept)) -> (T, usize, usize) {
+    let before = HELD.load(Ordering::Relaxed);
+    PEAK.store(before, Ordering::Relaxed);
+    let (told, kept) = work();
+    let (peak, held) = (PEAK.load(Ordering::Relaxed), HELD.load(Ordering::Relaxed));
+    drop(kept);
+    (told, peak.saturating_sub(before), held.saturating_sub(before))
 }
 
 fn open(bytes: Vec<u8>, format: Format, name: &str) -> Opened {

@@ -10,7 +10,8 @@ use gltf_maker::{
 };
 use meshoptimizer_rs::Workspace;
 use meshoptimizer_rs::codec::{
-    IndexEncoding, VertexEncoding, encode_filter_oct, encode_index_buffer, encode_vertex_buffer,
+    ExpMode, IndexEncoding, VertexEncoding, encode_filter_color, encode_filter_exp, encode_filter_oct,
+    encode_filter_quat, encode_index_buffer, encode_index_sequence, encode_vertex_buffer,
 };
 use pliant_io::{Format, Placement};
 use serde_json::{Value, json};
@@ -163,32 +164,111 @@ fn meshopt_is_packed_and_unpacked_with_its_placeholder() {
     }
 }
 
+/// Lets `accessor` read a compressed view, which stands in for a buffer without bytes.
+fn compress(maker: &mut Maker, accessor: usize, packed: &[u8], layout: (usize, usize), mode: &str, filter: &str) {
+    let (count, stride) = layout;
+    let view = maker.view(packed);
+    let place = maker.root["bufferViews"][view]["byteOffset"].clone();
+    maker.root["bufferViews"][view] = json!({
+        "buffer": 1, "byteOffset": 0, "byteLength": stride * count,
+        "extensions": { "KHR_meshopt_compression": {
+            "buffer": 0, "byteOffset": place, "byteLength": packed.len(), "byteStride": stride, "count": count,
+            "mode": mode, "filter": filter,
+        } },
+    });
+    maker.root["accessors"][accessor]["bufferView"] = view.into();
+    if maker.root["buffers"].as_array().unwrap().len() == 1 {
+        let placeholder = json!({ "byteLength": stride * count });
+        maker.root["buffers"].as_array_mut().unwrap().push(placeholder);
+    }
+}
+
+/// The bytes of filtered attributes behind the codec.
+fn packed_attributes(bytes: &[u8], (count, stride): (usize, usize)) -> Vec<u8> {
+    let encoding = VertexEncoding::new(0, 2).unwrap();
+    encode_vertex_buffer(bytes, count, stride, encoding, &mut Workspace::default()).unwrap()
+}
+
+fn assert_all_near<const N: usize>(found: &[[f32; N]], wanted: &[[f32; N]], tolerance: f32) {
+    assert_eq!(found.len(), wanted.len());
+    for (found, wanted) in found.iter().zip(wanted) {
+        let off = (0..N).map(|k| (found[k] - wanted[k]).abs()).fold(0.0, f32::max);
+        assert!(off < tolerance, "{found:?} {wanted:?}");
+    }
+}
+
 #[test]
-fn a_filter_is_applied_behind_the_codec() {
+fn octahedral_normals_are_read() {
     let shape = sphere(9);
     let mut maker = Maker::of(&shape);
     let lanes: Vec<f32> = shape.normals.iter().flat_map(|&[x, y, z]| [x, y, z, 0.0]).collect();
-    let mut workspace = Workspace::default();
     let count = shape.normals.len();
-    let filtered = encode_filter_oct(count, 8, 16, &lanes, &mut workspace).unwrap();
-    let packed = encode_vertex_buffer(&filtered, count, 8, VertexEncoding::new(0, 2).unwrap(), &mut workspace).unwrap();
-    let start = maker.view(&packed);
-    let place = maker.root["bufferViews"][start]["byteOffset"].clone();
-    maker.root["bufferViews"][start] = json!({
-        "buffer": 1, "byteOffset": 0, "byteLength": 8 * count, "byteStride": 8,
-        "extensions": { "EXT_meshopt_compression": {
-            "buffer": 0, "byteOffset": place, "byteLength": packed.len(), "byteStride": 8, "count": count,
-            "mode": "ATTRIBUTES", "filter": "OCTAHEDRAL",
-        } },
-    });
-    maker.root["accessors"][1] =
-        json!({ "bufferView": start, "componentType": 5122, "normalized": true, "count": count, "type": "VEC3" });
-    let buffers = maker.root["buffers"].as_array_mut().unwrap();
-    buffers.push(json!({ "byteLength": 8 * count }));
+    let filtered = encode_filter_oct(count, 8, 16, &lanes, &mut Workspace::default()).unwrap();
+    let packed = packed_attributes(&filtered, (count, 8));
+    compress(&mut maker, 1, &packed, (count, 8), "ATTRIBUTES", "OCTAHEDRAL");
+    maker.root["accessors"][1]["componentType"] = 5122.into();
+    maker.root["accessors"][1]["normalized"] = true.into();
     let normals = open(&maker.glb()).scene.appearance().normals.unwrap();
-    for (found, wanted) in normals.iter().zip(&shape.normals) {
-        let off = (0..3).map(|k| (found[k] - wanted[k]).abs()).fold(0.0, f32::max);
-        assert!(off < 1e-3, "{found:?} {wanted:?}");
+    assert_all_near(&normals, &shape.normals, 1e-3);
+}
+
+#[test]
+fn exponential_positions_are_read_and_edited() {
+    let shape = sphere(9);
+    let mut maker = Maker::of(&shape);
+    let count = shape.positions.len();
+    let lanes = shape.positions.as_flattened();
+    let mode = ExpMode::SharedVector;
+    let filtered = encode_filter_exp(count, 12, 15, lanes, mode, &mut Workspace::default()).unwrap();
+    let packed = packed_attributes(&filtered, (count, 12));
+    compress(&mut maker, 0, &packed, (count, 12), "ATTRIBUTES", "EXPONENTIAL");
+    let opened = open(&maker.glb());
+    let found: Vec<[f32; 3]> = opened.drawn.positions.iter().map(|p| p.as_vec3().to_array()).collect();
+    assert_all_near(&found, &shape.positions, 2e-4);
+    let positions = moved(&opened, |_| true, bent);
+    assert_near(&open(&saved_glb(&opened, &positions)).drawn.positions, &positions, 4.0);
+}
+
+#[test]
+fn unit_vectors_of_four_and_colours_are_read_through_their_filters() {
+    let shape = grid(4);
+    let count = shape.positions.len();
+    let unit = |k: usize| glam::Vec4::new(1.0 + k as f32, 2.0, 3.0, 9.0).normalize().to_array();
+    let vectors: Vec<[f32; 4]> = (0..count).map(unit).collect();
+    let mut workspace = Workspace::default();
+    let as_quaternions = encode_filter_quat(count, 8, 16, vectors.as_flattened(), &mut workspace).unwrap();
+    let as_colours = encode_filter_color(count, 8, 16, vectors.as_flattened(), &mut workspace).unwrap();
+    for (filter, filtered, component) in [("QUATERNION", as_quaternions, 5122), ("COLOR", as_colours, 5123)] {
+        let mut maker = Maker::of(&shape);
+        let accessor = json!({ "componentType": component, "normalized": true, "count": count, "type": "VEC4" });
+        let colour = maker.accessor(accessor);
+        compress(
+            &mut maker,
+            colour,
+            &packed_attributes(&filtered, (count, 8)),
+            (count, 8),
+            "ATTRIBUTES",
+            filter,
+        );
+        maker.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = colour.into();
+        let found = open(&maker.glb()).scene.appearance().colours.unwrap();
+        let found: Vec<[f32; 4]> = found.iter().map(|c| c.map(|byte| f32::from(byte) / 255.0)).collect();
+        assert_all_near(&found, &vectors, 0.6 / 255.0);
+    }
+}
+
+#[test]
+fn sequences_of_indices_are_read_in_order() {
+    let shape = grid(4);
+    let plain = open(&Maker::of(&shape).glb());
+    let corners = shape.triangles.as_flattened();
+    let encoding = IndexEncoding::default();
+    let packed = encode_index_sequence(corners, encoding, &mut Workspace::default()).unwrap();
+    for (stride, component) in [(2, 5123), (4, 5125)] {
+        let mut maker = Maker::of(&shape);
+        compress(&mut maker, 4, &packed, (corners.len(), stride), "INDICES", "NONE");
+        maker.root["accessors"][4]["componentType"] = component.into();
+        assert_eq!(open(&maker.glb()).drawn.triangles, plain.drawn.triangles, "{stride}");
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::{FindingKind, Model, Named};
+use crate::{Drawn, FindingKind, Findings, Model, Named};
 
 /// One thing that is not as in a clean mesh.
 #[derive(Clone, PartialEq, Debug)]
@@ -30,25 +30,32 @@ pub struct Example {
 }
 
 impl Model {
-    /// What is wrong with the mesh, each with the places of its first examples, in the order of
-    /// [`Findings::sentences`](crate::Findings::sentences). One look at every vertex, so made on request.
+    /// What is wrong with the mesh, as [`Findings::diagnoses`] tells it.
     pub fn diagnoses(&self) -> Vec<Diagnosis> {
+        self.findings.diagnoses(&self.drawn)
+    }
+}
+
+impl Findings {
+    /// What is wrong with the mesh that `drawn` was welded into, each with the places of its first examples, in the order
+    /// of [`Self::sentences`]. One look at every vertex, so made on request.
+    pub fn diagnoses(&self, drawn: &Drawn) -> Vec<Diagnosis> {
         let told = || {
             FindingKind::ALL
                 .into_iter()
-                .filter_map(|kind| Some((kind, self.findings.sentence(kind)?)))
+                .filter_map(|kind| Some((kind, self.sentence(kind)?)))
         };
         let named = told()
             .filter(|(kind, _)| kind.named() == Named::FileVertex)
-            .flat_map(|(kind, _)| self.findings.of(kind).examples.iter().copied());
-        let places = self.places_of_file_vertices(named);
+            .flat_map(|(kind, _)| self.of(kind).examples.iter().copied());
+        let places = places_of_file_vertices(drawn, named);
         let place = |kind: FindingKind, number: u32| match kind.named() {
             Named::FileVertex => places.get(&number).copied(),
-            Named::DrawnTriangle => self.centre_of_drawn_triangle(number),
+            Named::DrawnTriangle => centre_of_drawn_triangle(drawn, number),
         };
         told()
             .map(|(kind, sentence)| {
-                let finding = self.findings.of(kind);
+                let finding = self.of(kind);
                 let example = |&number: &u32| Example {
                     number,
                     position: place(kind, number),
@@ -62,27 +69,27 @@ impl Model {
             })
             .collect()
     }
+}
 
-    /// Where file vertices are first drawn at a finite place.
-    fn places_of_file_vertices(&self, wanted: impl Iterator<Item = u32>) -> HashMap<u32, DVec3> {
-        let mut is_wanted = vec![false; self.drawn.file_vertex_count];
-        for vertex in wanted {
-            if let Some(is_wanted) = is_wanted.get_mut(vertex as usize) {
-                *is_wanted = true;
-            }
+/// Where file vertices are first drawn at a finite place.
+fn places_of_file_vertices(drawn: &Drawn, wanted: impl Iterator<Item = u32>) -> HashMap<u32, DVec3> {
+    let mut is_wanted = vec![false; drawn.file_vertex_count];
+    for vertex in wanted {
+        if let Some(is_wanted) = is_wanted.get_mut(vertex as usize) {
+            *is_wanted = true;
         }
-        let mut places = HashMap::new();
-        for (vertex, &position) in self.drawn.file_vertex.iter().zip(&self.drawn.positions) {
-            if is_wanted.get(vertex.index()) == Some(&true) && position.is_finite() {
-                places.entry(vertex.0).or_insert(position);
-            }
-        }
-        places
     }
+    let mut places = HashMap::new();
+    for (vertex, &position) in drawn.file_vertex.iter().zip(&drawn.positions) {
+        if is_wanted.get(vertex.index()) == Some(&true) && position.is_finite() {
+            places.entry(vertex.0).or_insert(position);
+        }
+    }
+    places
+}
 
-    fn centre_of_drawn_triangle(&self, triangle: u32) -> Option<DVec3> {
-        let corners = self.drawn.triangles.get(triangle as usize)?;
-        let centre = corners.map(|v| self.drawn.positions[v.index()]).iter().sum::<DVec3>() / 3.0;
-        centre.is_finite().then_some(centre)
-    }
+fn centre_of_drawn_triangle(drawn: &Drawn, triangle: u32) -> Option<DVec3> {
+    let corners = drawn.triangles.get(triangle as usize)?;
+    let centre = corners.map(|v| drawn.positions[v.index()]).iter().sum::<DVec3>() / 3.0;
+    centre.is_finite().then_some(centre)
 }

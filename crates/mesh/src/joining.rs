@@ -17,8 +17,27 @@ use rayon::prelude::*;
 use crate::Bounds;
 use crate::morton::{self, MortonGrid};
 
-/// A position's place on the curve and its index.
-type Entry = (u64, u32);
+/// A position's place on the curve and its index: in twelve bytes, for a scan has many.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Entry {
+    code_high: u32,
+    code_low: u32,
+    index: u32,
+}
+
+impl Entry {
+    fn new(code: u64, index: u32) -> Self {
+        Self {
+            code_high: (code >> 32) as u32,
+            code_low: code as u32,
+            index,
+        }
+    }
+
+    fn code(self) -> u64 {
+        u64::from(self.code_high) << 32 | u64::from(self.code_low)
+    }
+}
 
 /// Positions grouped; groups are named by the place of their representative in Morton order.
 pub(crate) struct Joined {
@@ -30,12 +49,13 @@ pub(crate) struct Joined {
 
 /// Groups those `positions` whose indices are in `members` (ascending, all finite, inside `bounds`).
 /// `tolerance` is a length; zero joins equal positions only (−0 equals 0) and `None` none.
-pub(crate) fn join(positions: &[DVec3], members: &[u32], bounds: &Bounds, tolerance: Option<f64>) -> Joined {
+pub(crate) fn join(positions: &[DVec3], members: Vec<u32>, bounds: &Bounds, tolerance: Option<f64>) -> Joined {
     let grid = MortonGrid::over(bounds);
     let mut entries: Vec<Entry> = members
         .par_iter()
-        .map(|&i| (grid.code(positions[i as usize]), i))
+        .map(|&i| Entry::new(grid.code(positions[i as usize]), i))
         .collect();
+    drop(members);
     entries.par_sort_unstable();
     let mut representative: Vec<u32> = (0..entries.len() as u32).collect();
     if let Some(tolerance) = tolerance {
@@ -44,10 +64,10 @@ pub(crate) fn join(positions: &[DVec3], members: &[u32], bounds: &Bounds, tolera
             join_across_cells(positions, &entries, &grid, tolerance, &mut representative);
         }
     }
-    Joined {
-        order: entries.into_iter().map(|(_, index)| index).collect(),
-        representative,
-    }
+    // Written over the entries, of whose memory the rest goes back.
+    let mut order: Vec<u32> = entries.into_iter().map(|entry| entry.index).collect();
+    order.shrink_to_fit();
+    Joined { order, representative }
 }
 
 /// Runs of this length or more are first thinned to different positions by sorting.
@@ -59,7 +79,7 @@ fn join_within_cells(positions: &[DVec3], entries: &[Entry], tolerance: f64, rep
     let (mut rest, mut start) = (representative, 0);
     while start < entries.len() {
         let mut end = (start + 16_384).min(entries.len());
-        while end < entries.len() && entries[end].0 == entries[end - 1].0 {
+        while end < entries.len() && entries[end].code() == entries[end - 1].code() {
             end += 1;
         }
         let (piece, tail) = rest.split_at_mut(end - start);
@@ -69,9 +89,9 @@ fn join_within_cells(positions: &[DVec3], entries: &[Entry], tolerance: f64, rep
     pieces.into_par_iter().for_each(|(piece_start, piece)| {
         let mut first = 0;
         while first < piece.len() {
-            let code = entries[piece_start + first].0;
+            let code = entries[piece_start + first].code();
             let mut last = first + 1;
-            while last < piece.len() && entries[piece_start + last].0 == code {
+            while last < piece.len() && entries[piece_start + last].code() == code {
                 last += 1;
             }
             if last - first > 1 {
@@ -91,7 +111,7 @@ fn join_within_cells(positions: &[DVec3], entries: &[Entry], tolerance: f64, rep
 
 /// Joins the entries of one cell, which stand by rising index; `offset` is the place of the first.
 fn join_run(positions: &[DVec3], run: &[Entry], offset: u32, tolerance: f64, representative: &mut [u32]) {
-    let position = |place: usize| positions[run[place].1 as usize];
+    let position = |place: usize| positions[run[place].index as usize];
     if run.len() >= CROWD {
         join_equal_by_sorting(run.len(), position, offset, representative);
         if tolerance == 0.0 {
@@ -162,7 +182,7 @@ fn join_across_cells(
     };
     let mut pairs: Vec<[u32; 2]> = near.find();
     // By rising index of the higher, then of the lower one: the greedy order.
-    let index = |place: u32| entries[place as usize].1;
+    let index = |place: u32| entries[place as usize].index;
     for pair in &mut pairs {
         pair.sort_unstable_by_key(|&place| index(place));
     }
@@ -185,7 +205,7 @@ fn coarse_level(entries: &[Entry], standing: &[u32], tolerance_in_cells: f64) ->
         .find(|&bits| f64::from(1u32 << bits) > tolerance_in_cells)
         .map_or(1, |bits| morton::BITS - bits);
     for level in 14.min(finest)..finest {
-        let cell = |place: u32| entries[place as usize].0 >> (3 * (morton::BITS - level));
+        let cell = |place: u32| entries[place as usize].code() >> (3 * (morton::BITS - level));
         if standing
             .windows(CROWD)
             .all(|window| cell(window[0]) != cell(window[CROWD - 1]))
@@ -225,11 +245,11 @@ impl NearPairs<'_> {
 
     /// The coarse cell of the `i`th representative.
     fn cell(&self, i: usize) -> u64 {
-        self.entries[self.standing[i] as usize].0 >> (3 * (morton::BITS - self.level))
+        self.entries[self.standing[i] as usize].code() >> (3 * (morton::BITS - self.level))
     }
 
     fn position(&self, i: usize) -> DVec3 {
-        self.positions[self.entries[self.standing[i] as usize].1 as usize]
+        self.positions[self.entries[self.standing[i] as usize].index as usize]
     }
 
     /// Pairs of `i` and later ones in the same coarse cell.
@@ -281,7 +301,7 @@ impl NearPairs<'_> {
         let shift = 3 * (morton::BITS - self.level);
         let first = self
             .standing
-            .partition_point(|&place| self.entries[place as usize].0 >> shift < cell);
+            .partition_point(|&place| self.entries[place as usize].code() >> shift < cell);
         for j in first..self.standing.len() {
             if self.cell(j) != cell {
                 break;

@@ -31,6 +31,7 @@ mod progress;
 mod rings;
 pub mod shapes;
 mod surface;
+mod survey;
 mod topology;
 mod weld;
 
@@ -53,4 +54,5 @@ pub use model::{Model, SurfaceOfFile, WeldOptions};
 pub use progress::{Cancel, Cancelled, Progress};
 pub use rings::FanKind;
 pub use surface::Surface;
+pub use survey::Survey;
 pub use topology::Topology;

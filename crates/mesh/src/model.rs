@@ -3,11 +3,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::parts;
-use crate::weld::{Welded, weld};
+use crate::parts::Parts;
+use crate::weld::weld;
 use crate::{
-    Bounds, Cancel, Cancelled, Drawn, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex, Topology,
-    bounding_box,
+    Bounds, Cancel, Cancelled, Drawn, FileVertex, Findings, Progress, Surface, SurfaceVertex, Topology, bounding_box,
 };
 
 /// How equal positions are joined.
@@ -45,26 +44,27 @@ impl Model {
     /// Welds `drawn` into a surface. Anything that can't be solved is set aside and told in the findings; a file with
     /// no usable triangle gives an empty surface.
     pub fn weld(drawn: Drawn, options: &WeldOptions, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
-        let Welded {
-            surface,
-            surface_of_drawn,
-            drawn_triangle_of_surface,
-            first_file_vertex,
-            mut findings,
-        } = weld(&drawn, options, progress, cancel)?;
+        let mut welded = weld(&drawn, options, progress, cancel)?;
         cancel.check()?;
-        let topology = Topology::with_file_vertices(&surface, &first_file_vertex);
+        let topology = Topology::with_file_vertices(&welded.surface, &welded.first_file_vertex);
         cancel.check()?;
         progress.set(0.9);
-        report_topology(&surface, &topology, &first_file_vertex, &mut findings);
+        let parts = Parts {
+            surface: &welded.surface,
+            first_file_vertex: &welded.first_file_vertex,
+            component_of_vertex: topology.component_of_vertex(),
+            components: topology.components(),
+        };
+        parts.report(topology.oddities(), &mut welded.findings);
+        let surface_of_drawn = welded.surface_of_drawn();
         progress.set(1.0);
         Ok(Self {
             drawn,
-            surface,
+            surface: welded.surface,
             topology,
             surface_of_drawn,
-            drawn_triangle_of_surface,
-            findings,
+            drawn_triangle_of_surface: welded.drawn_triangle_of_surface,
+            findings: welded.findings,
         })
     }
 
@@ -106,28 +106,6 @@ impl Model {
                 };
             });
     }
-}
-
-/// Tells the topology's findings in file vertices.
-fn report_topology(surface: &Surface, topology: &Topology, first_file_vertex: &[FileVertex], findings: &mut Findings) {
-    let file_vertex = |v: &SurfaceVertex| first_file_vertex[v.index()].0;
-    let [edges, vertices, misoriented] = topology
-        .oddities()
-        .map(|found| Finding::at_vertices(found.iter().map(file_vertex)));
-    findings.non_manifold_edges = edges;
-    findings.non_manifold_vertices = vertices;
-    findings.misoriented_edges = misoriented;
-    findings.boundary_edges = Finding::at_vertices(topology.boundary_edge_list().iter().map(|[v, _]| file_vertex(v)));
-    let rims = topology.boundary_loops();
-    findings.boundary_loops = Finding::at_vertices(rims.iter().filter_map(|rim| rim.iter().map(file_vertex).min()));
-    let firsts: Vec<u32> = topology
-        .components()
-        .iter()
-        .map(|component| component.first_file_vertex.0)
-        .collect();
-    findings.components = Finding::of(&firsts);
-    findings.loose_bits = parts::loose_bits(topology.components());
-    findings.inside_out_components = parts::inside_out(surface, topology);
 }
 
 /// The surface vertices behind each file vertex.

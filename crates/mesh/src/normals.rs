@@ -23,19 +23,19 @@ pub fn vertex_normals(
     out.par_chunks_mut(2048).enumerate().for_each(|(piece, normals)| {
         for (i, normal) in normals.iter_mut().enumerate() {
             let v = SurfaceVertex((piece * 2048 + i) as u32);
-            let sum = match topology.fan(v) {
-                (FanKind::Irregular, _) => sum_of_triangles(v, triangles, topology, positions),
-                (kind, fan) => sum_of_fan(positions[v.index()], kind, fan, positions),
+            let sum = match topology.ring_and_fan(v) {
+                (FanKind::Irregular, ..) => sum_of_triangles(v, triangles, topology, positions),
+                (kind, ring, fan) => sum_of_fan(positions[v.index()], kind, ring, fan, positions),
             };
             *normal = sum.normalize_or_zero();
         }
     });
 }
 
-/// Twice the area-weighted normals of the triangles between neighbours of `centre`.
+/// Twice the area-weighted normals of the triangles between neighbours of `centre`: `fan` has their places in `ring`.
 #[inline]
-fn sum_of_fan(centre: DVec3, kind: FanKind, fan: &[SurfaceVertex], positions: &[DVec3]) -> DVec3 {
-    let spoke = |v: SurfaceVertex| positions[v.index()] - centre;
+fn sum_of_fan(centre: DVec3, kind: FanKind, ring: &[SurfaceVertex], fan: &[u8], positions: &[DVec3]) -> DVec3 {
+    let spoke = |place: u8| positions[ring[usize::from(place)].index()] - centre;
     let first = spoke(fan[0]);
     let mut sum = DVec3::ZERO;
     let mut before = first;

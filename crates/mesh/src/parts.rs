@@ -1,14 +1,106 @@
-//! What is odd about a surface's connected parts: some face inwards, some are bits beside a large one.
+//! What is odd about a surface: its rims, places that are no manifold, and its connected parts, of which some face
+//! inwards and some are bits beside a large one.
 
 use glam::DVec3;
 
-use crate::{Bounds, Component, Finding, Surface, Topology};
+use crate::boundary::trace_loops;
+use crate::rings::Oddities;
+use crate::{Bounds, Component, FileVertex, Finding, Findings, Surface, SurfaceVertex};
 
 /// A part with less than this share of the largest one's vertices is a loose bit.
 const BIT: f64 = 0.01;
 
 /// Among how many of the largest parts the one is looked for that a cavity lies in.
 const HOLLOW_CANDIDATES: usize = 64;
+
+/// A surface and its connected parts.
+pub(crate) struct Parts<'a> {
+    pub(crate) surface: &'a Surface,
+    /// The lowest file vertex behind each surface vertex.
+    pub(crate) first_file_vertex: &'a [FileVertex],
+    pub(crate) component_of_vertex: &'a [u32],
+    pub(crate) components: &'a [Component],
+}
+
+impl Parts<'_> {
+    /// Tells what is odd, in file vertices.
+    pub(crate) fn report(&self, oddities: &Oddities, findings: &mut Findings) {
+        let file_vertex = |v: &SurfaceVertex| self.first_file_vertex[v.index()].0;
+        let at = |found: &[SurfaceVertex]| Finding::at_vertices(found.iter().map(file_vertex));
+        findings.non_manifold_edges = at(&oddities.non_manifold_edges);
+        findings.non_manifold_vertices = at(&oddities.non_manifold_vertices);
+        findings.misoriented_edges = at(&oddities.misoriented_edges);
+        findings.boundary_edges = Finding::at_vertices(oddities.boundary.iter().map(|[v, _]| file_vertex(v)));
+        let rims = trace_loops(&oddities.boundary);
+        findings.boundary_loops = Finding::at_vertices(rims.iter().filter_map(|rim| rim.iter().map(file_vertex).min()));
+        let firsts: Vec<u32> = self.components.iter().map(|part| part.first_file_vertex.0).collect();
+        findings.components = Finding::of(&firsts);
+        findings.loose_bits = loose_bits(self.components);
+        findings.inside_out_components = self.inside_out(oddities);
+    }
+
+    fn component(&self, v: SurfaceVertex) -> usize {
+        self.component_of_vertex[v.index()] as usize
+    }
+
+    /// Closed, consistently wound parts that enclose a negative volume and lie within no other closed part's box.
+    fn inside_out(&self, oddities: &Oddities) -> Finding {
+        let Self {
+            surface, components, ..
+        } = self;
+        let count = components.len();
+        let mut is_closed = vec![true; count];
+        let Oddities {
+            boundary,
+            non_manifold_edges,
+            misoriented_edges,
+            non_manifold_vertices,
+        } = oddities;
+        let odd = [non_manifold_edges, non_manifold_vertices, misoriented_edges];
+        for &v in boundary.iter().flatten().chain(odd.into_iter().flatten()) {
+            is_closed[self.component(v)] = false;
+        }
+        // Each part's volume is taken around one of its own vertices: far from the origin nothing of it is lost.
+        let origin: Vec<DVec3> = components
+            .iter()
+            .map(|component| surface.positions[component.vertices[0].index()])
+            .collect();
+        let mut six_volumes = vec![0.0; count];
+        for corners in &surface.triangles {
+            let component = self.component(corners[0]);
+            if is_closed[component] {
+                let [a, b, c] = corners.map(|v| surface.positions[v.index()] - origin[component]);
+                six_volumes[component] += a.cross(b).dot(c);
+            }
+        }
+        let bounds = |component: usize| {
+            let positions = components[component].vertices.iter();
+            let mut out = Bounds {
+                min: DVec3::INFINITY,
+                max: DVec3::NEG_INFINITY,
+            };
+            for v in positions {
+                out.min = out.min.min(surface.positions[v.index()]);
+                out.max = out.max.max(surface.positions[v.index()]);
+            }
+            out
+        };
+        let hollow: Vec<(usize, Bounds)> = (0..count)
+            .filter(|&component| is_closed[component] && six_volumes[component] > 0.0)
+            .take(HOLLOW_CANDIDATES)
+            .map(|component| (component, bounds(component)))
+            .collect();
+        let is_cavity = |component: usize| {
+            let own = bounds(component);
+            let holds = |outer: &Bounds| outer.min.cmple(own.min).all() && outer.max.cmpge(own.max).all();
+            hollow.iter().any(|(_, outer)| holds(outer))
+        };
+        let found = (0..count)
+            .filter(|&component| is_closed[component] && six_volumes[component] < 0.0 && !is_cavity(component))
+            .map(|component| components[component].first_file_vertex.0);
+        Finding::at_vertices(found)
+    }
+}
 
 /// Parts that are loose bits, by their first vertices.
 pub(crate) fn loose_bits(components: &[Component]) -> Finding {
@@ -19,55 +111,4 @@ pub(crate) fn loose_bits(components: &[Component]) -> Finding {
         .filter(|component| size(component) < BIT * largest)
         .map(|component| component.first_file_vertex.0);
     Finding::at_vertices(bits)
-}
-
-/// Closed, consistently wound parts that enclose a negative volume and lie within no other closed part's box.
-pub(crate) fn inside_out(surface: &Surface, topology: &Topology) -> Finding {
-    let components = topology.components();
-    let count = components.len();
-    let mut is_closed = vec![true; count];
-    let [edges, vertices, misoriented] = topology.oddities();
-    let rims = topology.boundary_edge_list().iter().flatten();
-    for &v in rims.chain(edges).chain(vertices).chain(misoriented) {
-        is_closed[topology.component(v) as usize] = false;
-    }
-    // Each part's volume is taken around one of its own vertices: far from the origin nothing of it is lost.
-    let origin: Vec<DVec3> = components
-        .iter()
-        .map(|component| surface.positions[component.vertices[0].index()])
-        .collect();
-    let mut six_volumes = vec![0.0; count];
-    for corners in &surface.triangles {
-        let component = topology.component(corners[0]) as usize;
-        if is_closed[component] {
-            let [a, b, c] = corners.map(|v| surface.positions[v.index()] - origin[component]);
-            six_volumes[component] += a.cross(b).dot(c);
-        }
-    }
-    let bounds = |component: usize| {
-        let positions = components[component].vertices.iter();
-        let mut out = Bounds {
-            min: DVec3::INFINITY,
-            max: DVec3::NEG_INFINITY,
-        };
-        for v in positions {
-            out.min = out.min.min(surface.positions[v.index()]);
-            out.max = out.max.max(surface.positions[v.index()]);
-        }
-        out
-    };
-    let hollow: Vec<(usize, Bounds)> = (0..count)
-        .filter(|&component| is_closed[component] && six_volumes[component] > 0.0)
-        .take(HOLLOW_CANDIDATES)
-        .map(|component| (component, bounds(component)))
-        .collect();
-    let is_cavity = |component: usize| {
-        let own = bounds(component);
-        let holds = |outer: &Bounds| outer.min.cmple(own.min).all() && outer.max.cmpge(own.max).all();
-        hollow.iter().any(|(_, outer)| holds(outer))
-    };
-    let found = (0..count)
-        .filter(|&component| is_closed[component] && six_volumes[component] < 0.0 && !is_cavity(component))
-        .map(|component| components[component].first_file_vertex.0);
-    Finding::at_vertices(found)
 }

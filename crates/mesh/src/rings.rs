@@ -1,11 +1,13 @@
 //! One-rings: who stands around each vertex, how many triangles lie on each edge, and what is odd about them.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
-use crate::SurfaceVertex;
+use crate::{Cancel, Cancelled, SurfaceVertex};
 
 /// Vertices a piece of the parallel walk.
-const PIECE: usize = 8192;
+const PIECE: usize = 2048;
 
 /// The rows and findings of a range of vertices, or of all.
 #[derive(Default)]
@@ -14,13 +16,18 @@ pub(crate) struct Rings {
     pub(crate) degrees: Vec<u32>,
     /// The rows: neighbours ascending.
     pub(crate) neighbours: Vec<SurfaceVertex>,
-    /// How many triangles lie on the edge to each neighbour, 255 where there are more.
-    pub(crate) face_counts: Vec<u8>,
-    /// The rows again, each in the order in which the triangles pass from neighbour to neighbour; ascending where the
-    /// vertex is irregular.
-    pub(crate) fans: Vec<SurfaceVertex>,
+    /// The rows again, as places in them, each in the order in which the triangles pass from neighbour to neighbour;
+    /// meaningless where the vertex is irregular. A fan of more neighbours than a byte counts is irregular too.
+    pub(crate) fans: Vec<u8>,
     /// What each vertex's row in `fans` is.
     pub(crate) fan_kinds: Vec<FanKind>,
+    /// What is odd about them.
+    pub(crate) oddities: Oddities,
+}
+
+/// Rims, and places where triangles do not meet as on a manifold; each list ascending.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Oddities {
     /// Edges with one triangle, directed against it: with the hole on the left.
     pub(crate) boundary: Vec<[SurfaceVertex; 2]>,
     /// The lower vertex of each edge with more than two triangles.
@@ -31,6 +38,34 @@ pub(crate) struct Rings {
     pub(crate) non_manifold_vertices: Vec<SurfaceVertex>,
 }
 
+impl Rings {
+    /// Forgets all rows, but keeps their memory.
+    fn clear(&mut self) {
+        self.degrees.clear();
+        self.neighbours.clear();
+        self.fans.clear();
+        self.fan_kinds.clear();
+        self.oddities.clear();
+    }
+}
+
+impl Oddities {
+    fn clear(&mut self) {
+        self.boundary.clear();
+        self.non_manifold_edges.clear();
+        self.misoriented_edges.clear();
+        self.non_manifold_vertices.clear();
+    }
+
+    fn extend(&mut self, later: &Self) {
+        self.boundary.extend_from_slice(&later.boundary);
+        self.non_manifold_edges.extend_from_slice(&later.non_manifold_edges);
+        self.misoriented_edges.extend_from_slice(&later.misoriented_edges);
+        self.non_manifold_vertices
+            .extend_from_slice(&later.non_manifold_vertices);
+    }
+}
+
 /// How the triangles around a vertex hang together.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum FanKind {
@@ -38,32 +73,39 @@ pub enum FanKind {
     Closed,
     /// One fan with two rims: each neighbour and the next make a triangle with the vertex.
     Open,
-    /// Several fans, an edge with more than two triangles, or triangles that disagree about the outside.
+    /// Several fans, an edge with more than two triangles, triangles that disagree about the outside, or more than 256
+    /// neighbours.
     Irregular,
 }
 
-/// Rows of triangles around vertices.
+/// Rows of triangles around a range of vertices.
 pub(crate) struct FaceRows {
+    /// Where each vertex's row starts, and where the last one ends.
     pub(crate) offsets: Vec<u32>,
     pub(crate) list: Vec<u32>,
 }
 
-/// The triangles around each vertex, ascending.
-pub(crate) fn face_rows(vertex_count: usize, triangles: &[[SurfaceVertex; 3]]) -> FaceRows {
-    let mut offsets = vec![0u32; vertex_count + 2];
+/// The triangles around each vertex of a range, ascending.
+pub(crate) fn face_rows(vertices: Range<usize>, triangles: &[[SurfaceVertex; 3]]) -> FaceRows {
+    let place = |v: &SurfaceVertex| {
+        v.index()
+            .checked_sub(vertices.start)
+            .filter(|&place| place < vertices.len())
+    };
+    let mut offsets = vec![0u32; vertices.len() + 2];
     for triangle in triangles {
-        for v in triangle {
-            offsets[v.index() + 2] += 1;
+        for place in triangle.iter().filter_map(place) {
+            offsets[place + 2] += 1;
         }
     }
-    for v in 2..offsets.len() {
-        offsets[v] += offsets[v - 1];
+    for row in 2..offsets.len() {
+        offsets[row] += offsets[row - 1];
     }
     // Shifted by one, each start moves on to the next row's start while its row fills.
-    let mut list = vec![0u32; 3 * triangles.len()];
+    let mut list = vec![0u32; offsets[vertices.len() + 1] as usize];
     for (t, triangle) in triangles.iter().enumerate() {
-        for v in triangle {
-            let next = &mut offsets[v.index() + 1];
+        for place in triangle.iter().filter_map(place) {
+            let next = &mut offsets[place + 1];
             list[*next as usize] = t as u32;
             *next += 1;
         }
@@ -72,42 +114,72 @@ pub(crate) fn face_rows(vertex_count: usize, triangles: &[[SurfaceVertex; 3]]) -
     FaceRows { offsets, list }
 }
 
+/// Pieces that are walked before they are put behind the rows that are done: few, so that hardly anything is held twice.
+const BATCH: usize = 64;
+
 /// Walks around every vertex.
 pub(crate) fn rings(vertex_count: usize, triangles: &[[SurfaceVertex; 3]], faces: &FaceRows) -> Rings {
-    let pieces: Vec<Rings> = (0..vertex_count.div_ceil(PIECE))
-        .into_par_iter()
-        .map(|piece| {
-            let mut rings = Rings::default();
-            let mut walk = Walk::default();
-            for v in piece * PIECE..((piece + 1) * PIECE).min(vertex_count) {
-                let row = faces.offsets[v] as usize..faces.offsets[v + 1] as usize;
-                walk.around(SurfaceVertex(v as u32), triangles, &faces.list[row], &mut rings);
-            }
-            rings
-        })
-        .collect();
-    let total = pieces.iter().map(|piece| piece.neighbours.len()).sum();
+    // A closed surface has three neighbours a triangle, an open one a few more.
+    let total = 3 * triangles.len();
     let mut all = Rings {
         degrees: Vec::with_capacity(vertex_count),
         neighbours: Vec::with_capacity(total),
-        face_counts: Vec::with_capacity(total),
         fans: Vec::with_capacity(total),
         fan_kinds: Vec::with_capacity(vertex_count),
         ..Rings::default()
     };
-    for piece in &pieces {
+    walk_around(0..vertex_count, triangles, faces, |piece| {
         all.degrees.extend_from_slice(&piece.degrees);
         all.neighbours.extend_from_slice(&piece.neighbours);
-        all.face_counts.extend_from_slice(&piece.face_counts);
         all.fans.extend_from_slice(&piece.fans);
         all.fan_kinds.extend_from_slice(&piece.fan_kinds);
-        all.boundary.extend_from_slice(&piece.boundary);
-        all.non_manifold_edges.extend_from_slice(&piece.non_manifold_edges);
-        all.misoriented_edges.extend_from_slice(&piece.misoriented_edges);
-        all.non_manifold_vertices
-            .extend_from_slice(&piece.non_manifold_vertices);
-    }
+        all.oddities.extend(&piece.oddities);
+    });
+    all.neighbours.shrink_to_fit();
+    all.fans.shrink_to_fit();
     all
+}
+
+/// What is odd around the vertices, without their rings. A part of the vertices after the other has its triangles
+/// listed: all their rows would be as much as the triangles themselves.
+pub(crate) fn oddities(
+    vertex_count: usize,
+    triangles: &[[SurfaceVertex; 3]],
+    cancel: &Cancel,
+) -> Result<Oddities, Cancelled> {
+    const PARTS: usize = 4;
+    let mut all = Oddities::default();
+    let size = vertex_count.div_ceil(PARTS).max(PIECE);
+    for first in (0..vertex_count).step_by(size) {
+        cancel.check()?;
+        let vertices = first..(first + size).min(vertex_count);
+        let faces = face_rows(vertices.clone(), triangles);
+        walk_around(vertices, triangles, &faces, |piece| all.extend(&piece.oddities));
+    }
+    Ok(all)
+}
+
+/// Walks around a range of vertices, whose triangles `faces` has, and gives their rings in order, piece by piece.
+fn walk_around(
+    vertices: Range<usize>,
+    triangles: &[[SurfaceVertex; 3]],
+    faces: &FaceRows,
+    mut take: impl FnMut(&Rings),
+) {
+    let mut pieces: Vec<(Rings, Walk)> = Vec::new();
+    for first in vertices.clone().step_by(BATCH * PIECE) {
+        pieces.resize_with(BATCH.min((vertices.end - first).div_ceil(PIECE)), Default::default);
+        pieces.par_iter_mut().enumerate().for_each(|(piece, (rings, walk))| {
+            rings.clear();
+            let first = first + piece * PIECE;
+            for v in first..(first + PIECE).min(vertices.end) {
+                let row = v - vertices.start;
+                let row = faces.offsets[row] as usize..faces.offsets[row + 1] as usize;
+                walk.around(SurfaceVertex(v as u32), triangles, &faces.list[row], rings);
+            }
+        });
+        pieces.iter().for_each(|(rings, _)| take(rings));
+    }
 }
 
 /// Memory for the walk around one vertex.
@@ -158,29 +230,29 @@ impl Walk {
             let count = last - first;
             is_regular &= count == 1 || count == 2 && inward == 1;
             rings.neighbours.push(neighbour);
-            rings.face_counts.push(count.min(255) as u8);
             if count == 1 && inward == 1 {
                 // The triangle runs from the neighbour to here, so the hole's rim runs from here to there.
-                rings.boundary.push([v, neighbour]);
+                rings.oddities.boundary.push([v, neighbour]);
             }
             if v < neighbour {
                 if count > 2 {
-                    rings.non_manifold_edges.push(v);
+                    rings.oddities.non_manifold_edges.push(v);
                 } else if count == 2 && inward != 1 {
-                    rings.misoriented_edges.push(v);
+                    rings.oddities.misoriented_edges.push(v);
                 }
             }
             first = last;
         }
-        rings.degrees.push((rings.neighbours.len() - ring_start) as u32);
+        let degree = rings.neighbours.len() - ring_start;
+        rings.degrees.push(degree as u32);
         if fans > 1 {
-            rings.non_manifold_vertices.push(v);
+            rings.oddities.non_manifold_vertices.push(v);
         }
-        if is_regular && fans == 1 {
-            self.order_fan(ring_start, rings);
+        if is_regular && fans == 1 && degree <= 1 << u8::BITS {
+            self.order_fan(rings);
         } else {
             rings.fan_kinds.push(FanKind::Irregular);
-            rings.fans.extend_from_slice(&rings.neighbours[ring_start..]);
+            rings.fans.resize(rings.neighbours.len(), 0);
         }
     }
 
@@ -194,7 +266,7 @@ impl Walk {
     }
 
     /// Follows the triangles of a regular vertex from neighbour to neighbour.
-    fn order_fan(&self, ring_start: usize, rings: &mut Rings) {
+    fn order_fan(&self, rings: &mut Rings) {
         let degree = self.triangle_after.len();
         let kind = if degree == self.neighbour_before.len() {
             FanKind::Closed
@@ -210,7 +282,7 @@ impl Walk {
             _ => 0,
         };
         for _ in 0..degree {
-            rings.fans.push(rings.neighbours[ring_start + place as usize]);
+            rings.fans.push(place as u8);
             if let Some(triangle) = self.triangle_after[place as usize] {
                 place = self.neighbour_before[triangle as usize];
             }

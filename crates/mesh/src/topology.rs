@@ -2,7 +2,7 @@
 
 use crate::boundary::trace_loops;
 use crate::components::{Component, components};
-use crate::rings::{FaceRows, FanKind, face_rows, rings};
+use crate::rings::{FaceRows, FanKind, Oddities, face_rows, rings};
 use crate::{FileVertex, Surface, SurfaceVertex};
 
 /// The connectivity of a [`Surface`].
@@ -13,17 +13,14 @@ use crate::{FileVertex, Surface, SurfaceVertex};
 pub struct Topology {
     neighbour_offsets: Vec<u32>,
     neighbour_list: Vec<SurfaceVertex>,
-    edge_face_counts: Vec<u8>,
-    fans: Vec<SurfaceVertex>,
+    /// Places in `neighbour_list`'s rows.
+    fans: Vec<u8>,
     fan_kinds: Vec<FanKind>,
     face_offsets: Vec<u32>,
     face_list: Vec<u32>,
-    boundary: Vec<[SurfaceVertex; 2]>,
+    oddities: Oddities,
     component_of_vertex: Vec<u32>,
     components: Vec<Component>,
-    non_manifold_edges: Vec<SurfaceVertex>,
-    non_manifold_vertices: Vec<SurfaceVertex>,
-    misoriented_edges: Vec<SurfaceVertex>,
 }
 
 impl Topology {
@@ -37,7 +34,7 @@ impl Topology {
     /// of `first_file_vertex` (one entry a surface vertex) over their vertices.
     pub fn with_file_vertices(surface: &Surface, first_file_vertex: &[FileVertex]) -> Self {
         let vertex_count = surface.positions.len();
-        let faces: FaceRows = face_rows(vertex_count, &surface.triangles);
+        let faces: FaceRows = face_rows(0..vertex_count, &surface.triangles);
         let rings = rings(vertex_count, &surface.triangles, &faces);
         let mut neighbour_offsets = Vec::with_capacity(vertex_count + 1);
         neighbour_offsets.push(0);
@@ -50,17 +47,13 @@ impl Topology {
         Self {
             neighbour_offsets,
             neighbour_list: rings.neighbours,
-            edge_face_counts: rings.face_counts,
             fans: rings.fans,
             fan_kinds: rings.fan_kinds,
             face_offsets: faces.offsets,
             face_list: faces.list,
-            boundary: rings.boundary,
+            oddities: rings.oddities,
             component_of_vertex,
             components,
-            non_manifold_edges: rings.non_manifold_edges,
-            non_manifold_vertices: rings.non_manifold_vertices,
-            misoriented_edges: rings.misoriented_edges,
         }
     }
 
@@ -75,17 +68,27 @@ impl Topology {
         &self.neighbour_list[row(&self.neighbour_offsets, v)]
     }
 
-    /// How many triangles lie on the edge to each of [`Self::neighbours`]; 255 where there are more.
-    #[inline]
-    pub fn edge_face_counts(&self, v: SurfaceVertex) -> &[u8] {
-        &self.edge_face_counts[row(&self.neighbour_offsets, v)]
-    }
-
     /// The neighbours of `v` counter-clockwise seen from outside, and how they close; ascending where irregular. A
     /// closed fan starts at the lowest neighbour, an open one at its rim.
     #[inline]
-    pub fn fan(&self, v: SurfaceVertex) -> (FanKind, &[SurfaceVertex]) {
-        (self.fan_kinds[v.index()], &self.fans[row(&self.neighbour_offsets, v)])
+    pub fn fan(&self, v: SurfaceVertex) -> (FanKind, impl ExactSizeIterator<Item = SurfaceVertex> + '_) {
+        let (kind, ring, places) = self.ring_and_fan(v);
+        let place = move |k: usize| match kind {
+            FanKind::Irregular => k,
+            _ => usize::from(places[k]),
+        };
+        (kind, (0..ring.len()).map(move |k| ring[place(k)]))
+    }
+
+    /// The neighbours of `v`, and the places among them in the order of the fan unless it is irregular.
+    #[inline]
+    pub(crate) fn ring_and_fan(&self, v: SurfaceVertex) -> (FanKind, &[SurfaceVertex], &[u8]) {
+        let row = row(&self.neighbour_offsets, v);
+        (
+            self.fan_kinds[v.index()],
+            &self.neighbour_list[row.clone()],
+            &self.fans[row],
+        )
     }
 
     /// The triangles around `v`, ascending.
@@ -120,6 +123,11 @@ impl Topology {
         self.component_of_vertex[v.index()]
     }
 
+    /// The component that each vertex belongs to.
+    pub(crate) fn component_of_vertex(&self) -> &[u32] {
+        &self.component_of_vertex
+    }
+
     /// The components by falling vertex count, equal ones by their first file vertex.
     pub fn components(&self) -> &[Component] {
         &self.components
@@ -141,37 +149,52 @@ impl Topology {
 
     /// How many edges have one triangle.
     pub fn boundary_edges(&self) -> usize {
-        self.boundary.len()
+        self.oddities.boundary.len()
     }
 
     /// The edges with one triangle, directed with the hole on the left, by their first vertex.
     pub fn boundary_edge_list(&self) -> &[[SurfaceVertex; 2]] {
-        &self.boundary
+        &self.oddities.boundary
     }
 
     /// How many edges have more than two triangles.
     pub fn non_manifold_edges(&self) -> usize {
-        self.non_manifold_edges.len()
+        self.oddities.non_manifold_edges.len()
     }
 
     /// How many vertices' triangles form more than one fan (triangles that share an edge are in one fan).
     pub fn non_manifold_vertices(&self) -> usize {
-        self.non_manifold_vertices.len()
+        self.oddities.non_manifold_vertices.len()
     }
 
     /// How many edges lie between two triangles that disagree about which side is outside.
     pub fn misoriented_edges(&self) -> usize {
-        self.misoriented_edges.len()
+        self.oddities.misoriented_edges.len()
     }
 
     /// Whether no edge has one triangle only.
     pub fn is_closed(&self) -> bool {
-        self.boundary.is_empty()
+        self.oddities.boundary.is_empty()
     }
 
     /// Whether `v` lies on an edge with one triangle.
     pub fn is_boundary_vertex(&self, v: SurfaceVertex) -> bool {
-        self.edge_face_counts(v).contains(&1)
+        let boundary = &self.oddities.boundary;
+        let has_rim_to = |[from, to]: [SurfaceVertex; 2]| {
+            let first = boundary.partition_point(|edge| edge[0] < from);
+            boundary[first..]
+                .iter()
+                .take_while(|edge| edge[0] == from)
+                .any(|edge| edge[1] == to)
+        };
+        match self.fan_kinds[v.index()] {
+            FanKind::Closed => false,
+            FanKind::Open => true,
+            FanKind::Irregular => {
+                let mut ring = self.neighbours(v).iter();
+                ring.any(|&u| has_rim_to([v, u]) || has_rim_to([u, v]))
+            }
+        }
     }
 
     /// The holes' rims, each vertex once in each loop, with the hole on the left; by rising first vertex found.
@@ -179,17 +202,12 @@ impl Topology {
     /// A rim that passes a vertex twice is cut into loops there. Where more than two triangles share an edge a rim may
     /// end at it: such a chain counts as a loop too.
     pub fn boundary_loops(&self) -> Vec<Vec<SurfaceVertex>> {
-        trace_loops(&self.boundary)
+        trace_loops(&self.oddities.boundary)
     }
 
-    /// The vertices (of edges: the lower ones) where something is odd: non-manifold edges, non-manifold vertices,
-    /// misoriented edges.
-    pub(crate) fn oddities(&self) -> [&[SurfaceVertex]; 3] {
-        [
-            &self.non_manifold_edges,
-            &self.non_manifold_vertices,
-            &self.misoriented_edges,
-        ]
+    /// Rims, and where something is odd.
+    pub(crate) fn oddities(&self) -> &Oddities {
+        &self.oddities
     }
 }
 

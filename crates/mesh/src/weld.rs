@@ -5,7 +5,9 @@ use rayon::prelude::*;
 use crate::finding::collect;
 use crate::geometry::{bounds_of, is_without_area};
 use crate::joining::{self, Joined};
-use crate::{Cancel, Cancelled, Drawn, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex, WeldOptions};
+use crate::{
+    Cancel, Cancelled, Drawn, DrawnVertex, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex, WeldOptions,
+};
 
 /// Coordinates beyond this count as not finite: areas and volumes of such a mesh would overflow.
 const LARGEST_COORDINATE: f64 = 1e60;
@@ -16,7 +18,8 @@ const LARGEST_TOLERANCE: f64 = 1e-4;
 /// What welding makes.
 pub(crate) struct Welded {
     pub(crate) surface: Surface,
-    pub(crate) surface_of_drawn: Vec<Option<SurfaceVertex>>,
+    /// The surface vertex behind each drawn vertex, [`NONE`] where no kept triangle uses it.
+    surface_of_drawn: Vec<u32>,
     pub(crate) drawn_triangle_of_surface: Vec<u32>,
     /// The lowest file vertex behind each surface vertex.
     pub(crate) first_file_vertex: Vec<FileVertex>,
@@ -47,12 +50,14 @@ pub(crate) fn weld(
         .collect();
     let uses = uses_of_vertices(drawn, &usable);
     report_vertices(drawn, &usable, &uses, &mut findings);
+    drop(usable);
     cancel.check()?;
     progress.set(0.1);
 
     let members: Vec<u32> = (0..uses.len() as u32)
         .filter(|&v| uses[v as usize] == Use::Triangle)
         .collect();
+    drop(uses);
     let Some(bounds) = bounds_of(members.par_iter().map(|&v| drawn.positions[v as usize])) else {
         findings.non_finite_triangles = collect(drawn.triangles.len(), |_| true);
         return Ok(nothing_to_weld(drawn, findings));
@@ -60,43 +65,40 @@ pub(crate) fn weld(
     let tolerance = options
         .tolerance
         .map(|share| share.clamp(0.0, LARGEST_TOLERANCE) * bounds.diagonal());
-    let joined = joining::join(&drawn.positions, &members, &bounds, tolerance);
+    let joined = joining::join(&drawn.positions, members, &bounds, tolerance);
     cancel.check()?;
     progress.set(0.35);
 
-    let group_of_drawn = groups_by_vertex(drawn.positions.len(), &joined);
-    let corners: Vec<[u32; 3]> = drawn
-        .triangles
-        .par_iter()
-        .map(|triangle| triangle.map(|v| group_of_drawn[v.index()]))
-        .collect();
-    findings.non_finite_triangles = collect(corners.len(), |t| has_unusable_corner(corners[t]));
-    findings.collapsed_triangles = collect(corners.len(), |t| {
-        !has_unusable_corner(corners[t]) && is_collapsed(corners[t])
+    let mut surface_of_drawn = groups_by_vertex(drawn.positions.len(), &joined);
+    let Joined { order, representative } = joined;
+    drop(representative);
+    let in_groups = |t: usize| drawn.triangles[t].map(|v| surface_of_drawn[v.index()]);
+    findings.non_finite_triangles = collect(drawn.triangles.len(), |t| has_unusable_corner(in_groups(t)));
+    findings.collapsed_triangles = collect(drawn.triangles.len(), |t| {
+        !has_unusable_corner(in_groups(t)) && is_collapsed(in_groups(t))
     });
-    let surface_of_group = number_used_groups(&corners, joined.order.len());
+    let surface_of_group = number_used_groups((0..drawn.triangles.len()).map(in_groups), order.len());
     cancel.check()?;
     progress.set(0.45);
 
-    let (triangles, drawn_triangle_of_surface) =
-        sort_triangles(&corners, &surface_of_group, &mut findings.duplicate_triangles);
-    let positions: Vec<_> = (0..joined.order.len())
-        .filter(|&group| surface_of_group[group] != NONE)
-        .map(|group| drawn.positions[joined.order[group] as usize])
-        .collect();
-    let surface_of_drawn: Vec<Option<SurfaceVertex>> = group_of_drawn
-        .par_iter()
-        .map(|&group| match group {
-            NONE => None,
-            group => Some(surface_of_group[group as usize])
-                .filter(|&s| s != NONE)
-                .map(SurfaceVertex),
-        })
-        .collect();
+    let used = (0..order.len()).filter(|&group| surface_of_group[group] != NONE);
+    let mut positions = Vec::with_capacity(used.clone().count());
+    positions.extend(used.map(|group| drawn.positions[order[group] as usize]));
+    drop(order);
+    surface_of_drawn.par_iter_mut().for_each(|group| {
+        *group = surface_of_group.get(*group as usize).copied().unwrap_or(NONE);
+    });
+    drop(surface_of_group);
+    let (triangles, drawn_triangle_of_surface) = sort_triangles(
+        &drawn.triangles,
+        &surface_of_drawn,
+        positions.len(),
+        &mut findings.duplicate_triangles,
+    );
     let mut first_file_vertex = vec![FileVertex(u32::MAX); positions.len()];
-    for (surface_vertex, &file_vertex) in surface_of_drawn.iter().zip(&drawn.file_vertex) {
-        if let Some(s) = surface_vertex {
-            first_file_vertex[s.index()] = first_file_vertex[s.index()].min(file_vertex);
+    for (&surface_vertex, &file_vertex) in surface_of_drawn.iter().zip(&drawn.file_vertex) {
+        if let Some(first) = first_file_vertex.get_mut(surface_vertex as usize) {
+            *first = file_vertex.min(*first);
         }
     }
     let surface = Surface { positions, triangles };
@@ -110,6 +112,19 @@ pub(crate) fn weld(
         first_file_vertex,
         findings,
     })
+}
+
+impl Welded {
+    /// The surface, the lowest file vertex behind each of its vertices, and the findings.
+    pub(crate) fn without_tables(self) -> (Surface, Vec<FileVertex>, Findings) {
+        (self.surface, self.first_file_vertex, self.findings)
+    }
+
+    /// Its table, as a model keeps it.
+    pub(crate) fn surface_of_drawn(&self) -> Vec<Option<SurfaceVertex>> {
+        let known = |&v: &u32| (v != NONE).then_some(SurfaceVertex(v));
+        self.surface_of_drawn.par_iter().map(known).collect()
+    }
 }
 
 /// No group, no surface vertex.
@@ -157,7 +172,7 @@ fn report_vertices(drawn: &Drawn, usable: &[bool], uses: &[Use], findings: &mut 
 fn nothing_to_weld(drawn: &Drawn, findings: Findings) -> Welded {
     Welded {
         surface: Surface::default(),
-        surface_of_drawn: vec![None; drawn.positions.len()],
+        surface_of_drawn: vec![NONE; drawn.positions.len()],
         drawn_triangle_of_surface: Vec::new(),
         first_file_vertex: Vec::new(),
         findings,
@@ -174,9 +189,9 @@ fn groups_by_vertex(vertex_count: usize, joined: &Joined) -> Vec<u32> {
 }
 
 /// Numbers the groups that proper triangles use, in Morton order.
-fn number_used_groups(corners: &[[u32; 3]], group_count: usize) -> Vec<u32> {
+fn number_used_groups(triangles: impl Iterator<Item = [u32; 3]>, group_count: usize) -> Vec<u32> {
     let mut number = vec![NONE; group_count];
-    for &corners in corners {
+    for corners in triangles {
         if !has_unusable_corner(corners) && !is_collapsed(corners) {
             for group in corners {
                 number[group as usize] = 0;
@@ -189,59 +204,70 @@ fn number_used_groups(corners: &[[u32; 3]], group_count: usize) -> Vec<u32> {
     number
 }
 
-/// A triangle on its way into the sorted list: middle and highest vertex, drawn triangle.
-type Sorted = (u32, u32, u32);
-
 /// The proper triangles by lowest, middle and highest vertex, so that triangles near each other are near in memory,
-/// without those that repeat an earlier one; corners stay in drawn order.
+/// without those that repeat an earlier one; corners stay in drawn order. With each the drawn triangle behind it.
+///
+/// A triangle with a corner that no proper triangle uses is not proper, so the vertices alone say which are.
 fn sort_triangles(
-    corners: &[[u32; 3]],
-    surface_of_group: &[u32],
+    drawn: &[[DrawnVertex; 3]],
+    surface_of_drawn: &[u32],
+    vertex_count: usize,
     duplicates: &mut Finding,
 ) -> (Vec<[SurfaceVertex; 3]>, Vec<u32>) {
-    let vertex_count = surface_of_group.iter().filter(|&&s| s != NONE).count();
-    let in_surface = |t: usize| corners[t].map(|group| surface_of_group[group as usize]);
-    let is_proper = |t: &usize| !has_unusable_corner(corners[*t]) && !is_collapsed(corners[*t]);
-
-    // Counting sort by lowest vertex.
-    let mut starts = vec![0u32; vertex_count + 1];
-    for t in (0..corners.len()).filter(is_proper) {
+    let in_surface = |t: usize| drawn[t].map(|v| surface_of_drawn[v.index()]);
+    let lowest = |t: usize| {
         let [a, b, c] = in_surface(t);
-        starts[a.min(b).min(c) as usize + 1] += 1;
+        let is_proper = !has_unusable_corner([a, b, c]) && !is_collapsed([a, b, c]);
+        is_proper.then(|| a.min(b).min(c) as usize)
+    };
+
+    // Counting sort by lowest vertex. Shifted by one, each start moves on to the next row's start while its row fills.
+    let mut starts = vec![0u32; vertex_count + 2];
+    for v in (0..drawn.len()).filter_map(lowest) {
+        starts[v + 2] += 1;
     }
-    for v in 0..vertex_count {
-        starts[v + 1] += starts[v];
+    for v in 2..starts.len() {
+        starts[v] += starts[v - 1];
     }
-    let mut sorted: Vec<Sorted> = vec![(0, 0, 0); starts[vertex_count] as usize];
-    let mut next = starts.clone();
-    for t in (0..corners.len()).filter(is_proper) {
-        let mut of_triangle = in_surface(t);
-        of_triangle.sort_unstable();
-        let place = &mut next[of_triangle[0] as usize];
-        sorted[*place as usize] = (of_triangle[1], of_triangle[2], t as u32);
-        *place += 1;
+    let mut sorted = vec![0u32; starts[vertex_count + 1] as usize];
+    for t in 0..drawn.len() {
+        if let Some(v) = lowest(t) {
+            let place = &mut starts[v + 1];
+            sorted[*place as usize] = t as u32;
+            *place += 1;
+        }
     }
 
     let mut repeated = Vec::new();
-    let mut drawn_triangles = Vec::with_capacity(sorted.len());
+    let mut row: Vec<(u32, u32, u32)> = Vec::new();
+    // Rows only shrink, so they are written over the ones that were read.
+    let mut end = 0;
     for v in 0..vertex_count {
-        let group = &mut sorted[starts[v] as usize..starts[v + 1] as usize];
-        group.sort_unstable();
+        row.clear();
+        row.extend(sorted[starts[v] as usize..starts[v + 1] as usize].iter().map(|&t| {
+            let mut corners = in_surface(t as usize);
+            corners.sort_unstable();
+            (corners[1], corners[2], t)
+        }));
+        row.sort_unstable();
         let mut previous = None;
-        for &(middle, highest, t) in group.iter() {
+        for &(middle, highest, t) in &row {
             if previous == Some((middle, highest)) {
                 repeated.push(t);
             } else {
-                drawn_triangles.push(t);
+                sorted[end] = t;
+                end += 1;
             }
             previous = Some((middle, highest));
         }
     }
+    drop(starts);
+    sorted.truncate(end);
     repeated.sort_unstable();
     *duplicates = Finding::of(&repeated);
-    let triangles = drawn_triangles
+    let triangles = sorted
         .par_iter()
         .map(|&t| in_surface(t as usize).map(SurfaceVertex))
         .collect();
-    (triangles, drawn_triangles)
+    (triangles, sorted)
 }

@@ -1,7 +1,9 @@
 //! What is found wrong with a mesh, and where.
 
+#![allow(clippy::expect_used, reason = "a test that fails may panic")]
+
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_mesh::{Drawn, DrawnVertex, FindingKind, Named, shapes};
+use pliant_mesh::{Cancel, Drawn, DrawnVertex, FindingKind, Named, Progress, Survey, WeldOptions, shapes};
 
 fn placed(drawn: &Drawn, scale: f64, by: DVec3) -> Drawn {
     shapes::moved(
@@ -84,4 +86,22 @@ fn every_example_stands_where_it_was_found() {
         }
     }
     assert!(seen > 10);
+}
+
+#[test]
+fn a_look_finds_what_welding_finds() {
+    let mut all: Vec<Drawn> = shapes::classes().into_iter().map(|(_, drawn)| drawn).collect();
+    all.push(shapes::broken(&shapes::icosphere(1)));
+    all.push(Drawn::default());
+    for drawn in all {
+        let model = shapes::model(drawn.clone());
+        let survey = Survey::of(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new());
+        let survey = survey.expect("nobody cancels it");
+        assert_eq!(survey.findings, model.findings);
+        assert_eq!(survey.findings.diagnoses(&survey.drawn), model.diagnoses());
+        assert_eq!(survey.components, model.topology.components());
+        assert_eq!(survey.bounds, model.bounds());
+        let counts = [model.surface.positions.len(), model.surface.triangles.len()];
+        assert_eq!([survey.surface_vertices, survey.surface_triangles], counts);
+    }
 }

@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 
 use pliant_io::{Difference, What};
-use pliant_mesh::WeldOptions;
 use serde_json::{Value, json};
 
 use super::arguments::DiffArguments;
@@ -13,11 +12,9 @@ use crate::{AppError, engine};
 pub(super) fn run(arguments: &DiffArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     let watch = &console.watch;
     let differences = on_threads(None, || {
-        let [first, second] =
-            [&arguments.first, &arguments.second].map(|path| engine::load(path, &WeldOptions::default(), watch));
+        let [first, second] = [&arguments.first, &arguments.second].map(|path| engine::open(path, watch));
         let (first, second) = (first?, second?);
-        let drawn = [&first.model.drawn, &second.model.drawn];
-        Ok::<_, AppError>(first.scene.differences(drawn[0], &second.scene, drawn[1]))
+        Ok::<_, AppError>(first.scene.differences(&first.drawn, &second.scene, &second.drawn))
     })??;
     let text = if arguments.json {
         let all: Vec<Value> = differences.iter().map(as_json).collect();

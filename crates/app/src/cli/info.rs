@@ -1,33 +1,51 @@
 //! `pliant info`: what a file holds and what is wrong with its mesh.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
-use pliant_mesh::{FindingKind, WeldOptions};
+use pliant_io::{Opened, Scene};
+use pliant_mesh::{FindingKind, Survey, WeldOptions};
 use serde_json::{Value, json};
 
 use super::arguments::InfoArguments;
 use super::{Console, on_threads, print};
 use crate::AppError;
-use crate::engine::{self, Loaded};
+use crate::engine;
+use crate::watch::Watch;
 
 /// How many components are listed one by one.
 const LISTED_COMPONENTS: usize = 12;
 
 pub(super) fn run(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     let watch = &console.watch;
-    let loaded = on_threads(None, || engine::load(&arguments.file, &WeldOptions::default(), watch))??;
+    let looked_at = on_threads(None, || look_at(&arguments.file, watch))??;
     let text = if arguments.json {
-        format!("{:#}\n", as_json(&loaded))
+        format!("{:#}\n", as_json(&looked_at))
     } else {
-        as_text(&loaded)
+        as_text(&looked_at)
     };
     print(console.out, &text)
 }
 
+/// A file and its geometry.
+struct LookedAt<'a> {
+    path: &'a Path,
+    scene: Scene,
+    survey: Survey,
+}
+
+fn look_at<'a>(path: &'a Path, watch: &Watch) -> Result<LookedAt<'a>, AppError> {
+    let Opened { scene, drawn } = engine::open(path, watch)?;
+    let progress = watch.begin("welding");
+    let survey = Survey::of(drawn, &WeldOptions::default(), &progress, &watch.cancel);
+    let survey = survey.map_err(|_| AppError::Interrupted)?;
+    Ok(LookedAt { path, scene, survey })
+}
+
 /// What is told of a file, for a person.
-fn as_text(loaded: &Loaded) -> String {
-    let (model, summary) = (&loaded.model, loaded.scene.summary());
-    let mut text = format!("{}: {}\n", loaded.path.display(), loaded.scene.format());
+fn as_text(LookedAt { path, scene, survey }: &LookedAt<'_>) -> String {
+    let summary = scene.summary();
+    let mut text = format!("{}: {}\n", path.display(), scene.format());
     let mut line = |what: &str, said: String| {
         // A String takes whatever is written to it.
         let _ = writeln!(text, "  {what:<12}{said}");
@@ -50,29 +68,28 @@ fn as_text(loaded: &Loaded) -> String {
     if !held.is_empty() {
         line("holds", held.join(", "));
     }
-    let surface = &model.surface;
     line(
         "vertices",
         format!(
             "{} in the file, {} drawn, {} welded",
-            model.drawn.file_vertex_count,
-            model.drawn.positions.len(),
-            surface.positions.len()
+            survey.drawn.file_vertex_count,
+            survey.drawn.positions.len(),
+            survey.surface_vertices
         ),
     );
-    if surface.triangles.is_empty() {
+    if survey.surface_triangles == 0 {
         line("triangles", "none: there is nothing to edit in it".to_owned());
     } else {
         line(
             "triangles",
             format!(
                 "{} drawn, {} kept",
-                model.drawn.triangles.len(),
-                surface.triangles.len()
+                survey.drawn.triangles.len(),
+                survey.surface_triangles
             ),
         );
     }
-    if let Some(bounds) = model.bounds() {
+    if let Some(bounds) = survey.bounds {
         let (min, max) = (bounds.min, bounds.max);
         line(
             "bounds",
@@ -82,9 +99,8 @@ fn as_text(loaded: &Loaded) -> String {
             ),
         );
     }
-    let sizes: Vec<usize> = model
-        .topology
-        .components()
+    let sizes: Vec<usize> = survey
+        .components
         .iter()
         .map(|component| component.vertices.len())
         .collect();
@@ -96,25 +112,24 @@ fn as_text(loaded: &Loaded) -> String {
             format!("{} (vertices: {}{more})", sizes.len(), listed.join(", ")),
         );
     }
-    for sentence in model.findings.sentences() {
+    for sentence in survey.findings.sentences() {
         line("found", sentence);
     }
-    for note in loaded.scene.notes() {
+    for note in scene.notes() {
         line("note", note.clone());
     }
     text
 }
 
 /// What is told of a file, for a program.
-fn as_json(loaded: &Loaded) -> Value {
-    let (model, findings) = (&loaded.model, &loaded.model.findings);
-    let appearance = loaded.scene.appearance();
-    let bounds = model
-        .bounds()
+fn as_json(LookedAt { path, scene, survey }: &LookedAt<'_>) -> Value {
+    let findings = &survey.findings;
+    let appearance = scene.appearance();
+    let bounds = survey
+        .bounds
         .map(|bounds| json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() }));
-    let components: Vec<Value> = model
-        .topology
-        .components()
+    let components: Vec<Value> = survey
+        .components
         .iter()
         .map(|component| {
             json!({
@@ -123,7 +138,7 @@ fn as_json(loaded: &Loaded) -> Value {
             })
         })
         .collect();
-    let diagnoses = model.diagnoses();
+    let diagnoses = findings.diagnoses(&survey.drawn);
     let mut found = serde_json::Map::new();
     for kind in FindingKind::ALL
         .into_iter()
@@ -142,14 +157,14 @@ fn as_json(loaded: &Loaded) -> Value {
         found.insert(kind.key().to_owned(), told);
     }
     json!({
-        "file": loaded.path.to_string_lossy(),
-        "format": loaded.scene.format().extension(),
-        "holds": loaded.scene.summary(),
-        "vertices": model.drawn.file_vertex_count,
-        "drawn_vertices": model.drawn.positions.len(),
-        "welded_vertices": model.surface.positions.len(),
-        "drawn_triangles": model.drawn.triangles.len(),
-        "triangles": model.surface.triangles.len(),
+        "file": path.to_string_lossy(),
+        "format": scene.format().extension(),
+        "holds": scene.summary(),
+        "vertices": survey.drawn.file_vertex_count,
+        "drawn_vertices": survey.drawn.positions.len(),
+        "welded_vertices": survey.surface_vertices,
+        "drawn_triangles": survey.drawn.triangles.len(),
+        "triangles": survey.surface_triangles,
         "bounding_box": bounds,
         "components": components,
         "normals": appearance.normals.is_some(),
@@ -158,6 +173,6 @@ fn as_json(loaded: &Loaded) -> Value {
         "materials": appearance.materials.iter().map(|material| &material.name).collect::<Vec<_>>(),
         "findings": found,
         "sentences": findings.sentences(),
-        "notes": loaded.scene.notes(),
+        "notes": scene.notes(),
     })
 }

@@ -1,0 +1,53 @@
+//! A look at a file's geometry: its counts and findings, without the tables that an edit needs.
+
+use crate::components::{Component, components};
+use crate::parts::Parts;
+use crate::rings::oddities;
+use crate::weld::weld;
+use crate::{Bounds, Cancel, Cancelled, Drawn, Findings, Progress, WeldOptions, bounding_box};
+
+/// What [`Model::weld`](crate::Model::weld) would find, in less memory and time: nothing can be edited by it.
+#[derive(Clone, Debug, Default)]
+pub struct Survey {
+    /// What the file shows.
+    pub drawn: Drawn,
+    /// How many vertices the welded surface has.
+    pub surface_vertices: usize,
+    /// How many triangles it has.
+    pub surface_triangles: usize,
+    /// The bounding box of the vertices that kept triangles use; `None` of an empty surface.
+    pub bounds: Option<Bounds>,
+    /// The surface's connected parts by falling vertex count, equal ones by their first file vertex.
+    pub components: Vec<Component>,
+    /// What is wrong with the mesh.
+    pub findings: Findings,
+}
+
+impl Survey {
+    /// Welds `drawn`, looks at the surface and lets it go.
+    pub fn of(drawn: Drawn, options: &WeldOptions, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
+        let (surface, first_file_vertex, mut findings) = weld(&drawn, options, progress, cancel)?.without_tables();
+        cancel.check()?;
+        let vertex_count = surface.positions.len();
+        let oddities = oddities(vertex_count, &surface.triangles, cancel)?;
+        cancel.check()?;
+        progress.set(0.9);
+        let (component_of_vertex, components) = components(&surface.triangles, &first_file_vertex);
+        let parts = Parts {
+            surface: &surface,
+            first_file_vertex: &first_file_vertex,
+            component_of_vertex: &component_of_vertex,
+            components: &components,
+        };
+        parts.report(&oddities, &mut findings);
+        progress.set(1.0);
+        Ok(Self {
+            drawn,
+            surface_vertices: vertex_count,
+            surface_triangles: surface.triangles.len(),
+            bounds: bounding_box(&surface.positions),
+            components,
+            findings,
+        })
+    }
+}
