@@ -238,6 +238,7 @@ impl Trial {
             holds: Holds {
                 soft: &self.soft,
                 continuity: &self.continuity,
+                parts: &[],
             },
             loose: self.loose,
             method: &self.method,

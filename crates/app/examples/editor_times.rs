@@ -12,12 +12,12 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use glam::DVec2;
+use glam::{DQuat, DVec2, DVec3};
 use pliant_editor::{
-    BrushMetric, Button, Command, Depth, Editor, Event, InlineExecutor, JobKind, Modifiers, Pointer, RegionAction,
-    StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
+    BrushMetric, Button, Command, Depth, Editor, Event, HandleTransform, InlineExecutor, JobKind, Modifiers,
+    ObjectAction, PivotPlace, Pointer, RegionAction, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
 };
-use pliant_mesh::{Cancel, Model, Progress, WeldOptions, shapes};
+use pliant_mesh::{Cancel, Model, Object, Progress, WeldOptions, shapes};
 
 const SIZE_PX: DVec2 = DVec2::new(1280.0, 800.0);
 
@@ -91,7 +91,13 @@ fn line(from: DVec2, to: DVec2) -> impl Iterator<Item = DVec2> {
 
 fn main() {
     let drawn = shapes::uv_sphere(448, 448);
+    let half = drawn.triangles.len() as u32 / 2;
+    let objects = [0..half, half..2 * half].map(|triangles| Object {
+        triangles: vec![triangles],
+        ..Object::default()
+    });
     let model = Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).expect("it is whole");
+    let model = model.with_objects(objects.into());
     println!(
         "{} vertices, {} triangles",
         model.surface.positions.len(),
@@ -169,6 +175,55 @@ fn main() {
         timed.report(&format!("{action:?}"));
         timed.command(Command::Undo);
     }
+    // Every other command that goes over the whole mesh, with a large handle that is moved.
+    timed.command(Command::ClearRegions);
+    timed.command(Command::SetTool(ToolMode::PaintHandle));
+    timed.command(Command::SetStrokeShape(StrokeShape::Box));
+    timed.command(Command::SetDepth(Depth::Visible));
+    timed.stroke([middle - 180.0, middle + 60.0]);
+    for (command, name) in [
+        (Command::MakeTwin(2), "twin"),
+        (Command::Undo, "undo of it"),
+        (Command::DuplicateHandle, "split"),
+        (Command::Undo, "undo of it"),
+        (Command::FrameAll, "frame all"),
+        (Command::FrameSelected, "frame selected"),
+        (Command::FrameAll, "frame all"),
+    ] {
+        timed.times.clear();
+        timed.command(command);
+        timed.report(name);
+    }
+    let id = timed.editor.view().selected.expect("the box made a handle");
+    let moved = HandleTransform::Trs {
+        translation: DVec3::new(0.1, 0.0, 0.0),
+        rotation: DQuat::IDENTITY,
+        scale: DVec3::ONE,
+        pivot: None,
+    };
+    for (command, name) in [
+        (Command::SetPivotPlace(id, PivotPlace::Border), "pivot at the border"),
+        (Command::SetHandleTransform(id, moved), "a move in numbers"),
+        (Command::SetContinuity(id, Some(0.0)), "a hinge"),
+        (Command::Undo, "undo of it"),
+        (Command::Apply, "apply shape"),
+        (Command::Undo, "undo of it"),
+        (Command::ResetRegion, "reset region"),
+        (Command::Undo, "undo of it"),
+        (Command::Objects(ObjectAction::Lock, vec![0]), "lock half"),
+        (Command::Undo, "undo of it"),
+        (Command::Objects(ObjectAction::Hide, vec![0]), "hide half"),
+        (Command::Undo, "undo of it"),
+        (Command::ResetShape, "reset shape"),
+        (Command::Undo, "undo of it"),
+        (Command::DeleteHandle, "delete handle"),
+        (Command::Undo, "undo of it"),
+        (Command::GoToStep(0), "back to the first step"),
+    ] {
+        timed.times.clear();
+        timed.command(command);
+        timed.report(name);
+    }
     timed.command(Command::ClearRegions);
     timed.command(Command::SetStrokeShape(StrokeShape::Brush));
     timed.command(Command::SetBrushMetric(BrushMetric::Screen));
@@ -196,4 +251,10 @@ fn main() {
         "a hundred strokes in the history: {:.1} MB",
         bytes as f64 / f64::from(1 << 20)
     );
+    let steps = timed.editor.history().names().1;
+    for (step, name) in [(steps - 100, "a hundred strokes back"), (steps, "and forth")] {
+        timed.times.clear();
+        timed.command(Command::GoToStep(step));
+        timed.report(name);
+    }
 }

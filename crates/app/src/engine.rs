@@ -73,6 +73,7 @@ fn open_bytes(bytes: Vec<u8>, path: &Path, watch: &Watch) -> Result<Opened, AppE
 fn welded(opened: Opened, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
     let progress = watch.begin("welding");
     let model = Model::weld(opened.drawn, weld, &progress, &watch.cancel).map_err(|_| AppError::Interrupted)?;
+    let model = model.with_objects(opened.scene.objects());
     Ok(Loaded {
         path: path.to_owned(),
         scene: opened.scene,

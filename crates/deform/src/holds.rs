@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::{BindError, Problem};
+use crate::{BindError, Loose, Problem};
 
 /// What constrained vertices do beyond their roles. The default is hard handles, joined as smoothly as the method can.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -22,6 +22,9 @@ pub struct Holds<'a> {
     /// Cⁿ⁻¹, n the shell's order; from 0 to 2 (Botsch & Kobbelt 2004). 0 is a hinge, 1 keeps the tangents, 2 the
     /// curvature; a number between is a hinge with a spring that is as stiff at every resolution. Empty: 2 everywhere.
     pub continuity: &'a [f64],
+    /// What single components do that nothing holds, by their number in the topology, in place of [`Problem::loose`];
+    /// of several entries the last one counts.
+    pub parts: &'a [(u32, Loose)],
 }
 
 /// What a continuity may be.

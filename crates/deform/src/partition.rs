@@ -24,8 +24,8 @@ pub(crate) struct Partition<'a> {
     pub soft: Vec<Option<f64>>,
     /// Components that hold a handle, ascending.
     pub driven: Vec<u32>,
-    /// Components that hold neither a handle nor a fixed vertex and are to follow, ascending.
-    pub following: Vec<u32>,
+    /// Components that hold neither a handle nor a fixed vertex and are to follow, ascending, and how.
+    pub following: Vec<(u32, Loose)>,
     /// Of each component: whether it holds a fixed vertex.
     pub held: Vec<bool>,
     /// How many vertices have the role [`Role::Free`].
@@ -65,8 +65,11 @@ impl<'a> Partition<'a> {
                 .collect::<Vec<_>>()
         };
         let loose = indices(&|c| !held[c] && !driven[c]);
-        let follows = problem.loose == Loose::Follow && !handles.is_empty();
-        let mut warnings = warnings(problem, &loose, &indices(&|c| driven[c] && !held[c]), follows);
+        let mut warnings = warnings(problem, &loose, &indices(&|c| driven[c] && !held[c]));
+        let follows = |component: u32| match problem.loose_of(component) {
+            Loose::Rest => None,
+            how => (!handles.is_empty()).then_some((component, how)),
+        };
         let soft = match problem.method {
             Method::Bilaplacian(_) | Method::Arap(_) => (0..problem.handle_count)
                 .map(|handle| problem.holds.weight(handle as u16))
@@ -78,10 +81,10 @@ impl<'a> Partition<'a> {
         Ok(Self {
             solved: influenced(problem, &net, &handles, &soft),
             net,
+            following: loose.into_iter().filter_map(follows).collect(),
             handles,
             soft,
             driven: indices(&|c| driven[c]),
-            following: if follows { loose } else { Vec::new() },
             held,
             free_count,
             warnings,
@@ -195,40 +198,50 @@ fn unheeded(problem: &Problem) -> Option<String> {
 /// How many components are named one by one before they are only counted.
 const NAMED: usize = 4;
 
-fn warnings(problem: &Problem, loose: &[u32], unheld: &[u32], follows: bool) -> Vec<String> {
+fn warnings(problem: &Problem, loose: &[u32], unheld: &[u32]) -> Vec<String> {
     let mut sentences = Vec::new();
     if problem.handle_count == 0 {
         return sentences;
     }
     let size = |component: u32| problem.topology.components()[component as usize].vertices.len();
-    let fate = if follows {
-        "the nearest deformed surface"
-    } else {
-        "nothing"
-    };
-    let verb = |count: usize| match (follows, count) {
-        (true, 1) => "follows",
-        (true, _) => "follow",
-        (false, 1) => "stays and follows",
-        (false, _) => "stay and follow",
-    };
     let sum = |components: &[u32]| components.iter().map(|&component| size(component)).sum::<usize>();
-    if loose.len() <= NAMED {
-        for &component in loose {
+    for (how, [it, they]) in [
+        (
+            Loose::Follow,
+            [
+                "follows the nearest deformed surface",
+                "follow the nearest deformed surface",
+            ],
+        ),
+        (
+            Loose::Bend,
+            [
+                "bends along with the nearest deformed surface",
+                "bend along with the nearest deformed surface",
+            ],
+        ),
+        (Loose::Rest, ["stays and follows nothing", "stay and follow nothing"]),
+    ] {
+        let alike = loose
+            .iter()
+            .copied()
+            .filter(|&component| problem.loose_of(component) == how);
+        let alike: Vec<u32> = alike.collect();
+        if alike.len() > NAMED {
             sentences.push(format!(
-                "component {component} ({} vertices) holds no handle and no fixed vertex: it {} {fate}",
+                "{} components ({} vertices, from component {} on) hold no handle and no fixed vertex: they {they}",
+                alike.len(),
+                sum(&alike),
+                alike[0],
+            ));
+            continue;
+        }
+        for component in alike {
+            sentences.push(format!(
+                "component {component} ({} vertices) holds no handle and no fixed vertex: it {it}",
                 size(component),
-                verb(1)
             ));
         }
-    } else {
-        sentences.push(format!(
-            "{} components ({} vertices, from component {} on) hold no handle and no fixed vertex: they {} {fate}",
-            loose.len(),
-            sum(loose),
-            loose[0],
-            verb(loose.len())
-        ));
     }
     if unheld.len() <= NAMED {
         for &component in unheld {

@@ -25,6 +25,9 @@ pub enum Loose {
     Follow,
     /// It stays where it is.
     Rest,
+    /// Each place of it moves with the part of the deformed surface that is nearest to that place: a strap bends along
+    /// with what it lies on.
+    Bend,
 }
 
 /// Everything that a deformation depends on but the handles' transforms.
@@ -45,7 +48,7 @@ pub struct Problem<'a> {
     pub stiffness: &'a [f64],
     /// How firmly handles pull and how smoothly the surface joins what holds it.
     pub holds: Holds<'a>,
-    /// What components do that nothing holds.
+    /// What components do that nothing holds; [`Holds::parts`] tells of single ones.
     pub loose: Loose,
     /// The method and its options.
     pub method: &'a Method,
@@ -54,6 +57,12 @@ pub struct Problem<'a> {
 }
 
 impl Problem<'_> {
+    /// What a component does if nothing holds it.
+    pub(crate) fn loose_of(&self, component: u32) -> Loose {
+        let own = self.holds.parts.iter().rev().find(|(part, _)| *part == component);
+        own.map_or(self.loose, |(_, loose)| *loose)
+    }
+
     /// Factors and solves whatever does not depend on the handles' transforms.
     ///
     /// `ordering` must come from the same topology with the power that [`Method::operator_power`] names. Uses rayon's

@@ -6,8 +6,8 @@
 use pliant_deform::{Loose, Method};
 
 use crate::{
-    BrushMetric, Depth, GizmoOrientation, HandleId, HandleTransform, Key, Modifiers, PivotPlace, RegionAction, Shading,
-    StiffnessBrush, StrokeShape, ToolMode,
+    BrushMetric, Depth, GizmoOrientation, HandleId, HandleTransform, Key, Modifiers, ObjectAction, PivotPlace,
+    RegionAction, Shading, StiffnessBrush, StrokeShape, ToolMode,
 };
 
 /// Something to be done, with all it needs to know.
@@ -35,6 +35,8 @@ pub enum Command {
     RenameHandle(HandleId, String),
     /// Puts a handle where the transform says, about the handle's own pivot.
     SetHandleTransform(HandleId, HandleTransform),
+    /// Turns a handle to these angles about x, y and z in degrees, full turns included.
+    SetTurn(HandleId, glam::DVec3),
     /// How far along the surface a handle takes the surface along.
     SetReach(HandleId, Reach),
     /// Gives a handle a weight ([`SOFT_RANGE`](crate::SOFT_RANGE)), so that it only pulls; `None` makes it hard.
@@ -47,8 +49,14 @@ pub enum Command {
     ClearRegions,
     /// Chooses the method and its options.
     SetMethod(Method),
-    /// Chooses what components that nothing holds do.
+    /// Chooses what components that nothing holds do, all of them.
     SetLoose(Loose),
+    /// Chooses what one of them does, by its component's number; `None` is what all do.
+    SetLoosePart(u32, Option<Loose>),
+    /// Comes close to a connected part, by its component's number.
+    FramePart(u32),
+    /// With which continuity ([`pliant_deform::CONTINUITY_RANGE`]) the surface joins a handle; `None` is the smoothest.
+    SetContinuity(HandleId, Option<f64>),
     /// Sets the stiffness (0.001 to 1000; 1 is a vertex left alone) of every vertex.
     SetStiffness(Vec<f64>),
     /// Sets the brush's radius in points, clamped to what the brush allows.
@@ -135,6 +143,14 @@ pub enum Command {
     Untwin,
     /// Takes the selected handle's vertices and its region back to the file's shape.
     ResetRegion,
+    /// Hides, shows or locks objects, by their numbers in [`pliant_mesh::Model::all_objects`].
+    Objects(ObjectAction, Vec<u32>),
+    /// The same with the object under the pointer.
+    ObjectHere(ObjectAction),
+    /// Shows nothing but the connected part under the pointer; once more shows the others again.
+    Isolate,
+    /// Shows everything that is hidden.
+    ShowEverything,
     /// Goes back or forth to the state after so many steps of the history.
     GoToStep(usize),
     /// Starts moving the selected handle with the pointer.
@@ -322,6 +338,36 @@ impl Command {
             &[character('j')],
         ),
         listed(
+            Command::SetBrushMetric(BrushMetric::Screen),
+            "Brush as seen",
+            "The brush takes what its disc on the screen covers and faces you.",
+            &[],
+        ),
+        listed(
+            Command::SetBrushMetric(BrushMetric::Surface),
+            "Brush along the surface",
+            "The brush takes what is near along the surface: into folds and round edges, seen or not.",
+            &[],
+        ),
+        listed(
+            Command::SetBrushMetric(BrushMetric::Through),
+            "Brush through",
+            "The brush takes everything that its disc on the screen covers, however far behind.",
+            &[],
+        ),
+        listed(
+            Command::SetDepth(Depth::Visible),
+            "Lasso what is seen",
+            "A lasso or a box takes only what faces you and is hidden by nothing.",
+            &[],
+        ),
+        listed(
+            Command::SetDepth(Depth::Through),
+            "Lasso through",
+            "A lasso or a box takes everything inside, to the back of the model.",
+            &[],
+        ),
+        listed(
             Command::Region(RegionAction::Grow),
             "Grow",
             "Takes in the vertices around the region in hand.",
@@ -464,6 +510,36 @@ impl Command {
             "Reset region",
             "Takes the selected handle and its region back to the file's shape, and nothing else.",
             &[],
+        ),
+        listed(
+            Command::ObjectHere(ObjectAction::Hide),
+            "Hide object",
+            "Hides the object under the pointer: it is neither drawn nor picked nor painted, and moves along.",
+            &[character('h')],
+        ),
+        listed(
+            Command::ObjectHere(ObjectAction::Solo),
+            "Show only this object",
+            "Hides all objects but the one under the pointer; once more shows everything.",
+            &[Shortcut::with(Modifiers::SHIFT, Key::Character('h'))],
+        ),
+        listed(
+            Command::ObjectHere(ObjectAction::Lock),
+            "Lock object",
+            "Holds the object under the pointer still, whatever is painted on it.",
+            &[],
+        ),
+        listed(
+            Command::Isolate,
+            "Isolate part",
+            "Shows nothing but the connected part under the pointer; once more shows the others again.",
+            &[character('/')],
+        ),
+        listed(
+            Command::ShowEverything,
+            "Show everything",
+            "Shows all objects and parts that are hidden.",
+            &[Shortcut::with(Modifiers::ALT, Key::Character('h'))],
         ),
         listed(
             Command::NewHandle,

@@ -15,6 +15,7 @@ impl Editor {
     /// Draws the conclusions from what an event changed: revisions grow, and jobs are asked for.
     pub(crate) fn conclude(&mut self) {
         let activity = self.tool.activity();
+        self.refresh_masks();
         self.rest_if_undisplaced();
         let (known, document) = (&self.known, &self.document);
         let repainted = std::mem::take(&mut self.repainted)
@@ -104,8 +105,10 @@ fn is_other_problem(a: &Document, b: &Document) -> bool {
         || !same_field(&a.continuity, &b.continuity)
         || a.method != b.method
         || a.loose != b.loose
+        || a.loose_parts != b.loose_parts
+        || a.access.locked != b.access.locked
         || !same(&a.handles, &b.handles, |a, b| {
-            (a.id, a.reach, a.soft) == (b.id, b.reach, b.soft)
+            (a.id, a.reach, a.soft, a.continuity) == (b.id, b.reach, b.soft, b.continuity)
         })
 }
 

@@ -5,13 +5,15 @@
 //!
 //! Cloning is cheap: the long vectors are shared until one side changes.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use pliant_deform::{Loose, Method};
+use pliant_deform::{CONTINUITY_RANGE, Loose, Method};
 
 use crate::tool::handle_colour;
-use crate::{HandleTransform, Reach};
+use crate::turn::followed;
+use crate::{Access, HandleTransform, Reach};
 
 /// A handle's number for as long as the document lives.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -42,6 +44,9 @@ pub struct Handle {
     pub colour: [u8; 4],
     /// Where it was put, from the rest shape, about its pivot.
     pub transform: HandleTransform,
+    /// Its turn as a person counts it, in degrees about x, y and z: full turns included. It means the rotation of the
+    /// transform.
+    pub turn_deg: DVec3,
     /// The point that its turns and scales leave alone, on the rest shape, in world space.
     pub pivot: DVec3,
     /// Where the pivot stands when the handle's vertices change.
@@ -54,6 +59,9 @@ pub struct Handle {
     pub visible: bool,
     /// Whether it is kept from being moved, painted and deleted.
     pub locked: bool,
+    /// With which continuity the surface joins it, in [`pliant_deform::CONTINUITY_RANGE`]; `None` is what the document
+    /// says of its vertices.
+    pub continuity: Option<f64>,
     /// The handle that does the same on the other side of a plane.
     pub twin: Option<Twin>,
 }
@@ -142,12 +150,14 @@ impl Handle {
             name,
             colour: handle_colour(id),
             transform: HandleTransform::IDENTITY,
+            turn_deg: DVec3::ZERO,
             pivot: DVec3::ZERO,
             pivot_place: PivotPlace::default(),
             reach: Reach::default(),
             soft: None,
             visible: true,
             locked: false,
+            continuity: None,
             twin: None,
         }
     }
@@ -155,6 +165,17 @@ impl Handle {
     /// The transform as a map of world positions of the rest shape.
     pub fn affine(&self) -> DAffine3 {
         self.transform.affine(self.pivot)
+    }
+
+    /// Puts it somewhere, and counts its turn on from where it was.
+    pub(crate) fn put(&mut self, transform: HandleTransform) {
+        self.turn_deg = match transform {
+            // Back at rest it has not turned at all.
+            _ if transform.is_identity() => DVec3::ZERO,
+            HandleTransform::Trs { rotation, .. } => followed(self.turn_deg, rotation),
+            HandleTransform::Matrix(_) => DVec3::ZERO,
+        };
+        self.transform = transform;
     }
 
     /// Whether it is anywhere else than where it rests.
@@ -181,6 +202,10 @@ pub struct Document {
     pub(crate) continuity: Option<Arc<Vec<f64>>>,
     pub(crate) method: Method,
     pub(crate) loose: Loose,
+    /// What single parts do that nothing holds, by their component's number, in place of `loose`.
+    pub(crate) loose_parts: Arc<BTreeMap<u32, Loose>>,
+    /// What is hidden and locked.
+    pub(crate) access: Arc<Access>,
     /// The rest shape's displacements from the file's.
     pub(crate) rest: Arc<Vec<DVec3>>,
     /// Whether a shape was applied: without, `rest` is zero.
@@ -205,6 +230,8 @@ impl Document {
             continuity: None,
             method: Method::default(),
             loose: Loose::default(),
+            loose_parts: Arc::default(),
+            access: Arc::default(),
             rest: Arc::clone(&zero),
             applied: false,
             from_rest: Arc::clone(&zero),
@@ -261,6 +288,36 @@ impl Document {
         self.loose
     }
 
+    /// What single components do that nothing holds, in place of [`Document::loose`].
+    pub fn loose_parts(&self) -> &BTreeMap<u32, Loose> {
+        &self.loose_parts
+    }
+
+    /// The continuity per surface vertex, with that of handles which say one of their own; `None` is the highest
+    /// everywhere.
+    pub fn joints(&self) -> Option<Vec<f64>> {
+        let own: BTreeMap<HandleId, f64> = self
+            .handles
+            .iter()
+            .filter_map(|handle| Some((handle.id, handle.continuity?)))
+            .collect();
+        if own.is_empty() {
+            return self.continuity.as_ref().map(|field| field.to_vec());
+        }
+        let highest = *CONTINUITY_RANGE.end();
+        let painted = self.paint.iter().enumerate();
+        let joint = |(vertex, paint): (usize, &Paint)| match paint {
+            Paint::Handle(id) if own.contains_key(id) => own[id],
+            _ => self.continuity.as_ref().map_or(highest, |field| field[vertex]),
+        };
+        Some(painted.map(joint).collect())
+    }
+
+    /// What of the file is hidden and locked.
+    pub fn access(&self) -> &Access {
+        &self.access
+    }
+
     /// The rest shape's displacements from the file's shape, per surface vertex.
     pub fn rest(&self) -> &[DVec3] {
         &self.rest
@@ -302,7 +359,7 @@ impl Document {
         self.settled = true;
         for handle in &mut self.handles {
             handle.pivot = handle.centre();
-            handle.transform = HandleTransform::IDENTITY;
+            handle.put(HandleTransform::IDENTITY);
         }
     }
 

@@ -40,6 +40,8 @@ pub struct EditFile {
     pub continuity: Vec<FieldEntry>,
     /// What components that nothing holds do.
     pub loose: Loose,
+    /// What some of them do in place of that: those with a selected vertex; the later entry wins.
+    pub loose_parts: Vec<(Selector, Loose)>,
 }
 
 /// A handle: which vertices move, and how.
@@ -68,6 +70,7 @@ impl Default for EditFile {
             stiffness: Vec::new(),
             continuity: Vec::new(),
             loose: Loose::Follow,
+            loose_parts: Vec::new(),
         }
     }
 }
@@ -114,6 +117,10 @@ impl EditFile {
             name: "a stiffness",
             range: STIFFNESS_RANGE,
         };
+        let (loose, loose_parts) = match members.get("loose") {
+            Some(loose) => read_loose(&loose)?,
+            None => (Loose::Follow, Vec::new()),
+        };
         Ok(Self {
             method: read_method(&members.require("method")?)?,
             region: read_selector(&members, "region", Selector::All)?,
@@ -137,10 +144,8 @@ impl EditFile {
                 Some(continuity) => read_continuity(&continuity)?,
                 None => Vec::new(),
             },
-            loose: match members.get("loose") {
-                Some(loose) => read_loose(&loose)?,
-                None => Loose::Follow,
-            },
+            loose,
+            loose_parts,
         })
     }
 
@@ -153,11 +158,14 @@ impl EditFile {
             "fixed": self.fixed.to_value(),
             "handles": self.handles.iter().map(HandleEntry::to_value).collect::<Vec<_>>(),
             "stiffness": self.stiffness.iter().map(FieldEntry::to_value).collect::<Vec<_>>(),
-            "loose": match self.loose {
-                Loose::Follow => "follow",
-                Loose::Rest => "rest",
-            },
+            "loose": loose_name(self.loose),
         });
+        if !self.loose_parts.is_empty() {
+            let entry = |select: &Selector, loose| json!({ "select": select.to_value(), "value": loose_name(loose) });
+            let all = entry(&Selector::All, self.loose);
+            let parts = self.loose_parts.iter().map(|(select, loose)| entry(select, *loose));
+            value["loose"] = std::iter::once(all).chain(parts).collect();
+        }
         if !self.continuity.is_empty() {
             value["continuity"] = self.continuity.iter().map(FieldEntry::to_value).collect();
         }
@@ -240,10 +248,42 @@ fn continuity_kind() -> FieldKind {
     }
 }
 
-fn read_loose(node: &Node<'_>) -> Result<Loose, EditError> {
-    match node.string("\"follow\" or \"rest\"")? {
+/// One word for all, or a list of selections with one each.
+fn read_loose(node: &Node<'_>) -> Result<(Loose, Vec<(Selector, Loose)>), EditError> {
+    if !node.value().is_array() {
+        return Ok((read_loose_name(node)?, Vec::new()));
+    }
+    let entries = node.elements("a list of selections with what loose parts do")?;
+    let mut loose = Loose::Follow;
+    let mut parts: Vec<(Selector, Loose)> = Vec::new();
+    for entry in entries {
+        let members = entry.object("an object with `select` and `value`", &["select", "value"])?;
+        let select = Selector::read(&members.require("select")?)?;
+        let does = read_loose_name(&members.require("value")?)?;
+        if select == Selector::All {
+            // What was said of some before is said anew.
+            loose = does;
+            parts.clear();
+        } else {
+            parts.push((select, does));
+        }
+    }
+    Ok((loose, parts))
+}
+
+fn read_loose_name(node: &Node<'_>) -> Result<Loose, EditError> {
+    match node.string("\"follow\", \"rest\" or \"bend\"")? {
         "follow" => Ok(Loose::Follow),
         "rest" => Ok(Loose::Rest),
-        name => Err(node.unknown_name(name, &["follow", "rest"])),
+        "bend" => Ok(Loose::Bend),
+        name => Err(node.unknown_name(name, &["follow", "rest", "bend"])),
+    }
+}
+
+pub(crate) fn loose_name(loose: Loose) -> &'static str {
+    match loose {
+        Loose::Follow => "follow",
+        Loose::Rest => "rest",
+        Loose::Bend => "bend",
     }
 }

@@ -7,19 +7,22 @@ use glam::{DVec2, DVec3};
 use pliant_deform::Role;
 use pliant_mesh::{Model, SurfaceVertex};
 
+use crate::access::Masks;
 use crate::brush::{Brush, BrushSize};
 use crate::camera_history::CameraHistory;
 use crate::document::{Document, HandleId};
 use crate::engine::{Arrival, Engine, Finality, moved_alone};
 use crate::history::{HISTORY_BYTES, History};
+use crate::mirror::Mirroring;
 use crate::overlay::Overlay;
 use crate::picking::{Pick, Picking};
 use crate::recolouring::Recolouring;
 use crate::sight::Sight;
 use crate::tool::{Tool, ToolMode};
 use crate::transaction::Transaction;
+use crate::turn::means;
 use crate::{
-    BRUSH_RADIUS_PX, Beginning, BrushMetric, Button, Camera, Command, Cursor, Depth, Descent, Event, Executor,
+    Access, BRUSH_RADIUS_PX, Beginning, BrushMetric, Button, Camera, Command, Cursor, Depth, Descent, Event, Executor,
     GizmoMode, GizmoOrientation, HandleTransform, JobDone, JobKind, Key, KeyMap, Look, Modifiers, Orbit, Pointer,
     Readout, Revision, SceneView, Shortcut, StiffnessBrush, StrokeShape,
 };
@@ -77,6 +80,11 @@ pub struct Editor {
     /// The step that a widget is adjusting, while a command is added to it.
     pub(crate) open_step: Option<Transaction>,
     pub(crate) overlay: Overlay,
+    /// What follows from what is hidden and locked, and what that was on which model.
+    pub(crate) masks: Masks,
+    pub(crate) masked: Option<(Arc<Model>, Arc<Access>)>,
+    /// The mirror image that is being looked for.
+    pub(crate) mirroring: Option<Mirroring>,
     /// Events that wait until rays can be answered from what is drawn.
     held: VecDeque<Event>,
     pub(crate) shape_counter: u64,
@@ -130,6 +138,9 @@ impl Editor {
             descent: None,
             open_step: None,
             overlay: Overlay::default(),
+            masks: Masks::default(),
+            masked: None,
+            mirroring: None,
             held: VecDeque::new(),
             shape_counter: 0,
         }
@@ -219,6 +230,12 @@ impl Editor {
         &self.engine.region.roles
     }
 
+    /// The connected parts that nothing holds within some handle's reach, and those that were told what to do, by
+    /// their component's number, as of the last measured region.
+    pub fn loose_components(&self) -> &[u32] {
+        &self.engine.region.loose
+    }
+
     /// Sentences about the present factorisation: what loose parts do, what was repaired.
     pub fn warnings(&self) -> &[String] {
         &self.engine.warnings
@@ -240,7 +257,7 @@ impl Editor {
         let awaited = |kind| match kind {
             JobKind::Pick => false,
             JobKind::Order => self.document.is_displaced(),
-            JobKind::Region | JobKind::Bind | JobKind::Solve => true,
+            JobKind::Region | JobKind::Bind | JobKind::Solve | JobKind::Mirror => true,
         };
         let is_idle = matches!(self.tool, Tool::Idle) && self.held.is_empty();
         is_idle
@@ -253,8 +270,9 @@ impl Editor {
         Some(Picking {
             model: self.engine.model.as_deref()?,
             displacements: &self.document.from_file,
-            bvh: self.engine.bvh.as_deref()?,
-            surface: self.engine.picked.as_deref()?,
+            bvh: &self.engine.pickable.as_ref()?.bvh,
+            surface: &self.engine.pickable.as_ref()?.surface,
+            triangles: self.engine.pickable.as_ref()?.triangles.as_deref().map(Vec::as_slice),
             camera: &self.camera,
             viewport_px: self.viewport_px,
             sight: Sight::of(&self.camera, self.viewport_px),
@@ -300,30 +318,44 @@ impl Editor {
 
     /// Puts a handle somewhere, in the document as it stands: the surface follows as soon as it can.
     pub(crate) fn put_handle(&mut self, id: HandleId, transform: HandleTransform) {
+        if let Some(why) = self.held_because(id) {
+            self.problem = Some(why);
+            return;
+        }
         let Some(handle) = self.document.handle_mut(id) else {
             return;
         };
-        if handle.transform == transform || handle.locked {
+        if handle.transform == transform {
             return;
         }
         let twin = handle.twin;
-        handle.transform = transform;
+        handle.put(transform);
         self.document.settled = false;
         if !self.engine.is_bound()
             && let Some(model) = self.engine.model.clone()
         {
-            moved_alone(&mut self.document, &model, id);
+            moved_alone(&mut self.document, &model, &self.masks, id);
         }
         if let Some(twin) = twin
+            && self.held_because(twin.handle).is_none()
             && let Some(other) = self.document.handle_mut(twin.handle)
-            && !other.locked
         {
-            other.transform = twin.plane.mirrored_transform(transform);
+            other.put(twin.plane.mirrored_transform(transform));
             if !self.engine.is_bound()
                 && let Some(model) = self.engine.model.clone()
             {
-                moved_alone(&mut self.document, &model, twin.handle);
+                moved_alone(&mut self.document, &model, &self.masks, twin.handle);
             }
+        }
+    }
+
+    /// Says how a handle's turn is counted, if that means its rotation.
+    pub(crate) fn count_turn(&mut self, id: HandleId, turn_deg: DVec3) {
+        if let Some(handle) = self.document.handle_mut(id)
+            && let HandleTransform::Trs { rotation, .. } = handle.transform
+            && means(turn_deg, rotation)
+        {
+            handle.turn_deg = turn_deg;
         }
     }
 
@@ -332,7 +364,9 @@ impl Editor {
             return;
         };
         let rest = model.surface.positions.iter();
-        let positions: Vec<DVec3> = rest.zip(self.document.from_file.iter()).map(|(&p, &d)| p + d).collect();
+        let moved = rest.zip(self.document.from_file.iter()).map(|(&p, &d)| p + d);
+        let shown = moved.enumerate().filter(|(vertex, _)| self.masks.is_shown(*vertex));
+        let positions: Vec<DVec3> = shown.map(|(_, position)| position).collect();
         self.camera.frame(&positions, self.viewport_px);
         self.is_framed = true;
     }
@@ -426,6 +460,7 @@ impl Editor {
     fn job_done(&mut self, done: JobDone) {
         match self.engine.accept(done) {
             Arrival::Nothing | Arrival::Picking => {}
+            Arrival::Mirrored(image) => self.take_mirrored(image),
             Arrival::Problem(sentence) => self.problem = Some(sentence),
             Arrival::Shape(solved, finality) => {
                 if self.document.settled || solved.from_rest.len() != self.document.from_rest.len() {
@@ -444,6 +479,7 @@ impl Editor {
         self.abort_tool();
         self.held.clear();
         self.problem = None;
+        self.mirroring = None;
         self.descent = None;
         self.selected = None;
         self.companions.clear();

@@ -9,15 +9,17 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{BindError, Bound, Holds, Ordering, Problem, Remains, SolveError, Step};
-use pliant_mesh::{Bvh, Cancel, Model, Progress, Surface, SurfaceVertex};
+use pliant_deform::{BindError, Bound, Holds, Loose, Ordering, Problem, Remains, SolveError, Step};
+use pliant_mesh::{Bvh, Cancel, Model, Progress, SurfaceVertex};
 
+use crate::access::Masks;
 use crate::document::{Document, HandleId, sum_of_shapes};
+use crate::job::Pickable;
 use crate::job_queue::{JobQueue, Running};
 use crate::region::{Region, RegionInput, displaced};
 use crate::{Descent, Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
 
-type Work = Box<dyn FnOnce(&Progress, &Cancel) -> JobOutcome + Send>;
+pub(crate) type Work = Box<dyn FnOnce(&Progress, &Cancel) -> JobOutcome + Send>;
 
 /// A solve takes so many vertices' worth of steps before it shows its shape: about what a window's frame has time for.
 /// There is no clock here.
@@ -51,9 +53,9 @@ pub(crate) struct Engine {
     pub(crate) shape_revision: Revision,
     /// Solves that were asked for before this are dropped.
     solve_floor: Revision,
-    pub(crate) bvh: Option<Arc<Bvh>>,
-    /// The surface in the shape of `bvh`.
-    pub(crate) picked: Option<Arc<Surface>>,
+    pub(crate) pickable: Option<Pickable>,
+    /// The triangles that are shown; `None` is all of them.
+    shown: Option<Arc<Vec<u32>>>,
     bvh_revision: Revision,
     /// One a power of the Laplacian that a method has asked for.
     orderings: Vec<Arc<Ordering>>,
@@ -63,6 +65,7 @@ pub(crate) struct Engine {
     /// What the next binding can take over of the last one.
     remains: Option<Remains>,
     bound_revision: Revision,
+    mirror_revision: Revision,
     pub(crate) warnings: Vec<String>,
 }
 
@@ -72,6 +75,8 @@ pub(crate) enum Arrival {
     Nothing,
     /// Rays can be answered from a newer shape.
     Picking,
+    /// The vertices of a mirror image.
+    Mirrored(Vec<usize>),
     /// A new shape; the flag says whether it is the final one.
     Shape(Solved, Finality),
     /// Something went wrong; one sentence.
@@ -100,8 +105,8 @@ impl Engine {
             target_revision: Revision(0),
             shape_revision: Revision(0),
             solve_floor: Revision(0),
-            bvh: None,
-            picked: None,
+            pickable: None,
+            shown: None,
             bvh_revision: Revision(0),
             orderings: Vec::new(),
             region: Region::still(0),
@@ -109,6 +114,7 @@ impl Engine {
             bound: None,
             remains: None,
             bound_revision: Revision(0),
+            mirror_revision: Revision(0),
             warnings: Vec::new(),
         }
     }
@@ -127,9 +133,9 @@ impl Engine {
         self.region = Region::still(model.surface.positions.len());
         self.model = Some(model);
         self.model_revision = self.next_revision();
-        (self.bvh, self.bound, self.remains) = (None, None, None);
+        (self.pickable, self.shown) = (None, None);
+        (self.bound, self.remains) = (None, None);
         self.orderings.clear();
-        self.picked = None;
         self.warnings.clear();
         self.problem_changed();
         self.region_revision = Revision(0);
@@ -148,6 +154,19 @@ impl Engine {
     /// The handles' transforms are no longer what they were.
     pub(crate) fn targets_changed(&mut self) {
         self.target_revision = self.next_revision();
+    }
+
+    /// Has a mirror image looked for, in place of one that is not found yet.
+    pub(crate) fn mirror(&mut self, work: Work) {
+        self.queues[JobKind::Mirror as usize].cancel();
+        self.mirror_revision = self.next_revision();
+        self.queues[JobKind::Mirror as usize].request(self.mirror_revision, work);
+    }
+
+    /// Rays are to meet these triangles alone.
+    pub(crate) fn show_triangles(&mut self, shown: Option<Arc<Vec<u32>>>) {
+        self.shown = shown;
+        self.shape_changed();
     }
 
     /// What is drawn is no longer what it was.
@@ -170,7 +189,13 @@ impl Engine {
 
     /// Stops every job for good: each is tried again only when what it is made for has changed.
     pub(crate) fn give_up(&mut self) {
-        for kind in [JobKind::Order, JobKind::Region, JobKind::Bind, JobKind::Solve] {
+        for kind in [
+            JobKind::Order,
+            JobKind::Region,
+            JobKind::Bind,
+            JobKind::Solve,
+            JobKind::Mirror,
+        ] {
             let queue = &mut self.queues[kind as usize];
             if queue.is_busy() {
                 queue.cancel();
@@ -181,7 +206,7 @@ impl Engine {
 
     /// Whether rays are answered from what is drawn.
     pub(crate) fn is_picking_current(&self) -> bool {
-        self.bvh.is_some() && self.bvh_revision == self.shape_revision
+        self.pickable.is_some() && self.bvh_revision == self.shape_revision
     }
 
     /// Whether the region belongs to the present paint.
@@ -253,9 +278,8 @@ impl Engine {
                     return Arrival::Problem(sentence);
                 }
             }
-            JobOutcome::Pick(bvh, surface) if wanted => {
-                self.bvh = Some(bvh);
-                self.picked = Some(surface);
+            JobOutcome::Pick(pickable) if wanted => {
+                self.pickable = Some(pickable);
                 self.bvh_revision = stamp;
                 return Arrival::Picking;
             }
@@ -270,6 +294,7 @@ impl Engine {
                 self.bound = Some(Arc::new(Mutex::new(*bound)));
                 self.bound_revision = stamp;
             }
+            JobOutcome::Mirrored(image) if stamp == self.mirror_revision => return Arrival::Mirrored(image),
             JobOutcome::Solved(solved) if stamp >= self.solve_floor => {
                 let last = stamp == self.target_revision && solved.finished;
                 return Arrival::Shape(solved, if last { Finality::Final } else { Finality::Preview });
@@ -294,6 +319,7 @@ impl Engine {
             JobKind::Order => self.model_revision,
             JobKind::Region | JobKind::Bind => self.problem_revision,
             JobKind::Solve => self.target_revision,
+            JobKind::Mirror => self.mirror_revision,
         }
     }
 
@@ -332,21 +358,41 @@ impl Engine {
     }
 
     fn pick_work(&self, model: &Arc<Model>, document: &Document) -> Option<Work> {
-        let (model, displacements, bvh) = (Arc::clone(model), Arc::clone(&document.from_file), self.bvh.clone());
+        let (model, displacements, shown) = (Arc::clone(model), Arc::clone(&document.from_file), self.shown.clone());
+        let is_of_shown = |pickable: &&Pickable| match (&pickable.triangles, &shown) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        let bvh = self
+            .pickable
+            .as_ref()
+            .filter(is_of_shown)
+            .map(|pickable| Arc::clone(&pickable.bvh));
         Some(Box::new(move |_, cancel| {
             if cancel.is_cancelled() {
                 return JobOutcome::Cancelled;
             }
             let surface = displaced(&model.surface, &displacements);
             let bvh = match bvh {
-                None => Bvh::build(&surface.positions, &surface.triangles),
+                None => match &shown {
+                    None => Bvh::build(&surface.positions, &surface.triangles),
+                    Some(shown) => {
+                        let triangles = shown.iter().map(|&triangle| surface.triangles[triangle as usize]);
+                        Bvh::build(&surface.positions, &triangles.collect::<Vec<_>>())
+                    }
+                },
                 Some(bvh) => {
                     let mut bvh = Arc::unwrap_or_clone(bvh);
                     bvh.refit(&surface.positions);
                     bvh
                 }
             };
-            JobOutcome::Pick(Arc::new(bvh), Arc::new(surface))
+            JobOutcome::Pick(Pickable {
+                bvh: Arc::new(bvh),
+                surface: Arc::new(surface),
+                triangles: shown,
+            })
         }))
     }
 
@@ -359,7 +405,7 @@ impl Engine {
             .iter()
             .map(|&id| document.handle(id).and_then(|handle| handle.soft))
             .collect();
-        let continuity = document.continuity.clone();
+        let joins = document.clone();
         let revision = self.problem_revision.0;
         let remains = self.remains.clone();
         Some(Box::new(move |progress, cancel| {
@@ -371,6 +417,8 @@ impl Engine {
                     &ones
                 }
             };
+            let continuity = joins.joints().unwrap_or_default();
+            let parts: Vec<(u32, Loose)> = joins.loose_parts.iter().map(|(part, loose)| (*part, *loose)).collect();
             let problem = Problem {
                 surface: region.rest_surface.as_deref().unwrap_or(&model.surface),
                 topology: &model.topology,
@@ -379,7 +427,8 @@ impl Engine {
                 stiffness,
                 holds: Holds {
                     soft: &soft,
-                    continuity: continuity.as_ref().map_or(&[], |field| field.as_slice()),
+                    continuity: &continuity,
+                    parts: &parts,
                 },
                 loose,
                 method: &method,
@@ -463,6 +512,8 @@ pub(crate) fn region_input(model: &Arc<Model>, document: &Document) -> RegionInp
             .collect(),
         rest: document.applied.then(|| Arc::clone(&document.rest)),
         loose: document.loose,
+        loose_parts: Arc::clone(&document.loose_parts),
+        access: Arc::clone(&document.access),
     }
 }
 
@@ -492,14 +543,14 @@ fn region_work(input: RegionInput) -> Option<Work> {
 }
 
 /// What a handle does before the factorisation is ready: its own vertices follow it, the rest stays.
-pub(crate) fn moved_alone(document: &mut Document, model: &Model, handle: HandleId) {
+pub(crate) fn moved_alone(document: &mut Document, model: &Model, masks: &Masks, handle: HandleId) {
     let Some(affine) = document.handle(handle).map(|handle| handle.affine()) else {
         return;
     };
     let paint = Arc::clone(&document.paint);
     let mut from_rest: Vec<DVec3> = document.from_rest.to_vec();
     for (vertex, paint) in paint.iter().enumerate() {
-        if *paint == crate::Paint::Handle(handle) {
+        if *paint == crate::Paint::Handle(handle) && !masks.is_locked(vertex) {
             let rest = model.surface.positions[vertex]
                 + if document.applied {
                     document.rest[vertex]

@@ -12,6 +12,7 @@ use crate::editor::Editor;
 use crate::engine::region_input;
 use crate::field_form::FieldEntry;
 use crate::region::Region;
+use crate::turn::followed;
 use crate::{EditError, HandleTransform, Selector};
 
 /// Why a document can't be said as an edit.
@@ -75,7 +76,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
                 select: ranges(Role::Handle(index as u16)),
                 transform: with_pivot(handle),
                 soft: handle.soft,
-                continuity: None,
+                continuity: handle.continuity,
             });
         }
     }
@@ -93,6 +94,11 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         stiffness: field(&document.stiffness, 1.0),
         continuity: field(&document.continuity, *CONTINUITY_RANGE.end()),
         loose: document.loose,
+        loose_parts: document
+            .loose_parts
+            .iter()
+            .map(|(part, loose)| (Selector::Component(*part), *loose))
+            .collect(),
     };
     let setup = edit.resolve(model)?;
     let differing = setup
@@ -124,12 +130,18 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
     );
     for (index, handle) in setup.handles.iter().enumerate() {
         let id = HandleId(index as u16);
+        let transform = without_pivot(handle.transform);
         document.handles.push(Handle {
-            transform: without_pivot(handle.transform),
+            turn_deg: match transform {
+                HandleTransform::Trs { rotation, .. } => followed(glam::DVec3::ZERO, rotation),
+                HandleTransform::Matrix(_) => glam::DVec3::ZERO,
+            },
+            transform,
             pivot: handle.pivot,
             pivot_place: PivotPlace::Picked,
             reach: Reach::Length(0.0),
             soft: setup.soft[index],
+            continuity: edit.handles[index].continuity,
             ..Handle::new(id, handle.name.clone())
         });
         document.next_handle = id.0.saturating_add(1);
@@ -139,7 +151,9 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
         .iter()
         .any(|&stiffness| stiffness != 1.0)
         .then(|| Arc::new(setup.stiffness.clone()));
-    document.continuity = (!setup.continuity.is_empty()).then(|| Arc::new(setup.continuity));
+    let continuity = edit.painted_continuity(model)?;
+    document.continuity = (!continuity.is_empty()).then(|| Arc::new(continuity));
+    document.loose_parts = Arc::new(setup.loose_parts.into_iter().collect());
     document.method = setup.method;
     document.loose = setup.loose;
     document.settled = !document.handles.iter().any(Handle::is_displaced);

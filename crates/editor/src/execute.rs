@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use pliant_deform::{CONTINUITY_RANGE, Loose};
 use pliant_mesh::SurfaceVertex;
 
 use crate::camera_history::CameraStep;
@@ -12,6 +13,7 @@ use crate::document::{Handle, HandleId, Paint};
 use crate::editor::Editor;
 use crate::exchange::without_pivot;
 use crate::tool::{Tool, TransformDrag, TransformKind, Widen};
+use crate::turn::rotation_of;
 use crate::{HandleTransform, Orbit, Projection, SOFT_RANGE, STIFFNESS_RANGE};
 
 /// The factor by which a key sizes the brush.
@@ -48,7 +50,9 @@ impl Editor {
             Command::SelectHandle(id)
             | Command::RenameHandle(id, _)
             | Command::SetHandleTransform(id, _)
+            | Command::SetTurn(id, _)
             | Command::SetReach(id, _)
+            | Command::SetContinuity(id, _)
             | Command::SetSoft(id, _) => self.document.handle(*id).is_some(),
             Command::Apply => self.document.is_displaced(),
             Command::ResetShape => self.document.is_displaced() || self.document.applied,
@@ -58,9 +62,15 @@ impl Editor {
                 .running()
                 .iter()
                 .any(|(kind, _)| *kind != crate::JobKind::Pick),
+            Command::ShowEverything => !self.document.access.shows_all(),
             Command::NewHandle
+            | Command::Objects(..)
+            | Command::ObjectHere(_)
+            | Command::Isolate
             | Command::SetMethod(_)
             | Command::SetLoose(_)
+            | Command::SetLoosePart(..)
+            | Command::FramePart(_)
             | Command::SetStiffness(_)
             | Command::FrameAll
             | Command::FrameSelected
@@ -158,6 +168,7 @@ impl Editor {
                     self.problem = Some("The handle's transform is not finite: enter other numbers.".to_owned());
                 }
             }
+            Command::SetTurn(id, turn_deg) => self.set_turn(id, turn_deg),
             Command::SetReach(id, reach) => self.set_reach(id, reach),
             Command::SetSoft(id, soft) => self.set_soft(id, soft),
             Command::Apply => {
@@ -181,10 +192,15 @@ impl Editor {
             }
             Command::SetLoose(loose) => {
                 self.change("Change loose parts", |document| {
-                    document.settled &= document.loose == loose || !document.is_displaced();
+                    let is_same = document.loose == loose && document.loose_parts.is_empty();
+                    document.settled &= is_same || !document.is_displaced();
                     document.loose = loose;
+                    document.loose_parts = Arc::default();
                 });
             }
+            Command::SetLoosePart(part, loose) => self.set_loose_part(part, loose),
+            Command::FramePart(part) => self.frame_part(part),
+            Command::SetContinuity(id, continuity) => self.set_continuity(id, continuity),
             Command::SetStiffness(field) => self.set_stiffness(field),
             Command::SetBrushRadius(radius_px) => self.set_brush_radius(radius_px),
             Command::GrowBrush => self.set_brush_radius(self.brush_radius_px * BRUSH_STEP),
@@ -270,6 +286,10 @@ impl Editor {
             Command::MakeTwin(axis) => self.make_twin(axis),
             Command::Untwin => self.untwin(),
             Command::ResetRegion => self.reset_region(),
+            Command::Objects(action, objects) => self.act_on_objects(action, &objects),
+            Command::ObjectHere(action) => self.act_on_object_here(action),
+            Command::Isolate => self.isolate(),
+            Command::ShowEverything => self.show_everything(),
             Command::GoToStep(steps) => {
                 self.engine.drop_solves();
                 while self.history.names().1 > steps && self.history.undo(&mut self.document).is_some() {}
@@ -347,6 +367,96 @@ impl Editor {
         });
     }
 
+    fn set_turn(&mut self, id: HandleId, turn_deg: glam::DVec3) {
+        if !turn_deg.is_finite() {
+            self.problem = Some("The handle's turn is not finite: enter other numbers.".to_owned());
+            return;
+        }
+        let Some(handle) = self.document.handle(id) else { return };
+        let HandleTransform::Trs {
+            translation,
+            scale,
+            pivot,
+            ..
+        } = handle.transform
+        else {
+            self.problem = Some(format!(
+                "{} is moved by a matrix: reset it to turn it by angles.",
+                handle.name
+            ));
+            return;
+        };
+        let turned = HandleTransform::Trs {
+            translation,
+            rotation: rotation_of(turn_deg),
+            scale,
+            pivot,
+        };
+        self.step(format!("Turn {}", handle.name.clone()), |editor| {
+            editor.put_handle(id, turned);
+            editor.count_turn(id, turn_deg);
+        });
+    }
+
+    fn set_loose_part(&mut self, part: u32, loose: Option<Loose>) {
+        let count = self
+            .engine
+            .model
+            .as_ref()
+            .map_or(0, |model| model.topology.components().len());
+        if part as usize >= count {
+            self.problem = Some(format!(
+                "The mesh has {count} parts and none of this number: choose one of the list."
+            ));
+            return;
+        }
+        self.change("Change loose part", |document| {
+            let mut parts = (*document.loose_parts).clone();
+            match loose {
+                Some(loose) => parts.insert(part, loose),
+                None => parts.remove(&part),
+            };
+            if parts != *document.loose_parts {
+                document.settled &= !document.is_displaced();
+                document.loose_parts = Arc::new(parts);
+            }
+        });
+    }
+
+    fn frame_part(&mut self, part: u32) {
+        let Some(model) = self.engine.model.as_ref() else {
+            return;
+        };
+        let Some(component) = model.topology.components().get(part as usize) else {
+            return;
+        };
+        let position =
+            |vertex: &SurfaceVertex| model.surface.positions[vertex.index()] + self.document.from_file[vertex.index()];
+        let positions: Vec<glam::DVec3> = component.vertices.iter().map(position).collect();
+        self.camera.frame(&positions, self.viewport_px);
+        // What it lies on is to be seen, too.
+        self.camera.distance *= 3.0;
+        self.is_framed = false;
+    }
+
+    fn set_continuity(&mut self, id: HandleId, continuity: Option<f64>) {
+        if continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value)) {
+            self.problem = Some("A continuity is from 0 (a hinge) to 2 (smooth): enter another number.".to_owned());
+            return;
+        }
+        self.change("Change continuity", |document| {
+            if document
+                .handle(id)
+                .is_some_and(|handle| handle.continuity != continuity)
+            {
+                document.settled &= !document.is_displaced();
+                if let Some(handle) = document.handle_mut(id) {
+                    handle.continuity = continuity;
+                }
+            }
+        });
+    }
+
     fn set_soft(&mut self, id: HandleId, soft: Option<f64>) {
         if soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight)) {
             let (least, most) = (SOFT_RANGE.start(), SOFT_RANGE.end());
@@ -375,7 +485,7 @@ impl Editor {
             document.from_file = Arc::clone(&document.rest);
             document.settled = true;
             for handle in &mut document.handles {
-                handle.transform = HandleTransform::IDENTITY;
+                handle.put(HandleTransform::IDENTITY);
                 if was_applied {
                     handle.pivot = pivot_of(handle.id, &document.paint, &model.surface.positions);
                 }
@@ -443,8 +553,11 @@ fn concerns_document(command: &Command) -> bool {
             | Command::ResetHandle
             | Command::RenameHandle(..)
             | Command::SetHandleTransform(..)
+            | Command::SetTurn(..)
             | Command::SetReach(..)
             | Command::SetSoft(..)
+            | Command::SetContinuity(..)
+            | Command::SetLoosePart(..)
             | Command::Apply
             | Command::ResetShape
             | Command::ClearRegions
@@ -467,6 +580,10 @@ fn concerns_document(command: &Command) -> bool {
             | Command::MakeTwin(_)
             | Command::Untwin
             | Command::ResetRegion
+            | Command::Objects(..)
+            | Command::ObjectHere(_)
+            | Command::Isolate
+            | Command::ShowEverything
             | Command::GoToStep(_)
             | Command::ToggleSelected(_)
             | Command::SelectHandle(_)

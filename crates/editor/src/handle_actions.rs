@@ -6,8 +6,9 @@ use glam::{DQuat, DVec3};
 use pliant_deform::Role;
 use pliant_mesh::SurfaceVertex;
 
-use crate::document::{Handle, HandleId, Paint, PivotPlace, Twin};
+use crate::document::{Handle, HandleId, MirrorPlane, Paint, PivotPlace, Twin};
 use crate::editor::Editor;
+use crate::mirror::Purpose;
 use crate::tool::{border_middle, tidy_handles};
 use crate::{GizmoAxes, GizmoOrientation, HandleTransform};
 
@@ -136,13 +137,17 @@ impl Editor {
 
     /// Makes the selected handle's mirror image a handle that does the same.
     pub(crate) fn make_twin(&mut self, axis: usize) {
-        let (Some(id), Some(model), Some(plane)) = (self.selected, self.engine.model.clone(), self.mirror_plane(axis))
-        else {
-            return;
-        };
-        let image: Vec<usize> = self
-            .mirrored(&model, &self.members_of(Paint::Handle(id)), plane)
-            .into_iter()
+        if let Some(id) = self.selected {
+            self.mirror(Purpose::Twin(id), axis);
+        }
+    }
+
+    /// Makes an image of a handle's vertices its twin.
+    pub(crate) fn twin_of(&mut self, id: HandleId, image: &[usize], plane: MirrorPlane) {
+        let image: Vec<usize> = image
+            .iter()
+            .copied()
+            .filter(|&vertex| self.masks.may_be_painted(vertex))
             .filter(|&vertex| !matches!(self.document.paint[vertex], Paint::Handle(_)))
             .collect();
         if image.is_empty() {

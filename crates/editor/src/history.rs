@@ -7,12 +7,13 @@
 //! still running, a surface that catches up with an early drag). The history therefore remembers the shape that its
 //! deltas are relative to, and [`History::sync`] re-bases the two neighbouring steps onto the one that is shown.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::{Loose, Method};
 
+use crate::Access;
 use crate::document::{Document, Handle, Paint};
 
 /// How many bytes of deltas are kept before the oldest steps are forgotten.
@@ -30,9 +31,11 @@ pub(crate) enum Change {
     /// The continuity field.
     Continuity(Option<Arc<Vec<f64>>>),
     /// Method and loose components.
-    Options(Method, Loose),
+    Options(Method, Loose, Arc<BTreeMap<u32, Loose>>),
     /// The rest shape, and whether there is another than the file's.
     Rest(Sparse<DVec3>, bool),
+    /// What is hidden and locked.
+    Access(Arc<Access>),
     /// Whether the shape is final for the handles' transforms.
     Settled(bool),
 }
@@ -105,6 +108,9 @@ impl Step {
                 Change::Stiffness(sparse, _) => sparse.bytes(),
                 Change::Continuity(Some(field)) => field.len() * size_of::<f64>(),
                 Change::Handles(handles, _) => handles.len() * size_of::<Handle>(),
+                Change::Access(access) => {
+                    size_of::<Access>() + (access.hidden.len() + access.locked.len()) * size_of::<u32>()
+                }
                 Change::Continuity(None) | Change::Options(..) | Change::Settled(_) => size_of::<Change>(),
             })
             .sum();
@@ -280,14 +286,16 @@ fn swap(change: &mut Change, document: &mut Document) {
             *is_field = was_field;
         }
         Change::Continuity(continuity) => std::mem::swap(continuity, &mut document.continuity),
-        Change::Options(method, loose) => {
+        Change::Options(method, loose, parts) => {
             std::mem::swap(method, &mut document.method);
+            std::mem::swap(parts, &mut document.loose_parts);
             std::mem::swap(loose, &mut document.loose);
         }
         Change::Rest(sparse, applied) => {
             sparse.swap(Arc::make_mut(&mut document.rest).as_mut_slice());
             std::mem::swap(applied, &mut document.applied);
         }
+        Change::Access(access) => std::mem::swap(access, &mut document.access),
         Change::Settled(settled) => std::mem::swap(settled, &mut document.settled),
     }
 }

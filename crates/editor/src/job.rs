@@ -25,11 +25,20 @@ pub enum JobKind {
     Bind,
     /// The surface for the present handle transforms.
     Solve,
+    /// The mirror image of a region.
+    Mirror,
 }
 
 impl JobKind {
     /// Every kind, in the order in which their results build on one another.
-    pub const ALL: [Self; 5] = [Self::Pick, Self::Order, Self::Region, Self::Bind, Self::Solve];
+    pub const ALL: [Self; 6] = [
+        Self::Pick,
+        Self::Order,
+        Self::Region,
+        Self::Bind,
+        Self::Solve,
+        Self::Mirror,
+    ];
 
     /// What the job does, for the status line: "binding".
     pub fn doing(self) -> &'static str {
@@ -39,6 +48,7 @@ impl JobKind {
             Self::Region => "measuring the region",
             Self::Bind => "binding",
             Self::Solve => "bending",
+            Self::Mirror => "looking for the mirror image",
         }
     }
 }
@@ -91,6 +101,17 @@ pub trait Executor {
     fn start(&mut self, job: Job);
 }
 
+/// What rays are answered from.
+#[derive(Clone)]
+pub struct Pickable {
+    /// The hierarchy over the triangles that are shown.
+    pub(crate) bvh: Arc<Bvh>,
+    /// The surface in its shape.
+    pub(crate) surface: Arc<Surface>,
+    /// Which of the surface's triangles it is over; `None` is all of them.
+    pub(crate) triangles: Option<Arc<Vec<u32>>>,
+}
+
 /// The end of a job.
 #[derive(Debug)]
 pub struct JobDone {
@@ -105,7 +126,7 @@ pub struct JobDone {
 /// What came of a job.
 pub enum JobOutcome {
     /// The picking structure of a shape, and the surface in it.
-    Pick(Arc<Bvh>, Arc<Surface>),
+    Pick(Pickable),
     /// The mesh's ordering.
     Ordered(Arc<Ordering>),
     /// The region that the handles reach.
@@ -114,6 +135,8 @@ pub enum JobOutcome {
     Bound(Box<Bound>),
     /// A new shape.
     Solved(Solved),
+    /// The vertices of a region's mirror image, ascending.
+    Mirrored(Vec<usize>),
     /// It was cancelled, and nothing is owed.
     Cancelled,
     /// It failed; one sentence that names the culprit and the remedy.
@@ -128,6 +151,7 @@ impl std::fmt::Debug for JobOutcome {
             Self::Region(_) => "Region",
             Self::Bound(_) => "Bound",
             Self::Solved(_) => "Solved",
+            Self::Mirrored(_) => "Mirrored",
             Self::Cancelled => "Cancelled",
             Self::Failed(sentence) => return write!(f, "Failed({sentence})"),
         })

@@ -4,6 +4,7 @@
 //! Everything happens through [`Editor::handle`]: the window, a test and a script send it [`Event`]s. What is to be
 //! shown comes back as a [`SceneView`]; long work goes to the [`Executor`] that the app hands over.
 
+mod access;
 mod beginning;
 mod brush;
 mod camera;
@@ -33,6 +34,7 @@ mod job_queue;
 mod key_map;
 mod look;
 mod method_form;
+mod mirror;
 mod number_entry;
 mod overlay;
 mod picking;
@@ -52,7 +54,9 @@ mod snapshot;
 mod status;
 mod tool;
 mod transaction;
+mod turn;
 
+pub use access::{Access, ObjectAction, object_name};
 pub use beginning::Beginning;
 pub use brush::{BRUSH_RADIUS_PX, BrushMetric};
 pub use camera::{Camera, NamedView, Orbit, Projection, Ray, UpAxis};

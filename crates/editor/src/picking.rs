@@ -32,6 +32,8 @@ pub(crate) struct Picking<'a> {
     pub(crate) bvh: &'a Bvh,
     /// The surface in the shape that rays are answered from.
     pub(crate) surface: &'a Surface,
+    /// The surface's triangles that rays may meet; `None` is all of them.
+    pub(crate) triangles: Option<&'a [u32]>,
     pub(crate) camera: &'a Camera,
     pub(crate) viewport_px: DVec2,
     /// The camera, ready to look at many points.
@@ -59,8 +61,15 @@ impl Picking<'_> {
         let sight = position - eye;
         // A hair before the vertex's own triangles.
         self.bvh.ray(eye, sight).is_none_or(|hit| {
-            hit.distance >= 1.0 - 1e-4 || self.model.surface.triangles[hit.triangle as usize].contains(&vertex)
+            let triangle = self.of_surface(hit.triangle) as usize;
+            hit.distance >= 1.0 - 1e-4 || self.model.surface.triangles[triangle].contains(&vertex)
         })
+    }
+
+    /// The surface's triangle of a hit's number.
+    fn of_surface(&self, hit: u32) -> u32 {
+        let of = self.triangles.and_then(|triangles| triangles.get(hit as usize));
+        of.copied().unwrap_or(hit)
     }
 
     /// The first point of the surface under a point of the viewport.
@@ -71,8 +80,9 @@ impl Picking<'_> {
     /// The first point of the surface along a ray.
     pub(crate) fn along(&self, ray: Ray) -> Option<Pick> {
         let hit = self.bvh.ray(ray.origin, ray.direction)?;
-        let vertices = self.model.surface.triangles.get(hit.triangle as usize)?;
-        let corners = self.corners(hit.triangle);
+        let triangle = self.of_surface(hit.triangle);
+        let vertices = self.model.surface.triangles.get(triangle as usize)?;
+        let corners = self.corners(triangle);
         let [u, v, w] = hit.barycentric;
         let nearest = if u >= v && u >= w {
             0
@@ -85,7 +95,7 @@ impl Picking<'_> {
         let front = outward.dot(ray.direction) <= 0.0;
         let facing = if front { outward } else { -outward };
         Some(Pick {
-            triangle: hit.triangle,
+            triangle,
             vertex: vertices[nearest],
             point: corners[0] * u + corners[1] * v + corners[2] * w,
             normal: facing.normalize_or(-ray.direction),

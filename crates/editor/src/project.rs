@@ -5,6 +5,7 @@
 //! that was saved over is known again whatever it is called. Regions are ranges of the file's drawn vertices; only
 //! fields of numbers stand as base64 ([`crate::project_field`]).
 
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -25,7 +26,8 @@ use crate::history::bits_equal;
 use crate::method_form::{method_to_value, read_method};
 use crate::project_field::{Field, Ranges, for_each_drawn, ranges_where};
 use crate::region::{Region, displaced};
-use crate::{Camera, HandleSetup, HandleTransform, Reach, Rest, SOFT_RANGE, STIFFNESS_RANGE, Setup};
+use crate::turn::{followed, means};
+use crate::{Access, Camera, HandleSetup, HandleTransform, Reach, Rest, SOFT_RANGE, STIFFNESS_RANGE, Setup};
 
 /// The version of the project format that is read and written.
 const PROJECT_VERSION: u64 = 1;
@@ -38,6 +40,9 @@ pub struct Project {
     mesh: MeshReference,
     method: Value,
     loose: StoredLoose,
+    /// What single parts do in place of that, by their component's number.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    loose_parts: BTreeMap<u32, StoredLoose>,
     /// Painted free.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     region: Ranges,
@@ -48,6 +53,12 @@ pub struct Project {
     handles: Vec<StoredHandle>,
     #[serde(default)]
     next_handle: u16,
+    /// Objects that are hidden or locked.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    objects: Vec<StoredObject>,
+    /// The connected part that is shown alone, by its number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    isolated: Option<u32>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     stiffness: Option<Field>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -82,6 +93,27 @@ pub struct MeshReference {
 enum StoredLoose {
     Follow,
     Rest,
+    Bend,
+}
+
+impl From<Loose> for StoredLoose {
+    fn from(loose: Loose) -> Self {
+        match loose {
+            Loose::Follow => Self::Follow,
+            Loose::Rest => Self::Rest,
+            Loose::Bend => Self::Bend,
+        }
+    }
+}
+
+impl From<StoredLoose> for Loose {
+    fn from(stored: StoredLoose) -> Self {
+        match stored {
+            StoredLoose::Follow => Self::Follow,
+            StoredLoose::Rest => Self::Rest,
+            StoredLoose::Bend => Self::Bend,
+        }
+    }
 }
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -93,12 +125,17 @@ struct StoredHandle {
     vertices: Ranges,
     #[serde(default, skip_serializing_if = "is_empty_object")]
     transform: Value,
+    /// The turn as it is counted, in degrees about x, y and z.
+    #[serde(default, skip_serializing_if = "is_no_turn")]
+    turn_deg: [f64; 3],
     pivot: [f64; 3],
     #[serde(default)]
     pivot_place: StoredPivotPlace,
     reach: StoredReach,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     soft: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    continuity: Option<f64>,
     #[serde(default = "yes", skip_serializing_if = "is_yes")]
     visible: bool,
     #[serde(default, skip_serializing_if = "is_no")]
@@ -172,6 +209,10 @@ fn is_yes(flag: &bool) -> bool {
 
 fn is_no(flag: &bool) -> bool {
     !flag
+}
+
+fn is_no_turn(turn_deg: &[f64; 3]) -> bool {
+    *turn_deg == [0.0; 3]
 }
 
 fn is_empty_object(value: &Value) -> bool {
@@ -263,10 +304,12 @@ impl Project {
             version: PROJECT_VERSION,
             mesh,
             method: method_to_value(&document.method),
-            loose: match document.loose {
-                Loose::Follow => StoredLoose::Follow,
-                Loose::Rest => StoredLoose::Rest,
-            },
+            loose: document.loose.into(),
+            loose_parts: document
+                .loose_parts
+                .iter()
+                .map(|(part, loose)| (*part, (*loose).into()))
+                .collect(),
             region: painted(Paint::Free),
             fixed: painted(Paint::Fixed),
             handles: document
@@ -275,6 +318,8 @@ impl Project {
                 .map(|handle| stored_handle(handle, painted(Paint::Handle(handle.id))))
                 .collect(),
             next_handle: document.next_handle,
+            objects: stored_objects(&document.access, model),
+            isolated: document.access.isolated,
             stiffness: numbers(&document.stiffness, 1.0),
             continuity: numbers(&document.continuity, *CONTINUITY_RANGE.end()),
             rest: document.applied.then(|| displacements(&document.rest)).flatten(),
@@ -335,10 +380,13 @@ impl Project {
         }
         let mut document = Document::new(model.surface.positions.len());
         document.method = read_method(&Node::new(&self.method, "method"))?;
-        document.loose = match self.loose {
-            StoredLoose::Follow => Loose::Follow,
-            StoredLoose::Rest => Loose::Rest,
-        };
+        document.loose = self.loose.into();
+        document.loose_parts = Arc::new(
+            self.loose_parts
+                .iter()
+                .map(|(part, loose)| (*part, (*loose).into()))
+                .collect(),
+        );
         let paint = Arc::make_mut(&mut document.paint);
         let mut put = |ranges: &Ranges, name: &str, value: Paint| {
             for_each_drawn(ranges, name, model, |vertex| {
@@ -366,6 +414,7 @@ impl Project {
             document.handles.push(stored.handle()?);
         }
         document.next_handle = self.next_handle;
+        document.access = Arc::new(self.access(model)?);
         let count = model.surface.positions.len();
         let numbers = |field: &Option<Field>, name: &str, default: f64, range: RangeInclusive<f64>| {
             let Some(field) = field else { return Ok(None) };
@@ -435,14 +484,78 @@ impl Project {
                 .iter()
                 .map(|&id| document.handle(id).and_then(|handle| handle.soft))
                 .collect(),
-            continuity: document.continuity().map_or_else(Vec::new, <[f64]>::to_vec),
+            continuity: document.joints().unwrap_or_default(),
             loose: document.loose,
+            loose_parts: document
+                .loose_parts
+                .iter()
+                .map(|(part, loose)| (*part, *loose))
+                .collect(),
             method: document.method.clone(),
             rest: document.applied.then(|| Rest {
                 displacements: Arc::clone(&document.rest),
                 surface: Arc::new(displaced(&model.surface, &document.rest)),
             }),
         })
+    }
+}
+
+/// An object that is hidden or locked.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredObject {
+    /// Its number, as the file names nodes and materials.
+    object: u32,
+    /// Its name, for a person.
+    name: String,
+    #[serde(default, skip_serializing_if = "is_no")]
+    hidden: bool,
+    #[serde(default, skip_serializing_if = "is_no")]
+    locked: bool,
+}
+
+fn stored_objects(access: &Access, model: &Model) -> Vec<StoredObject> {
+    let all = model.all_objects();
+    access
+        .hidden
+        .union(&access.locked)
+        .map(|&object| StoredObject {
+            object,
+            name: all
+                .get(object as usize)
+                .map_or(String::new(), |found| found.name.clone()),
+            hidden: access.hidden.contains(&object),
+            locked: access.locked.contains(&object),
+        })
+        .collect()
+}
+
+impl Project {
+    fn access(&self, model: &Model) -> Result<Access, EditError> {
+        let refused = |what: &str, number: u32, count: usize| {
+            EditError::Project(format!(
+                "`{what}` names number {number}, and the mesh has {count}: save it again"
+            ))
+        };
+        let count = model.all_objects().len();
+        let mut access = Access::default();
+        for stored in &self.objects {
+            if stored.object as usize >= count {
+                return Err(refused("objects", stored.object, count));
+            }
+            if stored.hidden {
+                access.hidden.insert(stored.object);
+            }
+            if stored.locked {
+                access.locked.insert(stored.object);
+            }
+        }
+        let parts = model.topology.components().len();
+        if let Some(part) = self.isolated.filter(|&part| part as usize >= parts) {
+            return Err(refused("isolated", part, parts));
+        }
+        access.isolated = self.isolated;
+        Ok(access)
     }
 }
 
@@ -457,6 +570,7 @@ fn stored_handle(handle: &Handle, vertices: Ranges) -> StoredHandle {
         colour: handle.colour,
         vertices,
         transform: handle.transform.to_value(),
+        turn_deg: handle.turn_deg.to_array(),
         pivot: handle.pivot.to_array(),
         pivot_place: match handle.pivot_place {
             PivotPlace::Centroid => StoredPivotPlace::Centroid,
@@ -468,6 +582,7 @@ fn stored_handle(handle: &Handle, vertices: Ranges) -> StoredHandle {
             Reach::Length(length) => StoredReach::Length(length),
         },
         soft: handle.soft,
+        continuity: handle.continuity,
         visible: handle.visible,
         locked: handle.locked,
         twin: handle.twin.map(|twin| StoredTwin {
@@ -481,20 +596,28 @@ fn stored_handle(handle: &Handle, vertices: Ranges) -> StoredHandle {
 impl StoredHandle {
     fn handle(&self) -> Result<Handle, EditError> {
         let (StoredReach::Radii(size) | StoredReach::Length(size)) = self.reach;
-        let refused_weight = self.soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight));
+        let refused_weight = self.soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight))
+            || self.continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value));
         if !(size.is_finite() && size >= 0.0) || refused_weight || self.twin.is_some_and(|twin| twin.axis > 2) {
             return Err(EditError::Project(format!(
-                "the handle `{}` has a reach, a weight or a twin that can't be: save it again",
+                "the handle `{}` has a reach, a weight, a continuity or a twin that can't be: save it again",
                 self.name
             )));
         }
         let id = HandleId(self.id);
+        let transform = match is_empty_object(&self.transform) {
+            true => HandleTransform::IDENTITY,
+            false => HandleTransform::read(&Node::new(&self.transform, &format!("handles: {}", self.name)))?,
+        };
+        let counted = DVec3::from_array(self.turn_deg);
         Ok(Handle {
             colour: self.colour,
-            transform: match is_empty_object(&self.transform) {
-                true => HandleTransform::IDENTITY,
-                false => HandleTransform::read(&Node::new(&self.transform, &format!("handles: {}", self.name)))?,
+            // What is counted means the rotation, whoever wrote it.
+            turn_deg: match transform {
+                HandleTransform::Trs { rotation, .. } if !means(counted, rotation) => followed(DVec3::ZERO, rotation),
+                _ => counted,
             },
+            transform,
             pivot: DVec3::from_array(self.pivot),
             pivot_place: match self.pivot_place {
                 StoredPivotPlace::Centroid => PivotPlace::Centroid,
@@ -506,6 +629,7 @@ impl StoredHandle {
                 StoredReach::Length(length) => Reach::Length(length),
             },
             soft: self.soft,
+            continuity: self.continuity,
             visible: self.visible,
             locked: self.locked,
             twin: self.twin.map(|twin| Twin {

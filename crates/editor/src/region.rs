@@ -5,6 +5,7 @@
 //! method as a loose part; one that extends beyond it is held still, as everything else is: nobody who moves a visor
 //! means the whole helmet.
 
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -14,7 +15,7 @@ use pliant_mesh::{Cancel, Cancelled, ContourLine, DistanceSearch, Model, Surface
 
 use crate::document::{HandleId, Paint};
 use crate::rim::rims;
-use crate::{Counts, Reach};
+use crate::{Access, Counts, Reach};
 
 /// What the region follows from; shared with the job that measures it.
 #[derive(Clone, Debug)]
@@ -25,6 +26,8 @@ pub(crate) struct RegionInput {
     /// The rest shape's displacements from the file's; `None` where it is the file's.
     pub(crate) rest: Option<Arc<Vec<DVec3>>>,
     pub(crate) loose: Loose,
+    pub(crate) loose_parts: Arc<BTreeMap<u32, Loose>>,
+    pub(crate) access: Arc<Access>,
 }
 
 /// The vertices' roles, and the surface that they hold on.
@@ -38,6 +41,8 @@ pub struct Region {
     pub counts: Counts,
     /// The lines between roles.
     pub(crate) rims: Arc<Vec<ContourLine>>,
+    /// The components that nothing holds within some handle's reach, and those that a person has told what to do.
+    pub loose: Arc<Vec<u32>>,
     /// The rest shape, where it is another than the file's.
     pub(crate) rest_surface: Option<Arc<Surface>>,
 }
@@ -53,6 +58,7 @@ impl Region {
                 ..Counts::default()
             },
             rims: Arc::new(Vec::new()),
+            loose: Arc::default(),
             rest_surface: None,
         }
     }
@@ -66,13 +72,17 @@ impl Region {
             .map(|rest| Arc::new(displaced(&input.model.surface, rest)));
         let surface = rest_surface.as_deref().unwrap_or(&input.model.surface);
         let mut members: Vec<Vec<SurfaceVertex>> = vec![Vec::new(); input.handles.len()];
+        let locked = input.access.locked_vertices(&input.model);
+        let is_locked = |vertex: usize| locked.as_ref().is_some_and(|locked| locked[vertex]);
         let mut held = vec![false; topology.components().len()];
         for (vertex, paint) in input.paint.iter().enumerate() {
+            let is_locked = is_locked(vertex);
             let vertex = SurfaceVertex(vertex as u32);
-            if *paint != Paint::Bare {
+            if *paint != Paint::Bare || is_locked {
                 held[topology.component(vertex) as usize] = true;
             }
             if let Paint::Handle(id) = *paint
+                && !is_locked
                 && let Some(index) = input.handles.iter().position(|(handle, _)| *handle == id)
             {
                 members[index].push(vertex);
@@ -104,15 +114,25 @@ impl Region {
             within.fill(true);
             handles.push(*id);
         }
-        let follow = input.loose == Loose::Follow;
+        // Who was told what to do does it however far the handles reach.
+        let moves = |component: usize| match input.loose_parts.get(&(component as u32)) {
+            Some(loose) => *loose != Loose::Rest && !handles.is_empty(),
+            None => input.loose != Loose::Rest && follows[component],
+        };
+        let is_told = |component: usize| input.loose_parts.contains_key(&(component as u32));
+        let loose: Vec<u32> = (0..held.len())
+            .filter(|&component| !held[component] && (follows[component] || is_told(component)))
+            .map(|component| component as u32)
+            .collect();
         let mut counts = Counts::default();
         for (vertex, paint) in input.paint.iter().enumerate() {
             let component = topology.component(SurfaceVertex(vertex as u32)) as usize;
-            let loose = || follow && follows[component] && !held[component];
+            let is_loose = || !held[component] && moves(component);
             let role = match *paint {
+                _ if is_locked(vertex) => Role::Fixed,
                 Paint::Fixed => Role::Fixed,
                 Paint::Free => Role::Free,
-                Paint::Bare if loose() => Role::Free,
+                Paint::Bare if is_loose() => Role::Free,
                 Paint::Bare => roles[vertex],
                 Paint::Handle(id) => match handles.iter().position(|&handle| handle == id) {
                     Some(index) => Role::Handle(index as u16),
@@ -133,6 +153,7 @@ impl Region {
             handles: Arc::new(handles),
             counts,
             rims: Arc::new(rims),
+            loose: Arc::new(loose),
             rest_surface,
         })
     }
@@ -244,6 +265,8 @@ mod tests {
             handles: vec![(HandleId(3), reach), (HandleId(7), reach)],
             rest: None,
             loose: Loose::Follow,
+            loose_parts: Arc::default(),
+            access: Arc::default(),
         }
     }
 

@@ -4,10 +4,11 @@
 //! Each is a pure function from the region's vertices to the vertices that change; other handles' vertices never do.
 
 use pliant_deform::Role;
-use pliant_mesh::{Bvh, Model, Surface, SurfaceVertex};
+use pliant_mesh::{Model, SurfaceVertex};
 
-use crate::document::{HandleId, MirrorPlane, Paint};
+use crate::document::{HandleId, Paint};
 use crate::editor::Editor;
+use crate::mirror::Purpose;
 use crate::tool::{ToolMode, tidy_handles};
 
 /// Something to do to the region in hand: that of the tool, or of the selected handle.
@@ -80,15 +81,7 @@ impl Editor {
             self.problem = Some("There is nothing painted to do this with: paint first.".to_owned());
             return;
         }
-        let what = match role {
-            Paint::Handle(id) => self
-                .document
-                .handle(id)
-                .map_or(String::new(), |handle| handle.name.clone()),
-            Paint::Free => "region".to_owned(),
-            Paint::Fixed => "what is fixed".to_owned(),
-            Paint::Bare => return,
-        };
+        let what = self.name_of(role);
         let removed = |vertex: usize| match role {
             // What a reach frees would be free again.
             Paint::Free if self.document.paint[vertex] == Paint::Bare => Paint::Fixed,
@@ -133,15 +126,7 @@ impl Editor {
                 changes.extend(filled(&model, &is_member).map(|vertex| (vertex, role)));
                 role
             }
-            RegionAction::Mirror(axis) => {
-                let Some(plane) = self.mirror_plane(axis) else { return };
-                changes.extend(
-                    self.mirrored(&model, &is_member, plane)
-                        .into_iter()
-                        .map(|vertex| (vertex, role)),
-                );
-                role
-            }
+            RegionAction::Mirror(axis) => return self.mirror(Purpose::Region(role), axis),
             RegionAction::ToFree | RegionAction::ToFixed | RegionAction::ToHandle => {
                 let target = match action {
                     RegionAction::ToFree => Paint::Free,
@@ -159,6 +144,19 @@ impl Editor {
         self.repaint(format!("{} {what}", action.name()), role, target, changes);
     }
 
+    /// What a role's region is called.
+    fn name_of(&self, role: Paint) -> String {
+        match role {
+            Paint::Handle(id) => {
+                let handle = self.document.handle(id);
+                handle.map_or(String::new(), |handle| handle.name.clone())
+            }
+            Paint::Free => "region".to_owned(),
+            Paint::Fixed => "what is fixed".to_owned(),
+            Paint::Bare => "what is bare".to_owned(),
+        }
+    }
+
     /// Paints vertices in one step; vertices of handles other than `role`'s stay as they are. `target` may be a handle
     /// that is not there yet.
     pub(crate) fn repaint(&mut self, name: String, role: Paint, target: Paint, changes: Vec<(usize, Paint)>) {
@@ -167,7 +165,9 @@ impl Editor {
             .into_iter()
             .filter(|&(vertex, paint)| {
                 let present = document.paint[vertex];
-                present != paint && (present == role || !matches!(present, Paint::Handle(_)))
+                present != paint
+                    && self.masks.may_be_painted(vertex)
+                    && (present == role || !matches!(present, Paint::Handle(_)))
             })
             .collect();
         if changes.is_empty() {
@@ -205,28 +205,10 @@ impl Editor {
         self.document.paint.iter().enumerate().map(is_member).collect()
     }
 
-    /// The plane through the middle of the model's rest shape, across an axis.
-    pub(crate) fn mirror_plane(&self, axis: usize) -> Option<MirrorPlane> {
-        let axis = axis.min(2);
-        let bounds = self.engine.model.as_ref()?.bounds()?;
-        Some(MirrorPlane {
-            axis,
-            at: bounds.centre()[axis],
-        })
-    }
-
-    /// The vertices whose mirror image lies nearest to a member, on the file's shape.
-    pub(crate) fn mirrored(&self, model: &Model, is_member: &[bool], plane: MirrorPlane) -> Vec<usize> {
-        let is_as_in_file = !self.document.applied && !self.document.is_displaced();
-        let built;
-        let bvh = match &self.engine.bvh {
-            Some(bvh) if is_as_in_file && self.engine.is_picking_current() => &**bvh,
-            _ => {
-                built = Bvh::build(&model.surface.positions, &model.surface.triangles);
-                &built
-            }
-        };
-        mirrored(model, &model.surface, bvh, is_member, plane)
+    /// Takes a region's mirror image in.
+    pub(crate) fn mirror_region(&mut self, role: Paint, image: Vec<usize>) {
+        let changes = image.into_iter().map(|vertex| (vertex, role)).collect();
+        self.repaint(format!("Mirror {}", self.name_of(role)), role, role, changes);
     }
 }
 
@@ -266,36 +248,4 @@ fn filled<'a>(model: &'a Model, is_member: &'a [bool]) -> impl Iterator<Item = u
         has_member[part(vertex)] = true;
     }
     (0..is_member.len()).filter(move |&vertex| has_member[part(vertex)])
-}
-
-/// The vertices whose mirror image is nearest to a member and no farther from it than its longest edge.
-fn mirrored(model: &Model, surface: &Surface, bvh: &Bvh, is_member: &[bool], plane: MirrorPlane) -> Vec<usize> {
-    let members = (0..is_member.len()).filter(|&vertex| is_member[vertex]);
-    let positions: Vec<_> = members
-        .map(|vertex| plane.mirrored(surface.positions[vertex]))
-        .collect();
-    let Some(bounds) = pliant_mesh::bounding_box(&positions) else {
-        return Vec::new();
-    };
-    let margin = 0.05 * bounds.diagonal();
-    let near = |p: glam::DVec3| p.cmpge(bounds.min - margin).all() && p.cmple(bounds.max + margin).all();
-    (0..is_member.len())
-        .filter(|&vertex| {
-            let position = surface.positions[vertex];
-            if is_member[vertex] || !near(position) {
-                return false;
-            }
-            let image = plane.mirrored(position);
-            bvh.nearest_vertex(image).is_some_and(|(nearest, distance)| {
-                let here = surface.positions[nearest.index()];
-                let longest = model
-                    .topology
-                    .neighbours(nearest)
-                    .iter()
-                    .map(|v| here.distance(surface.positions[v.index()]))
-                    .fold(0.0, f64::max);
-                is_member[nearest.index()] && distance <= longest
-            })
-        })
-        .collect()
 }

@@ -43,7 +43,7 @@ impl Editor {
                 is_seen.then_some(Rim::Handle(id))
             }
         };
-        let lines = region.rims.iter();
+        let lines = region.rims.iter().filter(|line| self.is_triangle_shown(line.triangle));
         lines.filter_map(move |line| Some((line, of_label(line.label)?)))
     }
 }

@@ -25,6 +25,8 @@ pub struct Setup {
     pub continuity: Vec<f64>,
     /// What components that nothing holds do.
     pub loose: Loose,
+    /// What single components do in place of that.
+    pub loose_parts: Vec<(u32, Loose)>,
     /// The method and its options.
     pub method: Method,
     /// The shape that is bent, where it is another than the file's.
@@ -68,6 +70,7 @@ impl Setup {
         Holds {
             soft: &self.soft,
             continuity: &self.continuity,
+            parts: &self.loose_parts,
         }
     }
 
@@ -141,6 +144,7 @@ impl EditFile {
             soft: self.handles.iter().map(|handle| handle.soft).collect(),
             continuity,
             loose: self.loose,
+            loose_parts: self.loose_parts_on(model)?,
             method: self.method.clone(),
             rest: None,
         })
@@ -154,15 +158,40 @@ impl EditFile {
         Ok(stiffness)
     }
 
-    /// The continuity of each surface vertex; empty where everything joins as smoothly as the method can.
-    fn continuity_on(&self, model: &Model, roles: &[Role]) -> Result<Vec<f64>, EditError> {
-        if self.continuity.is_empty() && self.handles.iter().all(|handle| handle.continuity.is_none()) {
+    /// The continuity of each surface vertex without the handles' own; empty where nothing is said.
+    pub(crate) fn painted_continuity(&self, model: &Model) -> Result<Vec<f64>, EditError> {
+        if self.continuity.is_empty() {
             return Ok(Vec::new());
         }
-        let mut continuity = vec![*CONTINUITY_RANGE.end(); roles.len()];
+        let mut continuity = vec![*CONTINUITY_RANGE.end(); model.surface.positions.len()];
         for (index, entry) in self.continuity.iter().enumerate() {
             entry.paint(&mut continuity, model, "continuity", index)?;
         }
+        Ok(continuity)
+    }
+
+    /// What single components do, the later entry winning.
+    pub(crate) fn loose_parts_on(&self, model: &Model) -> Result<Vec<(u32, Loose)>, EditError> {
+        let mut does = std::collections::BTreeMap::new();
+        for (index, (select, loose)) in self.loose_parts.iter().enumerate() {
+            // The first entry stands for all and is kept apart.
+            for vertex in select
+                .evaluate_at(model, &format!("loose[{}].select", index + 1))?
+                .iter()
+            {
+                does.insert(model.topology.component(vertex), *loose);
+            }
+        }
+        Ok(does.into_iter().collect())
+    }
+
+    /// The continuity of each surface vertex; empty where everything joins as smoothly as the method can.
+    fn continuity_on(&self, model: &Model, roles: &[Role]) -> Result<Vec<f64>, EditError> {
+        let mut continuity = self.painted_continuity(model)?;
+        if self.handles.iter().all(|handle| handle.continuity.is_none()) {
+            return Ok(continuity);
+        }
+        continuity.resize(roles.len(), *CONTINUITY_RANGE.end());
         for (own, role) in continuity.iter_mut().zip(roles) {
             if let Role::Handle(handle) = *role
                 && let Some(value) = self.handles[usize::from(handle)].continuity

@@ -91,9 +91,9 @@ impl Editor {
         }
         let (kind, fraction) = self.engine.running().into_iter().rfind(|(kind, _)| match kind {
             JobKind::Solve => false,
-            JobKind::Pick => self.engine.bvh.is_none(),
+            JobKind::Pick => self.engine.pickable.is_none(),
             JobKind::Order => !self.document.handles.is_empty(),
-            JobKind::Region | JobKind::Bind => true,
+            JobKind::Region | JobKind::Bind | JobKind::Mirror => true,
         })?;
         let doing = kind.doing();
         let waits = matches!(self.tool, Tool::Transform(_)) || !self.document.settled;

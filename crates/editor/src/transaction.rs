@@ -85,8 +85,13 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
     if before.continuity != after.continuity {
         changes.push(Change::Continuity(before.continuity.clone()));
     }
-    if before.method != after.method || before.loose != after.loose {
-        changes.push(Change::Options(before.method.clone(), before.loose));
+    let loose = |document: &Document| (document.loose, Arc::clone(&document.loose_parts));
+    if before.method != after.method || loose(before) != loose(after) {
+        let (loose, parts) = loose(before);
+        changes.push(Change::Options(before.method.clone(), loose, parts));
+    }
+    if before.access != after.access {
+        changes.push(Change::Access(Arc::clone(&before.access)));
     }
     if before.applied != after.applied || !Arc::ptr_eq(&before.rest, &after.rest) {
         let sparse = Sparse::<DVec3>::difference(&after.rest, &before.rest);

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
+use pliant_deform::Loose;
 use pliant_editor::{EditFile, FieldEntry, HandleTransform, Selector};
 
 const FULL: &str = r#"{
@@ -122,5 +123,30 @@ fn only_what_moves_nothing_is_the_identity() {
         r#"{"scale": [1, 1, -1]}"#,
     ] {
         assert!(!is_identity(transform), "{transform}");
+    }
+}
+
+#[test]
+fn loose_parts_are_told_all_at_once_or_one_by_one() {
+    let read = |loose: &str| {
+        let text = format!(r#"{{"version": 1, "method": {{"name": "bilaplacian"}}, "loose": {loose}}}"#);
+        EditFile::parse(&text)
+    };
+    assert_eq!(read("\"bend\"").unwrap().loose, Loose::Bend);
+    let entries = r#"[{"select": "all", "value": "rest"}, {"select": {"component": 2}, "value": "bend"},
+        {"select": {"component": 3}, "value": "follow"}]"#;
+    let edit = read(entries).unwrap();
+    assert_eq!((edit.loose, edit.loose_parts.len()), (Loose::Rest, 2));
+    assert_eq!(EditFile::parse(&edit.to_json()).unwrap(), edit);
+    // What is said of all is said of those before it, too.
+    let last = read(r#"[{"select": {"component": 2}, "value": "bend"}, {"select": "all", "value": "rest"}]"#).unwrap();
+    assert_eq!((last.loose, last.loose_parts.len()), (Loose::Rest, 0));
+    for (loose, culprit) in [
+        ("\"fly\"", "fly"),
+        (r#"[{"select": "all"}]"#, "value"),
+        (r#"[{"select": "all", "value": "stay"}]"#, "stay"),
+    ] {
+        let refused = read(loose).unwrap_err().to_string();
+        assert!(refused.contains(culprit), "{refused}");
     }
 }

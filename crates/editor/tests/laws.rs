@@ -4,11 +4,12 @@
 mod rig;
 
 use glam::{DVec2, DVec3};
+use pliant_deform::Loose;
 use pliant_editor::{
-    BrushMetric, Button, Command, Depth, Event, GizmoOrientation, GizmoPart, Key, Modifiers, Paint, PivotPlace,
-    Pointer, Reach, RegionAction, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
+    BrushMetric, Button, Command, Depth, Event, GizmoOrientation, GizmoPart, Key, Modifiers, ObjectAction, Paint,
+    PivotPlace, Pointer, Reach, RegionAction, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
 };
-use pliant_mesh::{Drawn, shapes};
+use pliant_mesh::{Drawn, Object, shapes};
 use rig::{Fingerprint, Random, Rig};
 
 /// Closed, with boundary, in several parts.
@@ -22,6 +23,16 @@ fn meshes() -> Vec<(&'static str, Drawn)> {
         ("tube", shapes::tube(16, 12, 3.0)),
         ("two parts", shapes::together(&[shapes::icosphere(3), apart])),
     ]
+}
+
+/// The first and the second half of the triangles, two objects.
+fn halves(drawn: &Drawn) -> Vec<Object> {
+    let count = drawn.triangles.len() as u32;
+    let half = |triangles| Object {
+        triangles: std::iter::once(triangles).collect(),
+        ..Object::default()
+    };
+    vec![half(0..count / 2), half(count / 2..count)]
 }
 
 const MODES: [ToolMode; 4] = [
@@ -41,7 +52,8 @@ const PARTS: [GizmoPart; 6] = [
 
 /// One thing that a person might do. Some are strokes and changes of role, which must move nothing.
 fn act(rig: &mut Rig, random: &mut Random) {
-    match random.below(22) {
+    match random.below(24) {
+        22..24 => act_on_objects(rig, random),
         16..18 => act_on_regions(rig, random),
         18..20 => act_on_handles(rig, random),
         20 => stiffness_stroke(rig, random),
@@ -87,6 +99,19 @@ fn act(rig: &mut Rig, random: &mut Random) {
                 Command::SetStiffness(stiffness)
             });
         }
+        14 if random.below(3) == 0 => {
+            let part = random.below(rig.model.topology.components().len() as u64) as u32;
+            let loose = [None, Some(Loose::Follow), Some(Loose::Rest), Some(Loose::Bend)][random.below(4) as usize];
+            match rig.editor.view().selected {
+                Some(id) if random.below(2) == 0 => {
+                    rig.command(Command::SetContinuity(
+                        id,
+                        [None, Some(0.0), Some(1.3)][random.below(3) as usize],
+                    ));
+                }
+                _ => rig.command(Command::SetLoosePart(part, loose)),
+            }
+        }
         14 => {
             let soft = [None, Some(0.3), Some(40.0)][random.below(3) as usize];
             match rig.editor.view().selected {
@@ -127,6 +152,25 @@ fn act_on_regions(rig: &mut Rig, random: &mut Random) {
     rig.command(Command::SetTool(MODES[random.below(4) as usize]));
     let action = actions[random.below(actions.len() as u64) as usize];
     unmoved(rig, |rig| rig.command(Command::Region(action)));
+}
+
+/// Something from the list of objects, or the part under the pointer: nothing moves.
+fn act_on_objects(rig: &mut Rig, random: &mut Random) {
+    let actions = [
+        ObjectAction::Hide,
+        ObjectAction::Show,
+        ObjectAction::Solo,
+        ObjectAction::Lock,
+        ObjectAction::Unlock,
+    ];
+    let objects = rig.model.all_objects().len() as u64;
+    let command = match random.below(6) {
+        0 => Command::Isolate,
+        1 => Command::ShowEverything,
+        _ => Command::Objects(actions[random.below(5) as usize], vec![random.below(objects) as u32]),
+    };
+    rig.move_to(random.position_px());
+    unmoved(rig, |rig| rig.command(command));
 }
 
 /// Something from the list of handles. All but taking a region back moves nothing.
@@ -224,7 +268,7 @@ fn strokes_move_nothing_and_every_step_comes_back_to_the_bit() {
     for (name, drawn) in meshes() {
         for seed in 0..3 {
             let mut random = Random(seed);
-            let mut rig = Rig::open(drawn.clone());
+            let mut rig = Rig::open_with_objects(drawn.clone(), halves(&drawn));
             // The document at each position of the history.
             let mut states = vec![rig.fingerprint()];
             for step in 0..150 {
@@ -277,11 +321,11 @@ fn with_jobs_that_come_late_strokes_still_move_nothing_and_all_comes_back_in_the
     for (name, drawn) in meshes() {
         for seed in 10..14 {
             let mut random = Random(seed);
-            let mut rig = Rig::open(drawn.clone());
+            let mut rig = Rig::open_with_objects(drawn.clone(), halves(&drawn));
             let first = rig.fingerprint();
             for _ in 0..120 {
                 if random.below(3) == 0 {
-                    rig.run(pliant_editor::JobKind::ALL[random.below(5) as usize]);
+                    rig.run(pliant_editor::JobKind::ALL[random.below(6) as usize]);
                     continue;
                 }
                 // The picking structure is kept up, so that strokes are answered; everything else is late.
@@ -423,7 +467,7 @@ fn assert_sound(rig: &Rig, at: &str) {
 #[test]
 fn ten_thousand_commands_keep_the_document_sound_and_undo_comes_back_to_the_first_state() {
     let mut random = Random(2026);
-    let mut rig = Rig::open(shapes::icosphere(2));
+    let mut rig = Rig::open_with_objects(shapes::icosphere(2), halves(&shapes::icosphere(2)));
     let first = rig.fingerprint();
     for step in 0..10_000 {
         act(&mut rig, &mut random);

@@ -19,6 +19,7 @@ mod new_faces;
 mod new_glb;
 mod new_mesh;
 mod obj;
+mod objects;
 mod off;
 mod ply;
 mod polygon;

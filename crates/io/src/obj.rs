@@ -13,12 +13,13 @@ mod write;
 
 use std::sync::Arc;
 
-use pliant_mesh::{Drawn, DrawnVertex};
+use pliant_mesh::{Drawn, DrawnVertex, Object};
 
 use crate::appearance::Group;
 use crate::colour::{byte, linear_of_srgb};
 use crate::moved::Moved;
 use crate::new_mesh::Polygons;
+use crate::objects;
 use crate::save::OutputFile;
 use crate::scene::{Source, Summary};
 use crate::text::line_of;
@@ -150,6 +151,15 @@ impl Stored {
             images: self.materials.images.len(),
             ..Summary::default()
         }
+    }
+
+    pub(crate) fn objects(&self) -> Vec<Object> {
+        objects::gathered(self.groups.iter().map(|group| objects::Part {
+            key: (&group.node_name, group.material),
+            name: group.node_name.clone(),
+            material: self.materials.materials[group.material].name.clone(),
+            triangles: group.triangles.clone(),
+        }))
     }
 
     pub(crate) fn appearance(&self) -> Appearance {

@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_mesh::{Cancel, Drawn, Progress};
+use pliant_mesh::{Cancel, Drawn, Object, Progress};
 use serde::Serialize;
 
 use crate::difference::{self, Difference};
@@ -169,6 +169,16 @@ impl Scene {
             Stored::Ply(stored) => stored.summary(),
             Stored::Stl(stored) => stored.summary(),
             Stored::Off(stored) => stored.summary(),
+        }
+    }
+
+    /// What the file tells apart: the triangles that one node shows in one material. One object, or none, where the
+    /// file's kind knows no nodes.
+    pub fn objects(&self) -> Vec<Object> {
+        match &self.stored {
+            Stored::Gltf(stored) => stored.objects(),
+            Stored::Obj(stored) => stored.objects(),
+            Stored::Ply(_) | Stored::Stl(_) | Stored::Off(_) => Vec::new(),
         }
     }
 

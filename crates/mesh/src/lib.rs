@@ -26,6 +26,7 @@ mod joining;
 mod model;
 mod morton;
 mod normals;
+mod object;
 mod parts;
 mod progress;
 mod rings;
@@ -51,6 +52,7 @@ pub use geometry::{
 pub use gradient::face_gradient;
 pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};
 pub use model::{Model, SurfaceOfFile, WeldOptions};
+pub use object::Object;
 pub use progress::{Cancel, Cancelled, Progress};
 pub use rings::FanKind;
 pub use surface::Surface;

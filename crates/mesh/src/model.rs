@@ -6,7 +6,8 @@ use rayon::prelude::*;
 use crate::parts::Parts;
 use crate::weld::weld;
 use crate::{
-    Bounds, Cancel, Cancelled, Drawn, FileVertex, Findings, Progress, Surface, SurfaceVertex, Topology, bounding_box,
+    Bounds, Cancel, Cancelled, Drawn, FileVertex, Findings, Object, Progress, Surface, SurfaceVertex, Topology,
+    bounding_box,
 };
 
 /// How equal positions are joined.
@@ -38,6 +39,8 @@ pub struct Model {
     pub drawn_triangle_of_surface: Vec<u32>,
     /// What is wrong with the mesh.
     pub findings: Findings,
+    /// What the file itself tells apart; empty where nobody said.
+    pub objects: Vec<Object>,
 }
 
 impl Model {
@@ -65,6 +68,7 @@ impl Model {
             surface_of_drawn,
             drawn_triangle_of_surface: welded.drawn_triangle_of_surface,
             findings: welded.findings,
+            objects: Vec::new(),
         })
     }
 

@@ -179,6 +179,30 @@ impl Page {
         refill(device, queue, buffer, &gathered(&self.vertices, contents))
     }
 
+    /// Draws only the triangles that `is_shown` is true of, by their number in the mesh. The others become points, so
+    /// that numbers and places stay what they are.
+    pub(crate) fn show(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        partition: &Partition,
+        is_shown: &dyn Fn(u32) -> bool,
+    ) -> Result<(), RenderError> {
+        let drawn: Vec<[u32; 3]> = self.drawn(partition, is_shown);
+        refill(device, queue, &self.indices, &drawn)?;
+        self.edges = OnceLock::new();
+        Ok(())
+    }
+
+    fn drawn(&self, partition: &Partition, is_shown: &dyn Fn(u32) -> bool) -> Vec<[u32; 3]> {
+        let own = self.places.clone().zip(&self.triangles);
+        let shown = own.map(|(place, &corners)| match is_shown(partition.triangle_at(place)) {
+            true => corners,
+            false => [0; 3],
+        });
+        shown.collect()
+    }
+
     /// Places of the drawing order that are on this page.
     pub(crate) fn places(&self) -> &Range<u32> {
         &self.places
@@ -209,7 +233,13 @@ impl Page {
     }
 
     /// Makes the edges unless they are there.
-    pub(crate) fn prepare_edges(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<(), RenderError> {
+    pub(crate) fn prepare_edges(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        partition: &Partition,
+        is_shown: &dyn Fn(u32) -> bool,
+    ) -> Result<(), RenderError> {
         if self.edges.get().is_some() {
             return Ok(());
         }
@@ -219,7 +249,9 @@ impl Page {
             .flatten()
             .max()
             .map_or(0, |&most| most as usize + 1);
-        let edges = unique_edges(&self.triangles, vertex_count);
+        let mut edges = unique_edges(&self.drawn(partition, is_shown), vertex_count);
+        // Hidden triangles are points.
+        edges.retain(|[from, to]| from != to);
         let made = if edges.is_empty() {
             None
         } else {

@@ -36,6 +36,8 @@ pub struct Surface {
     uniform_buffer: wgpu::Buffer,
     group: wgpu::BindGroup,
     materials: Vec<wgpu::BindGroup>,
+    /// Of each triangle, whether it is drawn; `None` is all of them.
+    shown: Option<Arc<Vec<bool>>>,
     /// For each page.
     borders: OnceLock<Vec<Option<LineSet>>>,
     /// For each page.
@@ -166,6 +168,7 @@ impl Surface {
             uniform_buffer,
             group,
             materials: renderer.material_groups(data.materials, data.textures)?,
+            shown: None,
             borders: OnceLock::new(),
             outlines: Vec::new(),
         })
@@ -279,6 +282,28 @@ impl Surface {
         let sets = (self.pages.iter()).map(|page| LineSet::new(renderer, page, lines.iter().copied(), 0.0));
         self.outlines = sets.collect::<Result<_, _>>()?;
         Ok(())
+    }
+
+    /// Draws only some of the triangles, a flag each; `None` draws them all. What is not drawn is not picked either.
+    ///
+    /// # Errors
+    /// [`RenderError::Length`] unless there is one flag a triangle; memory.
+    pub fn show(&mut self, renderer: &Renderer, shown: Option<Arc<Vec<bool>>>) -> Result<(), RenderError> {
+        if let Some(flags) = shown.as_ref().filter(|flags| flags.len() != self.triangles.len()) {
+            let (what, expected, found) = ("shown triangles", self.triangles.len(), flags.len());
+            return Err(RenderError::Length { what, expected, found });
+        }
+        let is_shown = |triangle: u32| shown.as_ref().is_none_or(|shown| shown[triangle as usize]);
+        for page in &mut self.pages {
+            page.show(renderer.device(), renderer.queue(), &self.partition, &is_shown)?;
+        }
+        self.borders = OnceLock::new();
+        self.shown = shown;
+        Ok(())
+    }
+
+    fn is_shown(&self, triangle: u32) -> bool {
+        self.shown.as_ref().is_none_or(|shown| shown[triangle as usize])
     }
 
     /// Gives the surface other materials: as many as it was made with, with the same alpha.
@@ -427,7 +452,10 @@ impl Surface {
     /// Makes the edges unless they are there.
     pub(crate) fn prepare_edges(&self, renderer: &Renderer) -> Result<(), RenderError> {
         let (device, queue) = (renderer.device(), renderer.queue());
-        self.pages.iter().try_for_each(|page| page.prepare_edges(device, queue))
+        let is_shown = |triangle| self.is_shown(triangle);
+        self.pages
+            .iter()
+            .try_for_each(|page| page.prepare_edges(device, queue, &self.partition, &is_shown))
     }
 
     /// Looks for borders unless that was done.
@@ -435,7 +463,21 @@ impl Surface {
         if self.borders.get().is_some() {
             return Ok(());
         }
-        let odd = odd_edges(&self.triangles, self.vertex_count, self.twins.as_deref());
+        let mut odd = odd_edges(&self.triangles, self.vertex_count, self.twins.as_deref());
+        if self.shown.is_some() {
+            // What hangs together stays so: a hidden neighbour makes no border, and takes its own along.
+            let mut of_shown = vec![false; self.vertex_count];
+            let shown = (0..)
+                .zip(&self.triangles)
+                .filter(|(triangle, _)| self.is_shown(*triangle));
+            for &corner in shown.flat_map(|(_, corners)| corners) {
+                of_shown[corner as usize] = true;
+            }
+            odd.retain(|odd| {
+                let (Odd::Border(ends) | Odd::Branching(ends)) = odd;
+                ends.iter().all(|&end| of_shown[end as usize])
+            });
+        }
         let made = (self.pages.iter()).map(|page| LineSet::new(renderer, page, border_lines(&odd), HIDDEN_BORDERS));
         let _ = self.borders.set(made.collect::<Result<Vec<_>, _>>()?);
         Ok(())

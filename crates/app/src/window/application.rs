@@ -472,6 +472,25 @@ impl Application {
         }
     }
 
+    /// Notes how large the window is, once nobody pulls at it.
+    fn remember_size(&mut self, context: &egui::Context) {
+        let size = context.input(|input| {
+            let viewport = input.viewport();
+            let is_own = viewport.maximized != Some(true) && viewport.fullscreen != Some(true);
+            viewport.inner_rect.filter(|_| is_own).map(|rect| rect.size())
+        });
+        let Some(size) = size.filter(|_| self.last_change.elapsed() >= REST) else {
+            return;
+        };
+        // The size in points at the scale of the system, whatever the person's own is.
+        let size = size * context.zoom_factor();
+        let known = self.settings.get().window_size;
+        if known.is_none_or(|known| (size - egui::Vec2::from(known)).length() > 1.0) {
+            self.settings
+                .change(|settings| settings.window_size = Some(size.into()));
+        }
+    }
+
     /// Names the open file, or the question that waits, in the window's title.
     fn entitle(&mut self, context: &egui::Context) {
         let about = match (&self.question, &self.session.open) {
@@ -610,12 +629,22 @@ impl eframe::App for Application {
             })
             .inner;
         if stop {
-            self.session.cancel_load();
+            self.session.stop();
         }
         let panel = Panel::right("panel")
             .default_size(self.settings.get().panel_width)
             .min_size(220.0)
-            .show(ui, |ui| panels::show(ui, &self.editor, &self.notes, &mut commands));
+            .show(ui, |ui| {
+                let folded = &self.settings.get().folded;
+                panels::show(ui, &self.editor, &self.notes, folded, &mut commands)
+            });
+        if let Some(title) = panel.inner {
+            self.settings.change(|settings| {
+                if !settings.folded.remove(title) {
+                    settings.folded.insert(title.to_owned());
+                }
+            });
+        }
         let width = panel.response.rect.width();
         if (width - self.settings.get().panel_width).abs() > 1.0 && !context.input(|input| input.pointer.any_down()) {
             self.settings.change(|settings| settings.panel_width = width);
@@ -652,6 +681,7 @@ impl eframe::App for Application {
             self.answer(answer);
             context.request_repaint();
         }
+        self.remember_size(&context);
         self.close_or_stay(&context);
         self.keep_for_recovery();
         if let Some(recovery) = &self.recovery

@@ -6,7 +6,7 @@ use pliant_editor::{
     stiffness_colour,
 };
 
-use super::command_button::{command_button, command_choice};
+use super::command_button::{choices, command_button, command_choice};
 use super::outbox::Outbox;
 
 /// Shows what belongs to the tool in hand.
@@ -59,7 +59,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                         "Everything that the disc on the screen covers, however far behind.",
                     ),
                 ];
-                if let Some(metric) = choice(ui, view.brush_metric, &METRICS) {
+                if let Some(metric) = choices(ui, view.brush_metric, &METRICS) {
                     commands.push(Command::SetBrushMetric(metric));
                 }
                 ui.end_row();
@@ -78,7 +78,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                         "Everything inside, to the back of the model.",
                     ),
                 ];
-                if let Some(depth) = choice(ui, view.depth, &DEPTHS) {
+                if let Some(depth) = choices(ui, view.depth, &DEPTHS) {
                     commands.push(Command::SetDepth(depth));
                 }
                 ui.end_row();
@@ -89,18 +89,6 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         ui.add_space(4.0);
         stiffness(ui, editor, &view.stiffness_brush, view.pressure, commands);
     }
-}
-
-/// A row of things to choose from, each with its name and what it means; what was clicked.
-fn choice<T: Copy + PartialEq>(ui: &mut egui::Ui, present: T, choices: &[(T, &str, &str)]) -> Option<T> {
-    let row = ui.horizontal(|ui| {
-        let clicked = choices.iter().filter(|(value, name, hover)| {
-            let label = ui.selectable_label(present == *value, *name);
-            label.on_hover_text(*hover).clicked()
-        });
-        clicked.last().map(|(value, ..)| *value)
-    });
-    row.inner
 }
 
 fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressure: Option<f64>, commands: &mut Outbox) {
@@ -114,7 +102,7 @@ fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressur
             "Takes the surface back to 1. So does painting with Ctrl held.",
         ),
     ];
-    if let Some(action) = choice(ui, brush.action, &ACTIONS) {
+    if let Some(action) = choices(ui, brush.action, &ACTIONS) {
         changed.action = action;
     }
     egui::Grid::new("stiffness")

@@ -27,3 +27,20 @@ pub fn command_choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, cho
         .on_hover_text(tooltip)
         .clicked()
 }
+
+/// Choices side by side, each with its name and what it means; the one that is clicked.
+pub fn choices<T: Copy + PartialEq>(ui: &mut egui::Ui, chosen: T, all: &[(T, &str, &str)]) -> Option<T> {
+    let mut clicked = None;
+    ui.horizontal(|ui| {
+        for (choice, name, meaning) in all {
+            if ui
+                .selectable_label(chosen == *choice, *name)
+                .on_hover_text(*meaning)
+                .clicked()
+            {
+                clicked = Some(*choice);
+            }
+        }
+    });
+    clicked
+}

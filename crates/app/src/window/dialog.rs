@@ -153,7 +153,7 @@ fn write_over(ui: &mut egui::Ui, path: &Path, answer: &mut Option<Answer>) {
     ui.label(sentence);
     ui.add_space(8.0);
     ui.horizontal(|ui| {
-        if ui.button(RichText::new("Save").strong()).clicked() {
+        if main_button(ui, "Save") {
             *answer = Some(Answer::WriteOver(path.to_owned()));
         }
         if ui.button("Save as…").clicked() {
@@ -205,11 +205,11 @@ fn recover(ui: &mut egui::Ui, left: &[Left], answer: &mut Option<Answer>) {
     ui.add_space(8.0);
     for (number, left) in left.iter().enumerate() {
         ui.horizontal(|ui| {
-            let name = match number {
-                0 => RichText::new("Recover").strong(),
-                _ => RichText::new("Recover"),
+            let is_chosen = match number {
+                0 => main_button(ui, "Recover"),
+                _ => ui.button("Recover").clicked(),
             };
-            if ui.button(name).clicked() {
+            if is_chosen {
                 *answer = Some(Answer::Recover(left.project.clone()));
             }
             ui.label(ago(left.written));
@@ -224,6 +224,15 @@ fn recover(ui: &mut egui::Ui, left: &[Left], answer: &mut Option<Answer>) {
             *answer = Some(Answer::Cancel);
         }
     });
+}
+
+/// The answer that Enter gives: it has the focus until another is chosen.
+fn main_button(ui: &mut egui::Ui, name: &str) -> bool {
+    let button = ui.button(RichText::new(name).strong());
+    if ui.memory(|memory| memory.focused().is_none()) {
+        button.request_focus();
+    }
+    button.clicked()
 }
 
 /// "kept 3 minutes ago".
@@ -246,7 +255,7 @@ fn discard(ui: &mut egui::Ui, then: &Then, answer: &mut Option<Answer>) {
     });
     ui.add_space(8.0);
     ui.horizontal(|ui| {
-        if ui.button(RichText::new("Save first").strong()).clicked() {
+        if main_button(ui, "Save first") {
             *answer = Some(Answer::Save);
         }
         if ui.button("Don't save").clicked() {

@@ -1,7 +1,8 @@
 //! The list of handles, and the selected one in numbers.
 
 use eframe::egui::{self, Align, Color32, ComboBox, DragValue, Layout, RichText, Sense};
-use glam::{DQuat, DVec3, EulerRot};
+use glam::DVec3;
+use pliant_deform::CONTINUITY_RANGE;
 use pliant_editor::{
     Command, Editor, HANDLE_COLOURS, Handle, HandleId, HandleTransform, PivotPlace, Reach, SOFT_RANGE,
 };
@@ -22,7 +23,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     }
     if let Some(handle) = view.handles.iter().find(|handle| view.selected == Some(handle.id)) {
         ui.add_space(4.0);
-        ui.add_enabled_ui(!handle.locked, |ui| numbers(ui, handle, commands));
+        ui.add_enabled_ui(!handle.locked, |ui| numbers(ui, editor, handle, commands));
     }
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
@@ -134,7 +135,7 @@ fn name(ui: &mut egui::Ui, handle: &Handle, is_selected: bool, commands: &mut Ou
     }
 }
 
-fn numbers(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
+fn numbers(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Outbox) {
     egui::Grid::new("handle")
         .num_columns(2)
         .spacing([8.0, 4.0])
@@ -158,12 +159,8 @@ fn numbers(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
                 triple(ui, "Move", translation, 0.01, "", commands, |moved| {
                     set(moved, rotation, scale)
                 });
-                let (x, y, z) = rotation.to_euler(EulerRot::XYZ);
-                // Adding 0 makes −0 a plain 0.
-                let degrees = DVec3::new(x, y, z).map(f64::to_degrees) + 0.0;
-                triple(ui, "Turn", degrees, 0.5, "°", commands, |degrees| {
-                    let [x, y, z] = degrees.map(f64::to_radians).to_array();
-                    set(translation, DQuat::from_euler(EulerRot::XYZ, x, y, z), scale)
+                triple(ui, "Turn", handle.turn_deg, 0.5, "°", commands, |degrees| {
+                    Command::SetTurn(handle.id, degrees)
                 });
                 triple(ui, "Scale", scale, 0.01, "", commands, |scale| {
                     set(translation, rotation, scale)
@@ -171,6 +168,7 @@ fn numbers(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
             }
             pivot(ui, handle, commands);
             reach(ui, handle, commands);
+            joint(ui, editor, handle, commands);
             softness(ui, handle, commands);
             ui.end_row();
         });
@@ -259,6 +257,36 @@ fn reach(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
     let hover = "How far along the surface this handle takes the surface along.";
     let field = ui.add(field).labelled_by(label.id).on_hover_text(hover);
     commands.adjust(&field, || Command::SetReach(handle.id, make(value)));
+    ui.end_row();
+}
+
+/// How smoothly the surface goes over into the handle, where the method has a choice.
+fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Outbox) {
+    let label = ui.label("Border");
+    let has_choice = editor.document().method().name() == "bilaplacian";
+    let mut value = handle.continuity.unwrap_or(*CONTINUITY_RANGE.end());
+    let word = match value {
+        ..0.5 => "hinge",
+        0.5..1.5 => "keeps tangents",
+        _ => "smooth",
+    };
+    ui.add_enabled_ui(has_choice, |ui| {
+        ui.horizontal(|ui| {
+            let field = DragValue::new(&mut value)
+                .range(CONTINUITY_RANGE)
+                .speed(0.02)
+                .max_decimals(2)
+                .update_while_editing(false);
+            let hover = if has_choice {
+                "How smoothly the surface joins this handle: 0 folds like a hinge, 1 keeps its tangents, 2 its curvature."
+            } else {
+                "Only the bi-Laplacian has a choice of how smoothly the surface joins a handle."
+            };
+            let field = ui.add(field).labelled_by(label.id).on_hover_text(hover).on_disabled_hover_text(hover);
+            commands.adjust(&field, || Command::SetContinuity(handle.id, Some(value)));
+            ui.label(RichText::new(word).weak());
+        });
+    });
     ui.end_row();
 }
 

@@ -9,6 +9,8 @@ pub enum Icon {
     Eye,
     /// A padlock, open while off.
     Lock,
+    /// A ring, with a dot in it while on.
+    Alone,
 }
 
 /// A toggle with a name for those who don't see it; true when it is clicked.
@@ -24,6 +26,7 @@ pub fn toggle(ui: &mut egui::Ui, icon: Icon, is_on: bool, name: &str, hover: &st
     match icon {
         Icon::Eye => eye(ui.painter(), rect, colour, is_on),
         Icon::Lock => lock(ui.painter(), rect, colour, is_on),
+        Icon::Alone => alone(ui.painter(), rect, colour, is_on),
     }
     response.on_hover_text(hover).clicked()
 }
@@ -67,4 +70,11 @@ fn lock(painter: &Painter, rect: Rect, colour: Color32, is_closed: bool) {
         painter.rect_stroke(body, 1.5, stroke, egui::StrokeKind::Inside);
     }
     painter.line(arch, stroke);
+}
+
+fn alone(painter: &Painter, rect: Rect, colour: Color32, is_on: bool) {
+    painter.circle_stroke(rect.center(), 5.0, Stroke::new(1.2, colour));
+    if is_on {
+        painter.circle_filled(rect.center(), 2.4, colour);
+    }
 }

@@ -17,9 +17,11 @@ mod icon;
 mod input;
 mod keys_window;
 mod log;
+mod loose_panel;
 mod message;
 mod method_panel;
 mod notes;
+mod objects_panel;
 mod outbox;
 mod palette;
 mod panels;
@@ -52,6 +54,7 @@ pub use places::Places;
 pub use session::{KeepOriginal, Source, original_name};
 pub use shell::{NumpadDigits, Shared, Shell};
 
+use settings::Settings;
 use shell::Listener;
 
 use crate::error::AppError;
@@ -87,7 +90,7 @@ pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
         let has_begun = Rc::new(Cell::new(false));
         let inner = eframe::create_native(
             "Pliant",
-            options(),
+            options(&places),
             {
                 let (application, numpad) = (Rc::clone(&application), Rc::clone(&numpad));
                 let (source, places) = (source.clone(), places.clone());
@@ -136,12 +139,16 @@ pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
     }
 }
 
-fn options() -> eframe::NativeOptions {
+fn options(places: &Places) -> eframe::NativeOptions {
+    let remembered = places
+        .settings
+        .as_deref()
+        .and_then(|path| Settings::read(path).0.window_size);
     eframe::NativeOptions {
         viewport: ViewportBuilder::default()
             .with_title("Pliant")
             .with_app_id("pliant")
-            .with_inner_size(vec2(1280.0, 800.0))
+            .with_inner_size(remembered.unwrap_or([1280.0, 800.0]))
             .with_min_inner_size(vec2(640.0, 400.0))
             .with_drag_and_drop(true),
         renderer: eframe::Renderer::Wgpu,

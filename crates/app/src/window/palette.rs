@@ -1,7 +1,8 @@
 //! The command palette: every command by its name, found by typing a part of it.
 
 use eframe::egui::{self, Id, Key, Modal, RichText, ScrollArea};
-use pliant_editor::{Command, Editor, Listed};
+use pliant_deform::Method;
+use pliant_editor::{Command, Editor, Listed, method_title, when_to_use};
 
 use super::top_bar::FileCommand;
 
@@ -117,7 +118,18 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
         found: Found::File(command.clone()),
         enabled: true,
     });
+    let methods = Method::NAMES.iter().filter_map(|name| {
+        let command = Command::SetMethod(Method::from_name(name)?);
+        Some(Entry {
+            name: format!("Method: {}", method_title(name)),
+            tooltip: when_to_use(name).to_owned(),
+            shortcut: String::new(),
+            enabled: editor.is_enabled(&command) && editor.document().method().name() != *name,
+            found: Found::Editor(command),
+        })
+    });
     let mut found: Vec<(u8, Entry)> = listed
+        .chain(methods)
         .chain(files)
         .filter_map(|entry| Some((rank(&entry.name.to_lowercase(), &typed)?, entry)))
         .collect();

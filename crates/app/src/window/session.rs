@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_editor::{Beginning, EditFile, JobQueue, Revision, Snapshot};
-use pliant_mesh::WeldOptions;
+use pliant_mesh::{Cancel, Progress, WeldOptions};
 use pliant_render::Image;
 
 use super::message::{Message, Opened, Written, WrittenKind};
@@ -102,9 +102,10 @@ impl Session {
         self.start_loading(workers);
     }
 
-    /// Gives up the load that is under way.
-    pub fn cancel_load(&mut self) {
+    /// Gives up what is under way: a load, or a save before it has changed anything on the disk.
+    pub fn stop(&mut self) {
         self.loading.cancel();
+        self.saving.cancel();
     }
 
     /// Takes a load's result. `None` if nobody wants it any more.
@@ -238,9 +239,10 @@ impl Session {
             return;
         };
         let stamp = running.stamp;
+        let (progress, cancel) = (running.progress.clone(), running.cancel.clone());
         workers.spawn(
             "saving",
-            move || Message::Written(stamp, write(request).map_err(|error| error.to_string())),
+            move || Message::Written(stamp, write(request, &progress, &cancel)),
             move |sentence| Message::Written(stamp, Err(sentence)),
         );
     }
@@ -343,8 +345,22 @@ fn is_in_folder_of(mesh: &MeshSource, project: &Path) -> bool {
     matches!(mesh, MeshSource::File(mesh) if files::folder_of(mesh) == files::folder_of(project))
 }
 
-fn write(request: SaveRequest) -> Result<Written, AppError> {
+/// Writes, or says why not; what was stopped in time has changed nothing.
+fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, String> {
+    let name = file_name(&request.path);
+    write_unless_stopped(request, progress, cancel).map_err(|error| match error {
+        AppError::Interrupted => format!("Saving {name} was stopped: nothing was written. Save again when you like."),
+        error => error.to_string(),
+    })
+}
+
+fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, AppError> {
     let SaveRequest { path, what } = request;
+    let go_on = |share: f32| {
+        progress.set(share);
+        cancel.check().map_err(|_| AppError::Interrupted)
+    };
+    go_on(0.02)?;
     let staging = Staging::default();
     let folder = files::folder_of(&path);
     match what {
@@ -388,6 +404,7 @@ fn write(request: SaveRequest) -> Result<Written, AppError> {
         } => {
             let mut positions = Vec::new();
             loaded.model.drawn_positions(&displacements, &mut positions);
+            go_on(0.1)?;
             let (staged, warnings) = engine::stage_save(&loaded, &positions, &path, &staging)?;
             let original = original_name(&path);
             let is_source = matches!(&source, MeshSource::File(mesh) if is_same(mesh, &path));
@@ -396,6 +413,7 @@ fn write(request: SaveRequest) -> Result<Written, AppError> {
                 keep(&loaded, &path, &original)?;
                 moved = moved.map(|_| MeshSource::File(original));
             }
+            go_on(0.9)?;
             staged.commit()?;
             Ok(Written {
                 path,

@@ -25,6 +25,8 @@ pub struct Settings {
     pub panel_width: f32,
     /// The window's size in points.
     pub window_size: Option<[f32; 2]>,
+    /// Sections of the panel that are folded away, by their titles.
+    pub folded: std::collections::BTreeSet<String>,
     /// Whether the hints on the canvas were put away.
     pub hints_seen: bool,
     /// Keys of commands, by the commands' names, where they are others than the program's own.
@@ -101,6 +103,7 @@ impl Default for Settings {
             ui_scale: 1.0,
             panel_width: 280.0,
             window_size: None,
+            folded: Default::default(),
             hints_seen: false,
             keys: Default::default(),
         }
@@ -122,6 +125,9 @@ impl Settings {
                 let scale = settings.ui_scale;
                 settings.ui_scale = if scale.is_finite() { scale.clamp(0.5, 3.0) } else { 1.0 };
                 settings.panel_width = settings.panel_width.clamp(200.0, 600.0);
+                settings.window_size = settings
+                    .window_size
+                    .filter(|size| size.iter().all(|side| (320.0..=16_384.0).contains(side)));
                 (settings, None)
             }
             Err(error) => (

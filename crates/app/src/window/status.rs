@@ -24,7 +24,7 @@ fn done(ui: &egui::Ui) -> Color32 {
     }
 }
 
-/// Shows the line. True if the person asks to stop opening a file.
+/// Shows the line. True if the person asks to stop opening or saving a file.
 pub fn show(
     ui: &mut egui::Ui,
     editor: &Editor,
@@ -34,7 +34,7 @@ pub fn show(
     commands: &mut Outbox,
 ) -> bool {
     let view = editor.view();
-    let mut stop_opening = false;
+    let mut stop_file_work = false;
     if let Some(problem) = view.problem {
         ui.add(egui::Label::new(RichText::new(problem).color(failed(ui))).wrap());
     }
@@ -53,7 +53,7 @@ pub fn show(
     ui.horizontal(|ui| {
         if let Some((doing, share)) = file_work {
             progress(ui, doing, share);
-            stop_opening = ui.small_button("Stop").clicked();
+            stop_file_work = ui.small_button("Stop").clicked();
         }
         for (kind, share) in &view.jobs {
             // What takes no time to notice is not worth a bar.
@@ -74,7 +74,7 @@ pub fn show(
             }
         });
     });
-    stop_opening
+    stop_file_work
 }
 
 fn progress(ui: &mut egui::Ui, doing: &str, share: f32) {

@@ -294,6 +294,11 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         }
     }
     ui.separator();
+    if command_button(ui, editor, &Command::ShowEverything) {
+        commands.push(Command::ShowEverything);
+        ui.close();
+    }
+    ui.separator();
     let view = editor.view();
     let look = view.look;
     let mut choice = |ui: &mut egui::Ui, command: Command, chosen: bool| {

@@ -79,6 +79,8 @@ struct Shown {
     scale: Option<Arc<Scale>>,
     /// How often its materials changed.
     outfits: u64,
+    /// The triangles that are drawn.
+    shown: Option<Arc<Vec<bool>>>,
 }
 
 impl Shown {
@@ -114,6 +116,7 @@ struct DrawnKey {
     colours: Colours,
     outfits: u64,
     rims: u64,
+    shown: usize,
     overlay: u64,
     camera: u64,
     look: Look,
@@ -212,6 +215,7 @@ impl Viewport {
             rims: None,
             scale: None,
             outfits: 0,
+            shown: None,
         });
     }
 
@@ -333,6 +337,7 @@ impl Viewport {
             colours: self.surface.as_ref().map_or(Colours::None, |shown| shown.colours),
             outfits: self.surface.as_ref().map_or(0, |shown| shown.outfits),
             rims: view.rims_revision,
+            shown: self.surface.as_ref().map_or(0, |shown| address(shown.shown.as_ref())),
             overlay: view.overlay_revision,
             camera: view.camera_revision,
             look: view.look,
@@ -345,6 +350,12 @@ impl Viewport {
         let (Some(shown), Some(model)) = (&mut self.surface, view.model) else {
             return Ok(());
         };
+        let wanted_triangles = editor.shown_triangles();
+        if address(shown.shown.as_ref()) != address(wanted_triangles) {
+            let wanted_triangles = wanted_triangles.cloned();
+            shown.surface.show(&self.gpu.read(), wanted_triangles.clone())?;
+            shown.shown = wanted_triangles;
+        }
         let stiffness = editor.document().stiffness();
         let wanted = match drawing::field(view.look.shading) {
             None => Colours::Regions(view.regions_revision),
@@ -466,6 +477,11 @@ impl Viewport {
             None => self.texture = Some(egui_renderer.register_native_texture(device, view, filter)),
         }
     }
+}
+
+/// What tells two lists of triangles apart; 0 for all of them.
+fn address(shown: Option<&Arc<Vec<bool>>>) -> usize {
+    shown.map_or(0, |shown| Arc::as_ptr(shown) as usize)
 }
 
 /// Whether the view changes or rests.

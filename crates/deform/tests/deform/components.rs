@@ -80,6 +80,79 @@ fn loose_components_rest_when_they_are_told_to() {
     }
 }
 
+/// A bar along x and a flat strip above all of its length.
+fn bar_with_strap() -> Drawn {
+    let strap = shapes::moved(
+        &shapes::bar(48, 4, 1),
+        DAffine3::from_translation(DVec3::new(0.0, 0.5, 2.4)) * DAffine3::from_scale(DVec3::new(0.25, 0.25, 0.05)),
+    );
+    shapes::together(&[shapes::bar(12, 2, 2), strap])
+}
+
+#[test]
+fn a_strap_that_bends_along_goes_with_each_end_as_what_lies_under_it_does() {
+    let mut scene = Scene::new(bar_with_strap())
+        .with(Role::Fixed, |p| p.x < 5.5 && p.z < 2.1)
+        .with(Role::Handle(0), |p| p.x > 6.5 && p.z < 2.1);
+    scene.loose = Loose::Bend;
+    let target = turned(DVec3::new(6.5, 1.0, 1.0), 0.9, DVec3::new(0.0, 0.3, 1.0));
+    let bent = step(&mut scene.bind(), &[target]);
+    let strap = vertices_near(&scene, true, -1.0);
+    assert!(strap.len() > 300);
+    for &v in &strap {
+        let rest = scene.positions()[v];
+        let carried = target.transform_point3(rest) - rest;
+        if rest.x > 11.0 {
+            assert!(bent[v].distance(carried) < 1e-9, "{rest}");
+        } else if rest.x < 1.0 {
+            assert!(bent[v].length() < 1e-12, "{rest}");
+        }
+    }
+    // Between the two it does not tear: neighbours stay neighbours.
+    for corners in &scene.model.surface.triangles {
+        for (a, b) in [(0, 1), (1, 2), (2, 0)].map(|(a, b)| (corners[a].index(), corners[b].index())) {
+            let (p, q) = (scene.positions()[a], scene.positions()[b]);
+            if p.z > 2.1 {
+                let stretch = (p + bent[a]).distance(q + bent[b]) / p.distance(q);
+                assert!((0.3..3.0).contains(&stretch), "{stretch} at {p}");
+            }
+        }
+    }
+    // Everything as one moves it as one.
+    let mut whole = Scene::new(bar_with_strap()).with(Role::Handle(0), |p| p.z < 2.1);
+    whole.loose = Loose::Bend;
+    for (v, displacement) in step(&mut whole.bind(), &[target]).iter().enumerate() {
+        let rest = whole.positions()[v];
+        assert!(displacement.distance(target.transform_point3(rest) - rest) < 1e-9);
+    }
+}
+
+#[test]
+fn single_components_do_what_they_are_told_whatever_the_others_do() {
+    let mut scene = Scene::new(bar_with_balls()).with(Role::Handle(0), |p| p.z < 2.1);
+    let far = vertices_near(&scene, true, 9.0);
+    let part = scene.model.topology.component(SurfaceVertex(far[0] as u32));
+    scene.parts = vec![(part, Loose::Follow), (part, Loose::Rest)];
+    let displacements = scene.moved(&[DAffine3::from_translation(DVec3::X)]);
+    for (v, displacement) in displacements.iter().enumerate() {
+        let expected = if far.contains(&v) { DVec3::ZERO } else { DVec3::X };
+        assert!(displacement.distance(expected) < 1e-9);
+    }
+    scene.loose = Loose::Rest;
+    scene.parts = vec![(part, Loose::Bend)];
+    let bound = scene.bind();
+    assert!(
+        bound.warnings().iter().any(|sentence| sentence.contains("bends along")),
+        "{:?}",
+        bound.warnings()
+    );
+    for (v, displacement) in scene.moved(&[DAffine3::from_translation(DVec3::X)]).iter().enumerate() {
+        let stays = scene.positions()[v].z > 2.1 && !far.contains(&v);
+        let expected = if stays { DVec3::ZERO } else { DVec3::X };
+        assert!(displacement.distance(expected) < 1e-9);
+    }
+}
+
 #[test]
 fn a_component_that_is_only_fixed_or_beyond_a_fixed_band_stays_and_costs_nothing() {
     let drawn = shapes::together(&[

@@ -13,6 +13,7 @@ pub struct Scene {
     pub soft: Vec<Option<f64>>,
     pub continuity: Vec<f64>,
     pub loose: Loose,
+    pub parts: Vec<(u32, Loose)>,
     pub method: Method,
 }
 
@@ -29,6 +30,7 @@ impl Scene {
             soft: Vec::new(),
             continuity: Vec::new(),
             loose: Loose::Follow,
+            parts: Vec::new(),
             method: Method::default(),
         }
     }
@@ -95,6 +97,7 @@ impl Scene {
             holds: Holds {
                 soft: &self.soft,
                 continuity: &self.continuity,
+                parts: &self.parts,
             },
             loose: self.loose,
             method,

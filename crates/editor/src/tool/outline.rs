@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 use pliant_mesh::SurfaceVertex;
+use rayon::prelude::*;
 
 use super::Tool;
 use super::paint::PaintStroke;
@@ -113,18 +114,21 @@ fn vertices_inside(picking: &Picking<'_>, polygon: &[DVec2], depth: Depth) -> Ve
             (low.min(*p), high.max(*p))
         });
     (0..picking.model.surface.positions.len() as u32)
+        .into_par_iter()
+        .with_min_len(4096)
         .map(SurfaceVertex)
         .filter(|&vertex| {
             let position = picking.position(vertex);
             let Some(px) = picking.sight.project(position) else {
                 return false;
             };
+            let is_inside = px.cmpge(low).all() && px.cmple(high).all() && is_inside(px, polygon);
+            if !is_inside || depth == Depth::Through {
+                return is_inside;
+            }
             // Where the line of sight through the vertex begins: the eye itself, but for an orthographic view.
             let eye = picking.camera.ray(px, picking.viewport_px).origin;
-            px.cmpge(low).all()
-                && px.cmple(high).all()
-                && is_inside(px, polygon)
-                && (depth == Depth::Through || picking.is_seen(vertex, position, eye))
+            picking.is_seen(vertex, position, eye)
         })
         .collect()
 }

@@ -27,6 +27,9 @@ pub const HANDLE_COLOURS: [[u8; 4]; 8] = [
     [244, 222, 120, 255],
 ];
 
+/// What is said where paint does not take.
+const LOCKED_OBJECT: &str = "This object is locked: unlock it in the list of objects to paint on it.";
+
 /// A stroke that goes on.
 #[derive(Debug)]
 pub(crate) struct PaintStroke {
@@ -152,6 +155,14 @@ impl PaintStroke {
 
     /// Gives vertices the stroke's paint; those of locked handles keep theirs.
     fn take(&mut self, editor: &mut Editor, mut changed: Vec<SurfaceVertex>) {
+        if !editor.masks.are_open() {
+            let masks = &editor.masks;
+            let has_locked = changed.iter().any(|vertex| masks.is_locked(vertex.index()));
+            changed.retain(|vertex| masks.may_be_painted(vertex.index()));
+            if has_locked && changed.is_empty() {
+                editor.problem = Some(LOCKED_OBJECT.to_owned());
+            }
+        }
         let document = &mut editor.document;
         if document.handles.iter().any(|handle| handle.locked) {
             let is_locked = |paint: Paint| match paint {

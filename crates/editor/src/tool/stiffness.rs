@@ -149,6 +149,7 @@ impl StiffnessStroke {
         }
         editor.brush = brush;
         self.last_px = to_px;
+        met.retain(|(vertex, _)| editor.masks.may_be_painted(vertex.index()));
         if met.is_empty() {
             return;
         }

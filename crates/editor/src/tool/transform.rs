@@ -15,6 +15,7 @@ use crate::editor::Editor;
 use crate::gizmo::GizmoPart;
 use crate::number_entry::NumberEntry;
 use crate::transaction::Transaction;
+use crate::turn::accumulated;
 use crate::{Button, HandleTransform, Key, Modifiers, Pointer, Readout};
 
 /// A held button must move the pointer this far before a handle follows.
@@ -92,8 +93,8 @@ impl TransformDrag {
         start_px: DVec2,
     ) -> Option<Self> {
         let handle = editor.document.handle(editor.selected?)?.clone();
-        if handle.locked {
-            editor.problem = Some(format!("{} is locked: unlock it in the list to move it.", handle.name));
+        if let Some(why) = editor.held_because(handle.id) {
+            editor.problem = Some(why);
             return None;
         }
         let companions = editor
@@ -315,8 +316,15 @@ impl TransformDrag {
                 }
             }
             TransformKind::Turn => {
-                let turn = rotation(self.turn_axis(editor), self.angle_rad());
+                let (axis, angle_rad) = (self.turn_axis(editor), self.angle_rad());
+                let turn = rotation(axis, angle_rad);
                 editor.put_handle(self.handle, self.start.turned_by(turn, self.pivot));
+                if let (HandleTransform::Trs { rotation, .. }, Some(before)) =
+                    (self.start, self.transaction.before().handle(self.handle))
+                {
+                    let counted = accumulated(before.turn_deg, rotation, axis, angle_rad);
+                    editor.count_turn(self.handle, counted);
+                }
                 for other in &self.companions {
                     let way = turn * (other.centre - self.centre) - (other.centre - self.centre);
                     editor.put_handle(other.id, other.start.turned_by(turn, other.pivot).moved_by(way));

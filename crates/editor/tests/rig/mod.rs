@@ -2,15 +2,16 @@
 #![allow(dead_code, reason = "each test file uses the verbs it needs")]
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
-use pliant_deform::{Holds, Ordering, Problem};
+use pliant_deform::{Holds, Loose, Ordering, Problem, Role};
 use pliant_editor::{
-    Button, Command, Document, Editor, Event, GizmoPart, Handle, InlineExecutor, JobKind, Key, Modifiers, Paint,
-    Pointer, ToolMode,
+    Access, Button, Command, Document, Editor, Event, GizmoPart, Handle, InlineExecutor, JobKind, Key, Modifiers,
+    Paint, Pointer, ToolMode,
 };
-use pliant_mesh::{Cancel, Drawn, Model, Progress, WeldOptions};
+use pliant_mesh::{Cancel, Drawn, Model, Object, Progress, WeldOptions};
 
 pub const VIEWPORT_PX: DVec2 = DVec2::new(800.0, 600.0);
 pub const CENTRE_PX: DVec2 = DVec2::new(400.0, 300.0);
@@ -31,6 +32,8 @@ pub struct Fingerprint {
     rest: Vec<[u64; 3]>,
     from_rest: Vec<[u64; 3]>,
     from_file: Vec<[u64; 3]>,
+    access: Access,
+    loose: (Loose, BTreeMap<u32, Loose>),
     settled: bool,
     applied: bool,
 }
@@ -45,6 +48,8 @@ impl Fingerprint {
             rest: bits(document.rest()),
             from_rest: bits(document.from_rest()),
             from_file: bits(document.from_file()),
+            access: document.access().clone(),
+            loose: (document.loose(), document.loose_parts().clone()),
             settled: document.is_settled(),
             applied: document.is_applied(),
         }
@@ -63,11 +68,22 @@ impl Rig {
         rig
     }
 
+    /// A program with this mesh open, which tells objects apart, and every job done.
+    pub fn open_with_objects(drawn: Drawn, objects: Vec<Object>) -> Self {
+        let model = Arc::unwrap_or_clone(weld(drawn)).with_objects(objects);
+        let mut rig = Self::open_model(Arc::new(model));
+        rig.drain();
+        rig
+    }
+
     /// A program with this mesh open whose jobs have not run.
     pub fn open_with_jobs_waiting(drawn: Drawn) -> Self {
+        Self::open_model(weld(drawn))
+    }
+
+    fn open_model(model: Arc<Model>) -> Self {
         let jobs = InlineExecutor::new();
         let mut editor = Editor::new(Box::new(jobs.clone()));
-        let model = weld(drawn);
         editor.handle(Event::Viewport { size_px: VIEWPORT_PX });
         editor.handle(Event::Opened {
             model: Arc::clone(&model),
@@ -198,7 +214,14 @@ impl Rig {
         let document = self.editor.document();
         let mut surface = self.model.surface.clone();
         let mut displacements = vec![DVec3::ZERO; surface.positions.len()];
-        if document.handles().is_empty() {
+        // What lies on locked objects alone is no handle.
+        let roles = self.editor.roles();
+        let is_held = |handle: &&Handle| {
+            let mut painted = document.paint().iter().zip(roles);
+            painted.any(|(paint, role)| *paint == Paint::Handle(handle.id) && *role != Role::Fixed)
+        };
+        let handles: Vec<&Handle> = document.handles().iter().filter(is_held).collect();
+        if handles.is_empty() {
             return displacements;
         }
         for (position, rest) in surface.positions.iter_mut().zip(document.rest()) {
@@ -208,23 +231,29 @@ impl Rig {
         let (progress, cancel) = (Progress::new(), Cancel::new());
         let power = document.method().operator_power();
         let ordering = Ordering::of(&self.model.topology, power, &progress, &cancel).unwrap();
-        let soft: Vec<Option<f64>> = document.handles().iter().map(|handle| handle.soft).collect();
+        let soft: Vec<Option<f64>> = handles.iter().map(|handle| handle.soft).collect();
+        let parts: Vec<(u32, Loose)> = document
+            .loose_parts()
+            .iter()
+            .map(|(part, loose)| (*part, *loose))
+            .collect();
         let problem = Problem {
             surface: &surface,
             topology: &self.model.topology,
-            roles: self.editor.roles(),
-            handle_count: document.handles().len(),
+            roles,
+            handle_count: handles.len(),
             stiffness: document.stiffness().unwrap_or(&ones),
             holds: Holds {
                 soft: &soft,
-                continuity: document.continuity().unwrap_or_default(),
+                continuity: &document.joints().unwrap_or_default(),
+                parts: &parts,
             },
             loose: document.loose(),
             method: document.method(),
             revision: 0,
         };
         let mut bound = problem.bind(&ordering, &progress, &cancel).unwrap();
-        let targets: Vec<DAffine3> = document.handles().iter().map(Handle::affine).collect();
+        let targets: Vec<DAffine3> = handles.iter().map(|handle| handle.affine()).collect();
         bound.set_targets(&targets).unwrap();
         while !bound.step(&mut displacements).unwrap().finished {}
         displacements

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use ::gltf::json;
 use ::gltf::json::validation::Checked;
 use glam::{DMat3, DVec3, Vec3};
+use pliant_mesh::Object;
 use rayon::prelude::*;
 
 use super::accessor::Layout;
@@ -13,6 +14,7 @@ use super::geometry::{self, Part, Pieces};
 use super::maps;
 use super::primitive::Primitive;
 use crate::appearance::{AlphaMode, Appearance, Group, Image, Material, Wrap};
+use crate::objects;
 
 /// Vertices that a thread handles at a time.
 const CHUNK: usize = 1 << 14;
@@ -84,6 +86,25 @@ pub(super) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
         })
         .collect();
     out
+}
+
+/// What the drawn set's nodes and materials tell apart; a node without a name is called as its mesh is.
+pub(super) fn objects(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<Object> {
+    objects::gathered(pieces.pieces.iter().map(|piece| {
+        let part = &pieces.parts[piece.part];
+        let material = of_piece(meshes, pieces, piece.part, piece.primitive).material;
+        let name = document.name(document.nodes_at[part.node]);
+        objects::Part {
+            key: (part.node, material),
+            name: if name.is_empty() {
+                document.name(document.meshes_at[part.mesh])
+            } else {
+                name
+            },
+            material: material.map_or_else(String::new, |material| document.name(document.materials_at[material])),
+            triangles: piece.triangles.clone(),
+        }
+    }))
 }
 
 /// The rest normals of all drawn vertices in world space, of unit length, zero where there are none.

@@ -22,7 +22,7 @@ mod tree;
 mod unpack;
 mod uri;
 
-use pliant_mesh::Drawn;
+use pliant_mesh::{Drawn, Object};
 
 use self::document::Document;
 use self::fault::Fault;
@@ -129,6 +129,10 @@ impl Stored {
     /// What differs between this file and another, in the order of this one's text.
     pub fn differences(&self, other: &Self) -> Vec<Difference> {
         compare::differences(&self.document, &other.document)
+    }
+
+    pub fn objects(&self) -> Vec<Object> {
+        look::objects(&self.document, &self.meshes, &self.pieces)
     }
 
     pub fn appearance(&self) -> Appearance {

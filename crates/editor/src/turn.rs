@@ -1,0 +1,88 @@
+//! A handle's turn as three angles that go on counting: 270° stays 270°, and a second full turn is 720°.
+//!
+//! The rotation itself is a quaternion, which knows no full turns. Of all triples of angles about x, y and z that mean
+//! the same rotation the one that is nearest to what was shown before is shown.
+
+use glam::{DQuat, DVec3, EulerRot};
+
+/// No step of a turn that is followed is longer: a third of what would be ambiguous.
+const STEP_RAD: f64 = std::f64::consts::FRAC_PI_3;
+
+/// The rotation of angles about x, y and z in degrees.
+pub(crate) fn rotation_of(turn_deg: DVec3) -> DQuat {
+    let [x, y, z] = turn_deg.map(f64::to_radians).to_array();
+    DQuat::from_euler(EulerRot::XYZ, x, y, z)
+}
+
+/// Whether angles in degrees mean a rotation, as well as numbers of that size can.
+pub(crate) fn means(turn_deg: DVec3, rotation: DQuat) -> bool {
+    turn_deg.is_finite() && rotation_of(turn_deg).dot(rotation).abs() > 1.0 - 1e-9
+}
+
+/// The angles in degrees that mean `rotation`, as near as can be to `before_deg`.
+pub(crate) fn followed(before_deg: DVec3, rotation: DQuat) -> DVec3 {
+    if rotation.xyz() == DVec3::ZERO {
+        return nearest_of(before_deg, DVec3::ZERO);
+    }
+    let (x, y, z) = rotation.to_euler(EulerRot::XYZ);
+    let plain = DVec3::new(x, y, z).map(f64::to_degrees);
+    let other = DVec3::new(plain.x + 180.0, 180.0 - plain.y, plain.z + 180.0);
+    let [plain, other] = [plain, other].map(|angles| nearest_of(before_deg, angles));
+    if plain.distance(before_deg) <= other.distance(before_deg) {
+        plain
+    } else {
+        other
+    }
+}
+
+/// Each angle with the full turns that bring it nearest to another.
+fn nearest_of(to_deg: DVec3, angles_deg: DVec3) -> DVec3 {
+    // Adding 0 makes −0 a plain 0.
+    angles_deg + ((to_deg - angles_deg) / 360.0).round() * 360.0 + 0.0
+}
+
+/// The angles after a turn by any angle about an axis, from a start that `start_deg` shows.
+pub(crate) fn accumulated(start_deg: DVec3, start: DQuat, axis: DVec3, angle_rad: f64) -> DVec3 {
+    let steps = (angle_rad.abs() / STEP_RAD).ceil().clamp(1.0, 1e4);
+    (1..=steps as u32).fold(start_deg, |shown, step| {
+        let turn = DQuat::from_axis_angle(axis, angle_rad * f64::from(step) / steps);
+        followed(shown, turn * start)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DQuat, DVec3};
+
+    use super::{accumulated, followed, rotation_of};
+
+    #[test]
+    fn a_turn_about_an_axis_counts_on_beyond_half_and_full_turns() {
+        for (axis, unit) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
+            for degrees in [30.0, 170.0, 270.0_f64, -200.0, 360.0, 725.0] {
+                let shown = accumulated(DVec3::ZERO, DQuat::IDENTITY, unit, degrees.to_radians());
+                let rotation = DQuat::from_axis_angle(unit, degrees.to_radians());
+                assert!(rotation_of(shown).dot(rotation).abs() > 1.0 - 1e-9, "{shown}");
+                // About y two triples meet at a right angle; about the others only one angle counts.
+                if axis != 1 || degrees.abs() < 90.0 {
+                    assert!(
+                        (shown[axis] - degrees).abs() < 1e-6,
+                        "{shown} for {degrees} about {unit}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn whatever_is_shown_means_the_rotation() {
+        for seed in 0..200 {
+            let part = |k: u32| f64::from((seed * 7919 + k * 104_729) % 1000) / 500.0 - 1.0;
+            let rotation = DQuat::from_xyzw(part(1), part(2), part(3), part(4) + 1e-3).normalize();
+            let before = DVec3::new(part(5), part(6), part(7)) * 900.0;
+            let shown = followed(before, rotation);
+            assert!(rotation_of(shown).dot(rotation).abs() > 1.0 - 1e-9);
+            assert!((shown - before).abs().max_element() <= 360.0);
+        }
+    }
+}
