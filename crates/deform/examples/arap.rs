@@ -6,11 +6,15 @@
 //! result for the same edit, it also says how long it took to get below that shape's energy.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
+mod common;
+
+use std::path::Path;
 use std::time::Instant;
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
-use pliant_deform::{Arap, ArapEnergy, Bound, Holds, Loose, Method, Ordering, Problem, Role};
-use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, WeldOptions};
+use common::{edit, median, ms, name, read, timed};
+use glam::{DAffine3, DQuat, DVec3};
+use pliant_deform::{Arap, ArapEnergy, Bound, Holds, Loose, Method, Ordering, Problem};
+use pliant_mesh::{Cancel, Model, Progress};
 
 /// A frame of a drag, in milliseconds.
 const FRAME_MS: f64 = 16.0;
@@ -23,7 +27,7 @@ fn main() {
     let threads = threads.parse().unwrap();
     let energy = *ArapEnergy::ALL.iter().find(|known| known.name() == energy).unwrap();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| measure(file, threads, energy, reach.first()));
+    pool.install(|| measure(Path::new(file), threads, energy, reach.first()));
 }
 
 fn method(energy: ArapEnergy, tolerance: f64) -> Method {
@@ -34,7 +38,7 @@ fn method(energy: ArapEnergy, tolerance: f64) -> Method {
     Method::Arap(options)
 }
 
-fn measure(file: &str, threads: usize, energy: ArapEnergy, reach: Option<&String>) {
+fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&String>) {
     let model = read(file);
     let (roles, target) = edit(file, &model);
     let stiffness = vec![1.0; roles.len()];
@@ -68,7 +72,7 @@ fn measure(file: &str, threads: usize, energy: ArapEnergy, reach: Option<&String
     // Single steps, each from new targets' start: the cost of an iteration is that of the later ones.
     let reached_energy = reach.map_or(0.0, |reach| {
         let mut shape = vec![DVec3::ZERO; roles.len()];
-        let moved = read(reach).drawn.positions;
+        let moved = read(Path::new(reach)).drawn.positions;
         for (vertex, place) in model.surface_of_drawn.iter().enumerate() {
             if let Some(place) = place {
                 shape[place.index()] = moved[vertex] - model.surface.positions[place.index()];
@@ -83,10 +87,10 @@ fn measure(file: &str, threads: usize, energy: ArapEnergy, reach: Option<&String
     exactly.set_targets(&[target]).unwrap();
     let start = Instant::now();
     loop {
-        let (ms, step) = timed(|| exactly.step(&mut displacements).unwrap());
-        steps.push(ms);
+        let (step_ms, step) = timed(|| exactly.step(&mut displacements).unwrap());
+        steps.push(step_ms);
         if reach_ms.is_nan() && step.energy <= reached_energy {
-            reach_ms = start.elapsed().as_secs_f64() * 1e3;
+            reach_ms = ms(start);
             reach_iterations = step.iteration;
         }
         if step.finished || steps.len() >= 400 {
@@ -97,10 +101,6 @@ fn measure(file: &str, threads: usize, energy: ArapEnergy, reach: Option<&String
     let iteration_ms = median(&mut steps[1..]);
 
     let drag = drag(&mut bound, &model, target, &minimum);
-    let name = std::path::Path::new(file)
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy();
     let reached = match reach {
         Some(_) => format!(
             ", \"reach\": {reach_ms:.2}, \"reach_iterations\": {reach_iterations}, \"reach_energy\": {reached_energy:.9}"
@@ -108,10 +108,11 @@ fn measure(file: &str, threads: usize, energy: ArapEnergy, reach: Option<&String
         None => String::new(),
     };
     println!(
-        "{{\"mesh\": \"{name}\", \"energy\": \"{}\", \"threads\": {threads}, \"free\": {}, \"order\": {order_ms:.2}, \
+        "{{\"mesh\": \"{}\", \"energy\": \"{}\", \"threads\": {threads}, \"free\": {}, \"order\": {order_ms:.2}, \
          \"bind\": {bind_ms:.2}, \"iteration\": {iteration_ms:.3}, \"first\": {first_ms:.3}, \"solve\": {solve_ms:.2}, \
          \"iterations\": {iterations}, \"solved_energy\": {solved_energy:.9}, \"least_energy\": {least_energy:.9}, \
          \"frame_median\": {:.2}, \"frame_max\": {:.2}, \"rested\": {:.6}{reached}}}",
+        name(file),
         energy.name(),
         bound.solved_count(),
         drag.frame_median_ms,
@@ -127,7 +128,7 @@ fn solve(bound: &mut Bound, target: DAffine3, displacements: &mut [DVec3]) -> (f
     loop {
         let step = bound.step(displacements).unwrap();
         if step.finished {
-            return (start.elapsed().as_secs_f64() * 1e3, step.iteration, step.energy);
+            return (ms(start), step.iteration, step.energy);
         }
     }
 }
@@ -158,12 +159,11 @@ fn drag(bound: &mut Bound, model: &Model, target: DAffine3, minimum: &[DVec3]) -
         };
         bound.set_targets(&[at]).unwrap();
         let start = Instant::now();
-        let since = || start.elapsed().as_secs_f64() * 1e3;
         bound.step(&mut displacements).unwrap();
-        frames.push(since());
+        frames.push(ms(start));
         // What is left of the frame is used.
         let length = if frame == 60 { 500.0 } else { FRAME_MS };
-        while since() < length && !bound.step(&mut displacements).unwrap().finished {}
+        while ms(start) < length && !bound.step(&mut displacements).unwrap().finished {}
     }
     let apart = displacements.iter().zip(minimum).map(|(a, b)| a.distance(*b));
     let diagonal = model.bounds().unwrap().diagonal();
@@ -172,87 +172,4 @@ fn drag(bound: &mut Bound, model: &Model, target: DAffine3, minimum: &[DVec3]) -
         frame_max_ms: frames.iter().copied().fold(0.0, f64::max),
         frame_median_ms: median(&mut frames),
     }
-}
-
-fn timed<T>(run: impl FnOnce() -> T) -> (f64, T) {
-    let start = Instant::now();
-    let result = run();
-    (start.elapsed().as_secs_f64() * 1e3, result)
-}
-
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
-}
-
-fn edit(file: &str, model: &Model) -> (Vec<Role>, DAffine3) {
-    let beside = |extension: &str| std::fs::read_to_string(std::path::Path::new(file).with_extension(extension));
-    if let (Ok(selection), Ok(matrix)) = (beside("sel"), beside("def")) {
-        let lines = selection.lines().filter(|line| !line.starts_with('#'));
-        let mut roles = vec![Role::Free; model.surface.positions.len()];
-        for (word, vertex) in lines.flat_map(str::split_ascii_whitespace).zip(&model.surface_of_drawn) {
-            let role = match word {
-                "0" => Role::Fixed,
-                "1" => Role::Free,
-                _ => Role::Handle(0),
-            };
-            if let Some(vertex) = vertex {
-                roles[vertex.index()] = role;
-            }
-        }
-        let m: Vec<f64> = matrix
-            .lines()
-            .filter(|line| !line.starts_with('#'))
-            .flat_map(str::split_ascii_whitespace)
-            .map(|word| word.parse().unwrap())
-            .collect();
-        let rows = DMat3::from_cols_array(&[m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]]);
-        return (
-            roles,
-            DAffine3::from_mat3_translation(rows.transpose(), DVec3::new(m[3], m[7], m[11])),
-        );
-    }
-    let bounds = model.bounds().unwrap();
-    let extent = bounds.extent();
-    let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap();
-    let roles: Vec<Role> = model
-        .surface
-        .positions
-        .iter()
-        .map(|p| match (p[axis] - bounds.min[axis]) / extent[axis] {
-            t if t < 0.05 => Role::Fixed,
-            t if t > 0.95 => Role::Handle(0),
-            _ => Role::Free,
-        })
-        .collect();
-    let members = roles
-        .iter()
-        .zip(&model.surface.positions)
-        .filter(|(role, _)| matches!(role, Role::Handle(_)));
-    let (sum, count) = members.fold((DVec3::ZERO, 0.0), |(sum, count), (_, p)| (sum + *p, count + 1.0));
-    let (centre, about) = (sum / count, DVec3::AXES[(axis + 1) % 3]);
-    let target = DAffine3::from_translation(centre + about * (0.2 * extent.length()))
-        * DAffine3::from_axis_angle(about, 60.0_f64.to_radians())
-        * DAffine3::from_translation(-centre);
-    (roles, target)
-}
-
-/// An OFF file of triangles.
-fn read(file: &str) -> Model {
-    let text = std::fs::read_to_string(file).unwrap();
-    let mut numbers = text.split_ascii_whitespace().skip(1);
-    let mut next = || numbers.next().unwrap();
-    let (vertices, triangles): (usize, usize) = (next().parse().unwrap(), next().parse().unwrap());
-    next();
-    let positions = (0..vertices)
-        .map(|_| [(); 3].map(|()| next().parse().unwrap()).into())
-        .collect();
-    let triangles = (0..triangles)
-        .map(|_| {
-            next();
-            [(); 3].map(|()| DrawnVertex(next().parse().unwrap()))
-        })
-        .collect();
-    let drawn = Drawn::once(positions, triangles);
-    Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap()
 }

@@ -5,13 +5,17 @@
 //! `cpu` times are the processor's, summed over threads: what a busy machine leaves comparable.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
+mod common;
+
+use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use glam::{DAffine3, DVec3};
+use common::{median, ms, name, peers_edit, read};
+use glam::DVec3;
 use pliant_deform::stages::Operator;
 use pliant_deform::{Holds, Loose, Method, Ordering, Problem, Role};
-use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
+use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, vertex_normals};
 use rayon::prelude::*;
 
 fn main() {
@@ -24,14 +28,15 @@ fn main() {
         Some("cpu") => processor_ms,
         _ => wall_ms,
     };
-    pool.install(|| measure(&file, threads, clock));
+    pool.install(|| measure(Path::new(&file), threads, clock));
 }
 
-fn measure(file: &str, threads: usize, clock: fn() -> f64) {
-    let median = Median { clock };
+fn measure(file: &Path, threads: usize, clock: fn() -> f64) {
+    let watch = Watch { clock };
     let model = read(file);
     let count = model.surface.positions.len();
-    let (roles, stroked) = roles(&model);
+    let (roles, target) = peers_edit(&model);
+    let stroked = stroke(&model, &roles);
     let stiffness = vec![1.0; count];
     let method = Method::default();
     let (progress, cancel) = (Progress::new(), Cancel::new());
@@ -48,14 +53,14 @@ fn measure(file: &str, threads: usize, clock: fn() -> f64) {
     };
     let times = if count > 500_000 { 3 } else { 5 };
     let order = || Ordering::of(&model.topology, method.operator_power(), &progress, &cancel).unwrap();
-    let (order_ms, ordering) = median.of(times, order);
+    let (order_ms, ordering) = watch.of(times, order);
     let Method::Bilaplacian(options) = &method else {
         unreachable!()
     };
-    let (operator_ms, operator) = median.of(times, || Operator::of(&problem(&roles), options, &ordering).unwrap());
-    let (assemble_ms, matrix) = median.of(times, || operator.assemble());
-    let (symbolic_ms, _) = median.of(times, || operator.analyse(&matrix).unwrap());
-    let (numeric_ms, factor) = median.of(times, || {
+    let (operator_ms, operator) = watch.of(times, || Operator::of(&problem(&roles), options, &ordering).unwrap());
+    let (assemble_ms, matrix) = watch.of(times, || operator.assemble());
+    let (symbolic_ms, _) = watch.of(times, || operator.analyse(&matrix).unwrap());
+    let (numeric_ms, factor) = watch.of(times, || {
         let mut factor = operator.analyse(&matrix).unwrap();
         factor.fill(&matrix).unwrap();
         factor
@@ -63,67 +68,49 @@ fn measure(file: &str, threads: usize, clock: fn() -> f64) {
     let numeric_ms = numeric_ms - symbolic_ms;
     let work = factor.work();
     let mut x = vec![[1.0; 3]; factor.column_count()];
-    let (substitute_ms, ()) = median.of(times, || factor.solve(&mut x));
+    let (substitute_ms, ()) = watch.of(times, || factor.solve(&mut x));
     drop((x, factor, matrix, operator));
-    let (bind_ms, mut bound) = median.of(times, || problem(&roles).bind(&ordering, &progress, &cancel).unwrap());
+    let (bind_ms, mut bound) = watch.of(times, || problem(&roles).bind(&ordering, &progress, &cancel).unwrap());
+    bound.set_targets(&[target]).unwrap();
+    let mut displacements = vec![DVec3::ZERO; count];
+    let (solve_ms, _) = watch.of(times, || bound.step_by_back_substitution(&mut displacements).unwrap());
+    let (frame_ms, _) = watch.of(60, || bound.step(&mut displacements).unwrap());
+    let mut drawn = Vec::new();
+    let (drawn_ms, ()) = watch.of(60, || model.drawn_positions(&displacements, &mut drawn));
+    let rest = model.surface.positions.par_iter();
+    let positions: Vec<DVec3> = rest.zip(&displacements).map(|(rest, moved)| *rest + *moved).collect();
+    let mut normals = Vec::new();
+    let (normals_ms, ()) = watch.of(60, || {
+        vertex_normals(&model.surface.triangles, &model.topology, &positions, &mut normals);
+    });
+    // From here on another bound problem stands beside this one, as it does in the window while a stroke is bound.
+    let peak_mb = peak_mb();
     let former = problem(&roles).rebind(&ordering, None, &progress, &cancel).unwrap();
     let remains = former.remains();
     drop(former);
-    let (rebind_ms, _) = median.of(times, || {
+    let (rebind_ms, _) = watch.of(times, || {
         problem(&stroked)
             .rebind(&ordering, remains.as_ref(), &progress, &cancel)
             .unwrap()
     });
     drop(remains);
-    bound.set_targets(&[DAffine3::from_translation(DVec3::X)]).unwrap();
-    let mut displacements = vec![DVec3::ZERO; count];
-    let (solve_ms, _) = median.of(times, || bound.step_by_back_substitution(&mut displacements).unwrap());
-    let (frame_ms, _) = median.of(60, || bound.step(&mut displacements).unwrap());
-    let mut normals = Vec::new();
-    let positions: Vec<DVec3> = model
-        .surface
-        .positions
-        .iter()
-        .zip(&displacements)
-        .map(|(p, d)| *p + *d)
-        .collect();
-    let (normals_ms, ()) = median.of(60, || {
-        vertex_normals(&model.surface.triangles, &model.topology, &positions, &mut normals);
-    });
-    let name = std::path::Path::new(file)
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy();
+    let (name, read_gb_s) = (name(file), bandwidth(&watch));
+    let solve_share = 2e-6 * 8.0 * bound.factor_len() as f64 / substitute_ms / read_gb_s;
     let factor_mb = bound.factor_len() as f64 * 8e-6;
     println!(
         "{{\"mesh\": \"{name}\", \"threads\": {threads}, \"free\": {}, \"order\": {order_ms:.1}, \"operator\": {operator_ms:.1}, \
          \"assemble\": {assemble_ms:.1}, \"symbolic\": {symbolic_ms:.1}, \"numeric\": {numeric_ms:.1}, \
          \"substitute3\": {substitute_ms:.1}, \"bind\": {bind_ms:.2}, \
-         \"rebind\": {rebind_ms:.2}, \"solve\": {solve_ms:.2}, \"frame\": {frame_ms:.3}, \"normals\": {normals_ms:.3}, \
-         \"gflop\": {:.2}, \"factor_mb\": {factor_mb:.1}, \"read_gb_s\": {:.1}, \"peak_mb\": {:.0}}}",
+         \"rebind\": {rebind_ms:.2}, \"solve\": {solve_ms:.2}, \"frame\": {frame_ms:.3}, \"drawn\": {drawn_ms:.3}, \"normals\": {normals_ms:.3}, \
+         \"gflop\": {:.2}, \"factor_mb\": {factor_mb:.1}, \"read_gb_s\": {read_gb_s:.1}, \"solve_share\": {solve_share:.2}, \"peak_mb\": {peak_mb:.0}}}",
         bound.solved_count(),
         1e-9 * work,
-        bandwidth(&median),
-        peak_mb(),
     );
 }
 
-/// The roles of the edit, and the same after a stroke on the handle's rim that adds a thousandth of the vertices to it.
-fn roles(model: &Model) -> (Vec<Role>, Vec<Role>) {
-    let bounds = model.bounds().unwrap();
-    let extent = bounds.extent();
-    let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap();
-    let roles: Vec<Role> = model
-        .surface
-        .positions
-        .iter()
-        .map(|p| match (p[axis] - bounds.min[axis]) / extent[axis] {
-            t if t < 0.05 => Role::Fixed,
-            t if t > 0.95 => Role::Handle(0),
-            _ => Role::Free,
-        })
-        .collect();
-    let mut stroked = roles.clone();
+/// The roles after a stroke on the handle's rim that adds a thousandth of the vertices to it.
+fn stroke(model: &Model, roles: &[Role]) -> Vec<Role> {
+    let mut stroked = roles.to_vec();
     let at_rim = |v: &u32| {
         let mut ring = model.topology.neighbours(SurfaceVertex(*v)).iter();
         roles[*v as usize] == Role::Free && ring.any(|n| roles[n.index()] == Role::Handle(0))
@@ -140,15 +127,15 @@ fn roles(model: &Model) -> (Vec<Role>, Vec<Role>) {
             }
         }
     }
-    (roles, stroked)
+    stroked
 }
 
 /// Times things by a clock.
-struct Median {
+struct Watch {
     clock: fn() -> f64,
 }
 
-impl Median {
+impl Watch {
     /// The median time of some runs, and what the last one gave.
     fn of<T>(&self, times: usize, mut run: impl FnMut() -> T) -> (f64, T) {
         let mut last = None;
@@ -160,15 +147,14 @@ impl Median {
                 (self.clock)() - start
             })
             .collect();
-        taken.sort_by(f64::total_cmp);
-        (taken[times / 2], last.unwrap())
+        (median(&mut taken), last.unwrap())
     }
 }
 
 /// Milliseconds since the first call.
 fn wall_ms() -> f64 {
     static FIRST: OnceLock<Instant> = OnceLock::new();
-    FIRST.get_or_init(Instant::now).elapsed().as_secs_f64() * 1e3
+    ms(*FIRST.get_or_init(Instant::now))
 }
 
 /// Milliseconds that processors have spent on this process' threads.
@@ -182,9 +168,9 @@ fn processor_ms() -> f64 {
 }
 
 /// How fast all threads together read memory in order, in GB/s.
-fn bandwidth(median: &Median) -> f64 {
+fn bandwidth(watch: &Watch) -> f64 {
     let numbers = vec![1.0_f64; 64 << 20];
-    let (ms, sum) = median.of(5, || {
+    let (ms, sum) = watch.of(5, || {
         numbers
             .par_chunks(1 << 16)
             .map(|chunk| {
@@ -209,30 +195,4 @@ fn peak_mb() -> f64 {
         .lines()
         .find_map(|line| line.strip_prefix("VmHWM:")?.split_whitespace().next()?.parse().ok());
     kilobytes.map_or(0.0, |kb: f64| kb / 1024.0)
-}
-
-/// An OFF file of triangles.
-fn read(file: &str) -> Model {
-    let text = std::fs::read_to_string(file).unwrap();
-    let mut numbers = text.split_ascii_whitespace().skip(1);
-    let mut next = || numbers.next().unwrap();
-    let (vertices, triangles): (usize, usize) = (next().parse().unwrap(), next().parse().unwrap());
-    next();
-    let positions = (0..vertices)
-        .map(|_| {
-            DVec3::new(
-                next().parse().unwrap(),
-                next().parse().unwrap(),
-                next().parse().unwrap(),
-            )
-        })
-        .collect();
-    let triangles = (0..triangles)
-        .map(|_| {
-            next();
-            [(); 3].map(|()| DrawnVertex(next().parse().unwrap()))
-        })
-        .collect();
-    let drawn = Drawn::once(positions, triangles);
-    Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap()
 }

@@ -6,11 +6,15 @@
 //! solves to a tolerance of 1e-9, one at once and one as a drag of 20 frames.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
+mod common;
+
+use std::path::Path;
 use std::time::Instant;
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
-use pliant_deform::{Bound, Holds, Loose, Method, Ordering, Primo, Problem, Role};
-use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, WeldOptions};
+use common::{edit, ms, name, read};
+use glam::{DAffine3, DQuat, DVec3};
+use pliant_deform::{Bound, Holds, Loose, Method, Ordering, Primo, Problem};
+use pliant_mesh::{Cancel, Progress};
 
 fn main() {
     let mut words = std::env::args().skip(1);
@@ -21,11 +25,12 @@ fn main() {
         .next()
         .map_or(Primo::default().thickness, |word| word.parse().unwrap());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| measure(&scene, threads, thickness));
+    pool.install(|| measure(Path::new(&scene), threads, thickness));
 }
 
-fn measure(scene: &str, threads: usize, thickness: f64) {
-    let (model, roles, target) = read(scene);
+fn measure(scene: &Path, threads: usize, thickness: f64) {
+    let model = read(&scene.with_extension("off"));
+    let (roles, target) = edit(scene, &model);
     let stiffness = vec![1.0; roles.len()];
     let (progress, cancel) = (Progress::new(), Cancel::new());
     let bind = |tolerance: f64| {
@@ -72,10 +77,7 @@ fn measure(scene: &str, threads: usize, thickness: f64) {
         .map(|(a, b)| b - a)
         .fold(0.0, f64::max);
     let (all_ms, last) = steps[steps.len() - 1];
-    let name = std::path::Path::new(scene)
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy();
+    let name = name(scene);
     println!(
         "{{\"scene\": \"{name}\", \"faces\": {}, \"threads\": {threads}, \"thickness\": {thickness}, \"bind\": {bind_ms:.0}, \
          \"steps_to_1%\": {}, \"ms_to_1%\": {:.0}, \"steps\": {}, \"ms\": {all_ms:.0}, \"longest_step\": {longest_ms:.0}, \
@@ -86,10 +88,6 @@ fn measure(scene: &str, threads: usize, thickness: f64) {
         steps.len(),
         bound.factor_len() as f64 * 8e-6,
     );
-}
-
-fn ms(start: Instant) -> f64 {
-    start.elapsed().as_secs_f64() * 1e3
 }
 
 /// Steps until finished: when each was done, and its energy.
@@ -111,51 +109,4 @@ fn solve(bound: &mut Bound, target: DAffine3) -> Vec<(f64, f64)> {
 fn part_of(target: &DAffine3, share: f64) -> DAffine3 {
     let rotation = DQuat::IDENTITY.slerp(DQuat::from_mat3(&target.matrix3), share);
     DAffine3::from_rotation_translation(rotation, target.translation * share)
-}
-
-fn read(scene: &str) -> (Model, Vec<Role>, DAffine3) {
-    let numbers = |extension: &str, skip: usize| -> Vec<f64> {
-        let text = std::fs::read_to_string(format!("{scene}.{extension}")).unwrap();
-        text.lines()
-            .filter(|line| !line.starts_with('#'))
-            .skip(skip)
-            .flat_map(str::split_whitespace)
-            .map(|word| word.parse().unwrap())
-            .collect()
-    };
-    let off = numbers("off", 1);
-    let (vertices, faces) = (off[0] as usize, off[1] as usize);
-    let positions: Vec<DVec3> = off[3..3 + 3 * vertices].chunks(3).map(DVec3::from_slice).collect();
-    let triangles = off[3 + 3 * vertices..][..4 * faces]
-        .chunks(4)
-        .map(|f| {
-            [
-                DrawnVertex(f[1] as u32),
-                DrawnVertex(f[2] as u32),
-                DrawnVertex(f[3] as u32),
-            ]
-        })
-        .collect();
-    let drawn = Drawn::once(positions, triangles);
-    let model = Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap();
-    let selected = numbers("sel", 0);
-    let mut roles = vec![Role::Free; model.surface.positions.len()];
-    for (k, &s) in selected.iter().enumerate() {
-        let Some(v) = model.surface_of_drawn[k] else { continue };
-        roles[v.index()] = match s as i32 {
-            0 => Role::Fixed,
-            1 => Role::Free,
-            _ => Role::Handle(0),
-        };
-    }
-    let m = numbers("def", 0);
-    let target = DAffine3::from_mat3_translation(
-        DMat3::from_cols(
-            DVec3::new(m[0], m[4], m[8]),
-            DVec3::new(m[1], m[5], m[9]),
-            DVec3::new(m[2], m[6], m[10]),
-        ),
-        DVec3::new(m[3], m[7], m[11]),
-    );
-    (model, roles, target)
 }

@@ -4,9 +4,9 @@ use std::path::Path;
 use std::process::Stdio;
 
 use super::Scale;
-use super::meshes::creature_glb;
-use super::table::{Row, folder};
-use crate::process::{cargo, succeed};
+use super::meshes::{creature_glb, sizes};
+use super::table::{Row, folder, release};
+use crate::process::succeed;
 
 const COLUMNS: [&str; 8] = [
     "free_vertices",
@@ -21,22 +21,11 @@ const COLUMNS: [&str; 8] = [
 
 /// A row for every size and for one and all threads.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
-    succeed(&mut cargo(&[
-        "build",
-        "--locked",
-        "--release",
-        "--package",
-        "pliant-app",
-        "--bin",
-        "pliant",
-    ]))?;
-    let sizes: &[usize] = match scale {
-        Scale::Usual => &[60_000, 200_000, 600_000],
-        Scale::Full => &[60_000, 200_000, 600_000, 5_000_000],
-    };
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     let mut rows = Vec::new();
-    for &triangles in sizes {
+    for &vertices in sizes(scale) {
+        // A closed surface has about two triangles a vertex.
+        let triangles = 2 * vertices;
         let file = creature_glb(triangles)?;
         for threads in [1, all] {
             let report = folder().join("report.json");
@@ -59,18 +48,9 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
 }
 
 fn apply(file: &Path, output: &Path, report: &Path, threads: usize) -> Result<(), String> {
-    let mut command = cargo(&[
-        "run",
-        "--locked",
-        "--quiet",
-        "--release",
-        "--package",
-        "pliant-app",
-        "--bin",
-        "pliant",
-    ]);
+    let mut command = release("pliant-app", ["--bin", "pliant"]);
     command
-        .args(["--", "apply"])
+        .arg("apply")
         .arg(file)
         .args(["--edit", "assets/creature.edit.json", "--frames", "60"]);
     command

@@ -1,4 +1,5 @@
-//! Other programs on the same edit: what `../shared/peers` can time on this machine, beside Pliant's own row.
+//! Other programs on the same edit, in the same minute: what `../shared/peers` can time on this machine, and how many
+//! times faster Pliant is at what answers to it.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -7,18 +8,51 @@ use super::Scale;
 use super::table::{Row, folder, measured};
 use crate::process::output;
 
-/// A peer timed by a Python script: its package and the script's name.
-const SCRIPTS: [(&str, &str, &str); 2] = [
-    ("libigl", "igl", "libigl_time.py"),
-    ("Blender", "bpy", "blender_time.py"),
+/// A comparison: what a line of a peer says that it took, and the columns of Pliant's rows that together do the same.
+struct Versus {
+    /// How the peer's line begins.
+    line: &'static str,
+    /// The word before its milliseconds.
+    does: &'static str,
+    /// Which of Pliant's rows.
+    ours: Ours,
+    columns: &'static [&'static str],
+}
+
+/// Pliant's own measurements.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Ours {
+    Linear,
+    SpokesAndRims,
+    Smooth,
+}
+
+const FRAME: &[&str] = &["frame", "drawn", "normals"];
+const BEGIN: &[&str] = &["order", "bind"];
+
+#[rustfmt::skip]
+const VERSUS: [Versus; 13] = [
+    Versus { line: "libigl bilaplacian", does: "precompute", ours: Ours::Linear, columns: BEGIN },
+    Versus { line: "libigl bilaplacian", does: "precompute", ours: Ours::Linear, columns: &["bind"] },
+    Versus { line: "libigl bilaplacian", does: "precompute", ours: Ours::Linear, columns: &["rebind"] },
+    Versus { line: "libigl bilaplacian", does: "solve", ours: Ours::Linear, columns: &["substitute3"] },
+    Versus { line: "libigl bilaplacian", does: "solve", ours: Ours::Linear, columns: FRAME },
+    Versus { line: "blender laplacian-deform", does: "bind", ours: Ours::Linear, columns: BEGIN },
+    Versus { line: "blender laplacian-deform", does: "move", ours: Ours::Linear, columns: FRAME },
+    Versus { line: "libigl arap", does: "precompute", ours: Ours::SpokesAndRims, columns: BEGIN },
+    Versus { line: "libigl arap", does: "iteration", ours: Ours::SpokesAndRims, columns: &["step"] },
+    Versus { line: "cgal spokes-and-rims", does: "preprocess", ours: Ours::SpokesAndRims, columns: BEGIN },
+    Versus { line: "cgal spokes-and-rims", does: "iteration", ours: Ours::SpokesAndRims, columns: &["step"] },
+    Versus { line: "cgal sr-arap", does: "preprocess", ours: Ours::Smooth, columns: BEGIN },
+    Versus { line: "cgal sr-arap", does: "iteration", ours: Ours::Smooth, columns: &["step"] },
 ];
 
-/// Pliant's row and each peer's, for horse.ply as it is and subdivided.
+/// A row for each thing that a peer does, for horse.ply as it is and subdivided.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     let peers = crate::root().join("../shared/peers");
     let mesh = crate::root().join("../shared/data/scans/horse.ply");
     if !peers.is_dir() || !mesh.is_file() {
-        return Ok(vec![said("peers", 0, "not here: ../shared/peers and ../shared/data")]);
+        return Ok(vec![said(0, "not here: ../shared/peers and ../shared/data")]);
     }
     let subdivisions: &[usize] = match scale {
         Scale::Usual => &[0, 1],
@@ -27,30 +61,86 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     let mut rows = Vec::new();
     for &level in subdivisions {
         let off = folder().join(format!("horse-{level}.off"));
-        match scene(&peers, &mesh, level, &off) {
-            None => rows.push(said("Pliant", level, "not installed: pip install numpy trimesh")),
-            Some(()) => {
-                let all = std::thread::available_parallelism().map_or(1, usize::from);
-                let arguments = [off.display().to_string(), all.to_string()];
-                for row in measured("pliant-deform", "linear", &arguments)? {
-                    rows.push(named("Pliant", level).and(row));
-                }
+        if scene(&peers, &mesh, level, &off).is_none() {
+            rows.push(said(level, "not installed: pip install numpy trimesh"));
+            continue;
+        }
+        let mut lines = String::new();
+        for peer in [
+            script(&peers, &mesh, level, "igl", "libigl_time.py"),
+            cgal(&peers, &off),
+            script(&peers, &mesh, level, "bpy", "blender_time.py"),
+        ] {
+            match peer {
+                Ok(said) => lines.push_str(&said),
+                Err(sentence) => rows.push(said(level, &sentence)),
             }
         }
-        for (name, package, script) in SCRIPTS {
-            rows.push(script_row(&peers, &mesh, level, name, package, script));
-        }
-        rows.push(cgal(&peers, &off, level));
+        rows.extend(compared(&off, level, &lines)?);
     }
     Ok(rows)
 }
 
-fn named(peer: &str, level: usize) -> Row {
-    Row::default().text("peer", peer).number("subdivided", level as f64)
+/// A row for every comparison that the peers' lines allow.
+fn compared(off: &Path, level: usize, lines: &str) -> Result<Vec<Row>, String> {
+    let mut measurements: Vec<(Ours, Row)> = Vec::new();
+    let mut rows = Vec::new();
+    for versus in &VERSUS {
+        let line = lines.lines().find(|line| line.starts_with(versus.line));
+        let Some(theirs) = line.and_then(|line| word_after(line, versus.does)) else {
+            continue;
+        };
+        let found = !line.is_some_and(|line| line.contains("bound False"));
+        if !measurements.iter().any(|(ours, _)| *ours == versus.ours) {
+            measurements.push((versus.ours, versus.ours.measure(off)?));
+        }
+        let ours = measurements.iter().find(|(ours, _)| *ours == versus.ours);
+        let times = |column: &&str| ours.and_then(|(_, row)| row.get(column)?.parse::<f64>().ok());
+        let Some(ms) = versus.columns.iter().map(times).sum::<Option<f64>>() else {
+            return Err(format!("Pliant's rows lack one of {:?}.", versus.columns));
+        };
+        rows.push(
+            Row::default()
+                .number("subdivided", level as f64)
+                .text("peer", versus.line)
+                .text("does", versus.does)
+                .text("solved", if found { "yes" } else { "no" })
+                .number("ms", theirs)
+                .text("Pliant", &versus.columns.join(" + "))
+                .number("its_ms", ms)
+                .number("times_faster", theirs / ms),
+        );
+    }
+    Ok(rows)
 }
 
-fn said(peer: &str, level: usize, sentence: &str) -> Row {
-    named(peer, level).text("says", sentence)
+impl Ours {
+    fn measure(self, off: &Path) -> Result<Row, String> {
+        let all = std::thread::available_parallelism().map_or(1, usize::from);
+        let arguments = [off.display().to_string(), all.to_string()];
+        let (example, further): (_, &[&str]) = match self {
+            Self::Linear => ("linear", &[]),
+            Self::SpokesAndRims => ("steps", &["arap", "spokes-and-rims"]),
+            Self::Smooth => ("steps", &["arap", "smooth"]),
+        };
+        let arguments: Vec<String> = arguments
+            .into_iter()
+            .chain(further.iter().map(|&word| word.to_owned()))
+            .collect();
+        let rows = measured("pliant-deform", example, &arguments)?;
+        rows.into_iter()
+            .next()
+            .ok_or_else(|| format!("The example {example} says nothing."))
+    }
+}
+
+/// The number after a word: `word_after("bind 17 ms", "bind")` is 17.
+fn word_after(line: &str, word: &str) -> Option<f64> {
+    line.split_whitespace().skip_while(|w| *w != word).nth(1)?.parse().ok()
+}
+
+fn said(level: usize, sentence: &str) -> Row {
+    Row::default().number("subdivided", level as f64).text("says", sentence)
 }
 
 /// Writes the mesh as the peers see it.
@@ -64,55 +154,45 @@ fn scene(peers: &Path, mesh: &Path, level: usize, off: &Path) -> Option<()> {
     output("python3", &words.each_ref().map(String::as_str)).map(|_| ())
 }
 
-fn script_row(peers: &Path, mesh: &Path, level: usize, name: &str, package: &str, script: &str) -> Row {
-    if output("python3", &["-c", &format!("import {package}, numpy, trimesh")]).is_none() {
-        let wanted = if package == "igl" { "libigl scipy" } else { package };
-        return said(
-            name,
-            level,
-            &format!("not installed: pip install {wanted} numpy trimesh"),
-        );
+/// What a peer's Python script prints.
+fn script(peers: &Path, mesh: &Path, level: usize, package: &str, script: &str) -> Result<String, String> {
+    if output("python3", &["-c", &format!("import {package}, numpy, scipy, trimesh")]).is_none() {
+        let wanted = if package == "igl" { "libigl" } else { package };
+        return Err(format!("not installed: pip install {wanted} numpy scipy trimesh"));
     }
-    let words = [
-        peers.join(script).display().to_string(),
-        mesh.display().to_string(),
-        level.to_string(),
-    ];
-    match output("python3", &words.each_ref().map(String::as_str)) {
-        Some(text) => said(name, level, &last_lines(&text)),
-        None => said(name, level, "failed"),
-    }
+    let words =
+        [peers.join(script), mesh.to_owned(), PathBuf::from(level.to_string())].map(|p| p.display().to_string());
+    output("python3", &words.each_ref().map(String::as_str)).ok_or_else(|| format!("{script} failed"))
 }
 
-/// CGAL's program, built here the first time.
-fn cgal(peers: &Path, off: &Path, level: usize) -> Row {
+/// What CGAL's program prints; it is built the first time.
+fn cgal(peers: &Path, off: &Path) -> Result<String, String> {
     let program: PathBuf = folder().join("cgal_time");
     if !program.exists() {
-        let source = peers.join("cgal_time.cpp");
         let built = Command::new("g++")
             .args(["-O3", "-march=native", "-DNDEBUG"])
-            .arg(source)
+            .arg(peers.join("cgal_time.cpp"))
             .args(["-I/usr/include/eigen3", "-lgmp", "-lmpfr", "-o"])
             .arg(&program)
             .stderr(std::process::Stdio::null())
             .status()
             .is_ok_and(|status| status.success());
         if !built {
-            return said(
-                "CGAL",
-                level,
-                "not installed: apt-get install g++ libcgal-dev libeigen3-dev",
-            );
+            return Err("not installed: apt-get install g++ libcgal-dev libeigen3-dev".to_owned());
         }
     }
-    match output(&program.display().to_string(), &[&off.display().to_string()]) {
-        Some(text) => said("CGAL", level, &last_lines(&text)),
-        None => said("CGAL", level, "failed"),
-    }
+    output(&program.display().to_string(), &[&off.display().to_string()]).ok_or_else(|| "cgal_time failed".to_owned())
 }
 
-/// What a script says, on one line.
-fn last_lines(text: &str) -> String {
-    let lines: Vec<&str> = text.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
-    lines.join("; ")
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_peer_s_times_are_found_by_the_word_before_them() {
+        let line = "libigl bilaplacian n=193934 precompute 9046 ms  solve 184.2 ms";
+        assert_eq!(word_after(line, "precompute"), Some(9046.0));
+        assert_eq!(word_after(line, "solve"), Some(184.2));
+        assert_eq!(word_after(line, "iteration"), None);
+    }
 }

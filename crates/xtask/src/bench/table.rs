@@ -50,6 +50,12 @@ impl Row {
         Some(Self(row))
     }
 
+    /// A value as JSON writes it.
+    pub fn get(&self, name: &str) -> Option<&str> {
+        let (_, value) = self.0.iter().find(|(own, _)| own == name)?;
+        Some(value)
+    }
+
     fn json(&self) -> String {
         let members: Vec<String> = self
             .0
@@ -65,18 +71,14 @@ impl Row {
 /// # Errors
 /// One sentence when it can't be built or fails.
 pub fn measured(package: &str, example: &str, arguments: &[String]) -> Result<Vec<Row>, String> {
-    let mut command = cargo(&[
-        "run",
-        "--locked",
-        "--quiet",
-        "--release",
-        "--package",
-        package,
-        "--example",
-        example,
-        "--",
-    ]);
-    rows_of(command.args(arguments))
+    rows_of(release(package, ["--example", example]).args(arguments))
+}
+
+/// The command that builds a program of the workspace in release and runs it.
+pub fn release(package: &str, program: [&str; 2]) -> Command {
+    let mut command = cargo(&["run", "--locked", "--quiet", "--release", "--package", package]);
+    command.args(program).arg("--");
+    command
 }
 
 /// Runs a program; every JSON object that it prints on a line of its own is a row.

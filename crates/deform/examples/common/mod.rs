@@ -1,0 +1,106 @@
+//! What the examples share: meshes and edits from files, the edit that peers are timed on, and a stop-watch.
+#![allow(dead_code, reason = "no example needs all of it")]
+
+use std::path::Path;
+use std::time::Instant;
+
+use glam::{DAffine3, DMat3, DVec3};
+use pliant_deform::Role;
+use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, WeldOptions};
+
+/// The mesh of an OFF file of triangles.
+pub fn read(off: &Path) -> Model {
+    let text = std::fs::read_to_string(off).unwrap_or_else(|error| panic!("{}: {error}", off.display()));
+    let mut numbers = text.split_ascii_whitespace().skip(1);
+    let mut next = || numbers.next().unwrap();
+    let (vertices, triangles): (usize, usize) = (next().parse().unwrap(), next().parse().unwrap());
+    next();
+    let positions = (0..vertices)
+        .map(|_| [(); 3].map(|()| next().parse().unwrap()).into())
+        .collect();
+    let triangles = (0..triangles)
+        .map(|_| {
+            next();
+            [(); 3].map(|()| DrawnVertex(next().parse().unwrap()))
+        })
+        .collect();
+    let drawn = Drawn::once(positions, triangles);
+    Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap()
+}
+
+/// What a mesh's file is called.
+pub fn name(file: &Path) -> String {
+    file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The edit that stands beside a mesh as MESH.sel (a number a vertex: 0 fixed, 1 free, 2 handle) and MESH.def (the
+/// handle's matrix, row by row); without them the one that peers are timed on.
+pub fn edit(mesh: &Path, model: &Model) -> (Vec<Role>, DAffine3) {
+    let numbers = |extension: &str| -> Option<Vec<f64>> {
+        let text = std::fs::read_to_string(mesh.with_extension(extension)).ok()?;
+        let lines = text.lines().filter(|line| !line.starts_with('#'));
+        let words = lines.flat_map(str::split_ascii_whitespace);
+        Some(words.map(|word| word.parse().unwrap()).collect())
+    };
+    let (Some(selected), Some(m)) = (numbers("sel"), numbers("def")) else {
+        return peers_edit(model);
+    };
+    let mut roles = vec![Role::Free; model.surface.positions.len()];
+    for (status, vertex) in selected.iter().zip(&model.surface_of_drawn) {
+        if let Some(vertex) = vertex {
+            roles[vertex.index()] = match *status as i32 {
+                0 => Role::Fixed,
+                1 => Role::Free,
+                _ => Role::Handle(0),
+            };
+        }
+    }
+    let rows = DMat3::from_cols_array(&[m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]]);
+    let shift = DVec3::new(m[3], m[7], m[11]);
+    (roles, DAffine3::from_mat3_translation(rows.transpose(), shift))
+}
+
+/// The lowest 5% along the longest axis are fixed; the highest 5% are turned by 60° and moved by a fifth of the
+/// diagonal.
+pub fn peers_edit(model: &Model) -> (Vec<Role>, DAffine3) {
+    let bounds = model.bounds().unwrap();
+    let extent = bounds.extent();
+    let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap();
+    let positions = &model.surface.positions;
+    let role = |p: &DVec3| match (p[axis] - bounds.min[axis]) / extent[axis] {
+        t if t < 0.05 => Role::Fixed,
+        t if t > 0.95 => Role::Handle(0),
+        _ => Role::Free,
+    };
+    let roles: Vec<Role> = positions.iter().map(role).collect();
+    let members = || {
+        let all = roles.iter().zip(positions);
+        all.filter(|(role, _)| matches!(role, Role::Handle(_))).map(|(_, p)| *p)
+    };
+    let (centre, about) = (
+        members().sum::<DVec3>() / members().count() as f64,
+        DVec3::AXES[(axis + 1) % 3],
+    );
+    let target = DAffine3::from_translation(centre + about * (0.2 * extent.length()))
+        * DAffine3::from_axis_angle(about, 60.0_f64.to_radians())
+        * DAffine3::from_translation(-centre);
+    (roles, target)
+}
+
+/// What something gave, and how many milliseconds it took.
+pub fn timed<T>(run: impl FnOnce() -> T) -> (f64, T) {
+    let start = Instant::now();
+    let result = run();
+    (ms(start), result)
+}
+
+/// Milliseconds since `start`.
+pub fn ms(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+/// The middle one of `values`; not a number where there are none.
+pub fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}

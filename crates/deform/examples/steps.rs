@@ -1,0 +1,68 @@
+//! Times a method that takes steps on the edit that peers are timed on: `steps MESH.off THREADS METHOD [ENERGY]`.
+//!
+//! One JSON object: ordering, binding, and the median step on the way to the target, in milliseconds.
+#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
+
+mod common;
+
+use std::path::Path;
+
+use common::{median, name, peers_edit, read, timed};
+use glam::DVec3;
+use pliant_deform::{ArapEnergy, Holds, Loose, Method, Ordering, Problem};
+use pliant_mesh::{Cancel, Progress};
+
+/// Steps that are timed, behind the first, which also starts.
+const STEPS: usize = 10;
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [file, threads, method, energy @ ..] = words.as_slice() else {
+        panic!("usage: steps MESH.off THREADS METHOD [ENERGY]");
+    };
+    let mut method = Method::from_name(method).unwrap();
+    if let (Method::Arap(options), [energy]) = (&mut method, energy) {
+        options.energy = *ArapEnergy::ALL.iter().find(|known| known.name() == energy).unwrap();
+    }
+    let threads = threads.parse().unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| measure(Path::new(file), threads, &method));
+}
+
+fn measure(file: &Path, threads: usize, method: &Method) {
+    let model = read(file);
+    let (roles, target) = peers_edit(&model);
+    let (progress, cancel) = (Progress::new(), Cancel::new());
+    let (order_ms, ordering) =
+        timed(|| Ordering::of(&model.topology, method.operator_power(), &progress, &cancel).unwrap());
+    let problem = Problem {
+        surface: &model.surface,
+        topology: &model.topology,
+        roles: &roles,
+        handle_count: 1,
+        stiffness: &vec![1.0; roles.len()],
+        holds: Holds::default(),
+        loose: Loose::Rest,
+        method,
+        revision: 0,
+    };
+    let (bind_ms, mut bound) = timed(|| problem.bind(&ordering, &progress, &cancel).unwrap());
+    bound.set_targets(&[target]).unwrap();
+    let mut displacements = vec![DVec3::ZERO; roles.len()];
+    let mut steps = Vec::new();
+    loop {
+        let (step_ms, step) = timed(|| bound.step(&mut displacements).unwrap());
+        steps.push(step_ms);
+        if step.finished || steps.len() > STEPS {
+            break;
+        }
+    }
+    println!(
+        "{{\"mesh\": \"{}\", \"method\": \"{}\", \"threads\": {threads}, \"free\": {}, \"order\": {order_ms:.1}, \
+         \"bind\": {bind_ms:.1}, \"step\": {:.2}}}",
+        name(file),
+        method.name(),
+        bound.solved_count(),
+        median(&mut steps[1..]),
+    );
+}
