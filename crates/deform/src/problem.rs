@@ -43,8 +43,8 @@ pub struct Problem<'a> {
     pub roles: &'a [Role],
     /// How many handles there are; [`Role::Handle`] numbers lie below it, and every number occurs.
     pub handle_count: usize,
-    /// Painted stiffness of each surface vertex, above 0, 1 where nothing was painted. A face is as stiff as the mean
-    /// of its three vertices.
+    /// Painted stiffness of each surface vertex, above 0, 1 where nothing was painted: the factor of the
+    /// energy's density there. A face is as stiff as the mean of its three vertices.
     pub stiffness: &'a [f64],
     /// How firmly handles pull and how smoothly the surface joins what holds it.
     pub holds: Holds<'a>,

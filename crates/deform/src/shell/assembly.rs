@@ -141,9 +141,10 @@ impl Expansion {
         std::mem::swap(&mut self.entries, &mut self.inner);
         self.entries.clear();
         if operator.stretching > 0.0 {
-            self.add(laplacian, vertex, operator.stretching, &solved);
+            let stretched = operator.stretched.as_ref().unwrap_or(laplacian);
+            self.add(stretched, vertex, operator.stretching, &solved);
         }
-        self.spread(laplacian, &solved);
+        self.spread(laplacian, |cell| operator.cell_stiffness(cell), &solved);
         self.finished(operator, vertex)
     }
 
@@ -161,17 +162,17 @@ impl Expansion {
         self.close();
         std::mem::swap(&mut self.entries, &mut self.inner);
         self.entries.clear();
-        self.spread(laplacian, |_| true);
+        self.spread(laplacian, |_| 1.0, |_| true);
     }
 
-    /// entries += P M⁻¹ inner.
-    fn spread(&mut self, laplacian: &Laplacian, keep: impl Fn(u32) -> bool) {
+    /// entries += P s M⁻¹ inner, with s what `stiffness` gives for a local vertex.
+    fn spread(&mut self, laplacian: &Laplacian, stiffness: impl Fn(usize) -> f64, keep: impl Fn(u32) -> bool) {
         for place in 0..self.inner.len() {
             let (middle, value) = self.inner[place];
             self.add(
                 laplacian,
                 middle,
-                value * laplacian.inverse_areas()[middle as usize],
+                value * stiffness(middle as usize) * laplacian.inverse_areas()[middle as usize],
                 &keep,
             );
         }
@@ -224,8 +225,15 @@ mod tests {
         let model = shapes::model(shapes::torus(9, 7));
         let count = model.surface.positions.len();
         let stiffness: Vec<f64> = (0..count).map(|i| 1.0 + (i % 5) as f64).collect();
-        let laplacian = Laplacian::of(&model.surface, &model.topology, &stiffness);
-        let operator = ShellOperator::new(laplacian, options, 3.0);
+        let stiff = || Some(Laplacian::of(&model.surface, &model.topology, &stiffness));
+        let plain = Laplacian::of(&model.surface, &model.topology, &vec![1.0; count]);
+        let mut operator = ShellOperator::new(plain, options, 3.0);
+        match options.order {
+            ShellOrder::Membrane => {}
+            ShellOrder::ThinPlate => operator.cell_stiffness.clone_from(&stiffness),
+            ShellOrder::CurvatureVariation => operator.middle = stiff(),
+        }
+        operator.stretched = stiff().filter(|_| operator.power > 1 && operator.stretching > 0.0);
         let columns: Vec<u32> = (0..count as u32).rev().filter(|v| v % 7 != 0).collect();
         let mut column_of = vec![CONSTRAINED; count];
         for (column, &vertex) in columns.iter().enumerate() {

@@ -7,6 +7,9 @@
 /// which at order n = 2 is (−k_s L + k_b L M⁻¹ L) d = 0 (survey, equation 8). A is symmetric and positive definite on
 /// what is solved for. Lengths are measured in diagonals of the surface's bounding box, so neither coefficient depends
 /// on the model's unit, and only their ratio shows in the shape; the energy ½ dᵀ A d has no unit.
+///
+/// Painted stiffness s scales the energy's density, ½ ∫ k_s s |∇d|² + k_b s |Δd|² at order 2 and s |∇Δd|² at order 3: a
+/// part of stiffness 10 resists bending ten times as much, and turns with what holds it.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct Bilaplacian {

@@ -2,12 +2,24 @@
 //!
 //! One factor −L stands outermost in both terms, so A d = −L φ with φ = k_s d + k_b (−M⁻¹ L)ⁿ⁻¹ d: zero on constants
 //! to the last bit at every order.
+//!
+//! Painted stiffness s scales the density of the energy, ½ ∫ k_s s |∇d|² + k_b s |Δd|²: the faces' cotangents in
+//! stretching and in the middle L of order 3, the cells of M⁻¹ at order 2. What is stiff keeps its curvature, turns with
+//! what holds it, and joins what is soft without a crease. (With the cotangents of both outer L scaled, which is
+//! ∫ |div(s ∇d)|², it is the slope in space that stiff parts keep: they don't turn, and crease at their rim.)
 
 use rayon::prelude::*;
 
 use crate::operators::CHUNK;
 use crate::shell::springs::Springs;
 use crate::{Bilaplacian, Laplacian};
+
+/// What A makes forces of: φ, and d itself where stretching has an L of its own.
+#[derive(Debug)]
+pub(crate) struct Potential<'a, const K: usize> {
+    phi: Vec<[f64; K]>,
+    d: &'a [[f64; K]],
+}
 
 /// A over the local vertices of its Laplacian, which has full rows around everything that moves.
 ///
@@ -17,6 +29,10 @@ pub(crate) struct ShellOperator {
     pub laplacian: Laplacian,
     /// The L between two others at order 3, where it is not the same.
     pub middle: Option<Laplacian>,
+    /// The L of stretching, where it is not the same.
+    pub stretched: Option<Laplacian>,
+    /// s of each local vertex' cell at order 2; empty where it is 1 everywhere.
+    pub cell_stiffness: Vec<f64>,
     /// The soft handles' springs, W in (A + W) d = W c.
     pub springs: Springs,
     /// n: how many times L stands in the second term.
@@ -40,6 +56,8 @@ impl ShellOperator {
         Self {
             laplacian,
             middle: None,
+            stretched: None,
+            cell_stiffness: Vec::new(),
             springs: Springs::default(),
             power,
             stretching: options.stretching / square,
@@ -79,36 +97,55 @@ impl ShellOperator {
         std::array::from_fn(|k| self.springs.strength(spring) * (anchor[k] - own[k]))
     }
 
-    /// φ, of which A d is −L: K functions on the local vertices, right wherever a neighbour's row is full.
-    pub fn potential<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
+    /// By how much the cell of a local vertex is stiffer than 1 at order 2.
+    #[inline]
+    pub fn cell_stiffness(&self, local: usize) -> f64 {
+        self.cell_stiffness.get(local).copied().unwrap_or(1.0)
+    }
+
+    /// φ of K functions on the local vertices, right wherever a neighbour's row is full.
+    pub fn potential<'a, const K: usize>(&self, d: &'a [[f64; K]]) -> Potential<'a, K> {
         if self.power == 1 {
-            return d.to_vec();
+            return Potential { phi: d.to_vec(), d };
         }
         let mut phi = self.laplacian.per_area(d);
         if self.power == 3 {
             phi = self.middle().per_area(&phi);
         }
         let sign = if self.power == 2 { -self.bending } else { self.bending };
-        phi.par_iter_mut().with_min_len(CHUNK).zip(d).for_each(|(phi, d)| {
-            for k in 0..K {
-                phi[k] *= sign;
-                if self.stretching > 0.0 {
-                    phi[k] += self.stretching * d[k];
+        let shared_stretching = if self.stretched.is_none() { self.stretching } else { 0.0 };
+        phi.par_iter_mut()
+            .with_min_len(CHUNK)
+            .zip(d)
+            .enumerate()
+            .for_each(|(local, (phi, d))| {
+                let factor = sign * self.cell_stiffness(local);
+                for k in 0..K {
+                    phi[k] *= factor;
+                    if shared_stretching > 0.0 {
+                        phi[k] += shared_stretching * d[k];
+                    }
                 }
-            }
-        });
-        phi
+            });
+        Potential { phi, d }
     }
 
     /// (A d)_i of `local`, given d's potential.
     #[inline]
-    pub fn force<const K: usize>(&self, local: usize, potential: &[[f64; K]]) -> [f64; K] {
+    pub fn force<const K: usize>(&self, local: usize, potential: &Potential<'_, K>) -> [f64; K] {
         let factor = if self.power == 1 {
             -(self.stretching + self.bending)
         } else {
             -1.0
         };
-        self.laplacian.row(local, potential).map(|value| factor * value)
+        let mut force = self.laplacian.row(local, &potential.phi).map(|value| factor * value);
+        if let Some(stretched) = &self.stretched {
+            let row = stretched.row(local, potential.d);
+            for k in 0..K {
+                force[k] -= self.stretching * row[k];
+            }
+        }
+        force
     }
 
     /// ½ dᵀ A d over K functions and the springs' ½ (c − d)ᵀ W (c − d), summed from squares of differences, so that large
@@ -127,12 +164,14 @@ impl ShellOperator {
             1 => stretch(&self.laplacian, d),
             2 => sum_of_rows(self.laplacian.vertices().len(), |local| {
                 let row = self.laplacian.row(local, d);
-                self.laplacian.inverse_areas()[local] * row.iter().map(|value| value * value).sum::<f64>()
+                self.cell_stiffness(local)
+                    * self.laplacian.inverse_areas()[local]
+                    * row.iter().map(|value| value * value).sum::<f64>()
             }),
             _ => stretch(self.middle(), &self.laplacian.per_area(d)),
         };
         let stretched = if self.stretching > 0.0 {
-            self.stretching * stretch(&self.laplacian, d)
+            self.stretching * stretch(self.stretched.as_ref().unwrap_or(&self.laplacian), d)
         } else {
             0.0
         };

@@ -335,9 +335,23 @@ pub(crate) fn operator(
 ) -> (ShellOperator, Vec<Prescribed>) {
     let net = &partition.net;
     let rows = bent_rows(net, &partition.solved, handles);
-    let laplacian = Laplacian::on(net, problem.stiffness, &rows, options.discretisation, &|_, _| 1.0);
     let diagonal = bounding_box(&problem.surface.positions).map_or(0.0, |bounds| bounds.diagonal());
-    let mut operator = ShellOperator::new(laplacian, options, diagonal);
+    let on = |stiffness: &[f64]| Laplacian::on(net, stiffness, &rows, options.discretisation, &|_, _| 1.0);
+    let is_painted = problem.stiffness.iter().any(|stiffness| *stiffness != 1.0);
+    let mut operator;
+    if is_painted && options.operator_power() > 1 {
+        operator = ShellOperator::new(on(&vec![1.0; problem.stiffness.len()]), options, diagonal);
+        match operator.power {
+            2 => {
+                let vertices = operator.laplacian.vertices().iter();
+                operator.cell_stiffness = vertices.map(|&vertex| problem.stiffness[vertex as usize]).collect();
+            }
+            _ => operator.middle = Some(on(problem.stiffness)),
+        }
+        operator.stretched = (operator.stretching > 0.0).then(|| on(problem.stiffness));
+    } else {
+        operator = ShellOperator::new(on(problem.stiffness), options, diagonal);
+    }
     join(&mut operator, net, problem, options, &rows, diagonal);
     let prescribed = prescribe(&mut operator, problem, partition, handles);
     (operator, prescribed)

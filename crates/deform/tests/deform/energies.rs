@@ -8,14 +8,15 @@ use crate::rig::{Scene, back_substitute, turned};
 
 type Dense = Vec<Vec<f64>>;
 
-/// −L and M of the survey's equations 6 and 7 with Meyer et al.'s areas, from the angles at each triangle's corners.
-fn operators(scene: &Scene) -> (Dense, Vec<f64>) {
+/// −L and M of the survey's equations 6 and 7 with Meyer et al.'s areas, from the angles at each triangle's corners;
+/// `stiffness` has a factor a vertex, of which each triangle takes the mean.
+fn operators(scene: &Scene, stiffness: &[f64]) -> (Dense, Vec<f64>) {
     let count = scene.roles.len();
     let (mut minus_laplacian, mut areas) = (vec![vec![0.0; count]; count], vec![0.0; count]);
     for corners in &scene.model.surface.triangles {
         let [a, b, c] = corners.map(|corner| corner.index());
         let p = scene.positions();
-        let stiffness = (scene.stiffness[a] + scene.stiffness[b] + scene.stiffness[c]) / 3.0;
+        let stiffness = (stiffness[a] + stiffness[b] + stiffness[c]) / 3.0;
         let angle = |at: usize, to: usize, other: usize| (p[to] - p[at]).angle_between(p[other] - p[at]);
         let triples = [(a, b, c), (b, c, a), (c, a, b)];
         let area = 0.5 * (p[b] - p[a]).cross(p[c] - p[a]).length();
@@ -48,28 +49,27 @@ fn product(matrix: &Dense, field: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// ½ dᵀ A d with A = k_s (−L) / D² + k_b D^(2 (n − 2)) (−L) (−M⁻¹ L)ⁿ⁻¹ over the three coordinates.
+/// ½ ∫ k_s s |∇d|² / D² + k_b D^(2 (n − 2)) s |∇ⁿ d|² over the three coordinates, where ∇²d is the Laplacian and s is the
+/// painted stiffness: by the three products of n that stand between d and d.
 fn energy(scene: &Scene, options: &Bilaplacian, displacements: &[DVec3]) -> f64 {
-    let (minus_laplacian, areas) = operators(scene);
+    let (plain, areas) = operators(scene, &vec![1.0; scene.roles.len()]);
+    let (stiff, _) = operators(scene, &scene.stiffness);
     let diagonal = scene.diagonal();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let order = options.order.number();
     let mut sum = 0.0;
     for axis in 0..3 {
         let d: Vec<f64> = displacements.iter().map(|d| d[axis]).collect();
-        let mut field = d.clone();
-        for step in 0..options.order.number() {
-            field = product(&minus_laplacian, &field);
-            if step == 0 {
-                let stretched: f64 = d.iter().zip(&field).map(|(a, b)| a * b).sum();
-                sum += 0.5 * options.stretching / diagonal.powi(2) * stretched;
-            }
-            if step + 1 < options.order.number() {
-                for (value, area) in field.iter_mut().zip(&areas) {
-                    *value /= area;
-                }
-            }
-        }
-        let bent: f64 = d.iter().zip(&field).map(|(a, b)| a * b).sum();
-        sum += 0.5 * options.bending * diagonal.powi(2 * (options.order.number() as i32 - 2)) * bent;
+        let bent: Vec<f64> = product(&plain, &d).iter().zip(&areas).map(|(v, m)| v / m).collect();
+        let bending = match order {
+            1 => dot(&d, &product(&stiff, &d)),
+            2 => (0..d.len())
+                .map(|v| scene.stiffness[v] * areas[v] * bent[v] * bent[v])
+                .sum(),
+            _ => dot(&bent, &product(&stiff, &bent)),
+        };
+        sum += 0.5 * options.stretching / diagonal.powi(2) * dot(&d, &product(&stiff, &d));
+        sum += 0.5 * options.bending * diagonal.powi(2 * (order as i32 - 2)) * bending;
     }
     sum
 }

@@ -1,7 +1,7 @@
 //! Systems that factor badly: vast contrasts of stiffness, flattened shapes, almost nothing that holds.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::Role;
+use pliant_deform::{Bilaplacian, Method, Role, ShellOrder};
 use pliant_mesh::{Drawn, shapes};
 
 use crate::rig::{Scene, apart, back_substitute, step, turned};
@@ -116,4 +116,52 @@ fn slivers_and_needles_are_solved() {
             holds(&format!("{gap} {fixed}"), &Scene::new(drawn.clone()).with_ends(fixed));
         }
     }
+}
+
+/// A shape that nothing but one soft handle holds, by springs of next to nothing: against the shell they are lost in
+/// rounding, and without them every translation is free.
+fn adrift(drawn: &Drawn, order: ShellOrder, weight: f64) -> Scene {
+    let mut scene = Scene::new(drawn.clone()).with_ends(false);
+    for role in &mut scene.roles {
+        if *role == Role::Handle(1) {
+            *role = Role::Free;
+        }
+    }
+    scene.handle_count = 1;
+    scene.soft = vec![Some(weight)];
+    let mut options = Bilaplacian::default();
+    options.order = order;
+    scene.method = Method::Bilaplacian(options);
+    scene
+}
+
+#[test]
+fn what_does_not_factor_is_stiffened_and_said_or_refused_with_the_place() {
+    let (mut stiffened, mut refused) = (0, 0);
+    for (name, drawn) in shapes::classes() {
+        for order in ShellOrder::ALL {
+            for exponent in [6, 10, 13, 15, 17, 20, 30] {
+                let scene = adrift(&drawn, order, 0.1_f64.powi(exponent));
+                let label = format!("{name} {order:?} 1e-{exponent}");
+                match scene.try_bind() {
+                    Ok(mut bound) => {
+                        stiffened += usize::from(bound.warnings().iter().any(|said| said.contains("stiffened")));
+                        let targets = vec![DAffine3::from_translation(DVec3::Z); scene.handle_count];
+                        let worst = step(&mut bound, &targets)
+                            .iter()
+                            .map(|d| d.distance(DVec3::Z))
+                            .fold(0.0, f64::max);
+                        assert!(worst < 1e-6, "{label}: {worst:e}, {:?}", bound.warnings());
+                    }
+                    Err(error) => {
+                        let vertex = error.vertex().unwrap_or_else(|| panic!("{label}: {error}"));
+                        assert!((vertex as usize) < scene.roles.len(), "{label}: {error}");
+                        assert!(error.to_string().contains(&vertex.to_string()), "{label}: {error}");
+                        refused += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(stiffened > 0 && refused > 0, "{stiffened} stiffened, {refused} refused");
 }
