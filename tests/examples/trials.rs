@@ -13,7 +13,7 @@ fn main() {
     let (count, first) = (number(0, 1000), number(1, 0));
     let mut subjects = scans();
     let mut counts = BTreeMap::<String, [usize; 4]>::new();
-    let mut solved = 0;
+    let (mut solved, mut peak_mb) = (0, 0.0);
     for seed in first..first + count {
         let place = (seed % subjects.len() as u64) as usize;
         let trial = Trial::with(seed, &subjects[place].model, words.get(2).map(String::as_str));
@@ -41,6 +41,11 @@ fn main() {
             }
         };
         counts.entry(kind).or_default()[column] += 1;
+        let now_mb = resident_peak_mb();
+        if now_mb > 1.25 * peak_mb {
+            println!("trial {seed}, {name}, {:?}: at most {now_mb:.0} MB so far", trial.method);
+            peak_mb = now_mb;
+        }
     }
     println!(
         "{:<24}{:>8}{:>13}{:>9}{:>8}",
@@ -56,4 +61,12 @@ fn main() {
     println!("{:<24}{:>8}{:>13}{:>9}{:>8}", "all", sum[0], sum[1], sum[2], sum[3]);
     println!("{} vertices solved for in the mean", solved / (sum[0] + sum[1]).max(1));
     assert_eq!(sum[3], 0, "{} trials broke", sum[3]);
+}
+
+/// The most memory that this process has held; 0 where the system doesn't say.
+fn resident_peak_mb() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kilobytes = line.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok());
+    kilobytes.map_or(0.0, |kb| kb / 1024.0)
 }

@@ -53,6 +53,20 @@ enum Solver {
     Primo(Box<PrimoSolver>),
 }
 
+/// How a plate finds what is solved for.
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    Bases,
+    BackSubstitution,
+}
+
+/// Whether a shape was seen to be finite while it was made.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Finite {
+    Yes,
+    Unknown,
+}
+
 /// What one step did.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Step {
@@ -173,10 +187,7 @@ impl Bound {
     /// # Errors
     /// A wrong length, or a result that is not finite; `displacements` is all zero then.
     pub fn step(&mut self, displacements: &mut [DVec3]) -> Result<Step, SolveError> {
-        self.frame(displacements, |plate, motions, displacements| {
-            plate.bases().evaluate(motions, displacements);
-            Ok(plate.energy(motions))
-        })
+        self.frame(displacements, Way::Bases)
     }
 
     /// As [`Bound::step`], but by solving with the factor in f64 instead of using the handles' bases. What has no bases
@@ -185,21 +196,13 @@ impl Bound {
     /// # Errors
     /// As [`Bound::step`].
     pub fn step_by_back_substitution(&mut self, displacements: &mut [DVec3]) -> Result<Step, SolveError> {
-        self.frame(displacements, |plate, motions, displacements| {
-            plate.back_substitute(displacements)?;
-            Ok(plate.energy_of(motions, displacements))
-        })
+        self.frame(displacements, Way::BackSubstitution)
     }
 
-    /// The handles' vertices and zeros first, then what `solve` makes of them on a plate or a step of ARAP, then the
-    /// followers and the gate.
-    fn frame(
-        &mut self,
-        displacements: &mut [DVec3],
-        solve: impl FnOnce(&Plate, &[Motion], &mut [DVec3]) -> Result<f64, SolveError>,
-    ) -> Result<Step, SolveError> {
-        displacements.fill(DVec3::ZERO);
+    /// The handles' vertices, what the method makes of them and zeros elsewhere, then the followers and the gate.
+    fn frame(&mut self, displacements: &mut [DVec3], way: Way) -> Result<Step, SolveError> {
         if displacements.len() != self.vertex_count {
+            displacements.fill(DVec3::ZERO);
             return Err(SolveError::OutputLength {
                 found: displacements.len(),
                 expected: self.vertex_count,
@@ -212,7 +215,9 @@ impl Bound {
             energy: 0.0,
             iteration: self.iteration,
         };
-        if self.motions.iter().all(Motion::is_rest) {
+        let motions = &self.motions;
+        if motions.iter().all(Motion::is_rest) {
+            clear(displacements);
             match &mut self.solver {
                 Solver::Plate(_) => {}
                 Solver::Arap(arap) => arap.rest(),
@@ -220,29 +225,43 @@ impl Bound {
             }
             return Ok(step);
         }
-        for (handle, motion) in self.motions.iter().enumerate() {
-            match &self.solver {
-                Solver::Plate(plate) => place(plate.prescribed(handle), motion, displacements),
-                Solver::Arap(arap) => place(arap.prescribed(handle), motion, displacements),
-                Solver::Primo(primo) => place(primo.prescribed(handle), motion, displacements),
+        let mut finite = Finite::Unknown;
+        match (&mut self.solver, way) {
+            (Solver::Plate(plate), Way::Bases) => {
+                finite = plate.frame(motions, displacements);
+                step.energy = plate.energy(motions);
             }
-        }
-        match &mut self.solver {
-            Solver::Plate(plate) => {
-                step.energy =
-                    solve(plate, &self.motions, displacements).inspect_err(|_| displacements.fill(DVec3::ZERO))?;
+            (Solver::Plate(plate), Way::BackSubstitution) => {
+                clear(displacements);
+                for (handle, motion) in motions.iter().enumerate() {
+                    place(plate.prescribed(handle), motion, displacements);
+                }
+                plate
+                    .back_substitute(displacements)
+                    .inspect_err(|_| displacements.fill(DVec3::ZERO))?;
+                step.energy = plate.energy_of(motions, displacements);
             }
-            Solver::Arap(arap) => {
-                (step.converged, step.energy) = arap.step(&self.motions, displacements);
+            (Solver::Arap(arap), _) => {
+                clear(displacements);
+                for (handle, motion) in motions.iter().enumerate() {
+                    place(arap.prescribed(handle), motion, displacements);
+                }
+                (step.converged, step.energy) = arap.step(motions, displacements);
                 step.finished = step.converged || self.iteration >= arap.max_iterations();
             }
-            Solver::Primo(primo) => {
-                (step.converged, step.energy) = primo.step(&self.motions, displacements);
+            (Solver::Primo(primo), _) => {
+                clear(displacements);
+                for (handle, motion) in motions.iter().enumerate() {
+                    place(primo.prescribed(handle), motion, displacements);
+                }
+                (step.converged, step.energy) = primo.step(motions, displacements);
                 step.finished = step.converged || self.iteration >= primo.max_iterations();
             }
         }
         carry(&self.followers, displacements);
-        gate(displacements)?;
+        if finite == Finite::Unknown || !self.followers.is_empty() {
+            gate(displacements)?;
+        }
         Ok(step)
     }
 
@@ -330,6 +349,13 @@ fn place(vertices: impl Iterator<Item = (u32, [f64; 4])>, motion: &Motion, displ
     for (vertex, coordinates) in vertices {
         displacements[vertex as usize] = motion.displace(coordinates);
     }
+}
+
+/// All zero.
+fn clear(displacements: &mut [DVec3]) {
+    displacements
+        .par_chunks_mut(FRAME_CHUNK)
+        .for_each(|chunk| chunk.fill(DVec3::ZERO));
 }
 
 /// The one way out: no displacement that is not finite passes.

@@ -8,7 +8,6 @@
 //! back whole: what is left to the rounded weights is how the handles differ.
 
 use glam::{DMat3, DVec3};
-use rayon::prelude::*;
 
 use crate::handle::Motion;
 
@@ -84,44 +83,37 @@ impl HandleBases {
         }
     }
 
-    /// Writes the displacements of the solved vertices into `displacements`, one a surface vertex; leaves the others.
-    pub(crate) fn evaluate(&self, motions: &[Motion], displacements: &mut [DVec3]) {
-        let tables = Tables::of(motions, self.runs.iter().map(|run| run.reference));
-        displacements
-            .par_chunks_mut(FRAME_CHUNK)
-            .enumerate()
-            .for_each(|(chunk, out)| {
-                let first = chunk * FRAME_CHUNK;
-                let place = |vertex: usize| self.vertices.partition_point(|&other| (other as usize) < vertex);
-                let (mut row, end) = (place(first), place(first + out.len()));
-                let mut run = self.runs.partition_point(|run| run.end <= row);
-                while row < end {
-                    let Run {
-                        end: run_end,
-                        reference,
-                    } = self.runs[run];
-                    let (base, table) = tables.get(reference);
-                    let until = run_end.min(end);
-                    let entries =
-                        self.rows[row * self.handle_count..until * self.handle_count].chunks_exact(self.handle_count);
-                    for (&vertex, entries) in self.vertices[row..until].iter().zip(entries) {
-                        let mut sum = base;
-                        for (entry, motion) in entries.iter().zip(table) {
-                            // f32 ends here: from the stored basis on everything is f64.
-                            let [x, y, z, w] = entry.map(f64::from);
-                            sum += motion[0] * x + motion[1] * y + motion[2] * z + motion[3] * w;
-                        }
-                        out[vertex as usize - first] = sum;
-                    }
-                    row = until;
-                    run += 1;
+    /// What the motions make of the solved ones among the vertices from `first` on.
+    #[inline(always)]
+    pub(crate) fn evaluate(&self, tables: &Tables, first: usize, out: &mut [DVec3]) {
+        let place = |vertex: usize| self.vertices.partition_point(|&other| (other as usize) < vertex);
+        let (mut row, end) = (place(first), place(first + out.len()));
+        let mut run = self.runs.partition_point(|run| run.end <= row);
+        while row < end {
+            let Run {
+                end: run_end,
+                reference,
+            } = self.runs[run];
+            let (base, table) = tables.get(reference);
+            let until = run_end.min(end);
+            let entries = self.rows[row * self.handle_count..until * self.handle_count].chunks_exact(self.handle_count);
+            for (&vertex, entries) in self.vertices[row..until].iter().zip(entries) {
+                let mut sum = base;
+                for (entry, motion) in entries.iter().zip(table) {
+                    // f32 ends here: from the stored basis on everything is f64.
+                    let [x, y, z, w] = entry.map(f64::from);
+                    sum += motion[0] * x + motion[1] * y + motion[2] * z + motion[3] * w;
                 }
-            });
+                out[vertex as usize - first] = sum;
+            }
+            row = until;
+            run += 1;
+        }
     }
 }
 
 /// The motions' columns relative to each reference handle in use.
-struct Tables {
+pub(crate) struct Tables {
     plain: Vec<[DVec3; 4]>,
     relative: Vec<Option<Relative>>,
 }
@@ -130,7 +122,8 @@ struct Tables {
 type Relative = (DVec3, Vec<[DVec3; 4]>);
 
 impl Tables {
-    fn of(motions: &[Motion], references: impl Iterator<Item = Option<u16>>) -> Self {
+    /// Of the motions, for `bases`.
+    pub fn of(motions: &[Motion], bases: &HandleBases) -> Self {
         let columns = |base: DVec3| {
             let column = |motion: &Motion| {
                 let DMat3 { x_axis, y_axis, z_axis } = motion.linear;
@@ -139,7 +132,7 @@ impl Tables {
             motions.iter().map(column).collect::<Vec<_>>()
         };
         let mut relative = vec![None; motions.len()];
-        for reference in references.flatten().map(usize::from) {
+        for reference in bases.runs.iter().filter_map(|run| run.reference).map(usize::from) {
             let base = motions[reference].shift;
             relative[reference].get_or_insert_with(|| (base, columns(base)));
         }

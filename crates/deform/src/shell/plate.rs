@@ -4,11 +4,14 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
+use pulp::Arch;
 use rayon::prelude::*;
 
+use crate::bound::Finite;
 use crate::handle::{Handle, Motion};
 use crate::operators::net::{Graph, Net};
 use crate::partition::Partition;
+use crate::shell::bases::{FRAME_CHUNK, Tables};
 use crate::shell::continuity::join;
 use crate::shell::factored::{Shell, ShellError};
 use crate::shell::operator::ShellOperator;
@@ -132,6 +135,35 @@ impl Plate {
         &self.bases
     }
 
+    /// Fills all of `displacements` from the bases, chunk by chunk: each goes through memory once.
+    pub fn frame(&self, motions: &[Motion], displacements: &mut [DVec3]) -> Finite {
+        let tables = Tables::of(motions, &self.bases);
+        let arch = Arch::new();
+        let fill = |first: usize, out: &mut [DVec3]| {
+            out.fill(DVec3::ZERO);
+            for (handle, motion) in motions.iter().enumerate() {
+                let own = &self.prescribed[handle];
+                let place = |vertex: usize| own.partition_point(|&(place, _)| (self.vertex(place) as usize) < vertex);
+                for &(at, coordinates) in &own[place(first)..place(first + out.len())] {
+                    out[self.vertex(at) as usize - first] = motion.displace(coordinates);
+                }
+            }
+            self.bases.evaluate(&tables, first, out);
+            out.iter().all(|displacement| displacement.is_finite())
+        };
+        let is_finite = displacements
+            .par_chunks_mut(FRAME_CHUNK)
+            .enumerate()
+            .map(|(chunk, out)| {
+                arch.dispatch(
+                    #[inline(always)]
+                    || fill(chunk * FRAME_CHUNK, out),
+                )
+            })
+            .reduce(|| true, |a, b| a && b);
+        if is_finite { Finite::Yes } else { Finite::Unknown }
+    }
+
     /// Sentences about what had to be repaired.
     pub fn warnings(&self) -> Vec<String> {
         let mut sentences: Vec<String> = repairs(self.shell.operator.laplacian.mollified_faces())
@@ -218,13 +250,17 @@ impl Plate {
         }
     }
 
-    /// The handles' vertices and coordinates, as surface vertices.
+    /// The handles' vertices and coordinates, as surface vertices, ascending.
     pub fn prescribed(&self, handle: usize) -> impl Iterator<Item = (u32, [f64; 4])> + '_ {
-        let operator = &self.shell.operator;
-        let vertex = |place: u32| operator.laplacian.vertices()[operator.local_of(place as usize) as usize];
         self.prescribed[handle]
             .iter()
-            .map(move |&(place, coordinates)| (vertex(place), coordinates))
+            .map(|&(place, coordinates)| (self.vertex(place), coordinates))
+    }
+
+    /// The surface vertex that a field's entry is for.
+    fn vertex(&self, place: u32) -> u32 {
+        let operator = &self.shell.operator;
+        operator.laplacian.vertices()[operator.local_of(place as usize) as usize]
     }
 }
 

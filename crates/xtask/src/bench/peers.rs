@@ -90,7 +90,8 @@ fn compared(off: &Path, level: usize, lines: &str) -> Result<Vec<Row>, String> {
         let Some(theirs) = line.and_then(|line| word_after(line, versus.does)) else {
             continue;
         };
-        let found = !line.is_some_and(|line| line.contains("bound False"));
+        // Blender says so on its standard error alone; then nothing has moved.
+        let found = !line.is_some_and(|line| line.contains("bound False") || line.contains("moved 0.0000"));
         if !measurements.iter().any(|(ours, _)| *ours == versus.ours) {
             measurements.push((versus.ours, versus.ours.measure(off)?));
         }
