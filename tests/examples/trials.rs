@@ -43,7 +43,10 @@ fn main() {
         counts.entry(kind).or_default()[column] += 1;
         let now_mb = resident_peak_mb();
         if now_mb > 1.25 * peak_mb {
-            println!("trial {seed}, {name}, {:?}: at most {now_mb:.0} MB so far", trial.method);
+            println!(
+                "trial {seed}, {name}, {:?}: at most {now_mb:.0} MB so far",
+                trial.method
+            );
             peak_mb = now_mb;
         }
     }
