@@ -414,6 +414,53 @@ fn a_whole_session_undone_redone_saved_and_opened_again_is_the_same_document_by_
     assert_eq!(hash(&session), last, "opened again");
 }
 
+/// Two views side by side: one drag, two methods, and closing the second leaves the first as it was.
+#[test]
+fn two_methods_are_compared_on_the_same_drag() {
+    let Some(mut session) = Session::begin() else { return };
+    let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
+    session.stroke(top + vec2(0.0, 6.0), top + vec2(0.0, 16.0));
+    let context = session.harness.ctx.clone();
+    let width = session.harness.state().view_rect().width();
+    session.harness.state_mut().toggle_compare(&context);
+    session.settle();
+    assert!(
+        session.harness.state().view_rect().width() < 0.6 * width,
+        "half of the view is the second's"
+    );
+    for key in [Key::R, Key::Z, Key::Num5, Key::Num0, Key::Enter] {
+        session.key(key, Modifiers::NONE);
+    }
+    session.settle();
+    let first = session.shape();
+    let application = session.harness.state();
+    let (one, two) = (
+        application.editor().document(),
+        application.compared().unwrap().document(),
+    );
+    assert_eq!(one.handles(), two.handles());
+    assert_ne!(one.method(), two.method());
+    assert!(
+        moved(two.from_file()) > 0 && **two.from_file() != first,
+        "the second bends otherwise"
+    );
+    assert_eq!(
+        application.editor().view().camera,
+        application.compared().unwrap().view().camera
+    );
+    session.key(Key::Z, Modifiers::COMMAND);
+    session.settle();
+    let compared = session.harness.state().compared().unwrap();
+    assert_eq!(moved(compared.document().from_file()), 0, "it goes back along");
+    session.harness.state_mut().toggle_compare(&context);
+    session.settle();
+    assert!(session.harness.state().compared().is_none());
+    assert_eq!(session.harness.state().view_rect().width(), width);
+    session.key(Key::Z, Modifiers::COMMAND | Modifiers::SHIFT);
+    session.settle();
+    assert_eq!(session.shape(), first);
+}
+
 #[test]
 fn a_lost_graphics_device_is_opened_again_and_the_document_is_as_it_was() {
     if let Err(error) = pliant_render::Headless::new() {

@@ -97,7 +97,7 @@ impl Editor {
 }
 
 /// Whether region and factorisation of one document are no good for the other.
-fn is_other_problem(a: &Document, b: &Document) -> bool {
+pub(crate) fn is_other_problem(a: &Document, b: &Document) -> bool {
     !Arc::ptr_eq(&a.paint, &b.paint)
         || !Arc::ptr_eq(&a.rest, &b.rest)
         || a.applied != b.applied

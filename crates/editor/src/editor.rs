@@ -83,6 +83,8 @@ pub struct Editor {
     /// What follows from what is hidden and locked, and what that was on which model.
     pub(crate) masks: Masks,
     pub(crate) masked: Option<(Arc<Model>, Arc<Access>)>,
+    /// The document of another editor as this one has taken it over.
+    pub(crate) followed: Option<Document>,
     /// The mirror image that is being looked for.
     pub(crate) mirroring: Option<Mirroring>,
     /// Events that wait until rays can be answered from what is drawn.
@@ -141,6 +143,7 @@ impl Editor {
             masks: Masks::default(),
             masked: None,
             mirroring: None,
+            followed: None,
             held: VecDeque::new(),
             shape_counter: 0,
         }

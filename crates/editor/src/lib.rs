@@ -23,6 +23,7 @@ mod event;
 mod exchange;
 mod execute;
 mod field_form;
+mod following;
 mod gizmo;
 mod handle_actions;
 mod handle_motion;

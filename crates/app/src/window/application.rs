@@ -12,6 +12,7 @@ use glam::{DVec2, DVec3};
 use pliant_editor::{Command, Cursor, Editor, Event, JobQueue, KeyMap, Revision, Shading};
 
 use super::axis_ball;
+use super::compare::Compare;
 use super::dialog::{self, Question, Then};
 use super::hints;
 use super::input::{Attention, Input};
@@ -42,6 +43,8 @@ const REST: Duration = Duration::from_millis(300);
 pub struct Application {
     pub(super) editor: Editor,
     pub(super) viewport: Viewport,
+    /// The second view, while two methods are compared.
+    pub(super) compare: Option<Compare>,
     pub(super) workers: Workers,
     messages: Receiver<Message>,
     pub(super) session: Session,
@@ -116,6 +119,7 @@ impl Application {
         let mut application = Self {
             editor: Editor::new(Box::new(workers.clone())),
             viewport,
+            compare: None,
             workers,
             messages,
             session,
@@ -157,6 +161,7 @@ impl Application {
         };
         let system = |error: pliant_render::RenderError| AppError::System(error.to_string());
         self.viewport = Viewport::new(state).map_err(system)?;
+        self.compare = None;
         self.workers.wake(context.egui_ctx.clone());
         self.input = Input::default();
         self.is_dressed = false;
@@ -207,7 +212,8 @@ impl Application {
             .viewport
             .displacements()
             .is_some_and(|shown| Arc::ptr_eq(shown, view.displacements));
-        view.settled && shown && self.session.doing().is_none()
+        let compared = self.compare.as_ref().is_none_or(Compare::is_settled);
+        view.settled && shown && compared && self.session.doing().is_none()
     }
 
     /// The shape in the GPU's buffers, per surface vertex, from the file's.
@@ -218,6 +224,20 @@ impl Application {
     /// Where the 3D view stands in the window, in points.
     pub fn view_rect(&self) -> egui::Rect {
         self.view_rect
+    }
+
+    /// The editor behind the second view, while two methods are compared.
+    pub fn compared(&self) -> Option<&Editor> {
+        self.compare.as_ref().map(Compare::editor)
+    }
+
+    /// Opens or closes the second view.
+    pub fn toggle_compare(&mut self, context: &egui::Context) {
+        self.compare = match self.compare.take() {
+            Some(_) => None,
+            None => Some(Compare::new(context, &self.viewport, &self.editor)),
+        };
+        self.last_change = Instant::now();
     }
 
     /// How often the 3D view was drawn.
@@ -239,7 +259,8 @@ impl Application {
 
     /// How long drawing has kept the window's thread busy so far.
     pub fn drawing_time(&self) -> Duration {
-        self.viewport.drawing_time()
+        let second = self.compare.as_ref().map_or(Duration::ZERO, Compare::drawing_time);
+        self.viewport.drawing_time() + second
     }
 
     /// Gives the editor a command, as a menu would.
@@ -280,6 +301,8 @@ impl Application {
                         Err(sentence) => self.fail(sentence),
                     }
                 }
+                // That goes to the second view.
+                Message::Uploaded(..) => {}
                 Message::Dressed(drawing, result) => self.wear(&drawing, result),
                 Message::Opened(stamp, result) => match self.session.loaded(stamp, result, &self.workers) {
                     Some(Ok(opened)) => self.adopt(*opened),
@@ -507,7 +530,14 @@ impl Application {
 
     /// The 3D view: input first, then the picture.
     fn view(&mut self, ui: &mut egui::Ui) -> Result<(), pliant_render::RenderError> {
-        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let (rect, second) = match self.compare {
+            None => (whole, None),
+            Some(_) => {
+                let (first, second) = whole.split_left_right_at_fraction(0.5);
+                (first, Some(second))
+            }
+        };
         if rect.width() < 1.0 || rect.height() < 1.0 {
             return Ok(());
         }
@@ -528,6 +558,9 @@ impl Application {
             rect,
             pointer: ui.input(|input| input.pointer.latest_pos()).unwrap_or(rect.center()),
             pointer_over: response.contains_pointer()
+                && ui
+                    .input(|input| input.pointer.latest_pos())
+                    .is_some_and(|at| rect.contains(at))
                 && self.question.is_none()
                 && self.palette.is_none()
                 && !over_ball,
@@ -566,6 +599,14 @@ impl Application {
                     .max(Duration::from_millis(10)),
             );
         }
+        if let (Some(second), Some(compare), Some(stage)) = (second, &mut self.compare, self.workers.stage()) {
+            compare.follow(&self.editor, &stage);
+            let resting = smooth == Smoothness::Resting && compare.is_settled();
+            let smooth = if resting { smooth } else { Smoothness::Moving };
+            if compare.show(ui, second, smooth)? {
+                ui.ctx().request_repaint_after(REST);
+            }
+        }
         let outline_px = self.editor.view().outline_px;
         if outline_px.len() > 1 {
             let point = |px: &DVec2| rect.min + vec2(px.x as f32, px.y as f32);
@@ -599,7 +640,7 @@ impl Application {
 
 impl eframe::App for Application {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        let (start, drawn_before) = (Instant::now(), self.viewport.drawing_time());
+        let (start, drawn_before) = (Instant::now(), self.drawing_time());
         let context = ui.ctx().clone();
         self.take_messages();
         if self.viewport.is_lost() {
@@ -695,7 +736,7 @@ impl eframe::App for Application {
         }
         let busy = start
             .elapsed()
-            .saturating_sub(self.viewport.drawing_time() - drawn_before);
+            .saturating_sub(self.drawing_time().saturating_sub(drawn_before));
         self.longest_frame = self.longest_frame.max(busy);
     }
 }

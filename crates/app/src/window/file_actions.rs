@@ -107,6 +107,7 @@ impl Application {
                 });
                 theme::apply(context, self.settings.get());
             }
+            FileCommand::Compare => self.toggle_compare(context),
             FileCommand::Hints => self.settings.change(|settings| settings.hints_seen = false),
             FileCommand::SavePicture(kind) => dialog::choose(Purpose::SavePicture(kind), self.path(), &self.workers),
             FileCommand::Quit => self.unless_unsaved(context, Then::Close),

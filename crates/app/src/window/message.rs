@@ -17,6 +17,8 @@ pub enum Message {
     Job(JobDone, Option<Posed>),
     /// A shape was made ready for the renderer.
     Posed(Revision, Result<Posed, String>),
+    /// A file was uploaded once more, for a second view.
+    Uploaded(Arc<Drawing>, Result<Surface, String>),
     /// The images of a file were decoded and uploaded, or why not.
     Dressed(Arc<Drawing>, Result<Dressed, String>),
     /// A file was opened, or why it was not.

@@ -6,6 +6,7 @@ mod axis_ball;
 mod brush_panel;
 mod coarseness;
 mod command_button;
+mod compare;
 mod dialog;
 mod fault;
 mod file_actions;

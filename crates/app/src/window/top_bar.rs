@@ -36,6 +36,8 @@ pub enum FileCommand {
     NextTheme,
     /// Everything larger (above 0) or smaller, in tenths.
     Scale(i8),
+    /// Show a second view bent by another method, or not.
+    Compare,
     /// Show the first steps again.
     Hints,
     /// Save a picture of the view.
@@ -75,6 +77,7 @@ impl FileCommand {
             | Self::Log
             | Self::Keys
             | Self::NextTheme
+            | Self::Compare
             | Self::Hints
             | Self::OpenPath(_)
             | Self::SavePicture(_) => None,
@@ -82,7 +85,7 @@ impl FileCommand {
     }
 
     /// All that need no path, in the order of the menu.
-    pub const LISTED: [Self; 12] = [
+    pub const LISTED: [Self; 13] = [
         Self::Open,
         Self::Save,
         Self::SaveAs,
@@ -93,6 +96,7 @@ impl FileCommand {
         Self::Log,
         Self::Keys,
         Self::NextTheme,
+        Self::Compare,
         Self::Hints,
         Self::Quit,
     ];
@@ -110,6 +114,7 @@ impl FileCommand {
             Self::Keys => "Keys…",
             Self::NextTheme => "Light or dark",
             Self::Scale(_) => "Size of everything",
+            Self::Compare => "Compare two methods",
             Self::Hints => "Hints on the canvas",
             Self::ExportEdit => "Export edit…",
             Self::SavePicture(_) => "Save picture…",
@@ -267,6 +272,7 @@ fn region_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
 fn window_menu(ui: &mut egui::Ui, chosen: &mut Option<FileCommand>) {
     ui.separator();
     for (command, name) in [
+        (FileCommand::Compare, None),
         (FileCommand::Palette, None),
         (FileCommand::Log, None),
         (FileCommand::Keys, None),

@@ -169,6 +169,30 @@ impl Viewport {
         })
     }
 
+    /// Another view on the same device, of nothing yet.
+    pub fn beside(&self) -> Self {
+        Self {
+            state: self.state.clone(),
+            gpu: self.gpu.clone(),
+            software: self.software.clone(),
+            lost: Arc::clone(&self.lost),
+            target: Target::new(),
+            texture: None,
+            surface: None,
+            drawn: None,
+            drawings: 0,
+            drawing_time: Duration::ZERO,
+            coarseness: Coarseness::default(),
+        }
+    }
+
+    /// The file that is shown.
+    pub fn shows(&self, drawing: &Arc<Drawing>) -> bool {
+        self.surface
+            .as_ref()
+            .is_some_and(|shown| Arc::ptr_eq(&shown.drawing, drawing))
+    }
+
     /// Whether the device is gone: a driver was updated or crashed, or a card was pulled out.
     pub fn is_lost(&self) -> bool {
         self.lost.load(Ordering::Relaxed)
