@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use pliant_deform::{CONTINUITY_RANGE, Loose, Method};
+use pliant_deform::{Arap, CONTINUITY_RANGE, Loose, Method};
 
 use crate::tool::handle_colour;
 use crate::turn::followed;
@@ -219,7 +219,7 @@ pub struct Document {
 }
 
 impl Document {
-    /// A fresh document: everything is held still.
+    /// A fresh document: everything is held still. It bends by ARAP, which turns and moves at once.
     pub fn new(vertex_count: usize) -> Self {
         let zero = Arc::new(vec![DVec3::ZERO; vertex_count]);
         Self {
@@ -228,7 +228,7 @@ impl Document {
             next_handle: 0,
             stiffness: None,
             continuity: None,
-            method: Method::default(),
+            method: Method::Arap(Arap::default()),
             loose: Loose::default(),
             loose_parts: Arc::default(),
             access: Arc::default(),

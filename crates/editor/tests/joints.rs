@@ -90,7 +90,7 @@ fn each_handle_has_its_own_joint_and_files_keep_it() {
     rig.drain();
     let hinge = rig.drawn();
     assert!(smooth != hinge, "a hinge bends otherwise");
-    assert_eq!(rig.editor.document().from_rest(), rig.shape_of_document());
+    rig.assert_as_meant("a hinge");
     let edit = rig.editor.edit_file().unwrap();
     assert_eq!(edit.handles[0].continuity, Some(0.0));
     let text = edit.to_json();

@@ -136,7 +136,7 @@ fn what_a_project_can_not_be_is_refused_in_a_sentence() {
         ("\"settled\"", "\"setled\"", "setled"),
         ("\"next_handle\": 1", "\"next_handle\": 0", "next_handle"),
         ("\"next_handle\": 1", "\"next_handle\": -1", "u16"),
-        ("\"bilaplacian\"", "\"bilaplacean\"", "bilaplacean"),
+        ("\"arap\"", "\"arab\"", "arab"),
         ("\"radii\": 3.0", "\"radii\": -3.0", "reach"),
         ("\"loose\": \"follow\"", "\"loose\": \"fly\"", "fly"),
     ] {

@@ -12,7 +12,7 @@ use pliant_editor::{
     ToolMode,
 };
 use pliant_mesh::shapes;
-use rig::{CENTRE_PX, Rig};
+use rig::{CENTRE_PX, ITERATED, Rig};
 
 #[test]
 fn a_fresh_document_holds_everything_still_and_a_handle_brings_its_region() {
@@ -236,41 +236,47 @@ fn the_brush_leaves_the_back_alone() {
 
 #[test]
 fn the_edit_file_says_what_was_done() {
-    let bar = || shapes::bar(24, 4, 4);
-    let mut rig = Rig::open(bar());
-    rig.paint_handle();
-    rig.command(Command::NewHandle);
-    rig.paint(ToolMode::PaintHandle, &[CENTRE_PX + DVec2::new(120.0, 0.0)]);
-    rig.drain();
-    rig.move_by('y', ".8");
-    rig.type_keys("rx25");
-    rig.key(Key::Enter);
-    rig.drain();
-    assert_eq!(rig.editor.view().handles.len(), 2);
+    for method in ["bilaplacian", "arap"] {
+        let mut rig = Rig::open(shapes::bar(24, 4, 4));
+        rig.choose(method);
+        rig.paint_handle();
+        rig.command(Command::NewHandle);
+        rig.paint(ToolMode::PaintHandle, &[CENTRE_PX + DVec2::new(120.0, 0.0)]);
+        rig.drain();
+        rig.move_by('y', ".8");
+        rig.type_keys("rx25");
+        rig.key(Key::Enter);
+        rig.drain();
+        assert_eq!(rig.editor.view().handles.len(), 2);
 
-    let text = rig.editor.edit_file().unwrap().to_json();
-    let edit = EditFile::parse(&text).unwrap();
-    let jobs = InlineExecutor::new();
-    let mut editor = Editor::new(Box::new(jobs.clone()));
-    editor.handle(Event::Opened {
-        model: Arc::clone(&rig.model),
-        name: "again".to_owned(),
-        beginning: Some((edit).into()),
-    });
-    while let Some(done) = jobs.run_next() {
-        editor.handle(Event::JobDone(done));
+        let text = rig.editor.edit_file().unwrap().to_json();
+        let edit = EditFile::parse(&text).unwrap();
+        let jobs = InlineExecutor::new();
+        let mut editor = Editor::new(Box::new(jobs.clone()));
+        editor.handle(Event::Opened {
+            model: Arc::clone(&rig.model),
+            name: "again".to_owned(),
+            beginning: Some((edit).into()),
+        });
+        while let Some(done) = jobs.run_next() {
+            editor.handle(Event::JobDone(done));
+        }
+        assert!(editor.document().is_settled());
+        assert_eq!(editor.roles(), rig.editor.roles());
+        assert_eq!(editor.document().method(), rig.editor.document().method());
+        let (again, shape) = (editor.document().from_file(), rig.editor.document().from_file());
+        if method == "arap" {
+            let size = rig.model.bounds().unwrap().diagonal();
+            let apart = again.iter().zip(shape.iter()).map(|(a, b)| a.distance(*b));
+            assert!(apart.fold(0.0, f64::max) < ITERATED * size);
+        } else {
+            assert_eq!(again, shape, "the same positions, to the bit");
+        }
+        assert!(!editor.view().unsaved && rig.editor.view().unsaved);
+
+        rig.command(Command::Apply);
+        assert_eq!(rig.editor.edit_file(), Err(ExportError::Applied));
     }
-    assert!(editor.document().is_settled());
-    assert_eq!(editor.roles(), rig.editor.roles());
-    assert_eq!(
-        editor.document().from_file(),
-        rig.editor.document().from_file(),
-        "the same positions, to the bit"
-    );
-    assert!(!editor.view().unsaved && rig.editor.view().unsaved);
-
-    rig.command(Command::Apply);
-    assert_eq!(rig.editor.edit_file(), Err(ExportError::Applied));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
-use pliant_deform::{Holds, Loose, Ordering, Problem, Role};
+use pliant_deform::{Bound, Holds, Loose, Method, Ordering, Problem, Role};
 use pliant_editor::{
     Access, Button, Command, Document, Editor, Event, GizmoPart, Handle, InlineExecutor, JobKind, Key, Modifiers,
     Paint, Pointer, ToolMode,
@@ -15,6 +15,9 @@ use pliant_mesh::{Cancel, Drawn, Model, Object, Progress, WeldOptions};
 
 pub const VIEWPORT_PX: DVec2 = DVec2::new(800.0, 600.0);
 pub const CENTRE_PX: DVec2 = DVec2::new(400.0, 300.0);
+
+/// How far two descents to one minimum may end from each other, in diagonals.
+pub const ITERATED: f64 = 1e-3;
 
 /// An editor and the list of its jobs.
 pub struct Rig {
@@ -29,6 +32,7 @@ pub struct Fingerprint {
     paint: Vec<Paint>,
     handles: Vec<Handle>,
     stiffness: Option<Vec<f64>>,
+    method: Method,
     rest: Vec<[u64; 3]>,
     from_rest: Vec<[u64; 3]>,
     from_file: Vec<[u64; 3]>,
@@ -45,6 +49,7 @@ impl Fingerprint {
             paint: document.paint().to_vec(),
             handles: document.handles().to_vec(),
             stiffness: document.stiffness().map(<[f64]>::to_vec),
+            method: document.method().clone(),
             rest: bits(document.rest()),
             from_rest: bits(document.from_rest()),
             from_file: bits(document.from_file()),
@@ -91,6 +96,12 @@ impl Rig {
             beginning: None,
         });
         Self { editor, jobs, model }
+    }
+
+    /// Chooses a method by its name, as a step of the history if it is another.
+    pub fn choose(&mut self, method: &str) {
+        self.command(Command::SetMethod(Method::from_name(method).unwrap()));
+        self.drain();
     }
 
     /// Runs jobs until none waits.
@@ -209,8 +220,27 @@ impl Rig {
         Fingerprint::of(self.editor.document())
     }
 
-    /// The displacements from the rest shape that regions, handles and options mean, computed apart from the program.
-    pub fn shape_of_document(&self) -> Vec<DVec3> {
+    /// Whether the settled shape is what regions, handles and options mean, solved apart from the program: a linear
+    /// method's to the bit; a minimum that was reached step by step from elsewhere within [`ITERATED`].
+    #[track_caller]
+    pub fn assert_as_meant(&self, case: &str) {
+        let from_rest = self.editor.document().from_rest();
+        let Some((bound, meant)) = self.solved_apart() else {
+            assert!(from_rest.iter().all(|d| *d == DVec3::ZERO), "{case}");
+            return;
+        };
+        if bound.handle_bases().is_some() {
+            assert!(meant == from_rest, "{case}: not the very shape");
+            return;
+        }
+        let size = self.model.bounds().unwrap().diagonal();
+        let apart = meant.iter().zip(from_rest).map(|(a, b)| a.distance(*b));
+        let worst = apart.fold(0.0, f64::max) / size;
+        assert!(worst < ITERATED, "{case}: {worst:e} of the size from the minimum");
+    }
+
+    /// The problem that the document states, bound and solved to the end; `None` without a handle.
+    fn solved_apart(&self) -> Option<(Bound, Vec<DVec3>)> {
         let document = self.editor.document();
         let mut surface = self.model.surface.clone();
         let mut displacements = vec![DVec3::ZERO; surface.positions.len()];
@@ -222,7 +252,7 @@ impl Rig {
         };
         let handles: Vec<&Handle> = document.handles().iter().filter(is_held).collect();
         if handles.is_empty() {
-            return displacements;
+            return None;
         }
         for (position, rest) in surface.positions.iter_mut().zip(document.rest()) {
             *position += *rest;
@@ -256,7 +286,7 @@ impl Rig {
         let targets: Vec<DAffine3> = handles.iter().map(|handle| handle.affine()).collect();
         bound.set_targets(&targets).unwrap();
         while !bound.step(&mut displacements).unwrap().finished {}
-        displacements
+        Some((bound, displacements))
     }
 
     pub fn count(&self, paint: Paint) -> usize {
