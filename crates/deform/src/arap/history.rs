@@ -3,11 +3,11 @@
 //! The preconditioner P majorises the energy's Hessian, so the first inverse is its inverse, unscaled, and the last
 //! steps' curvature corrects it: with no memory the direction is exactly a global step of the plain local/global method.
 //!
-//! With mapped gradients z = P⁻¹ g known at both ends of a step, P⁻¹ y is their difference, and the direction is a sum of
-//! z, steps s and mapped changes P⁻¹ y whose factors follow from products s · g, y · z = P⁻¹ y · g, s · y and y · P⁻¹ y.
-//! So two fields a step are remembered, and an iteration reads them twice (products, sum), where the two loops read four
-//! times and write their field in between. All fields here are single precision, in units of a length of the model: a direction needs no more digits,
-//! and what it is measured by, slope and energy, is not computed from them.
+//! With mapped gradients z = P⁻¹ g known at both ends of a step, P⁻¹ y is their difference, and the direction is a sum
+//! of z, steps s and mapped changes P⁻¹ y whose factors follow from products s · g, y · z = P⁻¹ y · g, s · y and y ·
+//! P⁻¹ y. So two fields a step are remembered, and an iteration reads them twice (products, sum), where the two loops
+//! read four times and write their field in between. All fields here are single precision, in units of a length of the
+//! model: a direction needs no more digits, and what it is measured by, slope and energy, is not computed from them.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
