@@ -158,11 +158,18 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     );
     assert_eq!(moved(&session.shape()), 0);
 
-    // Drag it by G, X, a number, Enter.
+    // Drag it by G, X, a number, Enter. A handle that goes farther than its region is wide has several minima, and the
+    // one it finds depends on its way: this one stays well within.
+    let id = session.harness.state().editor().view().handles[0].id;
+    session
+        .harness
+        .state_mut()
+        .command(Command::SetReach(id, Reach::Radii(6.0)));
+    session.settle();
     for key in [Key::G, Key::X] {
         session.key(key, Modifiers::NONE);
     }
-    for key in [Key::Num0, Key::Period, Key::Num2] {
+    for key in [Key::Num0, Key::Period, Key::Num0, Key::Num5] {
         session.key(key, Modifiers::NONE);
     }
     session.key(Key::Enter, Modifiers::NONE);
@@ -172,7 +179,7 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     let handle = session.harness.state().editor().document().handles()[0].clone();
     assert_eq!(session.harness.state().editor().document().method().name(), "arap");
     assert!(
-        (handle.affine().translation - DVec3::new(0.2, 0.0, 0.0)).length() < 1e-12,
+        (handle.affine().translation - DVec3::new(0.05, 0.0, 0.0)).length() < 1e-12,
         "{:?}",
         handle.transform
     );
@@ -188,10 +195,10 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     let start = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
     session.pointer(start, None);
     for step in 1..=5 {
-        session.pointer(start + vec2(8.0 * step as f32, -4.0 * step as f32), None);
+        session.pointer(start + vec2(2.0 * step as f32, -1.0 * step as f32), None);
     }
-    session.pointer(start + vec2(40.0, -20.0), Some(true));
-    session.pointer(start + vec2(40.0, -20.0), Some(false));
+    session.pointer(start + vec2(10.0, -5.0), Some(true));
+    session.pointer(start + vec2(10.0, -5.0), Some(false));
     session.settle();
     let dragged = session.shape();
     assert_ne!(dragged, typed);
