@@ -14,6 +14,11 @@ pub struct Finding {
 }
 
 impl Finding {
+    const NONE: Self = Self {
+        count: 0,
+        examples: Vec::new(),
+    };
+
     /// All of `found`, which is in order.
     pub(crate) fn of(found: &[u32]) -> Self {
         Self {
@@ -79,22 +84,34 @@ impl Finding {
 
 /// Finds the numbers below `count` of which `is_found` holds, in parallel.
 pub(crate) fn collect(count: usize, is_found: impl Fn(usize) -> bool + Sync) -> Finding {
+    let [finding] = sort_out(count, |i| is_found(i).then_some(0));
+    finding
+}
+
+/// Finds several kinds in one pass: `kind_of` says of which kind each number below `count` is, if of any.
+pub(crate) fn sort_out<const KINDS: usize>(
+    count: usize,
+    kind_of: impl Fn(usize) -> Option<usize> + Sync,
+) -> [Finding; KINDS] {
     const PIECE: usize = 65_536;
-    let pieces: Vec<Finding> = (0..count.div_ceil(PIECE))
+    let none = || [const { Finding::NONE }; KINDS];
+    let pieces: Vec<[Finding; KINDS]> = (0..count.div_ceil(PIECE))
         .into_par_iter()
         .map(|piece| {
-            let mut finding = Finding::default();
+            let mut findings = none();
             for i in piece * PIECE..((piece + 1) * PIECE).min(count) {
-                if is_found(i) {
-                    finding.push(i as u32);
+                if let Some(kind) = kind_of(i) {
+                    findings[kind].push(i as u32);
                 }
             }
-            finding
+            findings
         })
         .collect();
-    let mut all = Finding::default();
+    let mut all = none();
     for piece in &pieces {
-        all.extend(piece);
+        for (all, later) in all.iter_mut().zip(piece) {
+            all.extend(later);
+        }
     }
     all
 }
@@ -108,5 +125,8 @@ mod tests {
         let finding = collect(200_000, |i| i % 3 == 1);
         assert_eq!((finding.count, finding.examples.len()), (66_667, Findings::EXAMPLES));
         assert_eq!(finding.examples[..3], [1, 4, 7]);
+        let [even, odd] = sort_out(200_000, |i| (i % 3 > 0).then_some(i % 2));
+        assert_eq!((even.count, odd.count), (66_666, 66_667));
+        assert_eq!((even.examples[0], odd.examples[0]), (2, 1));
     }
 }

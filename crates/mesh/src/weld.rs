@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::finding::collect;
+use crate::finding::{collect, sort_out};
 use crate::geometry::{bounds_of, is_without_area};
 use crate::joining::{self, Joined};
 use crate::{
@@ -73,9 +73,13 @@ pub(crate) fn weld(
     let Joined { order, representative } = joined;
     drop(representative);
     let in_groups = |t: usize| drawn.triangles[t].map(|v| surface_of_drawn[v.index()]);
-    findings.non_finite_triangles = collect(drawn.triangles.len(), |t| has_unusable_corner(in_groups(t)));
-    findings.collapsed_triangles = collect(drawn.triangles.len(), |t| {
-        !has_unusable_corner(in_groups(t)) && is_collapsed(in_groups(t))
+    [findings.non_finite_triangles, findings.collapsed_triangles] = sort_out(drawn.triangles.len(), |t| {
+        let corners = in_groups(t);
+        if has_unusable_corner(corners) {
+            Some(0)
+        } else {
+            is_collapsed(corners).then_some(1)
+        }
     });
     let surface_of_group = number_used_groups((0..drawn.triangles.len()).map(in_groups), order.len());
     cancel.check()?;
@@ -215,28 +219,32 @@ fn sort_triangles(
     duplicates: &mut Finding,
 ) -> (Vec<[SurfaceVertex; 3]>, Vec<u32>) {
     let in_surface = |t: usize| drawn[t].map(|v| surface_of_drawn[v.index()]);
-    let lowest = |t: usize| {
-        let [a, b, c] = in_surface(t);
-        let is_proper = !has_unusable_corner([a, b, c]) && !is_collapsed([a, b, c]);
-        is_proper.then(|| a.min(b).min(c) as usize)
-    };
+    let lowest: Vec<u32> = (0..drawn.len())
+        .into_par_iter()
+        .map(|t| {
+            let [a, b, c] = in_surface(t);
+            let is_proper = !has_unusable_corner([a, b, c]) && !is_collapsed([a, b, c]);
+            if is_proper { a.min(b).min(c) } else { NONE }
+        })
+        .collect();
 
     // Counting sort by lowest vertex. Shifted by one, each start moves on to the next row's start while its row fills.
     let mut starts = vec![0u32; vertex_count + 2];
-    for v in (0..drawn.len()).filter_map(lowest) {
-        starts[v + 2] += 1;
+    for &v in lowest.iter().filter(|&&v| v != NONE) {
+        starts[v as usize + 2] += 1;
     }
     for v in 2..starts.len() {
         starts[v] += starts[v - 1];
     }
     let mut sorted = vec![0u32; starts[vertex_count + 1] as usize];
-    for t in 0..drawn.len() {
-        if let Some(v) = lowest(t) {
-            let place = &mut starts[v + 1];
-            sorted[*place as usize] = t as u32;
+    for (t, &v) in (0..).zip(&lowest) {
+        if v != NONE {
+            let place = &mut starts[v as usize + 1];
+            sorted[*place as usize] = t;
             *place += 1;
         }
     }
+    drop(lowest);
 
     let mut repeated = Vec::new();
     let mut row: Vec<(u32, u32, u32)> = Vec::new();
