@@ -19,6 +19,7 @@ use std::time::{Duration, Instant};
 
 use pliant_app::engine::{self, Loaded};
 use pliant_app::watch::Watch;
+use pliant_editor::method_title;
 use pliant_mesh::WeldOptions;
 
 const PLIANT: &str = env!("CARGO_BIN_EXE_pliant");
@@ -141,6 +142,11 @@ impl Desktop {
         sleep(PAUSE);
     }
 
+    fn type_text(&self, text: &str) {
+        self.xdotool(&["type", "--delay", "20", text]);
+        sleep(PAUSE);
+    }
+
     /// Types a path into the question that comes up where the system has no file dialog, and waits for the file.
     fn answer_with(&self, key: &str, question: &str, path: &Path) {
         let start = Instant::now();
@@ -148,8 +154,7 @@ impl Desktop {
         self.wait_for_title(question);
         sleep(2 * PAUSE);
         self.key("ctrl+a");
-        self.xdotool(&["type", "--delay", "20", &path.to_string_lossy()]);
-        sleep(PAUSE);
+        self.type_text(&path.to_string_lossy());
         self.key("Return");
         while !path.exists() {
             assert!(
@@ -159,6 +164,38 @@ impl Desktop {
             );
             sleep(PAUSE);
         }
+    }
+
+    /// Saves the model and exports the edit: the command line must make the same of the edit, to `tolerance` diagonals.
+    fn saves_what_the_engine_makes(&self, sample: &Path, folder: &Path, name: &str, tolerance: f64) {
+        let [saved, edit, applied] =
+            ["saved.glb", "edit.json", "applied.glb"].map(|end| folder.join(format!("{name}-{end}")));
+        self.answer_with("ctrl+shift+s", "Save the model as", &saved);
+        self.wait_for_title(&format!("{name}-saved.glb"));
+        self.answer_with("ctrl+e", "Export the edit", &edit);
+        sleep(PAUSE);
+        let exported = std::fs::read_to_string(&edit).unwrap();
+        assert!(exported.contains(&format!("\"{name}\"")), "{exported}");
+        let status = Command::new(PLIANT)
+            .args([
+                "apply".as_ref(),
+                sample.as_os_str(),
+                "--edit".as_ref(),
+                edit.as_os_str(),
+                "--output".as_ref(),
+                applied.as_os_str(),
+            ])
+            .status()
+            .unwrap();
+        assert!(status.success());
+        let (rest, saved, applied) = (load(sample), load(&saved), load(&applied));
+        let size = rest.model.bounds().unwrap().diagonal();
+        assert!(farthest(&rest, &saved) > 0.01 * size, "{name}: the drag bent nothing");
+        let apart = farthest(&saved, &applied) / size;
+        assert!(
+            apart <= tolerance,
+            "{name}: the window's shape is {apart} from the engine's"
+        );
     }
 }
 
@@ -193,6 +230,16 @@ fn load(path: &Path) -> Loaded {
     engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap()
 }
 
+/// The largest distance between two files' drawn vertices.
+fn farthest(a: &Loaded, b: &Loaded) -> f64 {
+    let positions = |loaded: &Loaded| loaded.model.drawn.positions.clone();
+    positions(a)
+        .iter()
+        .zip(positions(b))
+        .map(|(a, b)| a.distance(b))
+        .fold(0.0, f64::max)
+}
+
 #[test]
 fn pointer_and_keys_make_the_shape_that_the_engine_says() {
     let sample = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -216,39 +263,12 @@ fn pointer_and_keys_make_the_shape_that_the_engine_says() {
     desktop.xdotool(&["click", "1"]);
     sleep(8 * PAUSE);
 
-    let (saved, edit, applied) = (
-        folder.path().join("saved.glb"),
-        folder.path().join("edit.json"),
-        folder.path().join("applied.glb"),
-    );
-    desktop.answer_with("ctrl+shift+s", "Save the model as", &saved);
-    desktop.wait_for_title("saved.glb");
-    desktop.answer_with("ctrl+e", "Export the edit", &edit);
-    sleep(PAUSE);
-
-    let status = Command::new(PLIANT)
-        .args([
-            "apply".as_ref(),
-            sample.as_os_str(),
-            "--edit".as_ref(),
-            edit.as_os_str(),
-            "--output".as_ref(),
-            applied.as_os_str(),
-        ])
-        .status()
-        .unwrap();
-    assert!(status.success());
-    let (rest, saved, applied) = (load(&sample), load(&saved), load(&applied));
-    let positions = |loaded: &Loaded| loaded.model.drawn.positions.clone();
-    let size = rest.model.bounds().unwrap().diagonal();
-    let farthest = |a: &Loaded, b: &Loaded| {
-        positions(a)
-            .iter()
-            .zip(positions(b))
-            .map(|(a, b)| a.distance(b))
-            .fold(0.0, f64::max)
-    };
-    assert!(farthest(&rest, &saved) > 0.01 * size, "the drag bent nothing");
-    let apart = farthest(&saved, &applied);
-    assert!(apart <= 1e-6 * size, "the window's shape is {apart} from the engine's");
+    // ARAP, with which a document begins: the window's descent followed the hand, the command line's starts at rest.
+    desktop.saves_what_the_engine_makes(&sample, folder.path(), "arap", 1e-3);
+    // A linear method has one answer, whichever way it was come to.
+    desktop.key("F1");
+    desktop.type_text(&format!("Method: {}", method_title("bilaplacian")));
+    desktop.key("Return");
+    sleep(8 * PAUSE);
+    desktop.saves_what_the_engine_makes(&sample, folder.path(), "bilaplacian", 1e-6);
 }
