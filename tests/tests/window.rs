@@ -195,7 +195,7 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     let start = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
     session.pointer(start, None);
     for step in 1..=5 {
-        session.pointer(start + vec2(2.0 * step as f32, -1.0 * step as f32), None);
+        session.pointer(start + vec2(2.0 * step as f32, -(step as f32)), None);
     }
     session.pointer(start + vec2(10.0, -5.0), Some(true));
     session.pointer(start + vec2(10.0, -5.0), Some(false));
