@@ -1,0 +1,264 @@
+//! The program's real window on a virtual display of its own, acted on by a slow hand's pointer and keys.
+#![allow(dead_code, reason = "each test file uses the verbs it needs")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stderr,
+    reason = "tests fail by panicking and say what they skip"
+)]
+
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+pub const PLIANT: &str = env!("CARGO_BIN_EXE_pliant");
+pub const SIZE: (i32, i32) = (1280, 800);
+/// Software drawing of a frame takes about a tenth of a second: act like a slow hand.
+pub const PAUSE: Duration = Duration::from_millis(250);
+
+/// A process that ends with its owner.
+pub struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// A display, a window manager where there is one, and the program's window on it.
+pub struct Desktop {
+    display: String,
+    window: String,
+    program: Option<Running>,
+    /// Settings and recovered work of the session, apart from the person's own.
+    home: tempfile::TempDir,
+    _manager: Option<Running>,
+    _server: Running,
+    /// Where pictures go and how many there are, for looking at: `PLIANT_SHOTS` names a folder.
+    shots: Option<PathBuf>,
+    shot: std::cell::Cell<u32>,
+    /// Two at once would be slower than a hand is patient.
+    _turn: MutexGuard<'static, ()>,
+}
+
+static TURN: Mutex<()> = Mutex::new(());
+
+impl Desktop {
+    /// The window with a file open; `None`, said by name, where a tool is missing.
+    pub fn open(file: &Path) -> Option<Self> {
+        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        let (server, display) = display()?;
+        let home = tempfile::tempdir().unwrap();
+        let manager = Command::new("openbox")
+            .env("DISPLAY", &display)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn();
+        sleep(PAUSE);
+        let mut desktop = Self {
+            display,
+            window: String::new(),
+            program: None,
+            home,
+            _manager: manager.ok().map(Running),
+            _server: server,
+            shots: std::env::var_os("PLIANT_SHOTS").map(PathBuf::from),
+            shot: std::cell::Cell::new(0),
+            _turn: turn,
+        };
+        desktop.start(file);
+        Some(desktop)
+    }
+
+    /// Starts the program anew, with the settings and the work that the last one has left.
+    pub fn start(&mut self, file: &Path) {
+        self.program = None;
+        let program = Command::new(PLIANT)
+            .arg(file)
+            .env("DISPLAY", &self.display)
+            .env("XDG_CONFIG_HOME", self.home.path())
+            .env("XDG_STATE_HOME", self.home.path())
+            .env_remove("WAYLAND_DISPLAY")
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the program was just built");
+        self.program = Some(Running(program));
+        self.window = self.wait_for_window();
+        self.xdotool(&["windowmove", &self.window, "0", "0"]);
+        self.xdotool(&["windowsize", &self.window, &SIZE.0.to_string(), &SIZE.1.to_string()]);
+        self.xdotool(&["windowfocus", &self.window]);
+    }
+
+    /// Ends the program as `kill -9` does.
+    pub fn kill(&mut self) {
+        self.program = None;
+        let start = Instant::now();
+        while !self
+            .xdotool(&["search", "--onlyvisible", "--name", "^Pliant"])
+            .is_empty()
+        {
+            assert!(start.elapsed() < Duration::from_secs(20), "the window stays");
+            sleep(PAUSE);
+        }
+    }
+
+    /// What sessions have left to be recovered.
+    pub fn left_behind(&self) -> Vec<PathBuf> {
+        let folder = self.home.path().join("pliant").join("recovery");
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        entries
+            .map(|entry| entry.path())
+            .filter(|path| path.extension().is_some_and(|extension| extension == "pliant"))
+            .collect()
+    }
+
+    /// Keeps a picture of the screen, where somebody wants to look at it.
+    pub fn shoot(&self, what: &str) {
+        let Some(folder) = &self.shots else { return };
+        self.shot.set(self.shot.get() + 1);
+        let picture = folder.join(format!("{:02}-{what}.png", self.shot.get()));
+        let _ = Command::new("import")
+            .args(["-window", "root"])
+            .arg(picture)
+            .env("DISPLAY", &self.display)
+            .status();
+    }
+
+    /// Does a command by its name in the palette.
+    pub fn command(&self, name: &str) {
+        self.key("F1");
+        sleep(PAUSE);
+        self.xdotool(&["type", "--delay", "15", name]);
+        sleep(2 * PAUSE);
+        self.key("Return");
+        sleep(2 * PAUSE);
+    }
+
+    /// Types keys one by one.
+    pub fn keys(&self, keys: &[&str]) {
+        for key in keys {
+            self.xdotool(&["key", key]);
+            sleep(Duration::from_millis(120));
+        }
+        sleep(PAUSE);
+    }
+
+    pub fn wait_for_window(&self) -> String {
+        let start = Instant::now();
+        loop {
+            let found = self.xdotool(&["search", "--onlyvisible", "--name", "^Pliant"]);
+            if let Some(window) = found.lines().next() {
+                return window.to_owned();
+            }
+            assert!(start.elapsed() < Duration::from_secs(60), "no window came up");
+            sleep(PAUSE);
+        }
+    }
+
+    /// Waits until the window's title says so.
+    pub fn wait_for_title(&self, title: &str) {
+        let start = Instant::now();
+        while self
+            .xdotool(&["search", "--name", &format!("^Pliant.*{title}")])
+            .is_empty()
+        {
+            assert!(start.elapsed() < Duration::from_secs(60), "no title says {title}");
+            sleep(PAUSE);
+        }
+    }
+
+    pub fn xdotool(&self, arguments: &[&str]) -> String {
+        let output = Command::new("xdotool")
+            .args(arguments)
+            .env("DISPLAY", &self.display)
+            .output()
+            .unwrap();
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    }
+
+    pub fn move_to(&self, x: i32, y: i32) {
+        self.xdotool(&["mousemove", "--window", &self.window, &x.to_string(), &y.to_string()]);
+    }
+
+    /// Presses the left button at one point, goes to the other in steps, and lets go.
+    pub fn drag(&self, from: (i32, i32), to: (i32, i32)) {
+        self.move_to(from.0, from.1);
+        sleep(PAUSE);
+        self.xdotool(&["mousedown", "1"]);
+        sleep(PAUSE);
+        for step in 1..=5 {
+            self.move_to(from.0 + (to.0 - from.0) * step / 5, from.1 + (to.1 - from.1) * step / 5);
+            sleep(Duration::from_millis(120));
+        }
+        self.xdotool(&["mouseup", "1"]);
+        sleep(PAUSE);
+    }
+
+    pub fn key(&self, key: &str) {
+        self.xdotool(&["key", key]);
+        sleep(PAUSE);
+    }
+
+    pub fn type_text(&self, text: &str) {
+        self.xdotool(&["type", "--delay", "20", text]);
+        sleep(PAUSE);
+    }
+
+    /// Types a path into the question that comes up where the system has no file dialog, and waits for the file.
+    pub fn answer_with(&self, key: &str, question: &str, path: &Path) {
+        self.key(key);
+        self.wait_for_title(question);
+        self.answer(path);
+        let start = Instant::now();
+        while !path.exists() {
+            assert!(
+                start.elapsed() < Duration::from_secs(60),
+                "{} was not written",
+                path.display()
+            );
+            sleep(PAUSE);
+        }
+    }
+
+    /// Types a path into the question that is shown.
+    pub fn answer(&self, path: &Path) {
+        sleep(2 * PAUSE);
+        self.key("ctrl+a");
+        self.type_text(&path.to_string_lossy());
+        self.key("Return");
+        sleep(4 * PAUSE);
+    }
+}
+
+/// A virtual display of its own; `None`, said by name, where a tool or a device is missing.
+fn display() -> Option<(Running, String)> {
+    if Command::new("xdotool").arg("version").output().is_err() {
+        eprintln!("skipped: the real window (no xdotool)");
+        return None;
+    }
+    if let Err(error) = pliant_render::Headless::new() {
+        eprintln!("skipped: the real window ({error})");
+        return None;
+    }
+    let server = Command::new("Xvfb")
+        .args(["-displayfd", "1", "-screen", "0", "1400x900x24", "-nolisten", "tcp"])
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn();
+    let Ok(mut server) = server else {
+        eprintln!("skipped: the real window (no Xvfb)");
+        return None;
+    };
+    let mut number = String::new();
+    BufReader::new(server.stdout.take().unwrap())
+        .read_line(&mut number)
+        .unwrap();
+    Some((Running(server), format!(":{}", number.trim())))
+}
