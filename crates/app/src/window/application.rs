@@ -69,6 +69,8 @@ pub struct Application {
     longest_frame: Duration,
     /// Whether the open file's images were asked for.
     is_dressed: bool,
+    /// Whether a widget had the keys in the last frame.
+    had_focus: bool,
     view_rect: egui::Rect,
     title: String,
 }
@@ -140,6 +142,7 @@ impl Application {
             recovered_from: None,
             longest_frame: Duration::ZERO,
             is_dressed: false,
+            had_focus: false,
             view_rect: egui::Rect::ZERO,
             title: String::new(),
         };
@@ -528,6 +531,17 @@ impl Application {
         }
     }
 
+    /// With the pointer over the view and the keys with it, Tab is the view's: it selects the next handle. Elsewhere it
+    /// goes from one widget to the next.
+    fn keep_tab(&mut self, ui: &egui::Ui, is_over_view: bool) {
+        let focused = ui.memory(egui::Memory::focused);
+        let is_tab = ui.input(|input| input.key_pressed(egui::Key::Tab));
+        if let Some(widget) = focused.filter(|_| is_tab && is_over_view && !self.had_focus) {
+            ui.memory_mut(|memory| memory.surrender_focus(widget));
+        }
+        self.had_focus = ui.memory(egui::Memory::focused).is_some();
+    }
+
     /// The 3D view: input first, then the picture.
     fn view(&mut self, ui: &mut egui::Ui) -> Result<(), pliant_render::RenderError> {
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
@@ -553,6 +567,7 @@ impl Application {
                 }
             });
         }
+        self.keep_tab(ui, response.contains_pointer());
         let over_ball = axis_ball::contains(rect, ui.input(|input| input.pointer.latest_pos()));
         let attention = Attention {
             rect,
