@@ -131,6 +131,7 @@ fn shown(value: &str) -> String {
     match value.parse::<f64>() {
         Ok(number) if number.fract() == 0.0 || number.abs() >= 100.0 => format!("{number:.0}"),
         Ok(number) if number.abs() >= 10.0 => format!("{number:.1}"),
+        Ok(number) if number.abs() < 0.01 => format!("{number:.2e}"),
         Ok(number) => format!("{number:.2}"),
         Err(_) => value.trim_matches('"').to_owned(),
     }
