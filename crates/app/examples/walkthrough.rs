@@ -183,7 +183,7 @@ fn main() {
     walk.command(Command::SetStrokeShape(StrokeShape::Brush));
     walk.command(Command::SetTool(ToolMode::PaintHandle));
     walk.command(Command::Region(RegionAction::Grow));
-    walk.command(Command::SetMethod(Method::from_name("arap").unwrap()));
+    walk.command(Command::SetMethod(Method::from_name("primo").unwrap()));
     walk.settle();
     walk.keys(&[Key::R, Key::Z, Key::Num4, Key::Num0, Key::Enter]);
     walk.shoot("another-method");
