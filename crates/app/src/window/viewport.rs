@@ -154,28 +154,21 @@ impl Viewport {
         state.device.on_uncaptured_error(Arc::new(|_| {}));
         let renderer = Renderer::new(&state.device, &state.queue)?;
         let software = renderer.is_software().then(|| renderer.device_name());
-        Ok(Self {
-            state,
-            gpu: Gpu(Arc::new(RwLock::new(renderer))),
-            software,
-            lost,
-            target: Target::new(),
-            texture: None,
-            surface: None,
-            drawn: None,
-            drawings: 0,
-            drawing_time: Duration::ZERO,
-            coarseness: Coarseness::default(),
-        })
+        Ok(Self::of(state, Gpu(Arc::new(RwLock::new(renderer))), software, lost))
     }
 
     /// Another view on the same device, of nothing yet.
     pub fn beside(&self) -> Self {
+        let lost = Arc::clone(&self.lost);
+        Self::of(self.state.clone(), self.gpu.clone(), self.software.clone(), lost)
+    }
+
+    fn of(state: RenderState, gpu: Gpu, software: Option<String>, lost: Arc<AtomicBool>) -> Self {
         Self {
-            state: self.state.clone(),
-            gpu: self.gpu.clone(),
-            software: self.software.clone(),
-            lost: Arc::clone(&self.lost),
+            state,
+            gpu,
+            software,
+            lost,
             target: Target::new(),
             texture: None,
             surface: None,
