@@ -7,7 +7,7 @@
 //! looked up. Lengths are taken in rows, many at a time, by loops compiled for the vectors that the machine has.
 
 use glam::DVec3;
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::surface::corners;
@@ -35,10 +35,11 @@ pub fn vertex_normals(
     };
     let arch = Arch::new();
     out.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, normals)| {
-        arch.dispatch(
-            #[inline(always)]
-            || around.fill(chunk * CHUNK, normals),
-        );
+        arch.dispatch(Fill {
+            around,
+            first: chunk * CHUNK,
+            normals,
+        });
     });
 }
 
@@ -48,6 +49,24 @@ struct Around<'a> {
     triangles: &'a [[SurfaceVertex; 3]],
     topology: &'a Topology,
     positions: &'a [DVec3],
+}
+
+/// The unit normals of the vertices from `first` on.
+///
+/// A closure would be compiled apart from the vectors that it is called for.
+struct Fill<'a> {
+    around: Around<'a>,
+    first: usize,
+    normals: &'a mut [DVec3],
+}
+
+impl WithSimd for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.around.fill(self.first, self.normals);
+    }
 }
 
 impl Around<'_> {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::bound::Finite;
@@ -139,26 +139,17 @@ impl Plate {
     pub fn frame(&self, motions: &[Motion], displacements: &mut [DVec3]) -> Finite {
         let tables = Tables::of(motions, &self.bases);
         let arch = Arch::new();
-        let fill = |first: usize, out: &mut [DVec3]| {
-            out.fill(DVec3::ZERO);
-            for (handle, motion) in motions.iter().enumerate() {
-                let own = &self.prescribed[handle];
-                let place = |vertex: usize| own.partition_point(|&(place, _)| (self.vertex(place) as usize) < vertex);
-                for &(at, coordinates) in &own[place(first)..place(first + out.len())] {
-                    out[self.vertex(at) as usize - first] = motion.displace(coordinates);
-                }
-            }
-            self.bases.evaluate(&tables, first, out);
-            out.iter().all(|displacement| displacement.is_finite())
-        };
         let is_finite = displacements
             .par_chunks_mut(FRAME_CHUNK)
             .enumerate()
             .map(|(chunk, out)| {
-                arch.dispatch(
-                    #[inline(always)]
-                    || fill(chunk * FRAME_CHUNK, out),
-                )
+                arch.dispatch(Frame {
+                    plate: self,
+                    motions,
+                    tables: &tables,
+                    first: chunk * FRAME_CHUNK,
+                    out,
+                })
             })
             .reduce(|| true, |a, b| a && b);
         if is_finite { Finite::Yes } else { Finite::Unknown }
@@ -359,6 +350,35 @@ impl Columns {
             error,
             worst_vertex,
         }
+    }
+}
+
+/// A chunk of a frame: the displacements of the vertices from `first` on, and whether all are finite.
+///
+/// A closure would be compiled apart from the vectors that it is called for.
+struct Frame<'a> {
+    plate: &'a Plate,
+    motions: &'a [Motion],
+    tables: &'a Tables,
+    first: usize,
+    out: &'a mut [DVec3],
+}
+
+impl WithSimd for Frame<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> bool {
+        let Self { plate, first, out, .. } = self;
+        out.fill(DVec3::ZERO);
+        for (own, motion) in plate.prescribed.iter().zip(self.motions) {
+            let place = |vertex: usize| own.partition_point(|&(place, _)| (plate.vertex(place) as usize) < vertex);
+            for &(at, coordinates) in &own[place(first)..place(first + out.len())] {
+                out[plate.vertex(at) as usize - first] = motion.displace(coordinates);
+            }
+        }
+        plate.bases.evaluate(self.tables, first, out);
+        out.iter().all(|displacement| displacement.is_finite())
     }
 }
 
