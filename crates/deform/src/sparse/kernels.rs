@@ -3,6 +3,7 @@
 use pulp::{Simd, WithSimd};
 
 use crate::sparse::line::{LANES, Line, Shape};
+use crate::sparse::prefetch::Prefetch;
 
 /// K right-hand sides of eight rows, each a line.
 pub(crate) type Strip<const K: usize> = [Line; K];
@@ -47,9 +48,11 @@ fn gather<S: Simd, const V: usize, const R: usize, const K: usize>(
 ) -> [Strip<K>; R] {
     let mut sums = [[[simd.splat_f64s(0.0); V]; K]; R];
     let lines = lines.map(|lines| &lines[..rows.len()]);
+    let prefetch = Prefetch::new();
     for (c, row) in rows.iter().enumerate() {
         let factors = row.map(|value| simd.splat_f64s(value));
         for r in 0..R {
+            prefetch.above(&lines[r][c]);
             let line = vectors::<S, V>(&lines[r][c]);
             for k in 0..K {
                 for v in 0..V {
@@ -126,9 +129,13 @@ fn spread<S: Simd, const V: usize, const R: usize, const K: usize>(
     sums: &mut [Strip<K>],
 ) {
     let lines = lines.map(|lines| &lines[..sums.len()]);
+    let prefetch = Prefetch::new();
     let x: [[[S::f64s; V]; K]; R] = std::array::from_fn(|r| std::array::from_fn(|k| vectors::<S, V>(&x[r][k])));
-    for (c, sums) in sums.iter_mut().enumerate() {
-        let lines: [[S::f64s; V]; R] = std::array::from_fn(|r| vectors::<S, V>(&lines[r][c]));
+    for (c, sums) in sums.iter_mut().enumerate().rev() {
+        let lines: [[S::f64s; V]; R] = std::array::from_fn(|r| {
+            prefetch.below(&lines[r][c]);
+            vectors::<S, V>(&lines[r][c])
+        });
         for k in 0..K {
             let (sum, _) = S::as_mut_simd_f64s(&mut sums[k].0);
             for v in 0..V {
@@ -153,17 +160,17 @@ fn backward<S: Simd, const V: usize, const K: usize>(
     let (own, below) = x.split_at_mut(shape.own());
     let start = shape.start(shape.own());
     // So many columns that their sums stay near.
-    for first in (0..shape.width).step_by(COLUMNS) {
+    for first in (0..shape.width).step_by(COLUMNS).rev() {
         let until = (first + COLUMNS).min(shape.width);
         let sums = &mut sums[first..until];
         let lines = |strip: usize| &panel[start + strip * shape.width + first..start + strip * shape.width + until];
-        let mut strip = 0;
-        while strip + STRIPS <= below.len() {
+        let mut strip = below.len();
+        while strip >= STRIPS {
+            strip -= STRIPS;
             let group: [&[Line]; STRIPS] = std::array::from_fn(|i| lines(strip + i));
             spread::<S, V, STRIPS, K>(simd, group, &below[strip..strip + STRIPS], sums);
-            strip += STRIPS;
         }
-        for strip in strip..below.len() {
+        for strip in (0..strip).rev() {
             spread::<S, V, 1, K>(simd, [lines(strip)], &below[strip..strip + 1], sums);
         }
     }
