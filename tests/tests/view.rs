@@ -89,7 +89,7 @@ fn the_triangle_under_ten_thousand_pixels_is_the_one_that_a_ray_meets() {
             .map(|(&p, &d)| p + d)
             .collect();
         let mut bvh = Bvh::build(&model.surface.positions, &model.surface.triangles);
-        bvh.refit(&moved);
+        bvh.refit(|vertex| moved[vertex.index()]);
         let size_px = DVec2::new(f64::from(SIZE_PX[0]), f64::from(SIZE_PX[1]));
         let mut camera = Camera {
             scale: model.bounds().unwrap().diagonal(),

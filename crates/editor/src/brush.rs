@@ -58,7 +58,7 @@ impl Brush {
         mut visit: impl FnMut(SurfaceVertex, f64),
     ) {
         if size.metric == BrushMetric::Through {
-            return self.sweep(picking, [from_px, to_px], size.radius_px, visit);
+            return sweep(picking, [from_px, to_px], size.radius_px, visit);
         }
         let steps = ((to_px - from_px).length() / (size.radius_px * SPACING).max(1.0))
             .ceil()
@@ -108,59 +108,15 @@ impl Brush {
         let mut seeds: Vec<(SurfaceVertex, f64)> = Vec::with_capacity(3 * picks.len());
         for pick in picks {
             visit(pick.vertex, 0.0);
-            let corners = picking.surface.triangles[pick.triangle as usize];
-            seeds.extend(corners.map(|v| (v, picking.surface.positions[v.index()].distance(pick.point))));
+            let corners = picking.model.surface.triangles[pick.triangle as usize];
+            seeds.extend(corners.map(|v| (v, picking.position(v).distance(pick.point))));
         }
-        let reached = self
-            .search
-            .within(picking.surface, &picking.model.topology, &seeds, radius);
+        let (triangles, topology) = (&picking.model.surface.triangles, &picking.model.topology);
+        let position = |v| picking.position(v);
+        let reached = self.search.within(triangles, topology, position, &seeds, radius);
         for &(vertex, distance) in reached {
             visit(vertex, distance / radius);
         }
-    }
-
-    /// Calls `visit` once for every vertex that appears within `radius_px` of the way from one point of the viewport to
-    /// the other, whatever hides it.
-    fn sweep(
-        &mut self,
-        picking: &Picking<'_>,
-        [from_px, to_px]: [DVec2; 2],
-        radius_px: f64,
-        mut visit: impl FnMut(SurfaceVertex, f64),
-    ) {
-        let along = to_px - from_px;
-        let length_squared = along.length_squared();
-        let mut meet = |vertex: SurfaceVertex| {
-            let Some(seen_px) = picking.sight.project(picking.position(vertex)) else {
-                return;
-            };
-            let share = if length_squared > 0.0 {
-                ((seen_px - from_px).dot(along) / length_squared).clamp(0.0, 1.0)
-            } else {
-                0.0
-            };
-            let off_px = seen_px.distance(from_px + along * share);
-            if off_px <= radius_px {
-                visit(vertex, off_px / radius_px);
-            }
-        };
-        let triangles = &picking.model.surface.triangles;
-        // The hierarchy of a shape that has moved on would miss what moved under the brush.
-        if !picking.is_current {
-            (0..picking.model.surface.positions.len() as u32).for_each(|vertex| meet(SurfaceVertex(vertex)));
-            return;
-        }
-        self.begin(picking.model.surface.positions.len());
-        let (seen, dab) = (&mut self.seen, self.dab);
-        picking
-            .bvh
-            .triangles_within(&tube(picking, from_px, to_px, radius_px), |triangle| {
-                for vertex in triangles[triangle as usize] {
-                    if std::mem::replace(&mut seen[vertex.index()], dab) != dab {
-                        meet(vertex);
-                    }
-                }
-            });
     }
 
     fn begin(&mut self, vertex_count: usize) {
@@ -183,6 +139,40 @@ impl Brush {
         if distance <= radius && faces(picking, vertex, position, pick.front) {
             self.stack.push((vertex, distance / radius));
         }
+    }
+}
+
+/// Calls `visit` once for every vertex that appears within `radius_px` of the way from one point of the viewport to
+/// the other, whatever hides it.
+fn sweep(
+    picking: &Picking<'_>,
+    [from_px, to_px]: [DVec2; 2],
+    radius_px: f64,
+    mut visit: impl FnMut(SurfaceVertex, f64),
+) {
+    let along = to_px - from_px;
+    let length_squared = along.length_squared();
+    let mut meet = |vertex: SurfaceVertex, position: DVec3| {
+        let Some(seen_px) = picking.sight.project(position) else {
+            return;
+        };
+        let share = if length_squared > 0.0 {
+            ((seen_px - from_px).dot(along) / length_squared).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let off_px = seen_px.distance(from_px + along * share);
+        if off_px <= radius_px {
+            visit(vertex, off_px / radius_px);
+        }
+    };
+    // The hierarchy of a shape that has moved on would miss what moved under the brush.
+    if picking.is_current {
+        let planes = tube(picking, from_px, to_px, radius_px);
+        picking.bvh.vertices_within(&planes, meet);
+    } else {
+        let every = (0..picking.model.surface.positions.len() as u32).map(SurfaceVertex);
+        every.for_each(|vertex| meet(vertex, picking.position(vertex)));
     }
 }
 

@@ -18,8 +18,10 @@ impl Editor {
         self.refresh_masks();
         self.rest_if_undisplaced();
         let (known, document) = (&self.known, &self.document);
-        let repainted = std::mem::take(&mut self.repainted)
-            || (activity != Activity::Painting && !Arc::ptr_eq(&known.paint, &document.paint));
+        let has_filed_paint = std::mem::take(&mut self.has_filed_paint);
+        let is_painted_unsaid = !has_filed_paint && activity != Activity::Painting;
+        let repainted =
+            std::mem::take(&mut self.repainted) || (is_painted_unsaid && !Arc::ptr_eq(&known.paint, &document.paint));
         let recoloured = known.handles.len() != document.handles.len()
             || known
                 .handles
@@ -54,11 +56,15 @@ impl Editor {
         self.companions
             .retain(|&id| document.handle(id).is_some() && self.selected != Some(id));
         self.engine.pump(&self.document, activity);
-        let restiffened = self.mode == crate::ToolMode::PaintStiffness
+        // A stroke says itself what it recolours.
+        let restiffened = activity != Activity::Painting
+            && self.mode == crate::ToolMode::PaintStiffness
             && !same_field(&self.known_stiffness, &self.document.stiffness);
         let shows_stiffness = self.mode == crate::ToolMode::PaintStiffness;
         let reshown = std::mem::replace(&mut self.showed_stiffness, shows_stiffness) != shows_stiffness;
-        self.known_stiffness = self.document.stiffness.clone();
+        if activity != Activity::Painting {
+            self.known_stiffness.clone_from(&self.document.stiffness);
+        }
         let reselected = std::mem::replace(&mut self.known_selected, self.selected) != self.selected;
         if reselected || recoloured || !Arc::ptr_eq(&self.known_roles, &self.engine.region.roles) {
             self.rims_revision += 1;

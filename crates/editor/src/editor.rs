@@ -42,6 +42,8 @@ pub struct Editor {
     pub(crate) showed_stiffness: bool,
     /// Whether paint has changed during the stroke that goes on.
     pub(crate) repainted: bool,
+    /// Whether the stroke that ended has said of every vertex that it recoloured it.
+    pub(crate) has_filed_paint: bool,
     pub(crate) recolouring: Recolouring,
     pub(crate) regions_revision: u64,
     pub(crate) rims_revision: u64,
@@ -106,6 +108,7 @@ impl Editor {
             known_stiffness: None,
             showed_stiffness: false,
             repainted: false,
+            has_filed_paint: false,
             recolouring: Recolouring::default(),
             document,
             file_name: String::new(),
@@ -274,7 +277,6 @@ impl Editor {
             model: self.engine.model.as_deref()?,
             displacements: &self.document.from_file,
             bvh: &self.engine.pickable.as_ref()?.bvh,
-            surface: &self.engine.pickable.as_ref()?.surface,
             triangles: self.engine.pickable.as_ref()?.triangles.as_deref().map(Vec::as_slice),
             camera: &self.camera,
             viewport_px: self.viewport_px,

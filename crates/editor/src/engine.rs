@@ -16,7 +16,7 @@ use crate::access::Masks;
 use crate::document::{Document, HandleId, sum_of_shapes};
 use crate::job::Pickable;
 use crate::job_queue::{JobQueue, Running};
-use crate::region::{Region, RegionInput, displaced};
+use crate::region::{Region, RegionInput};
 use crate::{Descent, Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
 
 pub(crate) type Work = Box<dyn FnOnce(&Progress, &Cancel) -> JobOutcome + Send>;
@@ -368,31 +368,21 @@ impl Engine {
             .pickable
             .as_ref()
             .filter(is_of_shown)
-            .map(|pickable| Arc::clone(&pickable.bvh));
+            .map(|pickable| pickable.bvh.clone());
         Some(Box::new(move |_, cancel| {
             if cancel.is_cancelled() {
                 return JobOutcome::Cancelled;
             }
-            let surface = displaced(&model.surface, &displacements);
-            let bvh = match bvh {
-                None => match &shown {
-                    None => Bvh::build(&surface.positions, &surface.triangles),
-                    Some(shown) => {
-                        let triangles = shown.iter().map(|&triangle| surface.triangles[triangle as usize]);
-                        Bvh::build(&surface.positions, &triangles.collect::<Vec<_>>())
-                    }
-                },
-                Some(bvh) => {
-                    let mut bvh = Arc::unwrap_or_clone(bvh);
-                    bvh.refit(&surface.positions);
-                    bvh
+            let surface = &model.surface;
+            let mut bvh = bvh.unwrap_or_else(|| match &shown {
+                None => Bvh::build(&surface.positions, &surface.triangles),
+                Some(shown) => {
+                    let triangles = shown.iter().map(|&triangle| surface.triangles[triangle as usize]);
+                    Bvh::build(&surface.positions, &triangles.collect::<Vec<_>>())
                 }
-            };
-            JobOutcome::Pick(Pickable {
-                bvh: Arc::new(bvh),
-                surface: Arc::new(surface),
-                triangles: shown,
-            })
+            });
+            bvh.refit(|vertex| surface.positions[vertex.index()] + displacements[vertex.index()]);
+            JobOutcome::Pick(Pickable { bvh, triangles: shown })
         }))
     }
 

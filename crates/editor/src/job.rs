@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::{Bound, Ordering};
-use pliant_mesh::{Bvh, Cancel, Progress, Surface};
+use pliant_mesh::{Bvh, Cancel, Progress};
 
 use crate::Region;
 
@@ -104,10 +104,8 @@ pub trait Executor {
 /// What rays are answered from.
 #[derive(Clone)]
 pub struct Pickable {
-    /// The hierarchy over the triangles that are shown.
-    pub(crate) bvh: Arc<Bvh>,
-    /// The surface in its shape.
-    pub(crate) surface: Arc<Surface>,
+    /// The hierarchy over the triangles that are shown, in their shape.
+    pub(crate) bvh: Bvh,
     /// Which of the surface's triangles it is over; `None` is all of them.
     pub(crate) triangles: Option<Arc<Vec<u32>>>,
 }
@@ -125,7 +123,7 @@ pub struct JobDone {
 
 /// What came of a job.
 pub enum JobOutcome {
-    /// The picking structure of a shape, and the surface in it.
+    /// The picking structure of a shape.
     Pick(Pickable),
     /// The mesh's ordering.
     Ordered(Arc<Ordering>),

@@ -47,14 +47,14 @@ impl Editor {
         let ready = self.engine.pickable.as_ref();
         let bvh = ready
             .filter(|pickable| is_as_in_file && pickable.triangles.is_none() && self.engine.is_picking_current())
-            .map(|pickable| Arc::clone(&pickable.bvh));
+            .map(|pickable| pickable.bvh.clone());
         self.mirroring = Some(Mirroring {
             purpose,
             plane,
             paint: Arc::clone(&self.document.paint),
         });
         self.engine.mirror(Box::new(move |progress, cancel| {
-            let bvh = bvh.unwrap_or_else(|| Arc::new(Bvh::build(&model.surface.positions, &model.surface.triangles)));
+            let bvh = bvh.unwrap_or_else(|| Bvh::build(&model.surface.positions, &model.surface.triangles));
             match mirrored(&model, &bvh, &is_member, plane, progress, cancel) {
                 Ok(image) => crate::JobOutcome::Mirrored(image),
                 Err(_) => crate::JobOutcome::Cancelled,

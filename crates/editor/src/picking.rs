@@ -1,9 +1,9 @@
-//! What lies under the pointer: rays against a hierarchy that is rebuilt by a job whenever the shape settles.
+//! What lies under the pointer: rays against a hierarchy that a job refits whenever the shape settles.
 
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use pliant_mesh::{Bvh, Model, Surface, SurfaceVertex};
+use pliant_mesh::{Bvh, Model, SurfaceVertex};
 
 use crate::camera::{Camera, Ray};
 use crate::sight::Sight;
@@ -30,8 +30,6 @@ pub(crate) struct Picking<'a> {
     /// Displacements of the surface from the file's shape.
     pub(crate) displacements: &'a Arc<Vec<DVec3>>,
     pub(crate) bvh: &'a Bvh,
-    /// The surface in the shape that rays are answered from.
-    pub(crate) surface: &'a Surface,
     /// The surface's triangles that rays may meet; `None` is all of them.
     pub(crate) triangles: Option<&'a [u32]>,
     pub(crate) camera: &'a Camera,

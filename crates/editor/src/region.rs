@@ -91,6 +91,7 @@ impl Region {
         let mut roles = vec![Role::Fixed; input.paint.len()];
         let mut handles = Vec::new();
         let mut search = DistanceSearch::default();
+        let position = |v: SurfaceVertex| surface.positions[v.index()];
         // Per component: whether some handle's ball holds all of it.
         let (mut follows, mut within) = (vec![false; held.len()], vec![true; held.len()]);
         for ((id, reach), members) in input.handles.iter().zip(&members) {
@@ -101,7 +102,7 @@ impl Region {
             let limit = reach_length(*reach, surface, topology, members);
             let seeds: Vec<(SurfaceVertex, f64)> = members.iter().map(|&vertex| (vertex, 0.0)).collect();
             if limit > 0.0 {
-                for &(vertex, _) in search.within(surface, topology, &seeds, limit) {
+                for &(vertex, _) in search.within(&surface.triangles, topology, position, &seeds, limit) {
                     roles[vertex.index()] = Role::Free;
                 }
             }

@@ -31,11 +31,7 @@ fn reopened(rig: &Rig, text: &str) -> Rig {
         name: "again".to_owned(),
         beginning: Some(Beginning::parse(text).unwrap()),
     });
-    let mut other = Rig {
-        editor,
-        jobs,
-        model: Arc::clone(&rig.model),
-    };
+    let mut other = Rig::of(editor, jobs, Arc::clone(&rig.model));
     assert_eq!(other.editor.view().problem, None);
     other.drain();
     other

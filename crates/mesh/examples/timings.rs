@@ -72,7 +72,7 @@ fn main() {
     });
     let mut bvh = Bvh::build(&surface.positions, &surface.triangles);
     time("hierarchy, refitting", || {
-        bvh.refit(&surface.positions);
+        bvh.refit(|v| 1.5 * surface.positions[v.index()]);
         0
     });
     time("10,000 rays", || {
@@ -84,17 +84,19 @@ fn main() {
             })
             .count()
     });
-    let mut found = Vec::new();
-    time("ball of radius 0.1", || {
-        bvh.vertices_in_ball(DVec3::X, 0.1, &mut found);
-        found.len()
+    time("vertices above a plane", || {
+        let mut count = 0;
+        bvh.vertices_within(&[DVec3::Z.extend(-0.9)], |_, _| count += 1);
+        count
     });
     let mut search = DistanceSearch::default();
     let limits = [("distances within 0.1", 0.1), ("distances everywhere", f64::INFINITY)];
     for (what, limit) in limits {
         time(what, || {
+            let position = |v: SurfaceVertex| surface.positions[v.index()];
+            let seeds = [(SurfaceVertex(7), 0.0)];
             search
-                .within(surface, topology, &[(SurfaceVertex(7), 0.0)], limit)
+                .within(&surface.triangles, topology, position, &seeds, limit)
                 .len()
         });
     }

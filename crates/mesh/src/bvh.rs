@@ -1,16 +1,22 @@
-//! A bounding-volume hierarchy over a surface's triangles: rays, balls and nearest vertices, refitted while it moves.
+//! A bounding-volume hierarchy over a surface's triangles: rays, nearest vertices and views, refitted while it moves.
 //!
 //! obvhs builds the tree (PLOC, Meister and Bittner 2018); walking it is done here, because its own traversal works in
 //! f32 throughout. Boxes are f32, relative to a centre and scaled to the unit cube, and rounded outward; positions and
 //! all tests on them are f64. So a surface at geographic coordinates is hit as exactly as one at the origin.
+//!
+//! Boxes and positions lie in [`Blocks`]: a copy is nearly free, and refitting it writes anew what moved alone, so that
+//! one is refitted while the other still answers.
 
-use glam::{DVec3, DVec4, Vec3A};
+use std::sync::Arc;
+
+use glam::{DVec3, DVec4, Vec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::leaf_collapser::collapse;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
 
+use crate::blocks::{BLOCK, Blocks};
 use crate::surface::corners;
 use crate::{SurfaceVertex, bounding_box};
 
@@ -28,10 +34,35 @@ pub struct Hit {
 /// A hierarchy of boxes over triangles. It keeps its own copy of the positions.
 #[derive(Clone)]
 pub struct Bvh {
-    tree: Bvh2,
-    positions: Vec<DVec3>,
-    triangles: Vec<[SurfaceVertex; 3]>,
+    nodes: Blocks<Node>,
+    positions: Blocks<DVec3>,
+    /// Boxes of [`RUN`] vertices each that follow one another.
+    runs: Vec<Span>,
+    leaves: Arc<Leaves>,
     space: BoxSpace,
+}
+
+/// The triangles as leaves have them, one after another; never changed.
+struct Leaves {
+    triangles: Vec<u32>,
+    corners: Vec<[SurfaceVertex; 3]>,
+}
+
+/// A box, and below it two nodes one after the other or a leaf.
+#[derive(Clone, Copy)]
+struct Node {
+    span: Span,
+    /// The first child's number, or of a leaf the place of its first triangle.
+    first: u32,
+    /// Triangles of a leaf; 0 of any other.
+    count: u32,
+}
+
+/// A box in box space.
+#[derive(Clone, Copy, PartialEq)]
+struct Span {
+    min: Vec3,
+    max: Vec3,
 }
 
 /// The space that boxes stand in: the built surface fills the cube from -1 to 1.
@@ -47,13 +78,16 @@ const MARGIN: f32 = 1e-6;
 /// Barycentric weights down to this count as inside, so that no ray slips between two triangles.
 const EDGE_SLACK: f64 = -1e-9;
 
+/// So many vertices in a row share a box: they stand in Morton order, so a run of them is a patch.
+const RUN: usize = 64;
+
 impl Bvh {
     /// A hierarchy over `triangles`, all of them or some, of a surface with these finite `positions`.
     pub fn build(positions: &[DVec3], triangles: &[[SurfaceVertex; 3]]) -> Self {
         let space = BoxSpace::of(positions);
         let boxes: Vec<Aabb> = triangles
             .par_iter()
-            .map(|&triangle| space.triangle_box(corners(triangle, positions)))
+            .map(|&triangle| space.span(corners(triangle, positions)).aabb())
             .collect();
         let every = (0..triangles.len() as u32).collect();
         let mut tree = PlocBuilder::with_capacity(boxes.len()).build(
@@ -64,35 +98,104 @@ impl Bvh {
             2,
         );
         collapse(&mut tree, 4, 1.5);
+        let positions = Blocks::of(positions);
         Self {
-            tree,
-            positions: positions.to_vec(),
-            triangles: triangles.to_vec(),
+            runs: (0..positions.len().div_ceil(RUN))
+                .map(|run| space.run(&positions, run))
+                .collect(),
+            leaves: Arc::new(Leaves {
+                corners: tree
+                    .primitive_indices
+                    .iter()
+                    .map(|&triangle| triangles[triangle as usize])
+                    .collect(),
+                triangles: std::mem::take(&mut tree.primitive_indices),
+            }),
+            nodes: nodes(&tree),
+            positions,
             space,
         }
     }
 
-    /// Takes the vertices' new `positions`, as many as at the building. The tree's shape stays, so answers are right
-    /// but come slower the more the surface differs from the one it was built for.
-    pub fn refit(&mut self, positions: &[DVec3]) {
-        self.positions.clear();
-        self.positions.extend_from_slice(positions);
-        let (order, triangles, space) = (&self.tree.primitive_indices, &self.triangles, self.space);
-        self.tree
-            .nodes
-            .par_iter_mut()
-            .with_min_len(4096)
-            .filter(|node| node.is_leaf())
-            .for_each(|node| {
-                let leaf = &order[node.first_index as usize..(node.first_index + node.prim_count) as usize];
-                let boxes = leaf
-                    .iter()
-                    .map(|&t| space.triangle_box(corners(triangles[t as usize], positions)));
-                if let Some(all) = boxes.reduce(|a, b| a.union(&b)) {
-                    node.set_aabb(all);
+    /// Takes the vertices' new positions, all finite, from `position`. The tree's shape stays, so answers are right but
+    /// come slower the more the surface differs from the one it was built for. Takes as long as what moved is large,
+    /// after a look at everything.
+    pub fn refit(&mut self, position: impl Fn(SurfaceVertex) -> DVec3 + Sync) {
+        let mut moved = vec![false; self.positions.len()];
+        let blocks = self.positions.each_mut().par_iter_mut();
+        blocks
+            .zip(moved.par_chunks_mut(BLOCK))
+            .enumerate()
+            .for_each(|(number, (block, moved))| {
+                let position = |place: usize| position(SurfaceVertex((number * BLOCK + place) as u32));
+                let mut any = false;
+                for (place, moved) in moved.iter_mut().enumerate() {
+                    *moved = position(place) != block[place];
+                    any |= *moved;
+                }
+                if any {
+                    for (place, old) in Arc::make_mut(block).iter_mut().enumerate() {
+                        *old = position(place);
+                    }
                 }
             });
-        self.tree.refit_all();
+        let (space, positions) = (self.space, &self.positions);
+        let runs = self.runs.par_iter_mut().zip(moved.par_chunks(RUN)).enumerate();
+        runs.filter(|(_, (_, moved))| moved.contains(&true))
+            .for_each(|(number, (run, _))| *run = space.run(positions, number));
+        self.refit_boxes(&moved);
+    }
+
+    /// Boxes of everything with a corner that moved.
+    fn refit_boxes(&mut self, moved: &[bool]) {
+        let (leaves, positions, space) = (&*self.leaves, &self.positions, self.space);
+        let mut is_other = vec![false; self.nodes.len()];
+        let blocks = self.nodes.each_mut().par_iter_mut();
+        blocks
+            .zip(is_other.par_chunks_mut(BLOCK))
+            .for_each(|(block, is_other)| {
+                for (node, is_other) in block.iter().zip(is_other.iter_mut()) {
+                    *is_other = node.leaf().is_some_and(|leaf| {
+                        leaves.corners[leaf]
+                            .iter()
+                            .flatten()
+                            .any(|vertex| moved[vertex.index()])
+                    });
+                }
+                if is_other.contains(&true) {
+                    for (node, _) in Arc::make_mut(block).iter_mut().zip(&*is_other).filter(|(_, is)| **is) {
+                        let corners = leaves.corners[node.leaf().unwrap_or_default()].iter();
+                        let boxes = corners.map(|corners| space.span(corners.map(|v| positions.get(v.index()))));
+                        node.span = boxes.reduce(|a, b| a.union(&b)).unwrap_or(node.span);
+                    }
+                }
+            });
+        // Children stand behind their parents.
+        for number in (0..self.nodes.len().div_ceil(BLOCK)).rev() {
+            let start = number * BLOCK;
+            let mut any = false;
+            for place in (start..(start + BLOCK).min(self.nodes.len())).rev() {
+                let node = self.nodes.get(place);
+                if node.count == 0 {
+                    is_other[place] = is_other[node.first as usize] || is_other[node.first as usize + 1];
+                    any |= is_other[place];
+                }
+            }
+            if any {
+                self.nodes.rewrite(number, |block, others| {
+                    for place in (0..block.len()).rev() {
+                        let Node { first, count, .. } = block[place];
+                        if count == 0 && is_other[start + place] {
+                            let [a, b] = [first, first + 1].map(|child| match (child as usize).checked_sub(start) {
+                                Some(own) if own < block.len() => block[own].span,
+                                _ => others.get(child as usize).span,
+                            });
+                            block[place].span = a.union(&b);
+                        }
+                    }
+                });
+            }
+        }
     }
 
     /// The first triangle that the ray from `origin` along `direction` (any length) meets, from either side; of
@@ -104,44 +207,23 @@ impl Bvh {
         };
         let mut best: Option<Hit> = None;
         self.walk(
-            |node_box| ray.entry(node_box),
-            |triangle| {
-                if let Some(hit) = self.meet(triangle, origin, direction)
+            |span| ray.entry(span),
+            |place| {
+                if let Some(hit) = self.meet(place, origin, direction)
                     && best.is_none_or(|b| (hit.distance, hit.triangle) < (b.distance, b.triangle))
                 {
                     best = Some(hit);
                 }
                 best.map_or(f64::INFINITY, |hit| hit.distance)
             },
-            f64::INFINITY,
         );
         best
     }
 
-    /// The vertices of triangles in the hierarchy that lie within `radius` of `centre` in a straight line, ascending,
-    /// into `out`, whose old contents go.
-    pub fn vertices_in_ball(&self, centre: DVec3, radius: f64, out: &mut Vec<SurfaceVertex>) {
-        out.clear();
-        let (ball, limit) = (self.space.of_point(centre), radius * self.space.scale);
-        self.walk(
-            |node_box| box_distance(node_box, ball),
-            |triangle| {
-                out.extend(
-                    self.triangles[triangle as usize]
-                        .iter()
-                        .filter(|v| self.positions[v.index()].distance_squared(centre) <= radius * radius),
-                );
-                limit
-            },
-            limit,
-        );
-        out.sort_unstable();
-        out.dedup();
-    }
-
-    /// Visits the triangles that may reach into the convex space before all `planes` (a point p is before one if its
-    /// product with (p, 1) is not negative): every one that does, and some beside it.
-    pub fn triangles_within(&self, planes: &[DVec4], mut visit: impl FnMut(u32)) {
+    /// Visits, ascending, the vertices in the convex space before all `planes` (a point p is before one if its product
+    /// with (p, 1) is not negative) and some beside it, with their positions: those of triangles that the hierarchy was
+    /// not built over, too.
+    pub fn vertices_within(&self, planes: &[DVec4], mut visit: impl FnMut(SurfaceVertex, DVec3)) {
         // In the boxes' space the same planes have other lengths and distances.
         let planes: Vec<DVec4> = planes
             .iter()
@@ -150,21 +232,18 @@ impl Bvh {
                 normal.extend(plane.w + plane.truncate().dot(self.space.centre))
             })
             .collect();
-        let is_apart = |node_box: &Aabb| {
-            let (min, max) = (node_box.min.as_dvec3(), node_box.max.as_dvec3());
+        let is_apart = |span: &Span| {
+            let (min, max) = (span.min.as_dvec3(), span.max.as_dvec3());
             planes.iter().any(|plane| {
                 let farthest = DVec3::select(plane.truncate().cmpge(DVec3::ZERO), max, min);
                 plane.dot(farthest.extend(1.0)) < 0.0
             })
         };
-        self.walk(
-            |node_box| if is_apart(node_box) { f64::INFINITY } else { 0.0 },
-            |triangle| {
-                visit(triangle);
-                f64::MAX
-            },
-            f64::MAX,
-        );
+        for run in (0..self.runs.len()).filter(|&run| !is_apart(&self.runs[run])) {
+            for vertex in run * RUN..((run + 1) * RUN).min(self.positions.len()) {
+                visit(SurfaceVertex(vertex as u32), self.positions.get(vertex));
+            }
+        }
     }
 
     /// The vertex nearest to `point` in a straight line, of several the lowest, and its distance; `None` of an empty
@@ -173,40 +252,43 @@ impl Bvh {
         let in_boxes = self.space.of_point(point);
         let mut best: Option<(f64, SurfaceVertex)> = None;
         self.walk(
-            |node_box| box_distance(node_box, in_boxes),
-            |triangle| {
-                for &v in &self.triangles[triangle as usize] {
-                    let candidate = (self.positions[v.index()].distance(point), v);
+            |span| span.distance(in_boxes),
+            |place| {
+                for v in self.leaves.corners[place] {
+                    let candidate = (self.positions.get(v.index()).distance(point), v);
                     if best.is_none_or(|best| candidate < best) {
                         best = Some(candidate);
                     }
                 }
                 best.map_or(f64::INFINITY, |(distance, _)| distance * self.space.scale)
             },
-            f64::INFINITY,
         );
         best.map(|(distance, v)| (v, distance))
     }
 
-    /// Visits the triangles of every leaf whose box has a `bound` (infinite: never) not above the limit, nearer boxes
-    /// first; `visit` returns the new limit.
-    fn walk(&self, bound: impl Fn(&Aabb) -> f64, mut visit: impl FnMut(u32) -> f64, mut limit: f64) {
-        let nodes = &self.tree.nodes;
-        let Some(root) = nodes.first() else { return };
+    /// Visits the triangles' places in every leaf whose box has a `bound` (infinite: never) not above the limit, nearer
+    /// boxes first; `visit` returns the new limit.
+    fn walk(&self, bound: impl Fn(&Span) -> f64, mut visit: impl FnMut(usize) -> f64) {
+        if self.nodes.len() == 0 {
+            return;
+        }
+        let mut limit = f64::INFINITY;
         let mut stack = Vec::with_capacity(64);
-        stack.push((bound(root.aabb()), 0));
-        while let Some((lower_bound, index)) = stack.pop() {
+        let root = self.nodes.get(0);
+        stack.push((bound(&root.span), root.first, root.count));
+        while let Some((lower_bound, first, count)) = stack.pop() {
             if lower_bound > limit || lower_bound == f64::INFINITY {
                 continue;
             }
-            let node = &nodes[index];
-            let first = node.first_index as usize;
-            if node.is_leaf() {
-                for &triangle in &self.tree.primitive_indices[first..first + node.prim_count as usize] {
-                    limit = visit(triangle);
+            if count > 0 {
+                for place in first..first + count {
+                    limit = visit(place as usize);
                 }
             } else {
-                let children = [first, first + 1].map(|child| (bound(nodes[child].aabb()), child));
+                let children = [first, first + 1].map(|child| {
+                    let node = self.nodes.get(child as usize);
+                    (bound(&node.span), node.first, node.count)
+                });
                 let [near, far] = if children[0].0 <= children[1].0 {
                     children
                 } else {
@@ -218,8 +300,8 @@ impl Bvh {
     }
 
     /// Möller and Trumbore 1997, both sides.
-    fn meet(&self, triangle: u32, origin: DVec3, direction: DVec3) -> Option<Hit> {
-        let [a, b, c] = corners(self.triangles[triangle as usize], &self.positions);
+    fn meet(&self, place: usize, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        let [a, b, c] = self.leaves.corners[place].map(|v| self.positions.get(v.index()));
         let (e1, e2) = (b - a, c - a);
         let p = direction.cross(e2);
         let determinant = e1.dot(p);
@@ -237,10 +319,54 @@ impl Bvh {
         let weights = DVec3::new(1.0 - u - v, u, v).max(DVec3::ZERO);
         let barycentric = (weights / weights.element_sum()).to_array();
         Some(Hit {
-            triangle,
+            triangle: self.leaves.triangles[place],
             barycentric,
             distance,
         })
+    }
+}
+
+/// The nodes of a tree whose children stand behind their parents, as obvhs's builder leaves them.
+fn nodes(tree: &Bvh2) -> Blocks<Node> {
+    debug_assert!(tree.children_are_ordered_after_parents || tree.nodes.is_empty());
+    let nodes: Vec<Node> = tree
+        .nodes
+        .iter()
+        .map(|node| Node {
+            span: Span {
+                min: node.aabb().min.into(),
+                max: node.aabb().max.into(),
+            },
+            first: node.first_index,
+            count: node.prim_count,
+        })
+        .collect();
+    Blocks::of(&nodes)
+}
+
+impl Node {
+    /// The places of a leaf's triangles.
+    fn leaf(&self) -> Option<std::ops::Range<usize>> {
+        (self.count > 0).then(|| self.first as usize..(self.first + self.count) as usize)
+    }
+}
+
+impl Span {
+    fn aabb(&self) -> Aabb {
+        Aabb::new(Vec3A::from(self.min), Vec3A::from(self.max))
+    }
+
+    fn union(&self, other: &Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
+    }
+
+    /// The distance of a point, 0 inside.
+    fn distance(&self, point: DVec3) -> f64 {
+        let outside = (self.min.as_dvec3() - point).max(point - self.max.as_dvec3());
+        outside.max(DVec3::ZERO).length()
     }
 }
 
@@ -263,16 +389,25 @@ impl BoxSpace {
         (point - self.centre) * self.scale
     }
 
-    /// The f32 box of a triangle, rounded outward.
-    fn triangle_box(&self, corners: [DVec3; 3]) -> Aabb {
-        let [a, b, c] = corners.map(|corner| self.of_point(corner));
-        let (min, max) = (a.min(b).min(c), a.max(b).max(c));
+    /// The f32 box of some points, rounded outward.
+    fn span(&self, points: impl IntoIterator<Item = DVec3>) -> Span {
+        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for point in points {
+            let point = self.of_point(point);
+            (min, max) = (min.min(point), max.max(point));
+        }
         // Relative as well: a refitted surface may have left the cube.
         let margin = MARGIN * (1.0 + min.abs().max(max.abs()).max_element() as f32);
-        Aabb::new(
-            min.as_vec3a() - Vec3A::splat(margin),
-            max.as_vec3a() + Vec3A::splat(margin),
-        )
+        Span {
+            min: min.as_vec3() - Vec3::splat(margin),
+            max: max.as_vec3() + Vec3::splat(margin),
+        }
+    }
+
+    /// The box of a run of vertices.
+    fn run(&self, positions: &Blocks<DVec3>, run: usize) -> Span {
+        let vertices = run * RUN..((run + 1) * RUN).min(positions.len());
+        self.span(vertices.map(|vertex| positions.get(vertex)))
     }
 }
 
@@ -284,9 +419,9 @@ struct BoxRay {
 
 impl BoxRay {
     /// Where the ray enters the box, not before its origin; infinite where it misses.
-    fn entry(&self, node_box: &Aabb) -> f64 {
-        let to_min = (node_box.min.as_dvec3() - self.origin) * self.inverse;
-        let to_max = (node_box.max.as_dvec3() - self.origin) * self.inverse;
+    fn entry(&self, span: &Span) -> f64 {
+        let to_min = (span.min.as_dvec3() - self.origin) * self.inverse;
+        let to_max = (span.max.as_dvec3() - self.origin) * self.inverse;
         let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
         for axis in 0..3 {
             // Zero times infinity, for a ray inside a wall's plane, is NaN, which `min` and `max` pass over.
@@ -295,10 +430,4 @@ impl BoxRay {
         }
         if enter <= leave { enter } else { f64::INFINITY }
     }
-}
-
-/// The distance from a point to a box, 0 inside.
-fn box_distance(node_box: &Aabb, point: DVec3) -> f64 {
-    let outside = (node_box.min.as_dvec3() - point).max(point - node_box.max.as_dvec3());
-    outside.max(DVec3::ZERO).length()
 }

@@ -6,11 +6,9 @@
 //! Sethian 1998, with the circular front of Novotni and Klein 2002). So on a flat sheet without obtuse triangles
 //! distances are exact, where plain Dijkstra zigzags and is up to 40% too long; it costs a few operations a triangle.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
 use glam::DVec3;
 
+use crate::front::Front;
 use crate::{Surface, SurfaceVertex, Topology};
 
 /// The distance of every vertex from the nearest of `sources`, along the surface, in world units; infinite beyond
@@ -24,7 +22,9 @@ pub fn distances_along_surface(
 ) -> Vec<f64> {
     let seeds: Vec<(SurfaceVertex, f64)> = sources.iter().map(|&v| (v, 0.0)).collect();
     let mut distances = vec![f64::INFINITY; surface.positions.len()];
-    for &(v, distance) in DistanceSearch::default().within(surface, topology, &seeds, limit) {
+    let mut search = DistanceSearch::default();
+    let position = |v: SurfaceVertex| surface.positions[v.index()];
+    for &(v, distance) in search.within(&surface.triangles, topology, position, &seeds, limit) {
         distances[v.index()] = distance;
     }
     distances
@@ -37,35 +37,37 @@ pub struct DistanceSearch {
     /// The best distance so far, infinite where the front has not been; reset after each search.
     distance: Vec<f64>,
     is_settled: Vec<bool>,
-    /// Distances as their bits, which compare alike where numbers are not negative.
-    front: BinaryHeap<Reverse<(u64, SurfaceVertex)>>,
+    front: Front,
     reached: Vec<(SurfaceVertex, f64)>,
     touched: Vec<SurfaceVertex>,
 }
 
 impl DistanceSearch {
-    /// The vertices within `limit` of the nearest of `seeds`, nearest first, with their distances. A seed is a vertex
-    /// and the distance, not negative, that it starts with: a point on a triangle is its corners with theirs.
+    /// The vertices within `limit` of the nearest of `seeds`, nearest first, with their distances, on the surface of
+    /// these triangles whose vertices stand where `position` says. A seed is a vertex and the distance, not negative,
+    /// that it starts with: a point on a triangle is its corners with theirs.
     pub fn within(
         &mut self,
-        surface: &Surface,
+        triangles: &[[SurfaceVertex; 3]],
         topology: &Topology,
+        position: impl Fn(SurfaceVertex) -> DVec3,
         seeds: &[(SurfaceVertex, f64)],
         limit: f64,
     ) -> &[(SurfaceVertex, f64)] {
-        self.distance.resize(surface.positions.len(), f64::INFINITY);
-        self.is_settled.resize(surface.positions.len(), false);
+        self.distance.resize(topology.vertex_count(), f64::INFINITY);
+        self.is_settled.resize(topology.vertex_count(), false);
         self.reached.clear();
+        self.front.begin(limit);
         for &(v, distance) in seeds {
             self.offer(v, distance.max(0.0), limit);
         }
-        while let Some(Reverse((bits, v))) = self.front.pop() {
-            if self.is_settled[v.index()] || bits != self.distance[v.index()].to_bits() {
+        while let Some((distance, v)) = self.front.pop() {
+            if self.is_settled[v.index()] || distance != self.distance[v.index()] {
                 continue;
             }
             self.is_settled[v.index()] = true;
-            self.reached.push((v, f64::from_bits(bits)));
-            self.march_from(v, surface, topology, limit);
+            self.reached.push((v, distance));
+            self.march_from(v, triangles, topology, &position, limit);
         }
         for v in self.touched.drain(..) {
             self.distance[v.index()] = f64::INFINITY;
@@ -74,19 +76,29 @@ impl DistanceSearch {
         &self.reached
     }
 
-    fn march_from(&mut self, v: SurfaceVertex, surface: &Surface, topology: &Topology, limit: f64) {
-        let here = surface.positions[v.index()];
+    fn march_from(
+        &mut self,
+        v: SurfaceVertex,
+        triangles: &[[SurfaceVertex; 3]],
+        topology: &Topology,
+        position: &impl Fn(SurfaceVertex) -> DVec3,
+        limit: f64,
+    ) {
+        let here = position(v);
         let distance = self.distance[v.index()];
         for &u in topology.neighbours(v) {
-            self.offer(u, distance + here.distance(surface.positions[u.index()]), limit);
+            if self.is_settled[u.index()] {
+                continue;
+            }
+            self.offer(u, distance + here.distance(position(u)), limit);
         }
         for &t in topology.faces(v) {
-            let triangle = surface.triangles[t as usize];
+            let triangle = triangles[t as usize];
             for (side, third) in [(1, 2), (2, 1)] {
                 let turn = usize::from(triangle[1] == v) + 2 * usize::from(triangle[2] == v);
                 let (side, third) = (triangle[(turn + side) % 3], triangle[(turn + third) % 3]);
                 if self.is_settled[side.index()] && !self.is_settled[third.index()] {
-                    let corners = [v, side, third].map(|v| surface.positions[v.index()]);
+                    let corners = [v, side, third].map(position);
                     if let Some(through) = through_triangle(corners, [distance, self.distance[side.index()]]) {
                         self.offer(third, through, limit);
                     }
@@ -102,7 +114,7 @@ impl DistanceSearch {
                 self.touched.push(v);
             }
             *best = distance;
-            self.front.push(Reverse((distance.to_bits(), v)));
+            self.front.push(distance, v);
         }
     }
 }
@@ -197,10 +209,15 @@ mod tests {
         let (surface, topology) = (&model.surface, &model.topology);
         let all = distances_along_surface(surface, topology, &[SurfaceVertex(3)], f64::INFINITY);
         let mut search = DistanceSearch::default();
-        search.within(surface, topology, &[(SurfaceVertex(100), 0.0)], 1.0);
-        let reached = search
-            .within(surface, topology, &[(SurfaceVertex(3), 0.0)], 0.8)
-            .to_vec();
+        let position = |v: SurfaceVertex| surface.positions[v.index()];
+        let mut within = |v, limit| {
+            let seeds = [(SurfaceVertex(v), 0.0)];
+            search
+                .within(&surface.triangles, topology, position, &seeds, limit)
+                .to_vec()
+        };
+        within(100, 1.0);
+        let reached = within(3, 0.8);
         assert_eq!(reached.len(), all.iter().filter(|&&d| d <= 0.8).count());
         assert!(reached.iter().all(|&(v, d)| all[v.index()] == d));
         assert!(reached.is_sorted_by(|a, b| a.1 <= b.1));

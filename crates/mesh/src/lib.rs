@@ -9,6 +9,7 @@
 //! number of threads, so results are the same bits whatever it is.
 
 mod areas;
+mod blocks;
 mod boundary;
 mod bvh;
 mod components;
@@ -19,6 +20,7 @@ mod distortion;
 mod drawn;
 mod finding;
 mod findings;
+mod front;
 pub mod geometry;
 mod gradient;
 mod ids;

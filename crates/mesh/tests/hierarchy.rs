@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
 use glam::{DAffine3, DVec3};
-use pliant_mesh::{Bvh, Hit, Model, SurfaceVertex, shapes};
+use pliant_mesh::{Bvh, Hit, Model, shapes};
 
 fn hit_point(model: &Model, hit: &Hit) -> DVec3 {
     let corners = model.surface.corners(hit.triangle as usize);
@@ -67,22 +67,14 @@ fn the_first_hit_is_that_of_every_triangle_tried() {
 }
 
 #[test]
-fn balls_and_nearest_vertices_are_those_of_every_vertex_tried() {
+fn nearest_vertices_are_those_of_every_vertex_tried() {
     for (class, drawn) in shapes::classes() {
         let model = shapes::model(drawn);
         let positions = &model.surface.positions;
         let bvh = Bvh::build(positions, &model.surface.triangles);
         let bounds = model.bounds().unwrap();
-        let mut found = Vec::new();
         for direction in directions().step_by(7) {
             let centre = bounds.centre() + 0.6 * bounds.diagonal() * direction;
-            let radius = 0.4 * bounds.diagonal();
-            bvh.vertices_in_ball(centre, radius, &mut found);
-            let inside: Vec<SurfaceVertex> = (0..positions.len() as u32)
-                .map(SurfaceVertex)
-                .filter(|v| positions[v.index()].distance_squared(centre) <= radius * radius)
-                .collect();
-            assert_eq!(found, inside, "{class}");
             let (nearest, distance) = bvh.nearest_vertex(centre).unwrap();
             let least = positions.iter().map(|p| p.distance(centre)).reduce(f64::min);
             assert_eq!(Some(distance), least, "{class}");
@@ -92,26 +84,32 @@ fn balls_and_nearest_vertices_are_those_of_every_vertex_tried() {
 }
 
 #[test]
-fn a_refitted_hierarchy_answers_as_a_new_one() {
-    let model = shapes::model(shapes::torus(30, 14));
-    let mut bvh = Bvh::build(&model.surface.positions, &model.surface.triangles);
-    let bent: Vec<DVec3> = model
-        .surface
-        .positions
-        .iter()
-        .map(|p| 3.0 * *p + DVec3::new(p.y * p.y, 5.0, p.x.sin()))
-        .collect();
-    bvh.refit(&bent);
-    let fresh = Bvh::build(&bent, &model.surface.triangles);
-    let mut hits = 0;
-    for direction in directions() {
-        let origin = DVec3::new(1.0, 5.0, 0.0) - 20.0 * direction;
-        let (hit, expected) = (bvh.ray(origin, direction), fresh.ray(origin, direction));
-        assert_eq!(hit.map(|h| h.distance), expected.map(|h| h.distance));
-        hits += usize::from(hit.is_some());
-        assert_eq!(bvh.nearest_vertex(origin), fresh.nearest_vertex(origin));
+fn a_refitted_hierarchy_answers_as_a_new_one_and_its_copy_as_before() {
+    let everywhere = |p: DVec3| 3.0 * p + DVec3::new(p.y * p.y, 5.0, p.x.sin());
+    let in_a_corner = |p: DVec3| if p.x > 0.9 { p + DVec3::new(0.3, 0.0, p.x) } else { p };
+    // Of several blocks of boxes and positions, and of one.
+    for (around, across) in [(120, 90), (30, 14)] {
+        let model = shapes::model(shapes::torus(around, across));
+        let (rest, triangles) = (&model.surface.positions, &model.surface.triangles);
+        for bend in [&in_a_corner as &dyn Fn(DVec3) -> DVec3, &everywhere] {
+            let before = Bvh::build(rest, triangles);
+            let mut bvh = before.clone();
+            let bent: Vec<DVec3> = rest.iter().map(|&p| bend(p)).collect();
+            bvh.refit(|v| bent[v.index()]);
+            let [old, fresh] = [rest, &bent].map(|positions| Bvh::build(positions, triangles));
+            let mut hits = 0;
+            for direction in directions() {
+                let origin = DVec3::new(1.0, 1.0, 0.0) - 20.0 * direction;
+                for (one, other) in [(&bvh, &fresh), (&before, &old)] {
+                    let (hit, expected) = (one.ray(origin, direction), other.ray(origin, direction));
+                    assert_eq!(hit.map(|h| h.distance), expected.map(|h| h.distance));
+                    hits += usize::from(hit.is_some());
+                    assert_eq!(one.nearest_vertex(origin), other.nearest_vertex(origin));
+                }
+            }
+            assert!(hits > 10, "{hits}");
+        }
     }
-    assert!(hits > 10);
 }
 
 #[test]
@@ -136,26 +134,32 @@ fn an_empty_and_a_flat_hierarchy_answer() {
 }
 
 #[test]
-fn planes_find_every_triangle_with_a_corner_before_them_and_few_others() {
+fn planes_find_every_vertex_before_them_and_none_far_behind() {
     for (class, drawn) in shapes::classes() {
         let model = shapes::model(drawn);
-        let positions = &model.surface.positions;
-        let bvh = Bvh::build(positions, &model.surface.triangles);
+        let rest = &model.surface.positions;
+        let mut bvh = Bvh::build(rest, &model.surface.triangles);
         let bounds = model.bounds().unwrap();
-        for direction in directions().step_by(5) {
-            let at = bounds.centre() + 0.2 * bounds.diagonal() * direction;
-            let across = direction.any_orthonormal_vector();
-            let planes =
-                [direction, across, (direction + across).normalize()].map(|normal| normal.extend(-normal.dot(at)));
-            let is_before = |p: DVec3| planes.iter().all(|plane| plane.dot(p.extend(1.0)) >= 0.0);
-            let mut visits = vec![0; model.surface.triangles.len()];
-            bvh.triangles_within(&planes, |triangle| visits[triangle as usize] += 1);
-            for (triangle, visits) in model.surface.triangles.iter().zip(&visits) {
-                let reaches = triangle.iter().any(|v| is_before(positions[v.index()]));
-                assert!(*visits <= 1 && (*visits == 1 || !reaches), "{class}");
+        let aside = 0.7 * bounds.extent();
+        for positions in [rest.clone(), rest.iter().map(|&p| p + aside).collect()] {
+            bvh.refit(|v| positions[v.index()]);
+            for direction in directions().step_by(5) {
+                let at = bounds.centre() + 0.2 * bounds.diagonal() * direction;
+                let across = direction.any_orthonormal_vector();
+                let planes =
+                    [direction, across, (direction + across).normalize()].map(|normal| normal.extend(-normal.dot(at)));
+                let is_before = |p: DVec3| planes.iter().all(|plane| plane.dot(p.extend(1.0)) >= 0.0);
+                let mut met = Vec::new();
+                bvh.vertices_within(&planes, |vertex, position| {
+                    assert_eq!(position, positions[vertex.index()]);
+                    met.push(vertex.index());
+                });
+                assert!(met.is_sorted_by(|a, b| a < b), "{class}");
+                let missed = (0..positions.len()).find(|v| is_before(positions[*v]) && met.binary_search(v).is_err());
+                assert_eq!(missed, None, "{class}");
+                let nothing = [direction.extend(-direction.dot(bounds.centre()) - 3.0 * bounds.diagonal())];
+                bvh.vertices_within(&nothing, |_, _| panic!("{class}: nothing lies that far away"));
             }
-            let nothing = [direction.extend(-direction.dot(bounds.centre()) - 2.0 * bounds.diagonal())];
-            bvh.triangles_within(&nothing, |_| panic!("{class}: nothing lies that far away"));
         }
     }
 }

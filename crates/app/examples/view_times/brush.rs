@@ -32,21 +32,22 @@ pub fn rows(
         beginning: None,
     });
     let mut rows = Vec::new();
-    for (metric, name) in [
-        (BrushMetric::Screen, "front"),
-        (BrushMetric::Through, "through"),
-        (BrushMetric::Surface, "along"),
+    for (tool, metric, name) in [
+        (ToolMode::PaintFree, BrushMetric::Screen, "front"),
+        (ToolMode::PaintFree, BrushMetric::Through, "through"),
+        (ToolMode::PaintFree, BrushMetric::Surface, "along"),
+        (ToolMode::PaintStiffness, BrushMetric::Screen, "stiffness"),
     ] {
         for radius_px in [30.0, 100.0] {
-            editor.handle(Event::Command(Command::SetTool(ToolMode::PaintFree)));
+            editor.handle(Event::Command(Command::SetTool(tool)));
             editor.handle(Event::Command(Command::SetBrushMetric(metric)));
             editor.handle(Event::Command(Command::SetBrushRadius(radius_px)));
             while let Some(done) = jobs.run(JobKind::Pick) {
                 editor.handle(Event::JobDone(done));
             }
-            let mut colours = Vec::new();
-            editor.region_colours(&mut colours);
-            let mut colours = drawing::drawn_colours(model, &colours);
+            let mut by_surface = Vec::new();
+            editor.region_colours(&mut by_surface);
+            let mut colours = drawing::drawn_colours(model, &by_surface);
             surface.update_regions(renderer, &colours)?;
             let (mut deciding, mut colouring, mut whole) = (Vec::new(), Vec::new(), Vec::new());
             let mut vertices = 0;
@@ -60,7 +61,11 @@ pub fn rows(
                         let ranges = drawing::recolour(model, recoloured, editor.region_colour(), &mut colours);
                         surface.update_some_regions(renderer, &colours, &ranges)
                     }
-                    None => Ok(()),
+                    None => {
+                        editor.region_colours(&mut by_surface);
+                        colours = drawing::drawn_colours(model, &by_surface);
+                        surface.update_regions(renderer, &colours)
+                    }
                 });
                 uploaded?;
                 if is_dab {

@@ -124,6 +124,7 @@ impl PaintStroke {
             editor.wants_new_handle = false;
         }
         transaction.commit(&editor.document, &mut editor.history);
+        editor.has_filed_paint = true;
     }
 
     pub(crate) fn abort(self, editor: &mut Editor) {

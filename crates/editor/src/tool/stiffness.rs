@@ -129,6 +129,8 @@ impl StiffnessStroke {
             document.stiffness = None;
         }
         self.transaction.commit(&editor.document, &mut editor.history);
+        // Every dab has said what it recoloured.
+        editor.known_stiffness.clone_from(&editor.document.stiffness);
         Tool::Idle
     }
 
@@ -155,7 +157,8 @@ impl StiffnessStroke {
         }
         // The shape that is shown was made with another stiffness: it is kept, as with every stroke.
         editor.document.apply_shape();
-        editor.repainted = true;
+        // Who else holds the field would have it copied by every dab.
+        editor.known_stiffness = None;
         let count = editor.document.paint.len();
         let before = self.transaction.before().stiffness.clone();
         let field = editor
@@ -185,18 +188,21 @@ impl StiffnessStroke {
             for ((vertex, _), value) in met.iter().zip(smoothed) {
                 field[vertex.index()] = value;
             }
-            return;
+            let smoothed: Vec<SurfaceVertex> = met.iter().map(|(vertex, _)| *vertex).collect();
+            return editor.recolouring.add(&smoothed);
         }
         let goal = match self.brush.action {
             StiffnessAction::Erase => 1.0,
             _ => self.brush.value,
         };
+        let mut changed = Vec::new();
         for (vertex, firmness) in met {
             let firmest = &mut self.firmest[vertex.index()];
             if firmness as f32 <= *firmest {
                 continue;
             }
             *firmest = firmness as f32;
+            changed.push(vertex);
             let start = before.as_ref().map_or(1.0, |field| field[vertex.index()]);
             field[vertex.index()] = if firmness >= 1.0 {
                 goal
@@ -204,6 +210,7 @@ impl StiffnessStroke {
                 in_range((start.ln() + (goal.ln() - start.ln()) * firmness).exp())
             };
         }
+        editor.recolouring.add(&changed);
     }
 }
 

@@ -24,6 +24,31 @@ pub struct Rig {
     pub editor: Editor,
     pub jobs: InlineExecutor,
     pub model: Arc<Model>,
+    colours: Colours,
+}
+
+/// The colours of regions as a window keeps them, which fetches what changed.
+#[derive(Default)]
+struct Colours {
+    colours: Vec<[u8; 4]>,
+    revision: u64,
+}
+
+impl Colours {
+    /// Fetches what changed, which must be everything that did.
+    fn follow(&mut self, editor: &Editor) {
+        let known = std::mem::replace(&mut self.revision, editor.view().regions_revision);
+        let mut all = Vec::new();
+        editor.region_colours(&mut all);
+        match editor.recoloured_since(known) {
+            Some(vertices) if self.colours.len() == all.len() => {
+                let colour = editor.region_colour();
+                vertices.iter().for_each(|&v| self.colours[v.index()] = colour(v));
+            }
+            _ => self.colours.clone_from(&all),
+        }
+        assert!(self.colours == all, "a vertex changed its colour unsaid");
+    }
 }
 
 /// Everything of the document that undo must give back, to the bit.
@@ -95,7 +120,21 @@ impl Rig {
             name: "a shape".to_owned(),
             beginning: None,
         });
-        Self { editor, jobs, model }
+        Self::of(editor, jobs, model)
+    }
+
+    pub fn of(editor: Editor, jobs: InlineExecutor, model: Arc<Model>) -> Self {
+        Self {
+            editor,
+            jobs,
+            model,
+            colours: Colours::default(),
+        }
+    }
+
+    pub fn send(&mut self, event: Event) {
+        self.editor.handle(event);
+        self.colours.follow(&self.editor);
     }
 
     /// Chooses a method by its name, as a step of the history if it is another.
@@ -108,7 +147,7 @@ impl Rig {
     pub fn drain(&mut self) {
         for _ in 0..10_000 {
             let Some(done) = self.jobs.run_next() else { return };
-            self.editor.handle(Event::JobDone(done));
+            self.send(Event::JobDone(done));
         }
         panic!("the jobs never end: {:?} wait", self.jobs.waiting());
     }
@@ -118,17 +157,17 @@ impl Rig {
         let done = self.jobs.run(kind);
         let ran = done.is_some();
         if let Some(done) = done {
-            self.editor.handle(Event::JobDone(done));
+            self.send(Event::JobDone(done));
         }
         ran
     }
 
     pub fn command(&mut self, command: Command) {
-        self.editor.handle(Event::Command(command));
+        self.send(Event::Command(command));
     }
 
     pub fn key(&mut self, key: Key) {
-        self.editor.handle(Event::Key(key, Modifiers::NONE));
+        self.send(Event::Key(key, Modifiers::NONE));
     }
 
     pub fn type_keys(&mut self, keys: &str) {
@@ -138,18 +177,16 @@ impl Rig {
     }
 
     pub fn press(&mut self, position_px: DVec2) {
-        self.editor.handle(Event::PointerMoved(at(position_px)));
-        self.editor
-            .handle(Event::PointerPressed(at(position_px), Button::Primary));
+        self.send(Event::PointerMoved(at(position_px)));
+        self.send(Event::PointerPressed(at(position_px), Button::Primary));
     }
 
     pub fn move_to(&mut self, position_px: DVec2) {
-        self.editor.handle(Event::PointerMoved(at(position_px)));
+        self.send(Event::PointerMoved(at(position_px)));
     }
 
     pub fn release(&mut self, position_px: DVec2) {
-        self.editor
-            .handle(Event::PointerReleased(at(position_px), Button::Primary));
+        self.send(Event::PointerReleased(at(position_px), Button::Primary));
     }
 
     /// Holds the left button along a way over the screen.

@@ -7,8 +7,8 @@ use super::table::{Row, measured};
 /// Rows for each size.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     let sizes: &[usize] = match scale {
-        Scale::Usual => &[10_000, 100_000, 400_000, 1_000_000],
-        Scale::Full => &[10_000, 100_000, 400_000, 1_000_000, 5_000_000],
+        Scale::Usual => &[10_000, 100_000, 200_000, 1_000_000],
+        Scale::Full => &[10_000, 100_000, 200_000, 1_000_000, 5_000_000],
     };
     let mut rows = Vec::new();
     for triangles in sizes {
