@@ -270,6 +270,40 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
 }
 
 #[test]
+fn a_stroke_of_stiffness_is_seen_while_it_goes_on_however_stiffness_is_shown() {
+    let Some(mut session) = Session::begin() else { return };
+    session
+        .harness
+        .state_mut()
+        .command(Command::SetTool(ToolMode::PaintStiffness));
+    let middle = session.point_of(|positions| positions[positions.len() / 2]);
+    let away = middle + vec2(60.0, 150.0);
+    for shading in [Shading::Clay, Shading::Stiffness] {
+        session.harness.state_mut().command(Command::SetShading(shading));
+        session.pointer(away, None);
+        session.settle();
+        let pixel = |session: &mut Session| {
+            let picture = session.harness.render().unwrap();
+            picture.get_pixel(middle.x as u32, middle.y as u32).0
+        };
+        let before = pixel(&mut session);
+        session.pointer(middle, Some(true));
+        session.pointer(away, None);
+        session.harness.step();
+        let painted = pixel(&mut session);
+        let apart = |a: [u8; 4], b: [u8; 4]| a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max();
+        assert!(
+            apart(before, painted) > Some(25),
+            "{shading:?}: {before:?} became {painted:?}"
+        );
+        session.key(Key::Escape, Modifiers::NONE);
+        session.pointer(away, Some(false));
+        session.settle();
+        assert!(apart(before, pixel(&mut session)) < Some(12), "{shading:?}");
+    }
+}
+
+#[test]
 fn nothing_is_drawn_or_solved_while_nothing_happens() {
     let Some(mut session) = Session::begin() else { return };
     let revisions = |session: &Session| {

@@ -57,9 +57,8 @@ impl Editor {
             .retain(|&id| document.handle(id).is_some() && self.selected != Some(id));
         self.engine.pump(&self.document, activity);
         // A stroke says itself what it recolours.
-        let restiffened = activity != Activity::Painting
-            && self.mode == crate::ToolMode::PaintStiffness
-            && !same_field(&self.known_stiffness, &self.document.stiffness);
+        let restiffened =
+            activity != Activity::Painting && !same_field(&self.known_stiffness, &self.document.stiffness);
         let shows_stiffness = self.mode == crate::ToolMode::PaintStiffness;
         let reshown = std::mem::replace(&mut self.showed_stiffness, shows_stiffness) != shows_stiffness;
         if activity != Activity::Painting {

@@ -12,6 +12,7 @@ use eframe::egui::{self, TextureId};
 use eframe::egui_wgpu::RenderState;
 use glam::DVec3;
 use pliant_editor::{Editor, Look, SceneView, UpAxis};
+use pliant_mesh::SurfaceVertex;
 use pliant_render::{Background, Frame, Grid, Image, Outfit, RenderError, Renderer, Samples, Surface, Target};
 
 use super::coarseness::Coarseness;
@@ -104,8 +105,8 @@ enum Colours {
     Regions(u64),
     /// Numbers of the shape.
     Field(Field),
-    /// The stiffness with this address.
-    Stiffness(usize),
+    /// The stiffness, as of a revision of the editor's regions.
+    Stiffness(u64),
 }
 
 /// What the picture in the texture was drawn from.
@@ -376,7 +377,7 @@ impl Viewport {
         let stiffness = editor.document().stiffness();
         let wanted = match drawing::field(view.look.shading) {
             None => Colours::Regions(view.regions_revision),
-            Some(Field::Stiffness) => Colours::Stiffness(stiffness.map_or(0, |field| field.as_ptr() as usize)),
+            Some(Field::Stiffness) => Colours::Stiffness(view.regions_revision),
             // These come with the shape that they belong to.
             Some(_) => return Ok(()),
         };
@@ -384,10 +385,21 @@ impl Viewport {
             return Ok(());
         }
         let renderer = self.gpu.read();
-        if let (Colours::Regions(known), Colours::Regions(_)) = (shown.colours, wanted)
-            && let Some(vertices) = editor.recoloured_since(known)
-        {
-            let ranges = drawing::recolour(model, vertices, editor.region_colour(), &mut shown.drawn_colours);
+        let recoloured = match (shown.colours, wanted) {
+            (Colours::Regions(known), Colours::Regions(_)) | (Colours::Stiffness(known), Colours::Stiffness(_)) => {
+                editor.recoloured_since(known)
+            }
+            _ => None,
+        };
+        if let Some(vertices) = recoloured {
+            let of_region = editor.region_colour();
+            let colour = |vertex: SurfaceVertex| match (wanted, &shown.scale) {
+                (Colours::Stiffness(_), Some(scale)) => {
+                    scale.colour(stiffness.map_or(1.0, |field| field[vertex.index()]))
+                }
+                _ => of_region(vertex),
+            };
+            let ranges = drawing::recolour(model, vertices, colour, &mut shown.drawn_colours);
             let colours = &shown.drawn_colours;
             shown.surface.update_some_regions(&renderer, colours, &ranges)?;
         } else {
