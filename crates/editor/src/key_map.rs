@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::command::{Command, Shortcut};
-use crate::{Key, Modifiers};
+use crate::{Command, Key, Modifiers, Shortcut};
 
 /// A person's choice of keys for some of the listed commands.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -17,7 +16,7 @@ impl KeyMap {
     pub fn of_names(names: &BTreeMap<String, Vec<String>>) -> (Self, Vec<String>) {
         let (mut map, mut problems) = (Self::default(), Vec::new());
         for (name, keys) in names {
-            let Some(listed) = Command::LISTED.iter().find(|listed| listed.name == name) else {
+            let Some(listed) = Command::all_listed().find(|listed| listed.name == name) else {
                 problems.push(format!("No command is called \"{name}\": its keys are left out."));
                 continue;
             };
@@ -40,8 +39,7 @@ impl KeyMap {
         if let Some((command, _)) = chosen {
             return Some(command.clone());
         }
-        Command::LISTED
-            .iter()
+        Command::all_listed()
             .find(|listed| listed.shortcuts.contains(&pressed) && !self.has(&listed.command))
             .map(|listed| listed.command.clone())
     }
@@ -59,57 +57,18 @@ impl KeyMap {
     }
 }
 
-impl Shortcut {
-    /// Reads what [`Shortcut::label`] writes.
-    pub fn parse(text: &str) -> Option<Self> {
-        let mut modifiers = Modifiers::NONE;
-        let mut rest = text.trim();
-        // "Ctrl++" is Ctrl and the plus key.
-        let prefix = |text: &str| {
-            let (word, after) = text.split_once('+')?;
-            (!word.is_empty() && !after.is_empty()).then(|| (word.to_lowercase(), word.len() + 1))
-        };
-        while let Some((word, length)) = prefix(rest) {
-            match word.as_str() {
-                "ctrl" | "cmd" | "command" => modifiers.ctrl = true,
-                "alt" | "option" => modifiers.alt = true,
-                "shift" => modifiers.shift = true,
-                _ => return None,
-            }
-            rest = &rest[length..];
-        }
-        let mut letters = rest.chars();
-        let key = match (letters.next(), letters.next(), rest.to_lowercase().as_str()) {
-            (Some(letter), None, _) => Key::Character(letter.to_ascii_lowercase()),
-            (.., "esc" | "escape") => Key::Escape,
-            (.., "enter" | "return") => Key::Enter,
-            (.., "backspace") => Key::Backspace,
-            (.., "delete") => Key::Delete,
-            (.., "home") => Key::Home,
-            (.., "tab") => Key::Tab,
-            // "Num 5": a digit of the numeric pad.
-            (.., name) => {
-                let digit = name.strip_prefix("num ")?.parse().ok()?;
-                (digit < 10).then_some(Key::Numpad(digit))?
-            }
-        };
-        Some(Self { modifiers, key })
-    }
-}
-
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
 mod tests {
     use std::collections::{BTreeMap, BTreeSet};
 
     use super::KeyMap;
-    use crate::command::{Command, Shortcut};
-    use crate::{Key, Modifiers};
+    use crate::{Command, Key, Modifiers, Shortcut};
 
     #[test]
     fn every_listed_key_is_read_as_it_is_written_and_none_is_given_twice() {
         let mut seen = BTreeSet::new();
-        for shortcut in Command::LISTED.iter().flat_map(|listed| listed.shortcuts) {
+        for shortcut in Command::all_listed().flat_map(|listed| listed.shortcuts) {
             let label = shortcut.label();
             assert_eq!(Shortcut::parse(&label), Some(*shortcut), "{label}");
             assert!(seen.insert(label.clone()), "{label} is given twice");

@@ -69,39 +69,54 @@ const OPTIONS: &[(&str, &[MethodOption])] = &[
     ("primo", primo::OPTIONS),
 ];
 
-/// Each method's title, and a sentence on when it is the one to take.
-const WORDS: &[(&str, &str, &str)] = &[
-    (
-        "bilaplacian",
-        "Thin plate",
-        "Bends like a thin plate, at once: for small turns and smooth bulges.",
-    ),
-    (
-        "arap",
-        "As rigid as possible",
-        "Keeps every neighbourhood as rigid as it can, step by step: for large turns and long drags.",
-    ),
-    (
-        "primo",
-        "Coupled prisms",
-        "Bends like a rubber sheet of a thickness you choose, step by step: for even bends and twists.",
-    ),
+/// How people speak of a method.
+struct Words {
+    name: &'static str,
+    title: &'static str,
+    /// When it is the one to take.
+    when: &'static str,
+    /// What else it is called, in lower case.
+    keywords: &'static str,
+}
+
+const WORDS: &[Words] = &[
+    Words {
+        name: "bilaplacian",
+        title: "Thin plate",
+        when: "Bends like a thin plate, at once: for small turns and smooth bulges.",
+        keywords: "bilaplacian bi-laplacian biharmonic linear shell laplacian",
+    },
+    Words {
+        name: "arap",
+        title: "As rigid as possible",
+        when: "Keeps every neighbourhood as rigid as it can, step by step: for large turns and long drags.",
+        keywords: "arap as-rigid-as-possible",
+    },
+    Words {
+        name: "primo",
+        title: "Coupled prisms",
+        when: "Bends like a rubber sheet of a thickness you choose, step by step: for even bends and twists.",
+        keywords: "primo rubber nonlinear shell",
+    },
 ];
+
+fn words(name: &str) -> Option<&'static Words> {
+    WORDS.iter().find(|words| words.name == name)
+}
 
 /// A sentence on when the method called `name` is the one to take; empty for a name that is not known.
 pub fn when_to_use(name: &str) -> &'static str {
-    WORDS
-        .iter()
-        .find(|(method, ..)| *method == name)
-        .map_or("", |(_, _, sentence)| sentence)
+    words(name).map_or("", |words| words.when)
 }
 
 /// What a person calls the method called `name`: its own name where nothing shorter is known.
 pub fn method_title(name: &str) -> &str {
-    WORDS
-        .iter()
-        .find(|(method, ..)| *method == name)
-        .map_or(name, |(_, title, _)| title)
+    words(name).map_or(name, |words| words.title)
+}
+
+/// What else the method called `name` is called, in lower case.
+pub fn method_keywords(name: &str) -> &'static str {
+    words(name).map_or("", |words| words.keywords)
 }
 
 /// What an option of a method is now, its default where the method says nothing else.

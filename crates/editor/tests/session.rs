@@ -325,7 +325,7 @@ fn revisions_grow_only_with_what_they_stand_for() {
 #[test]
 fn nothing_open_nothing_breaks() {
     let mut editor = Editor::new(Box::new(InlineExecutor::new()));
-    for listed in Command::LISTED {
+    for listed in Command::all_listed() {
         editor.handle(Event::Command(listed.command.clone()));
     }
     editor.handle(Event::PointerPressed(

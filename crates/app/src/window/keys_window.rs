@@ -53,7 +53,7 @@ impl KeysWindow {
                     .auto_shrink(false)
                     .show(ui, |ui| {
                         egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
-                            for listed in Command::LISTED {
+                            for listed in Command::all_listed() {
                                 ui.label(listed.name).on_hover_text(listed.tooltip);
                                 let keys = editor.shortcuts(&listed.command);
                                 let shown = match (self.waiting == Some(listed.name), keys.first()) {

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Id, Key, Modal, RichText, ScrollArea};
 use pliant_deform::Method;
-use pliant_editor::{Command, Editor, Listed, method_title, when_to_use};
+use pliant_editor::{Command, Editor, method_keywords, method_title, when_to_use};
 
 use super::top_bar::FileCommand;
 
@@ -34,6 +34,7 @@ pub enum Outcome {
 struct Entry {
     name: String,
     tooltip: String,
+    keywords: &'static str,
     shortcut: String,
     found: Found,
     enabled: bool,
@@ -94,12 +95,14 @@ impl Palette {
     }
 }
 
-/// What matches, the best first: what begins with what was typed, then what has it, then what has its letters in order.
+/// What matches, the best first: what begins with what was typed, then what has it, then what is also called so, then
+/// what has its letters in order.
 fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> {
     let typed = typed.trim().to_lowercase();
-    let listed = Command::LISTED.iter().map(|listed: &Listed| Entry {
+    let listed = Command::all_listed().map(|listed| Entry {
         name: listed.name.to_owned(),
         tooltip: listed.tooltip.to_owned(),
+        keywords: listed.keywords,
         shortcut: editor
             .shortcuts(&listed.command)
             .first()
@@ -111,6 +114,7 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
     let files = FileCommand::LISTED.iter().map(|command| Entry {
         name: command.name().trim_end_matches('…').to_owned(),
         tooltip: String::new(),
+        keywords: command.keywords(),
         shortcut: command
             .shortcut()
             .map(|shortcut| context.format_shortcut(&shortcut))
@@ -123,6 +127,7 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
         Some(Entry {
             name: format!("Method: {}", method_title(name)),
             tooltip: when_to_use(name).to_owned(),
+            keywords: method_keywords(name),
             shortcut: String::new(),
             enabled: editor.is_enabled(&command) && editor.document().method().name() != *name,
             found: Found::Editor(command),
@@ -131,24 +136,27 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
     let mut found: Vec<(u8, Entry)> = listed
         .chain(methods)
         .chain(files)
-        .filter_map(|entry| Some((rank(&entry.name.to_lowercase(), &typed)?, entry)))
+        .filter_map(|entry| Some((rank(&entry.name.to_lowercase(), entry.keywords, &typed)?, entry)))
         .collect();
     found.sort_by_key(|(rank, _)| *rank);
     found.into_iter().map(|(_, entry)| entry).collect()
 }
 
-fn rank(name: &str, typed: &str) -> Option<u8> {
+fn rank(name: &str, keywords: &str, typed: &str) -> Option<u8> {
     if name.starts_with(typed) {
         return Some(0);
     }
     if name.contains(typed) {
         return Some(1);
     }
+    if keywords.starts_with(typed) || keywords.contains(&format!(" {typed}")) {
+        return Some(2);
+    }
     let mut letters = name.chars();
     typed
         .chars()
         .all(|letter| letters.any(|other| other == letter))
-        .then_some(2)
+        .then_some(3)
 }
 
 #[cfg(test)]
@@ -156,11 +164,14 @@ mod tests {
     use super::rank;
 
     #[test]
-    fn what_begins_so_comes_before_what_has_it_and_letters_in_order_come_last() {
-        assert_eq!(rank("reset handle", "res"), Some(0));
-        assert_eq!(rank("delete handle", "han"), Some(1));
-        assert_eq!(rank("delete handle", "dh"), Some(2));
-        assert_eq!(rank("delete handle", "xq"), None);
-        assert_eq!(rank("anything", ""), Some(0));
+    fn what_begins_so_comes_before_what_has_it_then_other_words_for_it_and_letters_in_order_come_last() {
+        assert_eq!(rank("reset handle", "clear", "res"), Some(0));
+        assert_eq!(rank("delete handle", "", "han"), Some(1));
+        assert_eq!(rank("turn", "rotate spin", "rot"), Some(2));
+        assert_eq!(rank("turn", "rotate spin", "spin"), Some(2));
+        assert_eq!(rank("delete handle", "", "dh"), Some(3));
+        assert_eq!(rank("turn", "rotate spin", "tate"), None);
+        assert_eq!(rank("delete handle", "", "xq"), None);
+        assert_eq!(rank("anything", "", ""), Some(0));
     }
 }

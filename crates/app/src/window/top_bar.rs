@@ -85,13 +85,17 @@ impl FileCommand {
     }
 
     /// All that need no path, in the order of the menu.
-    pub const LISTED: [Self; 13] = [
+    pub const LISTED: [Self; 14] = [
         Self::Open,
         Self::Save,
         Self::SaveAs,
         Self::SaveProject,
         Self::SaveProjectAs,
         Self::ExportEdit,
+        Self::SavePicture(PictureKind {
+            scale: 1,
+            ground: Ground::AsShown,
+        }),
         Self::Palette,
         Self::Log,
         Self::Keys,
@@ -119,6 +123,25 @@ impl FileCommand {
             Self::ExportEdit => "Export edit…",
             Self::SavePicture(_) => "Save picture…",
             Self::Quit => "Quit",
+        }
+    }
+
+    /// What else people call it, in lower case.
+    pub fn keywords(&self) -> &'static str {
+        match self {
+            Self::Open | Self::OpenPath(_) => "load import file",
+            Self::Save | Self::SaveAs => "write file",
+            Self::SaveProject | Self::SaveProjectAs => "pliant file document",
+            Self::Palette => "palette search",
+            Self::Log => "messages errors",
+            Self::Keys => "shortcuts bindings keyboard rebind",
+            Self::NextTheme => "theme dark mode",
+            Self::Scale(_) => "ui zoom",
+            Self::Compare => "split view side by side",
+            Self::Hints => "help first steps",
+            Self::ExportEdit => "json command line",
+            Self::SavePicture(_) => "screenshot render image png",
+            Self::Quit => "exit close",
         }
     }
 }
