@@ -109,15 +109,6 @@ fn pointer_and_keys_make_the_shape_that_the_engine_says() {
     desktop.saves_what_the_engine_makes(&sample, folder.path(), "bilaplacian", 1e-6);
 }
 
-/// The project of what is open, saved under another name each time.
-fn project(desktop: &Desktop, folder: &Path, name: &str) -> serde_json::Value {
-    let path = folder.join(name).with_extension("pliant");
-    desktop.command("save project as");
-    desktop.wait_for_title("Save the project as");
-    desktop.answer(&path);
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
-}
-
 /// Killed in the middle of a drag, at moments by chance, the work is there at the next start. `PLIANT_KILLS` says how
 /// often; a few times in passing.
 #[test]
@@ -163,7 +154,7 @@ fn killed_in_the_middle_of_drags_the_window_recovers_each_time() {
         desktop.wait_for_title("bar.glb");
         sleep(8 * PAUSE);
         desktop.shoot("recovered");
-        let recovered = project(&desktop, folder.path(), &format!("recovered-{kill}"));
+        let recovered = desktop.project(folder.path(), &format!("recovered-{kill}"));
         for member in ["handles", "region", "fixed", "method", "rest"] {
             assert_eq!(recovered[member], kept[member], "kill {kill}: {member}");
         }

@@ -181,8 +181,10 @@ fn path(ui: &mut egui::Ui, purpose: Purpose, typed: &mut String, answer: &mut Op
     };
     ui.heading(heading);
     ui.label(hint);
-    let field = ui.add(egui::TextEdit::singleline(typed).desired_width(f32::INFINITY));
-    field.request_focus();
+    // The keys are its own from the first frame on.
+    let id = ui.scope_id().with("path");
+    ui.memory_mut(|memory| memory.request_focus(id));
+    ui.add(egui::TextEdit::singleline(typed).id(id).desired_width(f32::INFINITY));
     let entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
     ui.add_space(8.0);
     ui.horizontal(|ui| {

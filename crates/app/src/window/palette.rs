@@ -53,12 +53,15 @@ impl Palette {
                     input.key_pressed(Key::Enter),
                 )
             });
+            // The keys are its own from the first frame on: who types fast loses no letter.
+            let id = ui.scope_id().with("typed");
+            ui.memory_mut(|memory| memory.request_focus(id));
             let field = egui::TextEdit::singleline(&mut self.typed)
+                .id(id)
                 .hint_text("Type what you want to do")
                 .desired_width(f32::INFINITY);
             let field = ui.add(field);
             field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Command"));
-            field.request_focus();
             if field.changed() {
                 self.chosen = 0;
             }

@@ -19,6 +19,9 @@ pub const SIZE: (i32, i32) = (1280, 800);
 /// Software drawing of a frame takes about a tenth of a second: act like a slow hand.
 pub const PAUSE: Duration = Duration::from_millis(250);
 
+/// How long anything may take on a machine that has other things to do.
+pub const PATIENCE: Duration = Duration::from_secs(60);
+
 /// A process that ends with its owner.
 pub struct Running(Child);
 
@@ -156,7 +159,7 @@ impl Desktop {
             if let Some(window) = found.lines().next() {
                 return window.to_owned();
             }
-            assert!(start.elapsed() < Duration::from_secs(60), "no window came up");
+            assert!(start.elapsed() < PATIENCE, "no window came up");
             sleep(PAUSE);
         }
     }
@@ -168,9 +171,16 @@ impl Desktop {
             .xdotool(&["search", "--name", &format!("^Pliant.*{title}")])
             .is_empty()
         {
-            assert!(start.elapsed() < Duration::from_secs(60), "no title says {title}");
+            assert!(start.elapsed() < PATIENCE, "no title says {title}: {}", self.titles());
             sleep(PAUSE);
         }
+    }
+
+    /// The titles of the windows that are to be seen.
+    fn titles(&self) -> String {
+        let windows = self.xdotool(&["search", "--onlyvisible", "--name", "."]);
+        let titles = windows.lines().map(|window| self.xdotool(&["getwindowname", window]));
+        titles.collect::<Vec<_>>().join(" ").replace('\n', ";")
     }
 
     pub fn xdotool(&self, arguments: &[&str]) -> String {
@@ -215,13 +225,42 @@ impl Desktop {
         self.key(key);
         self.wait_for_title(question);
         self.answer(path);
+        self.wait_for_file(path);
+    }
+
+    /// The project of what is open, saved by its command under another name.
+    pub fn project(&self, folder: &Path, name: &str) -> serde_json::Value {
+        let path = folder.join(name).with_extension("pliant");
+        self.command("save project as");
+        self.wait_for_title("Save the project as");
+        self.answer(&path);
+        self.wait_for_file(&path);
+        serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+    }
+
+    /// The same once `holds` says yes to it: what was asked for takes its time.
+    pub fn project_once(
+        &self,
+        folder: &Path,
+        name: &str,
+        holds: impl Fn(&serde_json::Value) -> bool,
+    ) -> serde_json::Value {
+        let start = Instant::now();
+        loop {
+            let project = self.project(folder, name);
+            if holds(&project) {
+                return project;
+            }
+            assert!(start.elapsed() < PATIENCE, "{name} never comes to be: {project:#}");
+            std::fs::remove_file(folder.join(name).with_extension("pliant")).unwrap();
+            sleep(PAUSE);
+        }
+    }
+
+    fn wait_for_file(&self, path: &Path) {
         let start = Instant::now();
         while !path.exists() {
-            assert!(
-                start.elapsed() < Duration::from_secs(60),
-                "{} was not written",
-                path.display()
-            );
+            assert!(start.elapsed() < PATIENCE, "{} was not written", path.display());
             sleep(PAUSE);
         }
     }
