@@ -17,7 +17,6 @@ use crate::mirror::Mirroring;
 use crate::overlay::Overlay;
 use crate::picking::{Pick, Picking};
 use crate::recolouring::Recolouring;
-use crate::sight::Sight;
 use crate::tool::{Tool, ToolMode};
 use crate::transaction::Transaction;
 use crate::turn::means;
@@ -161,11 +160,15 @@ impl Editor {
             self.dispatch(event);
         }
         self.conclude();
-        if !self.held.is_empty() && (picked || self.engine.is_picking_current() || !self.engine.is_busy(JobKind::Pick))
-        {
+        let answers = picked || self.engine.is_picking_current() || !self.engine.is_busy(JobKind::Pick);
+        if !self.held.is_empty() && answers {
             for event in std::mem::take(&mut self.held) {
-                self.dispatch(event);
-                self.conclude();
+                if self.tool.is_looking() {
+                    self.held.push_back(event);
+                } else {
+                    self.dispatch(event);
+                    self.conclude();
+                }
             }
         }
         self.refresh_overlay();
@@ -263,7 +266,7 @@ impl Editor {
         let awaited = |kind| match kind {
             JobKind::Pick => false,
             JobKind::Order => self.document.is_displaced(),
-            JobKind::Region | JobKind::Bind | JobKind::Solve | JobKind::Mirror => true,
+            JobKind::Region | JobKind::Bind | JobKind::Solve | JobKind::Mirror | JobKind::Enclose => true,
         };
         let is_idle = matches!(self.tool, Tool::Idle) && self.held.is_empty();
         is_idle
@@ -273,16 +276,13 @@ impl Editor {
     }
 
     pub(crate) fn picking(&self) -> Option<Picking<'_>> {
-        Some(Picking {
-            model: self.engine.model.as_deref()?,
-            displacements: &self.document.from_file,
-            bvh: &self.engine.pickable.as_ref()?.bvh,
-            triangles: self.engine.pickable.as_ref()?.triangles.as_deref().map(Vec::as_slice),
-            camera: &self.camera,
-            viewport_px: self.viewport_px,
-            sight: Sight::of(&self.camera, self.viewport_px),
-            is_current: self.engine.is_picking_current(),
-        })
+        Some(Picking::of(
+            self.engine.model.as_deref()?,
+            &self.document.from_file,
+            self.engine.pickable.as_ref()?,
+            (&self.camera, self.viewport_px),
+            self.engine.is_picking_current(),
+        ))
     }
 
     /// Begins a step of the document.
@@ -463,8 +463,13 @@ impl Editor {
     }
 
     fn job_done(&mut self, done: JobDone) {
+        let kind = done.kind;
         match self.engine.accept(done) {
             Arrival::Nothing | Arrival::Picking => {}
+            Arrival::Enclosed(vertices) => match std::mem::take(&mut self.tool) {
+                Tool::Outline(outline) => outline.take(self, vertices),
+                other => self.tool = other,
+            },
             Arrival::Mirrored(image) => self.take_mirrored(image),
             Arrival::Problem(sentence) => self.problem = Some(sentence),
             Arrival::Shape(solved, finality) => {
@@ -477,6 +482,10 @@ impl Editor {
                     self.document.settled = true;
                 }
             }
+        }
+        // Nobody looks any more, and nothing was found: it was stopped, or it failed.
+        if kind == JobKind::Enclose && self.tool.is_looking() && !self.engine.is_busy(kind) {
+            self.abort_tool();
         }
     }
 
@@ -529,19 +538,19 @@ impl Editor {
         tool.abort(self);
     }
 
-    /// Whether the event must wait for rays that answer from what is drawn, or for those that wait already.
+    /// Whether the event must wait for rays that answer from what is drawn, for what an outline holds, or for those
+    /// that wait already.
     fn must_wait(&mut self, event: &Event) -> bool {
+        let waits = !self.held.is_empty() || self.tool.is_looking();
         match event {
             Event::Key(Key::Escape, _) | Event::PointerLeft => {
                 self.held.clear();
                 false
             }
-            Event::PointerMoved(_) | Event::PointerReleased(..) | Event::Wheel { .. } | Event::Key(..) => {
-                !self.held.is_empty()
-            }
+            Event::PointerMoved(_) | Event::PointerReleased(..) | Event::Wheel { .. } | Event::Key(..) => waits,
             Event::PointerPressed(pointer, button) => {
                 let asks = *button == Button::Primary && !pointer.modifiers.alt && matches!(self.tool, Tool::Idle);
-                !self.held.is_empty()
+                waits
                     || (asks
                         && self.engine.is_busy(JobKind::Pick)
                         && !self.engine.is_picking_current()

@@ -66,6 +66,7 @@ pub(crate) struct Engine {
     remains: Option<Remains>,
     bound_revision: Revision,
     mirror_revision: Revision,
+    enclose_revision: Revision,
     pub(crate) warnings: Vec<String>,
 }
 
@@ -77,6 +78,8 @@ pub(crate) enum Arrival {
     Picking,
     /// The vertices of a mirror image.
     Mirrored(Vec<usize>),
+    /// The vertices that an outline holds.
+    Enclosed(Vec<SurfaceVertex>),
     /// A new shape; the flag says whether it is the final one.
     Shape(Solved, Finality),
     /// Something went wrong; one sentence.
@@ -115,6 +118,7 @@ impl Engine {
             remains: None,
             bound_revision: Revision(0),
             mirror_revision: Revision(0),
+            enclose_revision: Revision(0),
             warnings: Vec::new(),
         }
     }
@@ -163,6 +167,18 @@ impl Engine {
         self.queues[JobKind::Mirror as usize].request(self.mirror_revision, work);
     }
 
+    /// Has an outline's vertices looked for.
+    pub(crate) fn enclose(&mut self, work: Work) {
+        self.stop_enclosing();
+        self.queues[JobKind::Enclose as usize].request(self.enclose_revision, work);
+    }
+
+    /// An outline's vertices are not wanted any more.
+    pub(crate) fn stop_enclosing(&mut self) {
+        self.queues[JobKind::Enclose as usize].cancel();
+        self.enclose_revision = self.next_revision();
+    }
+
     /// Rays are to meet these triangles alone.
     pub(crate) fn show_triangles(&mut self, shown: Option<Arc<Vec<u32>>>) {
         self.shown = shown;
@@ -195,6 +211,7 @@ impl Engine {
             JobKind::Bind,
             JobKind::Solve,
             JobKind::Mirror,
+            JobKind::Enclose,
         ] {
             let queue = &mut self.queues[kind as usize];
             if queue.is_busy() {
@@ -295,6 +312,7 @@ impl Engine {
                 self.bound_revision = stamp;
             }
             JobOutcome::Mirrored(image) if stamp == self.mirror_revision => return Arrival::Mirrored(image),
+            JobOutcome::Enclosed(vertices) if stamp == self.enclose_revision => return Arrival::Enclosed(vertices),
             JobOutcome::Solved(solved) if stamp >= self.solve_floor => {
                 let last = stamp == self.target_revision && solved.finished;
                 return Arrival::Shape(solved, if last { Finality::Final } else { Finality::Preview });
@@ -320,6 +338,7 @@ impl Engine {
             JobKind::Region | JobKind::Bind => self.problem_revision,
             JobKind::Solve => self.target_revision,
             JobKind::Mirror => self.mirror_revision,
+            JobKind::Enclose => self.enclose_revision,
         }
     }
 

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::{Bound, Ordering};
-use pliant_mesh::{Bvh, Cancel, Progress};
+use pliant_mesh::{Bvh, Cancel, Progress, SurfaceVertex};
 
 use crate::Region;
 
@@ -27,17 +27,20 @@ pub enum JobKind {
     Solve,
     /// The mirror image of a region.
     Mirror,
+    /// The vertices that an outline on the screen holds.
+    Enclose,
 }
 
 impl JobKind {
     /// Every kind, in the order in which their results build on one another.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Pick,
         Self::Order,
         Self::Region,
         Self::Bind,
         Self::Solve,
         Self::Mirror,
+        Self::Enclose,
     ];
 
     /// What the job does, for the status line: "binding".
@@ -49,6 +52,7 @@ impl JobKind {
             Self::Bind => "binding",
             Self::Solve => "bending",
             Self::Mirror => "looking for the mirror image",
+            Self::Enclose => "looking for what is inside",
         }
     }
 }
@@ -135,6 +139,8 @@ pub enum JobOutcome {
     Solved(Solved),
     /// The vertices of a region's mirror image, ascending.
     Mirrored(Vec<usize>),
+    /// The vertices that an outline holds, ascending.
+    Enclosed(Vec<SurfaceVertex>),
     /// It was cancelled, and nothing is owed.
     Cancelled,
     /// It failed; one sentence that names the culprit and the remedy.
@@ -150,6 +156,7 @@ impl std::fmt::Debug for JobOutcome {
             Self::Bound(_) => "Bound",
             Self::Solved(_) => "Solved",
             Self::Mirrored(_) => "Mirrored",
+            Self::Enclosed(_) => "Enclosed",
             Self::Cancelled => "Cancelled",
             Self::Failed(sentence) => return write!(f, "Failed({sentence})"),
         })

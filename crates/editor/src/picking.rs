@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::{Bvh, Model, SurfaceVertex};
 
 use crate::camera::{Camera, Ray};
+use crate::job::Pickable;
 use crate::sight::Sight;
 
 /// A point of the surface under the pointer.
@@ -40,7 +41,27 @@ pub(crate) struct Picking<'a> {
     pub(crate) is_current: bool,
 }
 
-impl Picking<'_> {
+impl<'a> Picking<'a> {
+    /// What a camera sees in a viewport.
+    pub(crate) fn of(
+        model: &'a Model,
+        displacements: &'a Arc<Vec<DVec3>>,
+        pickable: &'a Pickable,
+        (camera, viewport_px): (&'a Camera, DVec2),
+        is_current: bool,
+    ) -> Self {
+        Self {
+            model,
+            displacements,
+            bvh: &pickable.bvh,
+            triangles: pickable.triangles.as_deref().map(Vec::as_slice),
+            camera,
+            viewport_px,
+            sight: Sight::of(camera, viewport_px),
+            is_current,
+        }
+    }
+
     /// The present position of a surface vertex.
     pub(crate) fn position(&self, vertex: SurfaceVertex) -> DVec3 {
         self.model.surface.positions[vertex.index()] + self.displacements[vertex.index()]

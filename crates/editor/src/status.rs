@@ -93,7 +93,7 @@ impl Editor {
             JobKind::Solve => false,
             JobKind::Pick => self.engine.pickable.is_none(),
             JobKind::Order => !self.document.handles.is_empty(),
-            JobKind::Region | JobKind::Bind | JobKind::Mirror => true,
+            JobKind::Region | JobKind::Bind | JobKind::Mirror | JobKind::Enclose => true,
         })?;
         let doing = kind.doing();
         let waits = matches!(self.tool, Tool::Transform(_)) || !self.document.settled;

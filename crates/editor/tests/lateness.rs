@@ -4,7 +4,7 @@
 mod rig;
 
 use glam::DVec2;
-use pliant_editor::{Command, Event, GizmoPart, JobKind, JobOutcome, Key, Paint, ToolMode};
+use pliant_editor::{Command, Event, GizmoPart, JobKind, JobOutcome, Key, Paint, StrokeShape, ToolMode};
 use pliant_mesh::shapes;
 use rig::{CENTRE_PX, Rig};
 
@@ -280,4 +280,51 @@ fn a_click_waits_for_its_answer() {
         "the stroke was made when the pointer could be answered"
     );
     assert!(rig.editor.view().undo.is_some());
+}
+
+/// A lasso around this point of the view, let go.
+fn lasso(rig: &mut Rig, middle_px: DVec2) {
+    let corners = [(-40.0, -40.0), (40.0, -40.0), (40.0, 40.0), (-40.0, 40.0)];
+    rig.swipe(&corners.map(|(x, y)| middle_px + DVec2::new(x, y)));
+}
+
+#[test]
+fn what_is_done_while_a_lasso_looks_waits_and_nothing_is_left_of_one_that_is_stopped() {
+    let mut rig = open("arap");
+    rig.command(Command::SetTool(ToolMode::PaintFixed));
+    rig.command(Command::SetStrokeShape(StrokeShape::Lasso));
+    let bare = rig.fingerprint();
+    let fixed = |rig: &Rig| {
+        let paint = rig.editor.document().paint();
+        paint.iter().filter(|paint| **paint == Paint::Fixed).count()
+    };
+    for way in ["escape", "stop", "failure", "tool"] {
+        lasso(&mut rig, CENTRE_PX);
+        assert!(rig.jobs.waiting().contains(&JobKind::Enclose) && fixed(&rig) == 0);
+        match way {
+            "escape" => rig.key(Key::Escape),
+            "stop" => rig.command(Command::CancelJobs),
+            "tool" => rig.command(Command::SetTool(ToolMode::PaintFixed)),
+            _ => {
+                let mut job = rig.jobs.take(JobKind::Enclose).unwrap();
+                job.work = Box::new(|| JobOutcome::Failed("it broke".to_owned()));
+                rig.editor.handle(Event::JobDone(job.run()));
+                assert_eq!(rig.editor.view().problem, Some("it broke"));
+            }
+        }
+        rig.drain();
+        assert!(rig.fingerprint() == bare && rig.editor.is_settled(), "{way}");
+        assert_eq!(rig.editor.history().names().0.len(), 0, "{way}");
+    }
+    lasso(&mut rig, CENTRE_PX);
+    lasso(&mut rig, CENTRE_PX + DVec2::new(60.0, 0.0));
+    rig.key(Key::Character('2'));
+    assert_eq!(fixed(&rig), 0);
+    assert!(rig.run(JobKind::Enclose));
+    let one = fixed(&rig);
+    assert!(one > 0);
+    rig.drain();
+    assert!(fixed(&rig) > one, "the second was not lost");
+    assert_eq!(rig.editor.view().tool, ToolMode::PaintFree, "nor the key after it");
+    assert_eq!(rig.editor.history().names().0.len(), 2);
 }

@@ -4,6 +4,7 @@
 //! is aborted leaves no trace.
 
 mod adjust;
+mod enclosed;
 mod navigate;
 mod outline;
 mod paint;
@@ -78,6 +79,11 @@ impl Tool {
             Self::Paint(_) | Self::Stiffness(_) | Self::Outline(_) => Activity::Painting,
             Self::Transform(_) => Activity::Dragging,
         }
+    }
+
+    /// Whether a job looks for what an outline holds.
+    pub(crate) fn is_looking(&self) -> bool {
+        matches!(self, Self::Outline(outline) if outline.is_looking())
     }
 
     pub(crate) fn moved(self, editor: &mut Editor, pointer: Pointer) -> Self {

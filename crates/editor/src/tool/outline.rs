@@ -2,13 +2,12 @@
 
 use glam::DVec2;
 use pliant_mesh::SurfaceVertex;
-use rayon::prelude::*;
 
 use super::Tool;
+use super::enclosed::Search;
 use super::paint::PaintStroke;
 use crate::editor::Editor;
-use crate::picking::Picking;
-use crate::{Button, Pointer};
+use crate::{Button, JobOutcome, Pointer};
 
 /// How the left button takes vertices.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
@@ -42,6 +41,15 @@ pub(crate) struct OutlineStroke {
     points_px: Vec<DVec2>,
     /// What takes the vertices in the end.
     stroke: PaintStroke,
+    phase: Phase,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Phase {
+    /// The button is held.
+    Drawing,
+    /// It was let go, and a job looks for the vertices inside.
+    Looking,
 }
 
 impl OutlineStroke {
@@ -51,6 +59,7 @@ impl OutlineStroke {
             shape,
             points_px: vec![pointer.position_px],
             stroke,
+            phase: Phase::Drawing,
         })
     }
 
@@ -62,17 +71,25 @@ impl OutlineStroke {
         }
     }
 
+    pub(crate) fn is_looking(&self) -> bool {
+        self.phase == Phase::Looking
+    }
+
     pub(crate) fn status(&self) -> String {
         let shape = if self.shape == StrokeShape::Box { "box" } else { "lasso" };
-        format!("Drawing a {shape}: let go to paint what is inside, Esc to leave it")
+        match self.phase {
+            Phase::Drawing => format!("Drawing a {shape}: let go to paint what is inside, Esc to leave it"),
+            Phase::Looking => format!("Looking for what is in the {shape}: Esc to leave it"),
+        }
     }
 
     pub(crate) fn moved(mut self: Box<Self>, pointer: Pointer) -> Tool {
         // Not every pixel is a corner.
-        if self
-            .points_px
-            .last()
-            .is_none_or(|last| last.distance(pointer.position_px) >= 2.0)
+        if self.phase == Phase::Drawing
+            && self
+                .points_px
+                .last()
+                .is_none_or(|last| last.distance(pointer.position_px) >= 2.0)
         {
             if self.shape == StrokeShape::Box {
                 self.points_px.truncate(1);
@@ -83,95 +100,33 @@ impl OutlineStroke {
     }
 
     pub(crate) fn released(self: Box<Self>, editor: &mut Editor, pointer: Pointer, button: Button) -> Tool {
-        if button != Button::Primary {
+        if button != Button::Primary || self.is_looking() {
             return Tool::Outline(self);
         }
-        let Tool::Outline(outline) = self.moved(pointer) else {
+        let Tool::Outline(mut outline) = self.moved(pointer) else {
             return Tool::Idle;
         };
-        let polygon = outline.outline_px();
-        let inside = match editor.picking() {
-            Some(picking) => vertices_inside(&picking, &polygon, editor.depth),
-            None => Vec::new(),
+        let Some(search) = Search::of(editor, &outline.outline_px(), editor.depth) else {
+            outline.take(editor, Vec::new());
+            return Tool::Idle;
         };
-        outline.stroke.finish_with(editor, inside);
-        Tool::Idle
+        editor
+            .engine
+            .enclose(Box::new(move |progress, cancel| match search.run(progress, cancel) {
+                Ok(vertices) => JobOutcome::Enclosed(vertices),
+                Err(_) => JobOutcome::Cancelled,
+            }));
+        outline.phase = Phase::Looking;
+        Tool::Outline(outline)
+    }
+
+    /// Paints the vertices inside, and ends.
+    pub(crate) fn take(self, editor: &mut Editor, inside: Vec<SurfaceVertex>) {
+        self.stroke.finish_with(editor, inside);
     }
 
     pub(crate) fn abort(self, editor: &mut Editor) {
+        editor.engine.stop_enclosing();
         self.stroke.abort(editor);
-    }
-}
-
-/// The vertices whose picture lies in the closed line, ascending.
-fn vertices_inside(picking: &Picking<'_>, polygon: &[DVec2], depth: Depth) -> Vec<SurfaceVertex> {
-    if polygon.len() < 3 {
-        return Vec::new();
-    }
-    let (low, high) = polygon
-        .iter()
-        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| {
-            (low.min(*p), high.max(*p))
-        });
-    (0..picking.model.surface.positions.len() as u32)
-        .into_par_iter()
-        .with_min_len(4096)
-        .map(SurfaceVertex)
-        .filter(|&vertex| {
-            let position = picking.position(vertex);
-            let Some(px) = picking.sight.project(position) else {
-                return false;
-            };
-            let is_inside = px.cmpge(low).all() && px.cmple(high).all() && is_inside(px, polygon);
-            if !is_inside || depth == Depth::Through {
-                return is_inside;
-            }
-            // Where the line of sight through the vertex begins: the eye itself, but for an orthographic view.
-            let eye = picking.camera.ray(px, picking.viewport_px).origin;
-            picking.is_seen(vertex, position, eye)
-        })
-        .collect()
-}
-
-/// Whether a point lies within a closed line, by the number of edges to its right.
-fn is_inside(p: DVec2, polygon: &[DVec2]) -> bool {
-    let next = polygon.iter().cycle().skip(1);
-    polygon
-        .iter()
-        .zip(next)
-        .filter(|(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x))
-        .count()
-        % 2
-        == 1
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::DVec2;
-
-    use super::is_inside;
-
-    #[test]
-    fn a_hook_has_its_mouth_outside() {
-        let hook = [
-            (0.0, 0.0),
-            (6.0, 0.0),
-            (6.0, 6.0),
-            (4.0, 6.0),
-            (4.0, 2.0),
-            (2.0, 2.0),
-            (2.0, 6.0),
-            (0.0, 6.0),
-        ];
-        let hook = hook.map(|(x, y)| DVec2::new(x, y));
-        for (x, y, inside) in [
-            (1.0, 5.0, true),
-            (3.0, 4.0, false),
-            (5.0, 5.0, true),
-            (3.0, 1.0, true),
-            (7.0, 3.0, false),
-        ] {
-            assert_eq!(is_inside(DVec2::new(x, y), &hook), inside, "{x} {y}");
-        }
     }
 }
