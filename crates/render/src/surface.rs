@@ -57,7 +57,8 @@ pub struct ShapeData<'a> {
 
 /// Materials and their textures on the device, made apart from the surface that will wear them: textures take longer to
 /// decode and upload than all the rest, and can be made on another thread.
-#[derive(Debug)]
+/// Cloning shares them.
+#[derive(Clone, Debug)]
 pub struct Outfit {
     /// One a material, and the default one's behind them.
     groups: Vec<wgpu::BindGroup>,

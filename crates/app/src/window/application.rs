@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, CentralPanel, Panel, Sense, vec2};
 use glam::{DVec2, DVec3};
-use pliant_editor::{Command, Cursor, Editor, Event, JobQueue, KeyMap, Revision, Shading};
+use pliant_editor::{Command, Cursor, Editor, Event, JobQueue, KeyMap, Revision, Shading, method_title};
 
 use super::axis_ball;
 use super::compare::Compare;
@@ -615,12 +615,14 @@ impl Application {
             );
         }
         if let (Some(second), Some(compare), Some(stage)) = (second, &mut self.compare, self.workers.stage()) {
-            compare.follow(&self.editor, &stage);
+            compare.follow(&self.editor, &self.viewport, &stage);
             let resting = smooth == Smoothness::Resting && compare.is_settled();
             let smooth = if resting { smooth } else { Smoothness::Moving };
             if compare.show(ui, second, smooth)? {
                 ui.ctx().request_repaint_after(REST);
             }
+            let name = method_title(self.editor.document().method().name());
+            axis_ball::readout(ui.painter(), rect.center_top() + vec2(-60.0, 12.0), name);
         }
         let outline_px = self.editor.view().outline_px;
         if outline_px.len() > 1 {

@@ -66,15 +66,27 @@ impl Compare {
         view.settled && shown.is_some_and(|shown| Arc::ptr_eq(shown, view.displacements))
     }
 
-    /// Takes over what the first view's editor has and what has ended elsewhere.
-    pub fn follow(&mut self, leader: &Editor, stage: &Stage) {
+    /// Takes over what the first view and its editor have, and what has ended elsewhere.
+    pub fn follow(&mut self, leader: &Editor, first: &Viewport, stage: &Stage) {
         self.workers.set_stage(stage.clone());
         while let Ok(message) = self.messages.try_recv() {
             self.take(message);
         }
         self.editor.follow(leader, &self.method);
         self.upload(stage);
+        self.wear(first, stage);
         self.request_pose(stage);
+    }
+
+    /// Shows the same images as the first view.
+    fn wear(&mut self, first: &Viewport, stage: &Stage) {
+        let is_bare = self.viewport.shows(&stage.drawing) && self.viewport.outfit().is_none();
+        let Some(outfit) = first.outfit().filter(|_| is_bare) else {
+            return;
+        };
+        if let Err(error) = self.viewport.wear(&stage.drawing, outfit.clone()) {
+            self.problem = Some(error.to_string());
+        }
     }
 
     fn take(&mut self, message: Message) {

@@ -78,6 +78,8 @@ struct Shown {
     /// Which of the editor's rims it has.
     rims: Option<u64>,
     scale: Option<Arc<Scale>>,
+    /// Its materials with their images, once there are any.
+    outfit: Option<Outfit>,
     /// How often its materials changed.
     outfits: u64,
     /// The triangles that are drawn.
@@ -232,6 +234,7 @@ impl Viewport {
             drawn_colours: Vec::new(),
             rims: None,
             scale: None,
+            outfit: None,
             outfits: 0,
             shown: None,
         });
@@ -245,10 +248,16 @@ impl Viewport {
         match &mut self.surface {
             Some(shown) if Arc::ptr_eq(&shown.drawing, drawing) => {
                 shown.outfits += 1;
+                shown.outfit = Some(outfit.clone());
                 shown.surface.wear(outfit)
             }
             _ => Ok(()),
         }
+    }
+
+    /// The materials with their images of the file that is shown, once it has them.
+    pub fn outfit(&self) -> Option<&Outfit> {
+        self.surface.as_ref()?.outfit.as_ref()
     }
 
     /// The numbers that the surface's colours show.
