@@ -51,7 +51,7 @@ use crate::handle::{Handle, Motion};
 use crate::lbfgs::Memory;
 use crate::partition::Partition;
 use crate::sparse::Elimination;
-use crate::sparse::cholesky::FactorError;
+use crate::sparse::factor_error::FactorError;
 use crate::sparse::graph::elimination;
 use crate::{BindError, Problem};
 

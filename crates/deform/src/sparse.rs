@@ -3,10 +3,13 @@
 mod bisection;
 pub(crate) mod cholesky;
 mod dissection;
+mod elimination;
+pub(crate) mod factor_error;
 mod forest;
 mod front;
 pub(crate) mod graph;
 mod kernels;
+mod labels;
 mod leaf;
 mod line;
 pub(crate) mod matrix;
@@ -20,5 +23,5 @@ mod symbolic;
 mod tiles;
 mod triangular;
 
-pub(crate) use ordering::Elimination;
+pub(crate) use elimination::Elimination;
 pub use ordering::Ordering;

@@ -7,7 +7,8 @@ use super::cells::Quad;
 use super::domain::Domain;
 use super::matrix::System;
 use crate::operators::CHUNK;
-use crate::sparse::cholesky::{Factor, FactorError};
+use crate::sparse::cholesky::Factor;
+use crate::sparse::factor_error::FactorError;
 use crate::sparse::substitution::{Real, Room, Row, Substitution};
 use crate::sums::CHUNKS_A_TASK;
 

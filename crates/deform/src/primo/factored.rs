@@ -5,7 +5,8 @@ use pliant_mesh::Cancel;
 use super::joints::Joints;
 use super::pose::Pose;
 use super::system::{DOF, gauss_newton, laplacian};
-use crate::sparse::cholesky::{Factor, FactorError};
+use crate::sparse::cholesky::Factor;
+use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
 
 /// H⁻¹, or nearly so.

@@ -16,7 +16,7 @@ use super::pose::Pose;
 use super::sweep::Colours;
 use super::system::{Block, own_block};
 use crate::operators::CHUNK;
-use crate::sparse::cholesky::FactorError;
+use crate::sparse::factor_error::FactorError;
 use crate::sparse::graph::elimination;
 
 /// Up to so many bodies are solved for directly.

@@ -14,7 +14,8 @@ use crate::shell::assembly::assemble_shell;
 use crate::shell::operator::ShellOperator;
 use crate::shell::refine::{Outcome, solve};
 use crate::sparse::Elimination;
-use crate::sparse::cholesky::{Factor, FactorError, Renewable, Renewal};
+use crate::sparse::cholesky::{Factor, Renewable, Renewal};
+use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::CONSTRAINED;
 
 /// The factored shell over the local vertices of its Laplacian.

@@ -11,7 +11,8 @@ use std::sync::Arc;
 
 use pliant_mesh::Cancel;
 
-use crate::sparse::Elimination;
+use crate::sparse::elimination::Elimination;
+use crate::sparse::factor_error::FactorError;
 use crate::sparse::forest::Forest;
 use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::multifrontal::{Left, Numbers};
@@ -46,17 +47,6 @@ pub(crate) struct Renewable {
     elimination: Elimination,
     /// What was added to the matrix' unit diagonal.
     pub shift: f64,
-}
-
-/// Why there is no factor.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum FactorError {
-    /// The pivot of this column is not above zero.
-    Pivot(usize),
-    /// Too large for the machine or for the index type.
-    Memory,
-    /// Somebody raised the flag.
-    Cancelled,
 }
 
 impl Factor {

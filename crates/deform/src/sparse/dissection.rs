@@ -12,6 +12,8 @@ use pliant_mesh::{Cancel, Cancelled, SurfaceVertex};
 
 use crate::operators::net::Graph;
 use crate::sparse::bisection::WeightedGraph;
+use crate::sparse::elimination::Elimination;
+use crate::sparse::labels::{CUT_OUT, Labelled};
 use crate::sparse::leaf;
 
 /// Parts of at most so many vertices are not cut any more.
@@ -20,30 +22,16 @@ const LEAF: usize = 250;
 /// Parts of more vertices are cut beside each other.
 const APART: usize = 2048;
 
-/// The label of what stands in no part any more.
-const CUT_OUT: u32 = 0;
-
-/// Vertices in the order of elimination, and where each block of them ends that is eliminated at once.
-#[derive(Default, Debug)]
-pub(crate) struct Piece {
-    pub order: Vec<u32>,
-    pub ends: Vec<u32>,
-}
-
-impl Piece {
-    fn append(&mut self, other: Self) {
-        let first = self.order.len() as u32;
-        self.ends.extend(other.ends.iter().map(|end| first + end));
-        self.order.extend(other.order);
-    }
-}
-
 /// Orders a graph's `count` vertices for the graph of the `power`-th power of the Laplacian.
-pub(crate) fn dissect<G: Graph>(graph: &G, count: usize, power: u32, cancel: &Cancel) -> Result<Piece, Cancelled> {
+pub(crate) fn dissect<G: Graph>(
+    graph: &G,
+    count: usize,
+    power: u32,
+    cancel: &Cancel,
+) -> Result<Elimination, Cancelled> {
     let dissection = Dissection {
-        graph,
+        parts: Labelled::whole(graph, count),
         power,
-        labels: (0..count).map(|_| AtomicU32::new(1)).collect(),
         places: (0..count).map(|_| AtomicU32::new(0)).collect(),
         cancel,
     };
@@ -52,35 +40,20 @@ pub(crate) fn dissect<G: Graph>(graph: &G, count: usize, power: u32, cancel: &Ca
     Ok(piece)
 }
 
-/// What all parts share. A part writes the entries of its own vertices alone, and reads beyond them only whether a
-/// vertex is its own: so the order in which parts are cut does not show.
-pub(crate) struct Dissection<'a, G> {
-    graph: &'a G,
-    pub power: u32,
-    /// The part that each vertex is in: halves of part i are 2 i and 2 i + 1.
-    labels: Vec<AtomicU32>,
+/// What all parts share.
+struct Dissection<'a, G> {
+    parts: Labelled<'a, G>,
+    power: u32,
     /// The place of each vertex in its part.
     places: Vec<AtomicU32>,
     cancel: &'a Cancel,
 }
 
 impl<G: Graph> Dissection<'_, G> {
-    pub fn label(&self, vertex: u32) -> u32 {
-        self.labels[vertex as usize].load(Relaxed)
-    }
-
-    fn set_label(&self, vertex: u32, label: u32) {
-        self.labels[vertex as usize].store(label, Relaxed);
-    }
-
-    pub fn ring(&self, vertex: u32) -> &[SurfaceVertex] {
-        self.graph.neighbours(SurfaceVertex(vertex))
-    }
-
     /// Orders the vertices with the label `id`.
-    fn part(&self, vertices: Vec<u32>, id: u32) -> Piece {
+    fn part(&self, vertices: Vec<u32>, id: u32) -> Elimination {
         if vertices.len() <= LEAF || id >= 1 << 30 || self.cancel.is_cancelled() {
-            return leaf::order(self, &vertices, id);
+            return leaf::order(&self.parts, self.power, &vertices, id);
         }
         let halves = [2 * id, 2 * id + 1];
         self.cut(&vertices, id, halves);
@@ -89,14 +62,14 @@ impl<G: Graph> Dissection<'_, G> {
             vertices
                 .iter()
                 .copied()
-                .filter(|&v| self.label(v) == label)
+                .filter(|&v| self.parts.label(v) == label)
                 .collect::<Vec<u32>>()
         };
         let parts = halves.map(of);
         // A graph that can't be cut, such as a vertex that all others neighbour: nothing is sparse there.
         if parts.iter().any(Vec::is_empty) {
-            vertices.iter().for_each(|&v| self.set_label(v, id));
-            return leaf::order(self, &vertices, id);
+            vertices.iter().for_each(|&v| self.parts.set_label(v, id));
+            return leaf::order(&self.parts, self.power, &vertices, id);
         }
         let apart = vertices.len() > APART;
         drop(vertices);
@@ -108,7 +81,7 @@ impl<G: Graph> Dissection<'_, G> {
         };
         piece.append(other);
         if !separator.is_empty() {
-            piece.append(Piece {
+            piece.append(Elimination {
                 ends: vec![separator.len() as u32],
                 order: separator,
             });
@@ -128,23 +101,23 @@ impl<G: Graph> Dissection<'_, G> {
         };
         graph.starts.push(0);
         for &v in vertices {
-            let own = self.ring(v).iter().filter(|n| self.label(n.0) == id);
+            let own = self.parts.ring(v).iter().filter(|n| self.parts.label(n.0) == id);
             graph
                 .edges
                 .extend(own.map(|n| (self.places[n.index()].load(Relaxed), 1)));
             graph.starts.push(graph.edges.len() as u32);
         }
         for (&v, side) in vertices.iter().zip(graph.bisect()) {
-            self.set_label(v, halves[usize::from(side)]);
+            self.parts.set_label(v, halves[usize::from(side)]);
         }
     }
 
     /// Takes a separator out of the halves; returns it, ascending.
     fn separator(&self, vertices: &[u32], halves: [u32; 2]) -> Vec<u32> {
-        let is = |n: &SurfaceVertex, label: u32| self.label(n.0) == label;
+        let is = |n: &SurfaceVertex, label: u32| self.parts.label(n.0) == label;
         // Where L itself is factored one side's rim is enough; each further power takes a ring more.
         let rim = |own: u32, other: u32| {
-            let touches = |v: &u32| self.label(*v) == own && self.ring(*v).iter().any(|n| is(n, other));
+            let touches = |v: &u32| self.parts.label(*v) == own && self.parts.ring(*v).iter().any(|n| is(n, other));
             vertices.iter().copied().filter(touches).collect::<Vec<u32>>()
         };
         let mut rims = [rim(halves[0], halves[1]), rim(halves[1], halves[0])];
@@ -153,10 +126,10 @@ impl<G: Graph> Dissection<'_, G> {
             let smaller = usize::from(rims[1].len() < rims[0].len());
             let side = if self.power == 2 { ring as usize } else { smaller };
             let taken = std::mem::take(&mut rims[side]);
-            taken.iter().for_each(|&v| self.set_label(v, CUT_OUT));
+            taken.iter().for_each(|&v| self.parts.set_label(v, CUT_OUT));
             let mut beyond: Vec<u32> = taken
                 .iter()
-                .flat_map(|&v| self.ring(v))
+                .flat_map(|&v| self.parts.ring(v))
                 .filter(|n| is(n, halves[side]))
                 .map(|n| n.0)
                 .collect();
@@ -168,34 +141,31 @@ impl<G: Graph> Dissection<'_, G> {
         // Walks around the end of the cut, through vertices that stand in no part any more.
         if self.power > 1 {
             for &v in vertices {
-                let own = self.label(v);
+                let own = self.parts.label(v);
                 if own != CUT_OUT
-                    && self.ring(v).iter().any(|n| self.label(n.0) >> 1 != own >> 1)
-                    && self.reaches(v, self.power, own ^ 1)
+                    && self
+                        .parts
+                        .ring(v)
+                        .iter()
+                        .any(|n| self.parts.label(n.0) >> 1 != own >> 1)
+                    && self.parts.reaches(v, self.power, own ^ 1)
                 {
-                    self.set_label(v, CUT_OUT);
+                    self.parts.set_label(v, CUT_OUT);
                     separator.push(v);
                 }
             }
         }
         separator.sort_unstable();
         separator.retain(|&v| {
-            let reached = halves.map(|half| self.reaches(v, self.power, half));
+            let reached = halves.map(|half| self.parts.reaches(v, self.power, half));
             match reached {
                 [true, true] => true,
                 [_, to_right] => {
-                    self.set_label(v, halves[usize::from(to_right)]);
+                    self.parts.set_label(v, halves[usize::from(to_right)]);
                     false
                 }
             }
         });
         separator
-    }
-
-    /// Whether a walk of at most `edges` edges leads to this label.
-    fn reaches(&self, vertex: u32, edges: u32, label: u32) -> bool {
-        let ring = self.ring(vertex);
-        ring.iter().any(|n| self.label(n.0) == label)
-            || edges > 1 && ring.iter().any(|n| self.reaches(n.0, edges - 1, label))
     }
 }

@@ -6,7 +6,7 @@
 use pliant_mesh::Cancel;
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::sparse::cholesky::FactorError;
+use crate::sparse::factor_error::FactorError;
 use crate::sparse::line::{LANES, Line, Shape, triangle};
 use crate::sparse::tiles::{finish_diagonal, finish_strips, square_strips};
 

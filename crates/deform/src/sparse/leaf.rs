@@ -6,7 +6,8 @@
 //! blocks that are worth a dense factorisation.
 
 use crate::operators::net::Graph;
-use crate::sparse::dissection::{Dissection, Piece};
+use crate::sparse::elimination::Elimination;
+use crate::sparse::labels::Labelled;
 
 /// More vertices than this are taken as they stand: something is not like a surface there.
 const MOST: usize = 1024;
@@ -14,9 +15,9 @@ const MOST: usize = 1024;
 /// Columns of a block where nothing is known about how they hang together.
 const PLAIN: usize = 32;
 
-/// Orders the vertices with the label `id`.
-pub(crate) fn order<G: Graph>(dissection: &Dissection<G>, vertices: &[u32], id: u32) -> Piece {
-    let plain = || Piece {
+/// Orders the vertices with the label `id` for the graph of the `power`-th power of the Laplacian.
+pub(crate) fn order<G: Graph>(parts: &Labelled<G>, power: u32, vertices: &[u32], id: u32) -> Elimination {
+    let plain = || Elimination {
         order: vertices.to_vec(),
         ends: (0..vertices.len().div_ceil(PLAIN))
             .map(|block| (PLAIN * (block + 1)).min(vertices.len()) as u32)
@@ -25,13 +26,13 @@ pub(crate) fn order<G: Graph>(dissection: &Dissection<G>, vertices: &[u32], id: 
     if vertices.len() > MOST {
         return plain();
     }
-    let near = nearby(dissection, vertices);
+    let near = nearby(parts, power, vertices);
     if near.len() > 2 * MOST {
         return plain();
     }
-    let graph = Rows::of(dissection, vertices, &near, id);
+    let graph = Rows::of(parts, power, vertices, &near, id);
     let blocks = join(graph.eliminate());
-    let mut piece = Piece::default();
+    let mut piece = Elimination::default();
     for block in blocks {
         piece.order.extend(block.columns.iter().map(|&column| vertices[column]));
         piece.ends.push(piece.order.len() as u32);
@@ -40,12 +41,12 @@ pub(crate) fn order<G: Graph>(dissection: &Dissection<G>, vertices: &[u32], id: 
 }
 
 /// The vertices within reach of the part, ascending, the part's own among them.
-fn nearby<G: Graph>(dissection: &Dissection<G>, vertices: &[u32]) -> Vec<u32> {
+fn nearby<G: Graph>(parts: &Labelled<G>, power: u32, vertices: &[u32]) -> Vec<u32> {
     let mut near = vertices.to_vec();
-    for _ in 0..dissection.power {
+    for _ in 0..power {
         let before = near.len();
         for i in 0..before {
-            near.extend(dissection.ring(near[i]).iter().map(|n| n.0));
+            near.extend(parts.ring(near[i]).iter().map(|n| n.0));
         }
         near.sort_unstable();
         near.dedup();
@@ -70,12 +71,12 @@ struct Block {
 }
 
 impl Rows {
-    fn of<G: Graph>(dissection: &Dissection<G>, vertices: &[u32], near: &[u32], id: u32) -> Self {
+    fn of<G: Graph>(parts: &Labelled<G>, power: u32, vertices: &[u32], near: &[u32], id: u32) -> Self {
         // The part's vertices keep their numbers; the halo's come behind.
         let mut number = Vec::with_capacity(near.len());
         let (mut own, mut halo) = (0, vertices.len());
         for &v in near {
-            if dissection.label(v) == id {
+            if parts.label(v) == id {
                 number.push(own);
                 own += 1;
             } else {
@@ -90,7 +91,7 @@ impl Rows {
         for (i, &v) in near.iter().enumerate() {
             let row = &mut rings[i * words..(i + 1) * words];
             row[number[i] / 64] |= 1 << (number[i] % 64);
-            for n in dissection.ring(v) {
+            for n in parts.ring(v) {
                 if let Some(j) = place(n.0) {
                     row[number[j] / 64] |= 1 << (number[j] % 64);
                 }
@@ -99,7 +100,7 @@ impl Rows {
         let mut rows = vec![0_u64; vertices.len() * words];
         for (i, &v) in vertices.iter().enumerate() {
             let row = &mut rows[i * words..(i + 1) * words];
-            gather(dissection, &rings, words, &place, v, dissection.power, row);
+            gather(parts, &rings, words, &place, v, power, row);
             row[i / 64] &= !(1 << (i % 64));
         }
         Self {
@@ -166,7 +167,7 @@ impl Rows {
 
 /// row |= what is within `power` edges of `vertex`.
 fn gather<G: Graph>(
-    dissection: &Dissection<G>,
+    parts: &Labelled<G>,
     rings: &[u64],
     words: usize,
     place: &impl Fn(u32) -> Option<usize>,
@@ -182,8 +183,8 @@ fn gather<G: Graph>(
         }
         return;
     }
-    for n in dissection.ring(vertex) {
-        gather(dissection, rings, words, place, n.0, power - 1, row);
+    for n in parts.ring(vertex) {
+        gather(parts, rings, words, place, n.0, power - 1, row);
     }
 }
 

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use pliant_mesh::Cancel;
 
-use crate::sparse::cholesky::FactorError;
+use crate::sparse::factor_error::FactorError;
 use crate::sparse::forest::Forest;
 use crate::sparse::front::{factor_panel, square};
 use crate::sparse::line::{LANES, Line, Shape, strips, triangle};

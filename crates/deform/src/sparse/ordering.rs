@@ -7,6 +7,7 @@
 use pliant_mesh::{Cancel, Cancelled, Progress, Topology};
 
 use crate::sparse::dissection::dissect;
+use crate::sparse::elimination::Elimination;
 
 /// An elimination order of all surface vertices for systems with the graph of Lᵏ.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -20,13 +21,6 @@ pub struct Ordering {
     ends: Vec<u32>,
 }
 
-/// Vertices in the order of elimination, and where each block of them ends that is eliminated at once.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub(crate) struct Elimination {
-    pub order: Vec<u32>,
-    pub ends: Vec<u32>,
-}
-
 impl Ordering {
     /// Orders the graph of the `power`-th power of the Laplacian by nested dissection of the surface.
     ///
@@ -35,17 +29,17 @@ impl Ordering {
     /// # Errors
     /// [`Cancelled`] soon after `cancel` is raised.
     pub fn of(topology: &Topology, power: u32, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
-        let piece = dissect(topology, topology.vertex_count(), power, cancel)?;
-        let mut rank = vec![0; piece.order.len()];
-        for (place, &vertex) in piece.order.iter().enumerate() {
+        let Elimination { order, ends } = dissect(topology, topology.vertex_count(), power, cancel)?;
+        let mut rank = vec![0; order.len()];
+        for (place, &vertex) in order.iter().enumerate() {
             rank[vertex as usize] = place as u32;
         }
         progress.set(1.0);
         Ok(Self {
             power,
-            order: piece.order,
+            order,
             rank,
-            ends: piece.ends,
+            ends,
         })
     }
 

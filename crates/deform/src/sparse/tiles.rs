@@ -5,7 +5,7 @@
 
 use pulp::Simd;
 
-use crate::sparse::cholesky::FactorError;
+use crate::sparse::factor_error::FactorError;
 use crate::sparse::line::{LANES, Line, Shape, triangle};
 
 /// A tile's sums: of each column, of each strip, V vectors of rows.
