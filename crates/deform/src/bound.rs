@@ -12,7 +12,7 @@ use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
 use crate::primo::PrimoSolver;
 use crate::shell::bases::FRAME_CHUNK;
-use crate::shell::plate::{Known, Plate, repairs};
+use crate::shell::plate::{Finite, Known, Plate, repairs};
 use crate::sparse::cholesky::{Renewable, Renewal};
 use crate::{BindError, HandleBases, Method, Ordering, Problem, SolveError};
 
@@ -58,13 +58,6 @@ enum Solver {
 enum Way {
     Bases,
     BackSubstitution,
-}
-
-/// Whether a shape was seen to be finite while it was made.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Finite {
-    Yes,
-    Unknown,
 }
 
 /// What one step did.

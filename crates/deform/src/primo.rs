@@ -29,6 +29,7 @@ mod options;
 mod pose;
 mod prisms;
 mod quad;
+mod springs;
 mod start;
 mod sweep;
 mod system;
@@ -39,11 +40,11 @@ use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
 
 pub use self::options::Primo;
 
-use self::factored::Springs;
 use self::hierarchy::{DIRECT, Preconditioner};
 use self::joints::{Joints, Material};
 use self::pose::Pose;
 use self::prisms::Prisms;
+use self::springs::Springs;
 use self::sweep::Colours;
 use self::vertices::Vertices;
 use crate::blend::HandleFrame;

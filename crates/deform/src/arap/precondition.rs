@@ -46,10 +46,6 @@ pub(crate) enum PreconditionError {
     Cancelled,
 }
 
-/// What is added to the unit diagonal until it can be factored. It makes the quadratic larger, which still majorises
-/// the energy: steps get shorter, results stay the same.
-const SHIFTS: [f64; 5] = [0.0, 1e-13, 1e-11, 1e-9, 1e-7];
-
 /// By how much a constant may be missed: enough to descend by.
 const TOLERANCE: f64 = 1e-2;
 
@@ -61,17 +57,12 @@ impl Preconditioner {
         weights: &WeightInput<'_>,
         cancel: &Cancel,
     ) -> Result<(Self, Vec<f64>), PreconditionError> {
-        let mut failed = None;
-        for shift in SHIFTS {
-            cancel.check().map_err(|_| PreconditionError::Cancelled)?;
-            match Factor::of(&system.matrix, ends, shift, cancel) {
-                Ok(factor) => return Self::checked(&factor, system, weights, cancel),
-                Err(FactorError::Pivot(column)) => failed = failed.or(Some(column)),
-                Err(FactorError::Memory) => return Err(PreconditionError::Memory),
-                Err(FactorError::Cancelled) => return Err(PreconditionError::Cancelled),
-            }
+        match Factor::to_descend_by(&system.matrix, ends, cancel) {
+            Ok(factor) => Self::checked(&factor, system, weights, cancel),
+            Err(FactorError::Pivot(column)) => Err(PreconditionError::Pivot(column)),
+            Err(FactorError::Memory) => Err(PreconditionError::Memory),
+            Err(FactorError::Cancelled) => Err(PreconditionError::Cancelled),
         }
-        Err(PreconditionError::Pivot(failed.unwrap_or_default()))
     }
 
     fn checked(

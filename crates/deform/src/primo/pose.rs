@@ -8,8 +8,8 @@
 use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
 
-use super::factored::Springs;
 use super::joints::{Joints, Side};
+use super::springs::Springs;
 use crate::operators::CHUNK;
 use crate::sums::Field;
 
@@ -154,9 +154,9 @@ pub(crate) mod tests {
 
     use super::Pose;
     use crate::Role;
-    use crate::primo::factored::Springs;
     use crate::primo::joints::{Joints, Material};
     use crate::primo::prisms::Prisms;
+    use crate::primo::springs::Springs;
     use crate::primo::system::gauss_newton;
     use crate::sums::Field;
 

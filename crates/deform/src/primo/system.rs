@@ -1,4 +1,4 @@
-//! The Gauss–Newton matrix of the prisms' velocities, and the scalar Laplacian of their couplings.
+//! The Gauss–Newton matrix of the prisms' velocities.
 //!
 //! At f = c + arm + δ a prism's velocity (ω, v) moves the patch by v − [arm + δ]× ω in its own frame, where δ has the
 //! second moment C. With Q = R_iᵀ R_j a joint of weight w adds to the 6×6 blocks
@@ -142,38 +142,4 @@ fn joined(weight: f64, turning: DMat3, mixed: DMat3, mixed_below: DMat3, sliding
 /// [m]×.
 pub(crate) fn cross(m: DVec3) -> DMat3 {
     DMat3::from_cols(m.cross(DVec3::X), m.cross(DVec3::Y), m.cross(DVec3::Z))
-}
-
-/// The matrix of Σ w_ij (u_i − u_j)², scaled to a unit diagonal: harmonic weights are solved for with it.
-pub(crate) fn laplacian(joints: &Joints) -> ScaledMatrix {
-    let mut matrix = ScaledMatrix {
-        scale: Vec::with_capacity(joints.count()),
-        lower_offsets: vec![0],
-        lower_rows: Vec::new(),
-        lower_values: Vec::new(),
-    };
-    for prism in 0..joints.count() {
-        let start = matrix.lower_rows.len();
-        matrix.lower_rows.push(prism as u32);
-        matrix.lower_values.push(0.0);
-        for side in joints.sides(prism) {
-            matrix.lower_values[start] += side.weight;
-            if !(prism + 1..joints.count()).contains(&(side.other as usize)) {
-                continue;
-            }
-            if let Some(place) = matrix.lower_rows[start + 1..].iter().position(|&row| row == side.other) {
-                matrix.lower_values[start + 1 + place] -= side.weight;
-            } else {
-                matrix.lower_rows.push(side.other);
-                matrix.lower_values.push(-side.weight);
-            }
-        }
-        let diagonal = matrix.lower_values[start];
-        matrix
-            .scale
-            .push(if diagonal > 0.0 { diagonal.sqrt().recip() } else { 1.0 });
-        matrix.lower_offsets.push(matrix.lower_rows.len() as u32);
-    }
-    matrix.scale_values();
-    matrix
 }

@@ -12,7 +12,6 @@ use crate::BindError;
 use crate::operators::CHUNK;
 use crate::shell::assembly::assemble_shell;
 use crate::shell::operator::ShellOperator;
-use crate::shell::refine::{Outcome, solve};
 use crate::sparse::Elimination;
 use crate::sparse::cholesky::{Factor, Renewable, Renewal};
 use crate::sparse::factor_error::FactorError;
@@ -27,8 +26,8 @@ pub(crate) struct Shell {
     /// The column of each of the operator's springs.
     spring_columns: Vec<u32>,
     factored: Arc<Renewable>,
-    /// [`Outcome::contraction`] of the check.
-    contraction: f64,
+    /// How slowly refinement went at the check: [`crate::shell::refine`].
+    pub(super) contraction: f64,
 }
 
 /// Where the system could not be factored or solved, as a surface vertex.
@@ -43,9 +42,6 @@ pub(crate) enum ShellError {
 /// Shifts of the unit diagonal that are tried one after the other. Refinement with the unshifted operator takes their
 /// effect out again; the check of the constant says whether it did.
 const SHIFTS: [f64; 4] = [0.0, 1e-13, 1e-11, 1e-9];
-
-/// By how much the constant may be missed.
-const TOLERANCE: f64 = 1e-7;
 
 impl Shell {
     /// Factors the shell in which the vertices of `elimination` are solved for, eliminated in that order; the
@@ -135,34 +131,6 @@ impl Shell {
             }
         }
         residual
-    }
-
-    /// Fills in the solved vertices of `d` from its constrained ones, as well as the check found it to take.
-    pub fn solve<const K: usize>(&self, d: &mut [[f64; K]], cancel: &Cancel) -> Outcome {
-        solve(self, d, self.contraction, cancel)
-    }
-
-    /// Solves as [`Shell::solve`] and keeps how fast refinement was. The last function of `d` is 1 at every constrained
-    /// place, so its solution is known: where that is missed, the factor is no good.
-    pub fn check<const K: usize>(&mut self, d: &mut [[f64; K]], cancel: &Cancel) -> Result<f64, ShellError> {
-        let outcome = solve(self, d, 0.0, cancel);
-        self.contraction = outcome.contraction;
-        cancel.check().map_err(|_| ShellError::Cancelled)?;
-        let mut worst = (0.0, 0);
-        for &local in &self.columns {
-            let error = (d[local as usize][K - 1] - 1.0).abs();
-            if error > worst.0 || error.is_nan() {
-                worst = (error, local);
-            }
-        }
-        if worst.0 <= TOLERANCE {
-            Ok(outcome.error)
-        } else {
-            Err(ShellError::Inaccurate {
-                vertex: self.operator.laplacian.vertices()[worst.1 as usize],
-                error: worst.0,
-            })
-        }
     }
 }
 

@@ -7,7 +7,6 @@ use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::bound::Finite;
 use crate::handle::{Handle, Motion};
 use crate::operators::net::{Graph, Net};
 use crate::partition::Partition;
@@ -41,6 +40,13 @@ pub(crate) type Prescribed = Vec<(u32, [f64; 4])>;
 
 /// How far off a solution may be, relative to its largest value.
 const TOLERANCE: f64 = 1e-7;
+
+/// Whether a shape was seen to be finite while it was made.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Finite {
+    Yes,
+    Unknown,
+}
 
 impl Plate {
     /// Assembles, factors, checks, and solves for the bases of `handles`.

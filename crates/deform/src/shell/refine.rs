@@ -8,7 +8,7 @@
 
 use pliant_mesh::Cancel;
 
-use crate::shell::factored::Shell;
+use crate::shell::factored::{Shell, ShellError};
 
 /// Corrections of a solve, the first one included.
 const STEPS: std::ops::RangeInclusive<usize> = 2..=8;
@@ -36,11 +36,44 @@ pub(crate) struct Outcome {
     pub contraction: f64,
 }
 
+/// By how much the constant may be missed.
+const TOLERANCE: f64 = 1e-7;
+
+impl Shell {
+    /// Fills in the solved vertices of `d` from its constrained ones, as well as the check found it to take.
+    pub fn solve<const K: usize>(&self, d: &mut [[f64; K]], cancel: &Cancel) -> Outcome {
+        solve(self, d, self.contraction, cancel)
+    }
+
+    /// Solves as [`Shell::solve`] and keeps how fast refinement was. The last function of `d` is 1 at every constrained
+    /// place, so its solution is known: where that is missed, the factor is no good.
+    pub fn check<const K: usize>(&mut self, d: &mut [[f64; K]], cancel: &Cancel) -> Result<f64, ShellError> {
+        let outcome = solve(self, d, 0.0, cancel);
+        self.contraction = outcome.contraction;
+        cancel.check().map_err(|_| ShellError::Cancelled)?;
+        let mut worst = (0.0, 0);
+        for &local in self.columns() {
+            let error = (d[local as usize][K - 1] - 1.0).abs();
+            if error > worst.0 || error.is_nan() {
+                worst = (error, local);
+            }
+        }
+        if worst.0 <= TOLERANCE {
+            Ok(outcome.error)
+        } else {
+            Err(ShellError::Inaccurate {
+                vertex: self.operator.laplacian.vertices()[worst.1 as usize],
+                error: worst.0,
+            })
+        }
+    }
+}
+
 /// Fills in the solved vertices of the fields `d` from their other entries.
 ///
 /// `contraction` is what an earlier solve found: a right-hand side that hardly touches a direction in which the factor
 /// is wrong would not show it by itself, and be left with a large part of a small correction.
-pub(crate) fn solve<const K: usize>(shell: &Shell, d: &mut [[f64; K]], contraction: f64, cancel: &Cancel) -> Outcome {
+fn solve<const K: usize>(shell: &Shell, d: &mut [[f64; K]], contraction: f64, cancel: &Cancel) -> Outcome {
     for &local in shell.columns() {
         d[local as usize] = [0.0; K];
     }

@@ -49,12 +49,31 @@ pub(crate) struct Renewable {
     pub shift: f64,
 }
 
+/// What is added to the unit diagonal, one after the other, of a matrix that is descended by.
+const SHIFTS: [f64; 6] = [0.0, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5];
+
 impl Factor {
     /// Factors the matrix, whose columns stand in blocks that end at `ends`, with `shift` added to its unit diagonal.
     pub fn of(plate: &ScaledMatrix, ends: &[u32], shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
         let mut factor = Self::analysed(plate, ends);
         factor.fill(plate, shift, cancel)?;
         Ok(factor)
+    }
+
+    /// As [`Factor::of`] for a method that only descends by it: something is added to the unit diagonal until that can
+    /// be factored. Steps get shorter by it; results stay the same. The refusal is that of the matrix as it is.
+    pub fn to_descend_by(plate: &ScaledMatrix, ends: &[u32], cancel: &Cancel) -> Result<Self, FactorError> {
+        let mut refused = None;
+        for shift in SHIFTS {
+            if cancel.is_cancelled() {
+                return Err(FactorError::Cancelled);
+            }
+            match Self::of(plate, ends, shift, cancel) {
+                Err(error @ FactorError::Pivot(_)) => refused = refused.or(Some(error)),
+                other => return other,
+            }
+        }
+        Err(refused.unwrap_or(FactorError::Memory))
     }
 
     /// What the factor is to hold, without numbers.
