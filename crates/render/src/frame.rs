@@ -32,6 +32,8 @@ pub struct Style {
     pub borders: Borders,
     /// Whether the surface's own lines are drawn.
     pub outlines: Outlines,
+    /// How many of its triangles are drawn.
+    pub detail: Detail,
     /// How many of the picture's pixels borders and outlines take for a point.
     pub pixels_per_point: f32,
     /// What is behind it.
@@ -47,6 +49,7 @@ impl Default for Style {
             wireframe: Wireframe::default(),
             borders: Borders::default(),
             outlines: Outlines::default(),
+            detail: Detail::default(),
             pixels_per_point: 1.0,
             background: Background::default(),
         }
@@ -112,6 +115,17 @@ pub enum Outlines {
     Off,
     /// Drawn where no surface hides them.
     On,
+}
+
+/// How many of a surface's triangles are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Detail {
+    /// All.
+    #[default]
+    Full,
+    /// A twentieth or fewer of a large surface's: while something moves on a slow device. Materials and wireframes stay
+    /// full.
+    Coarse,
 }
 
 /// What is behind the surfaces.

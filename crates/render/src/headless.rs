@@ -62,3 +62,8 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
         ..Default::default()
     }
 }
+
+/// Whether a device is the processor itself.
+pub(crate) fn is_software(device: &wgpu::Device) -> bool {
+    device.adapter_info().device_type == wgpu::DeviceType::Cpu
+}

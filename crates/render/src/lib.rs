@@ -13,6 +13,7 @@
 
 mod bindings;
 mod buffers;
+mod coarse;
 mod deformer;
 mod edges;
 mod environment;
@@ -45,7 +46,7 @@ mod whole_texture;
 
 pub use deformer::{Deformer, DeformerData, StoredNormals};
 pub use error::{NoGpu, RenderError};
-pub use frame::{Background, Borders, Faces, Frame, Outlines, Shading, Style, Wireframe};
+pub use frame::{Background, Borders, Detail, Faces, Frame, Outlines, Shading, Style, Wireframe};
 pub use grid::Grid;
 pub use headless::{Headless, device_descriptor};
 pub use image::Image;

@@ -8,7 +8,9 @@ use bytemuck::NoUninit;
 
 use crate::RenderError;
 use crate::buffers::{filled, refill};
+use crate::coarse::{WORTH_FROM, coarse_triangles};
 use crate::edges::unique_edges;
+use crate::headless::is_software;
 use crate::partition::Partition;
 use crate::uniforms::LookVertex;
 
@@ -26,12 +28,14 @@ pub(crate) struct Page {
     pub(crate) regions: wgpu::Buffer,
     pub(crate) look: Option<wgpu::Buffer>,
     pub(crate) indices: wgpu::Buffer,
-    edges: OnceLock<Option<Edges>>,
+    /// Fewer triangles, where the mesh is large and the device is the processor.
+    coarse: Option<Indices>,
+    edges: OnceLock<Option<Indices>>,
 }
 
-/// A page's edges, for its wireframe.
+/// What joins a page's vertices in another way: its edges, or fewer triangles.
 #[derive(Debug)]
-pub(crate) struct Edges {
+pub(crate) struct Indices {
     pub(crate) buffer: wgpu::Buffer,
     pub(crate) index_count: u32,
 }
@@ -129,17 +133,21 @@ impl Page {
             }
             vertices
         });
+        let positions = gathered(&vertices, attributes.positions);
+        let coarse = if triangles.len() < WORTH_FROM || !is_software(device) {
+            None
+        } else {
+            let coarse = coarse_triangles(&positions, &own);
+            Some(Indices {
+                buffer: filled(device, queue, "fewer triangles", wgpu::BufferUsages::INDEX, &coarse)?,
+                index_count: 3 * coarse.len() as u32,
+            })
+        };
         let vertex = wgpu::BufferUsages::VERTEX;
         // Borders look positions up by number, and the compute path writes positions and normals.
         let moved = vertex | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
         let mut page = Self {
-            positions: filled(
-                device,
-                queue,
-                "positions",
-                moved,
-                &gathered(&vertices, attributes.positions),
-            )?,
+            positions: filled(device, queue, "positions", moved, &positions)?,
             normals: filled(
                 device,
                 queue,
@@ -159,6 +167,7 @@ impl Page {
             vertices,
             triangles: own,
             places,
+            coarse,
             edges: OnceLock::new(),
         };
         if let Some(look) = attributes.look {
@@ -222,13 +231,17 @@ impl Page {
     }
 
     pub(crate) fn bytes(&self) -> u64 {
-        let edges = self.edges().map_or(0, |edges| edges.buffer.size());
+        let [edges, coarse] = [self.edges(), self.coarse()].map(|indices| indices.map_or(0, |own| own.buffer.size()));
         let look = self.look.as_ref().map_or(0, wgpu::Buffer::size);
         let others = [&self.positions, &self.normals, &self.regions, &self.indices];
-        others.iter().map(|buffer| buffer.size()).sum::<u64>() + edges + look
+        others.iter().map(|buffer| buffer.size()).sum::<u64>() + edges + coarse + look
     }
 
-    pub(crate) fn edges(&self) -> Option<&Edges> {
+    pub(crate) fn coarse(&self) -> Option<&Indices> {
+        self.coarse.as_ref()
+    }
+
+    pub(crate) fn edges(&self) -> Option<&Indices> {
         self.edges.get().and_then(Option::as_ref)
     }
 
@@ -256,7 +269,7 @@ impl Page {
             None
         } else {
             let buffer = filled(device, queue, "edges", wgpu::BufferUsages::INDEX, &edges)?;
-            Some(Edges {
+            Some(Indices {
                 buffer,
                 index_count: 2 * edges.len() as u32,
             })

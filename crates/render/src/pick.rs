@@ -196,7 +196,7 @@ impl Renderer {
             for surface in frame.surfaces {
                 surface.bind(&mut pass);
                 for run in surface.runs(frame.view, Joining::Any) {
-                    surface.bind_shape(&mut pass, run.page);
+                    surface.bind_shape(&mut pass, run.page, run.detail);
                     let first = run.first_place;
                     pass.draw_indexed(3 * run.triangles.start..3 * run.triangles.end, 0, first..first + 1);
                 }

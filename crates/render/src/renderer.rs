@@ -6,6 +6,7 @@ use crate::bindings::bind_group;
 use crate::buffers::{Streamed, filled, refill};
 use crate::environment::environment;
 use crate::guard::guarded;
+use crate::headless::is_software;
 use crate::overlay::OverlayBatch;
 use crate::pipelines::{Alpha, Part, Pipeline, Pipelines};
 use crate::surface::{Joining, Run};
@@ -15,8 +16,8 @@ use crate::texture::TextureMaker;
 use crate::timer::Timer;
 use crate::uniforms::{FrameUniform, GridUniform};
 use crate::{
-    Background, Borders, Encoding, Faces, Frame, Matcap, Material, Outlines, RenderError, Samples, Shading, Surface,
-    Target, TextureData, Wireframe, studio,
+    Background, Borders, Detail, Encoding, Faces, Frame, Matcap, Material, Outlines, RenderError, Samples, Shading,
+    Surface, Target, TextureData, Wireframe, studio,
 };
 
 /// The pipelines of one device. Make one a device and keep it.
@@ -113,7 +114,7 @@ impl Renderer {
     /// Whether the device is the processor itself, so that drawing is slow: take [`crate::Samples::One`] while
     /// something moves.
     pub fn is_software(&self) -> bool {
-        self.device.adapter_info().device_type == wgpu::DeviceType::Cpu
+        is_software(&self.device)
     }
 
     /// How long the device worked on a drawing of late, in milliseconds by its own clock; `None` before the first
@@ -204,10 +205,12 @@ impl Renderer {
             self.prepare_clay(matcap(style.shading))?;
             Joining::Any
         };
-        let runs = frame
-            .surfaces
-            .iter()
-            .map(|&surface| (surface, surface.runs(frame.view, joining)));
+        let runs = frame.surfaces.iter().map(|&surface| match style.detail {
+            Detail::Coarse if joining == Joining::Any && surface.has_coarse(frame.view) => {
+                (surface, surface.coarse_runs())
+            }
+            Detail::Coarse | Detail::Full => (surface, surface.runs(frame.view, joining)),
+        });
         let ready = Ready {
             frame,
             overlays,
@@ -281,7 +284,7 @@ impl Renderer {
                 for run in runs.iter().filter(|run| is_wanted(run)) {
                     if run.page != page {
                         page = run.page;
-                        surface.bind_shape(pass, page);
+                        surface.bind_shape(pass, page, run.detail);
                         surface.bind_look(pass, page);
                     }
                     if is_material {

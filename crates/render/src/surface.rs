@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use crate::buffers::filled;
+use crate::coarse::WORTH_FROM;
 use crate::edges::{Odd, odd_edges};
 use crate::guard::guarded;
 use crate::pages::{Attributes, Page, PageLimits, page_chunks};
@@ -13,8 +14,8 @@ use crate::surface_data::{checked, textures_exist};
 use crate::surface_line::LineSet;
 use crate::uniforms::{LookVertex, SurfaceUniform};
 use crate::{
-    AlphaMode, ColourSpace, EdgePoint, Material, RenderError, Renderer, SurfaceData, SurfaceLine, TextureData, View,
-    border,
+    AlphaMode, ColourSpace, Detail, EdgePoint, Material, RenderError, Renderer, SurfaceData, SurfaceLine, TextureData,
+    View, border,
 };
 
 /// Alpha of the parts of borders that surfaces hide, as a share of the visible parts'.
@@ -85,6 +86,7 @@ pub(crate) struct Run {
     pub(crate) first_place: u32,
     pub(crate) material: usize,
     pub(crate) alpha: Alpha,
+    pub(crate) detail: Detail,
 }
 
 /// Which neighbouring chunks may be drawn by one call.
@@ -414,10 +416,34 @@ impl Surface {
                         AlphaMode::Mask { .. } => Alpha::Mask,
                         AlphaMode::Blend => Alpha::Blend,
                     },
+                    detail: Detail::Full,
                 }),
             }
         }
         runs
+    }
+
+    /// Whether [`Detail::Coarse`] draws fewer triangles in a picture of `view`: there are such, nothing is hidden, and
+    /// enough of the surface is to be seen that their size does not show.
+    pub fn has_coarse(&self, view: &View) -> bool {
+        let is_made = self.pages.iter().any(|page| page.coarse().is_some());
+        is_made && self.shown.is_none() && self.drawn_triangles(view) >= WORTH_FROM
+    }
+
+    /// The fewer triangles of each page, where there are such: not for materials.
+    pub(crate) fn coarse_runs(&self) -> Vec<Run> {
+        let coarse = self.pages.iter().enumerate();
+        let run = |(page, coarse): (usize, &Page)| {
+            Some(Run {
+                page,
+                triangles: 0..coarse.coarse()?.index_count / 3,
+                first_place: 0,
+                material: 0,
+                alpha: Alpha::Opaque,
+                detail: Detail::Coarse,
+            })
+        };
+        coarse.filter_map(run).collect()
     }
 
     /// Binds group 1.
@@ -426,12 +452,16 @@ impl Surface {
     }
 
     /// Binds a page's shape and triangles.
-    pub(crate) fn bind_shape(&self, pass: &mut wgpu::RenderPass<'_>, page: usize) {
+    pub(crate) fn bind_shape(&self, pass: &mut wgpu::RenderPass<'_>, page: usize, detail: Detail) {
         let Some(page) = self.pages.get(page) else { return };
         for (slot, buffer) in [&page.positions, &page.normals, &page.regions].into_iter().enumerate() {
             pass.set_vertex_buffer(slot as u32, buffer.slice(..));
         }
-        pass.set_index_buffer(page.indices.slice(..), wgpu::IndexFormat::Uint32);
+        let triangles = match (detail, page.coarse()) {
+            (Detail::Coarse, Some(coarse)) => &coarse.buffer,
+            _ => &page.indices,
+        };
+        pass.set_index_buffer(triangles.slice(..), wgpu::IndexFormat::Uint32);
     }
 
     /// Binds a page's texture coordinates and colours.

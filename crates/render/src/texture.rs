@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use crate::bindings::bind_group;
 use crate::guard::guarded;
+use crate::headless::is_software;
 use crate::shaders::Shader;
 use crate::{RenderError, Wrap, whole_texture};
 
@@ -58,13 +59,12 @@ impl TextureMaker {
             ..Default::default()
         });
         // Software devices pay dearly for each of the samples.
-        let is_software = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
         Self {
             device: device.clone(),
             queue: queue.clone(),
             mipmaps: FORMATS.map(pipeline),
             mipmap_sampler,
-            anisotropy: if is_software { 1 } else { 8 },
+            anisotropy: if is_software(device) { 1 } else { 8 },
         }
     }
 

@@ -3,9 +3,11 @@
 
 mod rig;
 
+use std::sync::Arc;
+
 use glam::{Vec3, Vec4Swizzles};
 use pliant_render::{
-    Borders, Frame, IdTarget, Image, PixelRect, Renderer, Samples, Shading, Style, Surface, View, Wireframe,
+    Borders, Detail, Frame, IdTarget, Image, PixelRect, Renderer, Samples, Shading, Style, Surface, View, Wireframe,
 };
 use rig::{SIZE_PX, Shape, draw, front_view, oblique_view, renderer};
 
@@ -181,4 +183,46 @@ fn tiles_join_without_a_trace() {
     // Rounding moves single samples along contours; the background's noise is that of each tile.
     assert!(apart(2) < whole.rgba.len() / 200, "{} bytes differ", apart(2));
     assert!(apart(60) < 20, "{} bytes differ by far", apart(60));
+}
+
+#[test]
+fn fewer_triangles_look_nearly_the_same_and_follow_the_shape() {
+    let Some(mut headless) = renderer() else { return };
+    let renderer = &mut headless.renderer;
+    let shape = Shape::open_ring(1000, 200);
+    let mut surface = shape.upload(renderer);
+    if !renderer.is_software() {
+        #[expect(clippy::print_stderr, reason = "a skipped test says so")]
+        return eprintln!("skipped: fewer triangles (the device is none of software)");
+    }
+    let view = oblique_view();
+    assert!(surface.has_coarse(&view) && !large().upload(renderer).has_coarse(&view));
+    let coarse = Style {
+        detail: Detail::Coarse,
+        ..Style::default()
+    };
+    let bent: Vec<[f32; 3]> = shape
+        .positions
+        .iter()
+        .map(|&[x, y, z]| [x, y + 0.3 * x * x, z])
+        .collect();
+    for positions in [shape.positions.clone(), bent] {
+        surface.update_positions(renderer, &positions).unwrap();
+        let [full, few] = [Style::default(), coarse].map(|style| draw(renderer, &view, &style, &[&surface], &[]));
+        let pixels = full.rgba.chunks_exact(4).zip(few.rgba.chunks_exact(4));
+        let (mut differ, mut off) = (0, 0);
+        for (a, b) in pixels {
+            let apart = a.iter().zip(b).map(|(&a, &b)| a.abs_diff(b)).max().unwrap();
+            differ += usize::from(apart > 0);
+            off += usize::from(apart > 24);
+        }
+        assert!(differ > 100, "fewer triangles were drawn: {differ}");
+        assert!(off < 300, "{off} of 15000 pixels are off");
+    }
+    assert!(!surface.has_coarse(&close_view()), "from near their size would show");
+    // What is hidden stays hidden.
+    let half: Vec<bool> = (0..shape.triangles.len()).map(|t| t % 2000 < 1000).collect();
+    surface.show(renderer, Some(Arc::new(half))).unwrap();
+    let [full, few] = [Style::default(), coarse].map(|style| draw(renderer, &view, &style, &[&surface], &[]));
+    assert!(full.rgba == few.rgba);
 }

@@ -1,8 +1,8 @@
 //! The one place where egui meets the renderer: the 3D view, drawn into a texture of its own and shown as an image.
 //!
 //! The picture is drawn anew only when the shape, the colours, the marks, the camera, the style or the size changed.
-//! On a device that is the processor itself a changing view is drawn with one sample a pixel, and once more with four
-//! when it has come to rest.
+//! On a device that is the processor itself a changing view is drawn with one sample a pixel and large meshes with fewer
+//! triangles, and once more in full when it has come to rest.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
@@ -11,9 +11,11 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, TextureId};
 use eframe::egui_wgpu::RenderState;
 use glam::DVec3;
-use pliant_editor::{Editor, Look, SceneView, UpAxis};
+use pliant_editor::{Editor, Look, SceneView, Shading, UpAxis};
 use pliant_mesh::SurfaceVertex;
-use pliant_render::{Background, Frame, Grid, Image, Outfit, RenderError, Renderer, Samples, Surface, Target};
+use pliant_render::{
+    Background, Detail, Frame, Grid, Image, Outfit, RenderError, Renderer, Samples, Style, Surface, Target,
+};
 
 use super::coarseness::Coarseness;
 use super::message::{Ground, PictureKind, Posed};
@@ -125,6 +127,7 @@ struct DrawnKey {
     look: Look,
     size_px: [u32; 2],
     samples: Samples,
+    detail: Detail,
 }
 
 impl DrawnKey {
@@ -134,10 +137,12 @@ impl DrawnKey {
         let same = Self {
             size_px: wanted.size_px,
             samples: wanted.samples,
+            detail: wanted.detail,
             ..self.clone()
         };
+        let is_as_detailed = self.detail == wanted.detail || self.detail == Detail::Full;
         let is_as_large = self.size_px == wanted.size_px || self.size_px == full_px;
-        same == *wanted && is_as_large && self.samples.count() >= wanted.samples.count()
+        same == *wanted && is_as_large && is_as_detailed && self.samples.count() >= wanted.samples.count()
     }
 }
 
@@ -326,7 +331,14 @@ impl Viewport {
             Smoothness::Resting => 1,
         };
         let drawn_px = size_px.map(|side| side.div_ceil(factor));
-        let key = self.key(&view, pixels_per_point, drawn_px, samples);
+        let detail = match smooth {
+            Smoothness::Moving if software && self.may_be_coarse(&view) => Detail::Coarse,
+            Smoothness::Moving | Smoothness::Resting => Detail::Full,
+        };
+        let key = DrawnKey {
+            detail,
+            ..self.key(&view, pixels_per_point, drawn_px, samples)
+        };
         if !self.drawn.as_ref().is_some_and(|drawn| drawn.serves(&key, size_px)) {
             if self.draw(&view, &key)? {
                 self.drawn = Some(key);
@@ -344,9 +356,17 @@ impl Viewport {
             let whole = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
             ui.painter().image(texture, rect, whole, egui::Color32::WHITE);
         }
-        let is_coarse = self.drawn.as_ref().is_some_and(|drawn| drawn.size_px != size_px);
+        let is_less = |drawn: &DrawnKey| drawn.size_px != size_px || drawn.detail == Detail::Coarse;
+        let is_coarse = self.drawn.as_ref().is_some_and(is_less);
         let is_jagged = self.drawn.as_ref().is_some_and(|drawn| drawn.samples == Samples::One);
         Ok(is_coarse || (is_jagged && triangles <= SOFT_SMOOTH_TRIANGLES))
+    }
+
+    /// Whether the surface can be drawn with fewer triangles: not as materials and not with its edges.
+    fn may_be_coarse(&self, view: &SceneView<'_>) -> bool {
+        let Some(shown) = &self.surface else { return false };
+        let eye = drawing::view(view.camera, view.viewport_px, shown.drawing.centre);
+        view.look.shading != Shading::Material && !view.look.wireframe && shown.surface.has_coarse(&eye)
     }
 
     /// How long the device worked on a drawing of late.
@@ -370,6 +390,7 @@ impl Viewport {
             look: view.look,
             size_px,
             samples,
+            detail: Detail::Full,
         }
     }
 
@@ -458,7 +479,10 @@ impl Viewport {
         let ground = self.surface.as_ref().and_then(|shown| shown.ground(view));
         let frame = Frame {
             view: &eye,
-            style: &drawing::style(&key.look, pixels_per_point),
+            style: &Style {
+                detail: key.detail,
+                ..drawing::style(&key.look, pixels_per_point)
+            },
             surfaces: &surfaces,
             grid: ground.as_ref(),
             overlays: &overlays,
