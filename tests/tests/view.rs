@@ -59,13 +59,9 @@ fn ids(renderer: &mut Renderer, model: &Model, displacements: &[DVec3], camera: 
         grid: None,
         overlays: &[],
     };
-    let whole = PixelRect {
-        x: 0,
-        y: 0,
-        width,
-        height,
-    };
-    let request = renderer.pick(&mut IdTarget::new(), SIZE_PX, whole, &frame).unwrap();
+    let request = renderer
+        .pick(&mut IdTarget::new(), SIZE_PX, PixelRect::whole(SIZE_PX), &frame)
+        .unwrap();
     let ids = request.wait(renderer).unwrap().ids;
     ids.into_iter().map(|id| id.map(|id| id.triangle)).collect()
 }

@@ -9,7 +9,7 @@ use crate::guard::guarded;
 use crate::pipelines::{ID_FORMAT, Pipeline};
 use crate::readback::Readback;
 use crate::renderer::WHOLE;
-use crate::surface::Joining;
+use crate::runs::Joining;
 use crate::{Frame, Partition, RenderError, Renderer, Samples, Target};
 
 /// The hidden target that triangle numbers are drawn into. Made to measure by [`Renderer::pick`]; keep it.
@@ -120,6 +120,16 @@ impl IdAttachments {
 }
 
 impl PixelRect {
+    /// All of a picture of this width and height.
+    pub const fn whole([width, height]: [u32; 2]) -> Self {
+        Self {
+            x: 0,
+            y: 0,
+            width,
+            height,
+        }
+    }
+
     /// One pixel.
     pub fn pixel(x: u32, y: u32) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! The renderer: what one device needs to draw, and the drawing itself.
+//! The renderer: what one device needs to draw, made when it is first needed, and the drawing of a frame.
 
 use std::collections::HashMap;
 
@@ -8,16 +8,15 @@ use crate::environment::environment;
 use crate::guard::guarded;
 use crate::headless::is_software;
 use crate::overlay::OverlayBatch;
-use crate::pipelines::{Alpha, Part, Pipeline, Pipelines};
-use crate::surface::{Joining, Run};
-use crate::surface_line::LineSet;
-use crate::target::Attachments;
+use crate::pipelines::Pipelines;
+use crate::recording::{Ready, begin_picture, matcap};
+use crate::runs::Joining;
 use crate::texture::TextureMaker;
 use crate::timer::Timer;
 use crate::uniforms::{FrameUniform, GridUniform};
 use crate::{
-    Background, Borders, Detail, Encoding, Faces, Frame, Matcap, Material, Outlines, RenderError, Samples, Shading,
-    Surface, Target, TextureData, Wireframe, studio,
+    Borders, Detail, Encoding, Frame, Matcap, Material, RenderError, Samples, Shading, Target, TextureData, Wireframe,
+    studio,
 };
 
 /// The pipelines of one device. Make one a device and keep it.
@@ -29,22 +28,14 @@ pub struct Renderer {
     textures: TextureMaker,
     white: wgpu::TextureView,
     frame_buffer: wgpu::Buffer,
-    frame_group: wgpu::BindGroup,
+    pub(crate) frame_group: wgpu::BindGroup,
     grid_buffer: wgpu::Buffer,
-    grid_group: wgpu::BindGroup,
-    clays: HashMap<Matcap, wgpu::BindGroup>,
-    environment: Option<wgpu::BindGroup>,
-    overlay_triangles: Streamed,
-    overlay_lines: Streamed,
+    pub(crate) grid_group: wgpu::BindGroup,
+    pub(crate) clays: HashMap<Matcap, wgpu::BindGroup>,
+    pub(crate) environment: Option<wgpu::BindGroup>,
+    pub(crate) overlay_triangles: Streamed,
+    pub(crate) overlay_lines: Streamed,
     timer: Option<Timer>,
-}
-
-/// What a picture is drawn from, ready on the device.
-struct Ready<'a> {
-    frame: &'a Frame<'a>,
-    overlays: OverlayBatch,
-    /// Runs of every surface.
-    runs: Vec<(&'a Surface, Vec<Run>)>,
 }
 
 /// Where a tile of a picture stands in it: the share of the background below it, and its own share.
@@ -268,105 +259,13 @@ impl Renderer {
         Ok(())
     }
 
-    /// Opaque triangles, then the background where nothing is, the ground, what is seen through, edges and marks.
-    fn record(&self, pass: &mut wgpu::RenderPass<'_>, ready: &Ready<'_>, samples: Samples) {
-        let style = ready.frame.style;
-        let set = |pass: &mut wgpu::RenderPass<'_>, pipeline| match self.pipelines.get(pipeline, samples) {
-            Some(pipeline) => pass.set_pipeline(pipeline),
-            None => debug_assert!(false, "{pipeline:?} was not prepared"),
-        };
-        pass.set_bind_group(0, &self.frame_group, &[]);
-        let is_material = style.shading == Shading::Material;
-        let draw_runs = |pass: &mut wgpu::RenderPass<'_>, is_wanted: &dyn Fn(&Run) -> bool| {
-            for (surface, runs) in &ready.runs {
-                surface.bind(pass);
-                let mut page = usize::MAX;
-                for run in runs.iter().filter(|run| is_wanted(run)) {
-                    if run.page != page {
-                        page = run.page;
-                        surface.bind_shape(pass, page, run.detail);
-                        surface.bind_look(pass, page);
-                    }
-                    if is_material {
-                        set(pass, Pipeline::Material(run.alpha, surface.look()));
-                        pass.set_bind_group(2, surface.material(run.material), &[]);
-                    }
-                    pass.draw_indexed(3 * run.triangles.start..3 * run.triangles.end, 0, 0..1);
-                }
-            }
-        };
-        if is_material {
-            pass.set_bind_group(3, self.environment.as_ref(), &[]);
-            draw_runs(pass, &|run| run.alpha != Alpha::Blend);
-        } else {
-            set(pass, clay_pipeline(style.shading));
-            pass.set_bind_group(2, self.clays.get(&matcap(style.shading)), &[]);
-            draw_runs(pass, &|_| true);
-        }
-        if matches!(style.background, Background::Gradient { .. }) {
-            set(pass, Pipeline::Background);
-            pass.draw(0..3, 0..1);
-        }
-        if ready.frame.grid.is_some() {
-            set(pass, Pipeline::Grid);
-            pass.set_bind_group(1, &self.grid_group, &[]);
-            pass.draw(0..4, 0..1);
-        }
-        if is_material {
-            draw_runs(pass, &|run| run.alpha == Alpha::Blend);
-        }
-        for (surface, _) in &ready.runs {
-            surface.bind(pass);
-            if style.wireframe == Wireframe::On {
-                set(pass, Pipeline::Wireframe);
-                for page in surface.pages() {
-                    let Some(edges) = page.edges() else { continue };
-                    pass.set_vertex_buffer(0, page.positions.slice(..));
-                    pass.set_index_buffer(edges.buffer.slice(..), wgpu::IndexFormat::Uint32);
-                    pass.draw_indexed(0..edges.index_count, 0, 0..1);
-                }
-            }
-            let draw_lines = |pass: &mut wgpu::RenderPass<'_>, lines: &LineSet, part| {
-                set(pass, Pipeline::SurfaceLines(part));
-                pass.set_bind_group(2, &lines.positions, &[]);
-                pass.set_vertex_buffer(0, lines.lines.slice(..));
-                pass.draw(0..4, 0..lines.count);
-            };
-            if style.outlines == Outlines::On {
-                let outlines = surface.outlines().iter().flatten();
-                outlines.for_each(|lines| draw_lines(pass, lines, Part::Visible));
-            }
-            if style.borders == Borders::On {
-                for lines in surface.borders().iter().flatten() {
-                    Part::BOTH.into_iter().for_each(|part| draw_lines(pass, lines, part));
-                }
-            }
-        }
-        for layer in &ready.overlays.layers {
-            if let (Some(buffer), false) = (self.overlay_triangles.buffer(), layer.vertices.is_empty()) {
-                pass.set_vertex_buffer(0, buffer.slice(..));
-                for part in Part::BOTH {
-                    set(pass, Pipeline::OverlayTriangles(part));
-                    pass.draw(layer.vertices.clone(), 0..1);
-                }
-            }
-            if let (Some(buffer), false) = (self.overlay_lines.buffer(), layer.lines.is_empty()) {
-                pass.set_vertex_buffer(0, buffer.slice(..));
-                for part in Part::BOTH {
-                    set(pass, Pipeline::OverlayLines(part));
-                    pass.draw(0..4, layer.lines.clone());
-                }
-            }
-        }
-    }
-
     pub(crate) fn write_frame(
         &self,
         frame: &Frame<'_>,
         size_px: [u32; 2],
         background_span: [f32; 2],
     ) -> Result<(), RenderError> {
-        let uniform = frame_uniform(frame, size_px, background_span);
+        let uniform = FrameUniform::of(frame, size_px, background_span);
         refill(&self.device, &self.queue, &self.frame_buffer, &[uniform])
     }
 
@@ -427,122 +326,6 @@ impl Renderer {
     }
 }
 
-impl Ready<'_> {
-    /// The pipelines that the drawing sets.
-    fn pipelines(&self) -> Vec<Pipeline> {
-        let style = self.frame.style;
-        let mut pipelines = Vec::new();
-        if style.shading == Shading::Material {
-            for (surface, runs) in &self.runs {
-                pipelines.extend(runs.iter().map(|run| Pipeline::Material(run.alpha, surface.look())));
-            }
-            pipelines.dedup();
-        } else {
-            pipelines.push(clay_pipeline(style.shading));
-        }
-        if matches!(style.background, Background::Gradient { .. }) {
-            pipelines.push(Pipeline::Background);
-        }
-        if self.frame.grid.is_some() {
-            pipelines.push(Pipeline::Grid);
-        }
-        if style.wireframe == Wireframe::On {
-            pipelines.push(Pipeline::Wireframe);
-        }
-        for part in Part::BOTH {
-            if style.borders == Borders::On || style.outlines == Outlines::On {
-                pipelines.push(Pipeline::SurfaceLines(part));
-            }
-            if !self.overlays.vertices.is_empty() {
-                pipelines.push(Pipeline::OverlayTriangles(part));
-            }
-            if !self.overlays.lines.is_empty() {
-                pipelines.push(Pipeline::OverlayLines(part));
-            }
-        }
-        pipelines
-    }
-}
-
-/// The pipeline of every shading but the file's materials.
-fn clay_pipeline(shading: Shading) -> Pipeline {
-    match shading {
-        Shading::Clay(_) | Shading::Material => Pipeline::Clay,
-        Shading::Painted => Pipeline::Painted,
-        Shading::Zebra => Pipeline::Zebra,
-        Shading::Normals => Pipeline::Normals,
-    }
-}
-
-/// The clay whose studio lights a shading.
-fn matcap(shading: Shading) -> Matcap {
-    match shading {
-        Shading::Clay(matcap) => matcap,
-        _ => Matcap::Plaster,
-    }
-}
-
 fn uniform_group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffer: &wgpu::Buffer) -> wgpu::BindGroup {
     bind_group(device, "uniform", layout, &[buffer.as_entire_binding()])
-}
-
-fn frame_uniform(frame: &Frame<'_>, size_px: [u32; 2], background_span: [f32; 2]) -> FrameUniform {
-    let view = frame.view;
-    let colour = |[r, g, b]: [u8; 3]| [r, g, b, 255].map(|byte| f32::from(byte) / 255.0);
-    let (top, bottom) = match frame.style.background {
-        Background::Gradient { top, bottom } => (colour(top), colour(bottom)),
-        Background::Transparent => ([0.0; 4], [0.0; 4]),
-    };
-    FrameUniform {
-        clip_from_world: view.clip_from_world.to_cols_array_2d(),
-        view_from_world: view.view_from_world.to_cols_array_2d(),
-        background_top: top,
-        background_bottom: bottom,
-        size_px: size_px.map(|side| side as f32),
-        background_span,
-        region_share: frame.style.region_share.clamp(0.0, 1.0),
-        scale_px: view.clip_from_world.row(1).truncate().length() * 0.5 * size_px[1] as f32,
-        perspective: if view.is_perspective() { 1.0 } else { 0.0 },
-        flatness: match frame.style.faces {
-            Faces::Smooth => 0.0,
-            Faces::Flat => 1.0,
-        },
-        pixels_per_point: frame.style.pixels_per_point,
-        ..bytemuck::Zeroable::zeroed()
-    }
-}
-
-fn begin_picture<'a>(
-    encoder: &'a mut wgpu::CommandEncoder,
-    attachments: &Attachments,
-    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
-) -> wgpu::RenderPass<'a> {
-    let single = &attachments.colour_view;
-    let (view, resolve_target, store) = match &attachments.multisampled {
-        Some(samples) => (samples, Some(single), wgpu::StoreOp::Discard),
-        None => (single, None, wgpu::StoreOp::Store),
-    };
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("picture"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                store,
-            },
-        })],
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &attachments.depth,
-            // Reversed depth: 0 is infinitely far away.
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(0.0),
-                store: wgpu::StoreOp::Discard,
-            }),
-            stencil_ops: None,
-        }),
-        timestamp_writes,
-        ..Default::default()
-    })
 }

@@ -4,18 +4,16 @@ use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use crate::buffers::filled;
-use crate::coarse::WORTH_FROM;
 use crate::edges::{Odd, odd_edges};
 use crate::guard::guarded;
 use crate::pages::{Attributes, Page, PageLimits, page_chunks};
 use crate::partition::{ChunkBounds, Partition};
-use crate::pipelines::{Alpha, Look};
+use crate::pipelines::Look;
 use crate::surface_data::{checked, textures_exist};
 use crate::surface_line::LineSet;
 use crate::uniforms::{LookVertex, SurfaceUniform};
 use crate::{
-    AlphaMode, ColourSpace, Detail, EdgePoint, Material, RenderError, Renderer, SurfaceData, SurfaceLine, TextureData,
-    View, border,
+    ColourSpace, Detail, EdgePoint, Material, RenderError, Renderer, SurfaceData, SurfaceLine, TextureData, border,
 };
 
 /// Alpha of the parts of borders that surfaces hide, as a share of the visible parts'.
@@ -28,9 +26,9 @@ pub struct Surface {
     /// Kept for the borders, which are only looked for when first drawn: 12 bytes a triangle.
     triangles: Vec<[u32; 3]>,
     twins: Option<Vec<u32>>,
-    partition: Arc<Partition>,
-    bounds: Vec<ChunkBounds>,
-    pages: Vec<Page>,
+    pub(crate) partition: Arc<Partition>,
+    pub(crate) bounds: Vec<ChunkBounds>,
+    pub(crate) pages: Vec<Page>,
     look: Look,
     /// The one entry of surfaces whose vertices have neither texture coordinates nor colours.
     shared_look: wgpu::Buffer,
@@ -38,7 +36,7 @@ pub struct Surface {
     group: wgpu::BindGroup,
     materials: Vec<wgpu::BindGroup>,
     /// Of each triangle, whether it is drawn; `None` is all of them.
-    shown: Option<Arc<Vec<bool>>>,
+    pub(crate) shown: Option<Arc<Vec<bool>>>,
     /// For each page.
     borders: OnceLock<Vec<Option<LineSet>>>,
     /// For each page.
@@ -75,27 +73,6 @@ impl Outfit {
         let groups = renderer.material_groups(materials, textures)?;
         Ok(Self { groups })
     }
-}
-
-/// Triangles of one page that are drawn by one call: page, places within the page, what they are made of.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Run {
-    pub(crate) page: usize,
-    pub(crate) triangles: Range<u32>,
-    /// The place in the surface's drawing order of the first one.
-    pub(crate) first_place: u32,
-    pub(crate) material: usize,
-    pub(crate) alpha: Alpha,
-    pub(crate) detail: Detail,
-}
-
-/// Which neighbouring chunks may be drawn by one call.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Joining {
-    /// All.
-    Any,
-    /// Those of one material.
-    OneMaterial,
 }
 
 impl Surface {
@@ -195,12 +172,6 @@ impl Surface {
     /// Over how many sets of buffers the mesh is spread.
     pub fn page_count(&self) -> usize {
         self.pages.len()
-    }
-
-    /// How many of the triangles a picture of `view` draws; the others lie in chunks that can't be seen.
-    pub fn drawn_triangles(&self, view: &View) -> usize {
-        let runs = self.runs(view, Joining::Any);
-        runs.iter().map(|run| run.triangles.len()).sum()
     }
 
     /// Moves the vertices; seen in the next drawing.
@@ -379,71 +350,6 @@ impl Surface {
     /// Which triangle is drawn where.
     pub(crate) fn partition(&self) -> Arc<Partition> {
         Arc::clone(&self.partition)
-    }
-
-    /// Ways of drawing what may be seen, each chunk once.
-    pub(crate) fn runs(&self, view: &View, joining: Joining) -> Vec<Run> {
-        let mut runs: Vec<Run> = Vec::new();
-        let mut page = 0;
-        for (chunk, bounds) in self.partition.chunks().iter().zip(&self.bounds) {
-            while self
-                .pages
-                .get(page)
-                .is_some_and(|page| page.places().end <= chunk.triangles.start)
-            {
-                page += 1;
-            }
-            if !bounds.may_be_seen(&view.clip_from_world) {
-                continue;
-            }
-            let start = self.pages.get(page).map_or(0, |page| page.places().start);
-            let (from, to) = (chunk.triangles.start - start, chunk.triangles.end - start);
-            match runs.last_mut() {
-                Some(last)
-                    if last.page == page
-                        && last.triangles.end == from
-                        && (joining == Joining::Any || last.material == chunk.material) =>
-                {
-                    last.triangles.end = to;
-                }
-                _ => runs.push(Run {
-                    page,
-                    triangles: from..to,
-                    first_place: chunk.triangles.start,
-                    material: chunk.material,
-                    alpha: match chunk.alpha {
-                        AlphaMode::Opaque => Alpha::Opaque,
-                        AlphaMode::Mask { .. } => Alpha::Mask,
-                        AlphaMode::Blend => Alpha::Blend,
-                    },
-                    detail: Detail::Full,
-                }),
-            }
-        }
-        runs
-    }
-
-    /// Whether [`Detail::Coarse`] draws fewer triangles in a picture of `view`: there are such, nothing is hidden, and
-    /// enough of the surface is to be seen that their size does not show.
-    pub fn has_coarse(&self, view: &View) -> bool {
-        let is_made = self.pages.iter().any(|page| page.coarse().is_some());
-        is_made && self.shown.is_none() && self.drawn_triangles(view) >= WORTH_FROM
-    }
-
-    /// The fewer triangles of each page, where there are such: not for materials.
-    pub(crate) fn coarse_runs(&self) -> Vec<Run> {
-        let coarse = self.pages.iter().enumerate();
-        let run = |(page, coarse): (usize, &Page)| {
-            Some(Run {
-                page,
-                triangles: 0..coarse.coarse()?.index_count / 3,
-                first_place: 0,
-                material: 0,
-                alpha: Alpha::Opaque,
-                detail: Detail::Coarse,
-            })
-        };
-        coarse.filter_map(run).collect()
     }
 
     /// Binds group 1.

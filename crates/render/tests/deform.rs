@@ -13,6 +13,7 @@ struct Bend {
     row_of_vertex: Vec<u32>,
     rows: Vec<[f32; 4]>,
     motions: Vec<[DVec3; 4]>,
+    normal_groups: Vec<u32>,
 }
 
 fn bend(scale: f32, turn_rad: f64) -> Bend {
@@ -58,6 +59,7 @@ fn bend(scale: f32, turn_rad: f64) -> Bend {
     });
     Bend {
         motions: motions.collect(),
+        normal_groups: (0..shape.positions.len() as u32).collect(),
         shape,
         row_of_vertex,
         rows,
@@ -65,6 +67,19 @@ fn bend(scale: f32, turn_rad: f64) -> Bend {
 }
 
 impl Bend {
+    /// What the device is given, without normals of the file's own.
+    fn data(&self) -> DeformerData<'_> {
+        DeformerData {
+            rest: &self.shape.positions,
+            row_of_vertex: &self.row_of_vertex,
+            rows: &self.rows,
+            handle_count: 2,
+            triangles: &self.shape.triangles,
+            normal_groups: &self.normal_groups,
+            stored: None,
+        }
+    }
+
     /// The positions in f64.
     fn positions(&self) -> Vec<DVec3> {
         let of_vertex = self.shape.positions.iter().zip(&self.row_of_vertex);
@@ -112,7 +127,6 @@ fn positions_and_normals_are_the_processors_to_the_rounding_of_f32() {
     for (scale, turn_rad) in [(1.0, 0.9), (1000.0, 2.5), (1e-3, -0.2)] {
         let bend = bend(scale, turn_rad);
         let mut surface = bend.shape.upload(renderer);
-        let groups: Vec<u32> = (0..bend.shape.positions.len() as u32).collect();
         let rest: Vec<DVec3> = bend.shape.positions.iter().map(|&p| Vec3::from(p).as_dvec3()).collect();
         let at_rest: Vec<[f32; 3]> = normals(&bend.shape, &rest).iter().map(|n| n.to_array()).collect();
         // A file's normals that are not the geometric ones.
@@ -138,15 +152,7 @@ fn positions_and_normals_are_the_processors_to_the_rounding_of_f32() {
                 at_rest: &at_rest,
             }),
         ] {
-            let data = DeformerData {
-                rest: &bend.shape.positions,
-                row_of_vertex: &bend.row_of_vertex,
-                rows: &bend.rows,
-                handle_count: 2,
-                triangles: &bend.shape.triangles,
-                normal_groups: &groups,
-                stored,
-            };
+            let data = DeformerData { stored, ..bend.data() };
             let deformer = Deformer::new(renderer, &surface, &data).unwrap();
             deformer.run(renderer, &mut surface, &bend.motions()).unwrap();
             let [positions, turned] = surface.read_shape(renderer).unwrap();
@@ -176,17 +182,7 @@ fn what_the_device_has_deformed_is_drawn_as_if_it_had_been_uploaded() {
     let renderer = &mut headless.renderer;
     let bend = bend(1.0, 0.9);
     let mut surface = bend.shape.upload(renderer);
-    let groups: Vec<u32> = (0..bend.shape.positions.len() as u32).collect();
-    let data = DeformerData {
-        rest: &bend.shape.positions,
-        row_of_vertex: &bend.row_of_vertex,
-        rows: &bend.rows,
-        handle_count: 2,
-        triangles: &bend.shape.triangles,
-        normal_groups: &groups,
-        stored: None,
-    };
-    let deformer = Deformer::new(renderer, &surface, &data).unwrap();
+    let deformer = Deformer::new(renderer, &surface, &bend.data()).unwrap();
     deformer.run(renderer, &mut surface, &bend.motions()).unwrap();
     let [positions, normals] = surface.read_shape(renderer).unwrap();
     let uploaded = Shape {

@@ -7,6 +7,7 @@
 mod rig;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::Vec3;
 use pliant_render::{
@@ -113,6 +114,25 @@ fn modes() {
         change(&mut shot.style);
         shot.compare(&mut headless.renderer, name, &surface);
     }
+}
+
+/// A part of the ring is hidden: neither its triangles nor its edges nor its borders are drawn.
+#[test]
+fn hidden() {
+    let Some(mut headless) = renderer() else { return };
+    let renderer = &mut headless.renderer;
+    let mut surface = painted_ring(renderer);
+    let ring = Shape::open_ring(48, 20);
+    let is_shown = |triangle: &[u32; 3]| ring.positions[triangle[0] as usize][1] < 0.3;
+    let shown: Vec<bool> = ring.triangles.iter().map(is_shown).collect();
+    surface.show(renderer, Some(Arc::new(shown))).unwrap();
+    let mut shot = Shot::default();
+    shot.style.wireframe = Wireframe::On;
+    shot.style.borders = Borders::On;
+    shot.compare(renderer, "hidden", &surface);
+    let all = Shot::default();
+    surface.show(renderer, None).unwrap();
+    all.compare(renderer, "clay", &surface);
 }
 
 #[test]

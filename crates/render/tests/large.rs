@@ -51,14 +51,9 @@ fn ids(renderer: &mut Renderer, surface: &Surface, view: &View) -> Vec<Option<u3
         grid: None,
         overlays: &[],
     };
-    let [width, height] = SIZE_PX;
-    let whole = PixelRect {
-        x: 0,
-        y: 0,
-        width,
-        height,
-    };
-    let request = renderer.pick(&mut IdTarget::new(), SIZE_PX, whole, &frame).unwrap();
+    let request = renderer
+        .pick(&mut IdTarget::new(), SIZE_PX, PixelRect::whole(SIZE_PX), &frame)
+        .unwrap();
     let ids = request.wait(renderer).unwrap().ids;
     ids.into_iter().map(|id| id.map(|id| id.triangle)).collect()
 }

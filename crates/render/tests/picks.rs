@@ -7,12 +7,7 @@ use glam::{Vec3, Vec4Swizzles};
 use pliant_render::{Frame, IdTarget, Picked, PixelRect, Renderer, Style, Surface, View};
 use rig::{SIZE_PX, Shape, front_view, parallel_front_view, renderer};
 
-const WHOLE: PixelRect = PixelRect {
-    x: 0,
-    y: 0,
-    width: SIZE_PX[0],
-    height: SIZE_PX[1],
-};
+const WHOLE: PixelRect = PixelRect::whole(SIZE_PX);
 
 fn pick(renderer: &mut Renderer, view: &View, surfaces: &[&Surface], rect: PixelRect) -> Vec<Option<Picked>> {
     let style = Style::default();
