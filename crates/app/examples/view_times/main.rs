@@ -16,7 +16,7 @@ use pliant_app::drawing::{self, Drawing};
 use pliant_editor::{Camera, Look, Shading};
 use pliant_io::Appearance;
 use pliant_mesh::{Cancel, Model, Progress, WeldOptions};
-use pliant_render::{Frame, Headless, Samples, Surface, Target};
+use pliant_render::{Detail, Frame, Headless, Samples, Style, Surface, Target};
 
 const SIZE_PX: [u32; 2] = [1280, 800];
 const FRAMES: usize = 9;
@@ -100,6 +100,7 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
     let looks = [
         ("clay", clay, camera),
         ("clay, near", clay, near),
+        ("clay, moving", clay, camera),
         (
             "material",
             Look {
@@ -135,7 +136,15 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
             let mut target = Target::new();
             target.resize(&renderer, SIZE_PX, samples)?;
             let view = drawing::view(&camera, size_px, drawing.centre);
-            let (processor_ms, device_ms) = frames(&mut renderer, &target, &view, &look, &surface)?;
+            let style = Style {
+                detail: if name == "clay, moving" {
+                    Detail::Coarse
+                } else {
+                    Detail::Full
+                },
+                ..drawing::style(&look, 1.0)
+            };
+            let (processor_ms, device_ms) = frames(&mut renderer, &target, &view, &style, &surface)?;
             println!(
                 "{{\"triangles\": {triangles}, \"device\": \"{device}\", \"look\": \"{name}\", \"samples\": {count}, \
                  \"processor_ms\": {processor_ms:.3}, \"device_ms\": {device_ms:.2}, \"drawn\": {}}}",
@@ -151,16 +160,15 @@ fn frames(
     renderer: &mut pliant_render::Renderer,
     target: &Target,
     view: &pliant_render::View,
-    look: &Look,
+    style: &Style,
     surface: &Surface,
 ) -> Result<(f64, f64), pliant_render::RenderError> {
-    let style = drawing::style(look, 1.0);
     let (mut processor, mut device) = (Vec::new(), Vec::new());
     let start = Instant::now();
     for number in 0..=FRAMES {
         let frame = Frame {
             view,
-            style: &style,
+            style,
             surfaces: &[surface],
             grid: None,
             overlays: &[],
