@@ -123,22 +123,24 @@ impl DistanceSearch {
 /// `None` where no such line crosses the edge.
 fn through_triangle([a, b, c]: [DVec3; 3], [at_a, at_b]: [f64; 2]) -> Option<f64> {
     // The plane with a at the origin, b on the x axis and c above it.
-    let along = b - a;
+    let (along, to_c) = (b - a, c - a);
     let length = along.length();
-    let x_axis = along / length;
-    let to_c = c - a;
-    let c_x = to_c.dot(x_axis);
-    let c_y = (to_c - c_x * x_axis).length();
+    let per_length = length.recip();
+    let c_x = to_c.dot(along) * per_length;
+    let c_y = along.cross(to_c).length() * per_length;
     // The virtual source below the axis.
-    let source_x = 0.5 * (length + (at_a - at_b) * (at_a + at_b) / length);
+    let source_x = 0.5 * (length + (at_a - at_b) * (at_a + at_b) * per_length);
     let below_squared = (at_a - source_x) * (at_a + source_x);
     // Zero lengths give NaN, which fails here.
     if !(below_squared >= 0.0 && c_y > 0.0) {
         return None;
     }
     let below = below_squared.sqrt();
-    let crossing = source_x + (c_x - source_x) * below / (c_y + below);
-    (crossing >= 0.0 && crossing <= length).then(|| (c_x - source_x).hypot(c_y + below))
+    let height = c_y + below;
+    // Where the line crosses the axis, times its height.
+    let crossing = source_x * c_y + c_x * below;
+    let across = c_x - source_x;
+    (crossing >= 0.0 && crossing <= length * height).then(|| (across * across + height * height).sqrt())
 }
 
 #[cfg(test)]

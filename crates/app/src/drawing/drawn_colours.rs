@@ -31,10 +31,14 @@ pub fn recolour(
     drawn_colours: &mut [[u8; 4]],
 ) -> Vec<Range<usize>> {
     let mut is_touched = vec![false; drawn_colours.len().div_ceil(BLOCK)];
+    // As many of either: each surface vertex has one drawn one, which any of its triangles names.
+    let is_one_to_one = model.surface_of_drawn.len() == model.surface.positions.len();
     for &vertex in vertices {
         let colour = colour(vertex);
         // A drawn vertex belongs to a triangle behind one of the surface's around the vertex.
-        for &face in model.topology.faces(vertex) {
+        let faces = model.topology.faces(vertex);
+        let telling = if is_one_to_one { faces.len().min(1) } else { faces.len() };
+        for &face in &faces[..telling] {
             let triangle = model.drawn_triangle_of_surface[face as usize];
             for drawn in model.drawn.triangles[triangle as usize] {
                 let is_behind = model.surface_of_drawn[drawn.index()] == Some(vertex);
@@ -54,4 +58,34 @@ pub fn recolour(
         }
     }
     ranges
+}
+
+#[cfg(test)]
+mod tests {
+    use pliant_mesh::shapes;
+
+    use super::*;
+
+    #[test]
+    fn what_is_recoloured_vertex_by_vertex_is_as_if_all_were_coloured_anew() {
+        // Each surface vertex drawn once, and several times.
+        let torus = shapes::torus(40, 30);
+        for (model, is_one_to_one) in [
+            (shapes::model(torus.clone()), true),
+            (shapes::model(shapes::soup(&torus)), false),
+        ] {
+            let count = model.surface.positions.len();
+            assert_eq!(model.surface_of_drawn.len() == count, is_one_to_one);
+            let colour = |vertex: SurfaceVertex| (vertex.0 * 7919).to_le_bytes();
+            let mut colours = vec![[0; 4]; count];
+            let mut drawn = drawn_colours(&model, &colours);
+            let some: Vec<SurfaceVertex> = (0..count as u32).step_by(3).map(SurfaceVertex).collect();
+            some.iter().for_each(|&v| colours[v.index()] = colour(v));
+            let before = drawn.clone();
+            let ranges = recolour(&model, &some, colour, &mut drawn);
+            assert!(drawn == drawn_colours(&model, &colours));
+            let is_told = |place: usize| ranges.iter().any(|range| range.contains(&place));
+            assert!((0..drawn.len()).all(|place| drawn[place] == before[place] || is_told(place)));
+        }
+    }
 }
