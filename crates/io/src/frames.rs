@@ -10,7 +10,7 @@ use glam::{DMat3, DVec3};
 use pliant_mesh::{Drawn, DrawnVertex, face_gradient};
 use rayon::prelude::*;
 
-use crate::moved::bit_equal;
+use crate::bits::bit_equal;
 
 /// Frames closer to the identity than this leave stored numbers as they are: f32 resolves 6e-8.
 const UNTURNED: f64 = 1e-7;

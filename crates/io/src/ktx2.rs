@@ -6,8 +6,8 @@ use std::ops::Range;
 
 use basisu::{DecodeFlags, SourceFormat, TargetFormat, Transcoder};
 
-use crate::image::LONGEST_SIDE_PX;
-use crate::{ImageError, Rgba8};
+use crate::ImageError;
+use crate::pixels::{LONGEST_SIDE_PX, Rgba8};
 
 const KEYS_LENGTH_AT: Range<usize> = 60..64;
 const LEVELS_AT: usize = 80;

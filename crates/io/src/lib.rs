@@ -6,6 +6,7 @@
 //! through a [`Resolver`], so nothing here knows a path.
 
 mod appearance;
+mod bits;
 mod colour;
 mod difference;
 mod error;
@@ -21,11 +22,14 @@ mod new_mesh;
 mod obj;
 mod objects;
 mod off;
+mod pixels;
 mod ply;
 mod polygon;
 mod save;
 mod scene;
+mod source;
 mod stl;
+mod summary;
 mod text;
 
 pub use appearance::{AlphaMode, Appearance, Group, Image, Lighting, Map, Material, UvSet, Wrap};
@@ -33,6 +37,9 @@ pub use difference::{Difference, What};
 pub use error::{ImageError, ReadError, SaveError, UnknownFormat};
 pub use format::Format;
 pub use gltf::with_neighbours_renamed;
-pub use image::{Rgba8, decode_image};
+pub use image::decode_image;
+pub use pixels::Rgba8;
 pub use save::{MorphTarget, OutputFile, Placement, Save, Saved};
-pub use scene::{Opened, Resolver, Scene, Summary, read};
+pub use scene::{Opened, Scene, read};
+pub use source::Resolver;
+pub use summary::Summary;

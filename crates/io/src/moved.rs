@@ -6,6 +6,7 @@ use glam::DVec3;
 use pliant_mesh::{Drawn, DrawnVertex};
 
 use crate::SaveError;
+use crate::bits::bit_equal;
 use crate::frames::Frames;
 
 /// The rest shape and the new one, over the drawn vertices.
@@ -79,9 +80,4 @@ impl<'a> Moved<'a> {
     pub fn frames(&self, normals: &[DVec3]) -> Frames {
         Frames::of(self.drawn, self.positions, normals)
     }
-}
-
-/// Equality of bits, so that a NaN equals itself and 0 differs from -0.
-pub(crate) fn bit_equal(a: DVec3, b: DVec3) -> bool {
-    a.to_array().map(f64::to_bits) == b.to_array().map(f64::to_bits)
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use pliant_mesh::DrawnVertex;
 
 use crate::Appearance;
-use crate::moved::bit_equal;
+use crate::bits::bit_equal;
 use crate::new_mesh::NewMesh;
 
 /// Calls `visit` with the corners of each face and the number of its first triangle: the file's own polygons where

@@ -15,7 +15,8 @@ use crate::colour::{byte, linear_of_srgb};
 use crate::moved::Moved;
 use crate::new_mesh::Polygons;
 use crate::polygon::{cut_faces, left_out_note};
-use crate::scene::{Source, Summary};
+use crate::source::Source;
+use crate::summary::Summary;
 use crate::{Appearance, ReadError, SaveError};
 use records::Records;
 

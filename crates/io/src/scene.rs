@@ -9,21 +9,16 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_mesh::{Cancel, Drawn, Object, Progress};
-use serde::Serialize;
 
+use crate::bits::bit_equal;
 use crate::difference::{self, Difference};
-use crate::moved::{Moved, bit_equal};
+use crate::moved::Moved;
 use crate::new_faces::{lost, lost_where};
 use crate::new_mesh::{NewMesh, Parting, Polygons};
 use crate::save::{MorphTarget, OutputFile, Placement, Save, Saved};
+use crate::source::{Resolver, Source};
+use crate::summary::Summary;
 use crate::{Appearance, Format, ReadError, SaveError, gltf, new_glb, obj, off, ply, stl};
-
-/// Gives the bytes of a file's neighbours.
-pub trait Resolver {
-    /// The bytes of the neighbour at `uri`, a percent-decoded path with `/` between folders, relative to the file's
-    /// own folder unless it is absolute. On failure: why, in words.
-    fn read(&self, uri: &str) -> Result<Vec<u8>, String>;
-}
 
 /// What [`read`] gives.
 #[derive(Debug)]
@@ -32,20 +27,6 @@ pub struct Opened {
     pub scene: Scene,
     /// What it shows.
     pub drawn: Drawn,
-}
-
-/// What a file holds, counted.
-#[derive(Clone, PartialEq, Eq, Debug, Default, Serialize)]
-#[expect(missing_docs, reason = "each count is of what its name says")]
-pub struct Summary {
-    pub meshes: usize,
-    pub primitives: usize,
-    pub nodes: usize,
-    pub materials: usize,
-    pub images: usize,
-    pub skins: usize,
-    pub animations: usize,
-    pub morph_targets: usize,
 }
 
 /// A file as stored, nothing thrown away.
@@ -63,29 +44,6 @@ enum Stored {
     Ply(ply::Stored),
     Stl(stl::Stored),
     Off(off::Stored),
-}
-
-/// What a format's reader gets.
-pub(crate) struct Source<'a> {
-    /// The file. A reader may keep a clone and point into it.
-    pub bytes: &'a Arc<Vec<u8>>,
-    /// The file's name, for messages.
-    pub name: &'a str,
-    /// Its neighbours.
-    pub resolver: &'a dyn Resolver,
-    pub progress: &'a Progress,
-    pub cancel: &'a Cancel,
-}
-
-impl Source<'_> {
-    /// A [`ReadError::Malformed`] of this file.
-    pub fn malformed(&self, format: Format, reason: impl Into<String>) -> ReadError {
-        ReadError::Malformed {
-            name: self.name.to_owned(),
-            format,
-            reason: reason.into(),
-        }
-    }
 }
 
 /// Reads a file of the given kind. `name` is used in messages only; `resolver` is asked for neighbours.

@@ -14,7 +14,8 @@ use pliant_mesh::{Drawn, DrawnVertex, FileVertex};
 
 use crate::appearance::{Group, Material};
 use crate::moved::Moved;
-use crate::scene::{Source, Summary};
+use crate::source::Source;
+use crate::summary::Summary;
 use crate::{Appearance, ReadError, SaveError};
 
 pub(crate) use write::write_new;

@@ -6,7 +6,7 @@
 use std::io::Write;
 use std::ops::Range;
 
-use crate::scene::Source;
+use crate::source::Source;
 use crate::{Format, ReadError};
 
 /// A place in a text file that moves forward.

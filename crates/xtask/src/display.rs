@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 
-use crate::system;
+use crate::process;
 
 /// A virtual display.
 pub struct Display {
@@ -18,7 +18,7 @@ impl Display {
     /// One sentence when Xvfb can't be started.
     pub fn start() -> Result<Self, String> {
         let failed = |why: &str| format!("Xvfb gives no display ({why}): install the package xvfb.");
-        let program = system::program("Xvfb").ok_or_else(|| failed("not found"))?;
+        let program = process::program("Xvfb").ok_or_else(|| failed("not found"))?;
         let mut server = Command::new(program)
             .args(["-displayfd", "1", "-screen", "0", "1600x1000x24", "-nolisten", "tcp"])
             .stdin(Stdio::null())
@@ -38,7 +38,7 @@ impl Display {
         if !matches!(answered, Some(Ok(1..))) {
             return Err(failed("it ended at once"));
         }
-        if let Some(manager) = system::program("openbox") {
+        if let Some(manager) = process::program("openbox") {
             let manager = Command::new(manager)
                 .env("DISPLAY", &display.name)
                 .stdin(Stdio::null())

@@ -40,7 +40,7 @@ pub fn prepare(requirements: &[&[Requirement]], purpose: &str, consent: Consent)
     if packages.is_empty() {
         return Ok(Prepared::Complete);
     }
-    if !matches!(system, System::Debian { .. }) || system::program("apt-get").is_none() {
+    if !matches!(system, System::Debian { .. }) || process::program("apt-get").is_none() {
         return Ok(Prepared::Without(format!(
             "{} has no apt, so {purpose} are skipped; they need what Debian calls {}.",
             system.name(),
@@ -54,7 +54,7 @@ pub fn prepare(requirements: &[&[Requirement]], purpose: &str, consent: Consent)
     let prefix: &[&str] = if system::is_root() {
         println!("Installing for {purpose}: {}", packages.join(" "));
         &[]
-    } else if system::program("sudo").is_some() && agreed(&by_hand, purpose, consent) {
+    } else if process::program("sudo").is_some() && agreed(&by_hand, purpose, consent) {
         &["sudo"]
     } else {
         return Err(format!(

@@ -4,9 +4,18 @@ use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
+/// The first program of this name on the search path, or where administrators' programs lie.
+pub fn program(name: &str) -> Option<PathBuf> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path)
+        .chain(["/usr/sbin", "/sbin"].map(PathBuf::from))
+        .map(|folder| folder.join(name))
+        .find(|file| file.is_file())
+}
+
 /// What a program prints, or nothing when it can't be started or fails.
 pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
-    let program = crate::system::program(program)?;
+    let program = self::program(program)?;
     let output = Command::new(program)
         .args(arguments)
         .stdin(Stdio::null())

@@ -1,6 +1,6 @@
 //! What building and testing Pliant needs from the system, how to see that it is there, and which package brings it.
 
-use crate::system;
+use crate::{process, system};
 
 /// One thing that must be there.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -84,7 +84,7 @@ pub fn missing_packages(requirements: &[&[Requirement]]) -> Vec<&'static str> {
 impl Evidence {
     fn is_there(self) -> bool {
         match self {
-            Self::Program(name) => system::program(name).is_some(),
+            Self::Program(name) => process::program(name).is_some(),
             Self::Library(name) => system::has_library(name),
             Self::VulkanDriver => !system::vulkan_drivers().is_empty(),
             Self::SoftwareVulkanDriver => system::software_vulkan_driver().is_some(),

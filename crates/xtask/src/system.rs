@@ -70,15 +70,6 @@ impl System {
     }
 }
 
-/// The first program of this name on the search path, or where administrators' programs lie.
-pub fn program(name: &str) -> Option<PathBuf> {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    std::env::split_paths(&path)
-        .chain(["/usr/sbin", "/sbin"].map(PathBuf::from))
-        .map(|folder| folder.join(name))
-        .find(|file| file.is_file())
-}
-
 /// Can the loader find the shared library of this exact name (`libvulkan.so.1`)?
 pub fn has_library(name: &str) -> bool {
     let cached = process::output("ldconfig", &["-p"]).unwrap_or_default();

@@ -17,7 +17,7 @@ use super::fault::Fault;
 use super::json::{At, Json};
 use super::uri::{self, Address};
 use crate::Format;
-use crate::scene::Source;
+use crate::source::Source;
 
 /// A glTF as read.
 #[derive(Debug)]

@@ -31,7 +31,8 @@ use self::patch::Patched;
 use self::primitive::Primitive;
 use crate::moved::Moved;
 use crate::save::{MorphTarget, Save, Saved};
-use crate::scene::{Source, Summary};
+use crate::source::Source;
+use crate::summary::Summary;
 use crate::{Appearance, Difference, Format, ReadError, SaveError};
 
 /// A glTF as read, and how its drawn set is made up.

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use crate::appearance::{AlphaMode, Image, Material, Wrap};
 use crate::colour::linear_of_srgb;
 use crate::save::OutputFile;
-use crate::scene::Source;
+use crate::source::Source;
 use crate::text::excerpt;
 
 /// One material for each name, in order, and the images they use.

@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::scene::Source;
+use crate::source::Source;
 use crate::text::{Cursor, excerpt, malformed_at};
 use crate::{Format, ReadError};
 use glam::DVec3;

@@ -1,6 +1,6 @@
 //! An OFF file's first words: what each vertex holds, and how many vertices and faces there are.
 
-use crate::scene::Source;
+use crate::source::Source;
 use crate::text::{Cursor, excerpt, malformed_at};
 use crate::{Format, ReadError};
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::header::Header;
-use crate::scene::Source;
+use crate::source::Source;
 use crate::text::{Cursor, excerpt, malformed_at};
 use crate::{Format, ReadError};
 

@@ -1,7 +1,7 @@
 //! A PLY file's header: which elements follow, how many, and of what their records are made.
 
 use super::scalar::{Encoding, Scalar};
-use crate::scene::Source;
+use crate::source::Source;
 use crate::text::{Cursor, excerpt, malformed_at};
 use crate::{Format, ReadError};
 

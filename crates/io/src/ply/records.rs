@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::header::{Element, Header, Kind};
 use super::scalar::{Encoding, Walk, decode};
-use crate::scene::Source;
+use crate::source::Source;
 use crate::{Format, ReadError};
 
 /// What is read of a vertex, in the order of [`Columns`].

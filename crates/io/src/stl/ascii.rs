@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{changed_facets, facet_normal};
 use crate::moved::Moved;
 use crate::new_faces::coarse_in_f32;
-use crate::scene::Source;
+use crate::source::Source;
 use crate::text::{Cursor, Splice, excerpt, malformed_at, push_f32, push_f64};
 use crate::{Format, ReadError};
 

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::{changed_facets, facet_normal};
 use crate::moved::Moved;
-use crate::scene::Source;
+use crate::source::Source;
 use crate::{Format, ReadError};
 
 /// Bytes before the first facet.

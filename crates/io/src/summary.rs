@@ -1,0 +1,17 @@
+//! What a file holds, in numbers.
+
+use serde::Serialize;
+
+/// What a file holds, counted.
+#[derive(Clone, PartialEq, Eq, Debug, Default, Serialize)]
+#[expect(missing_docs, reason = "each count is of what its name says")]
+pub struct Summary {
+    pub meshes: usize,
+    pub primitives: usize,
+    pub nodes: usize,
+    pub materials: usize,
+    pub images: usize,
+    pub skins: usize,
+    pub animations: usize,
+    pub morph_targets: usize,
+}
