@@ -5,6 +5,10 @@
 //! that was saved over is known again whatever it is called. Regions are ranges of the file's drawn vertices; only
 //! fields of numbers stand as base64 ([`crate::project_field`]).
 
+mod camera;
+mod handle;
+mod objects;
+
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -16,8 +20,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use crate::camera::{Projection, UpAxis};
-use crate::document::{Document, Handle, HandleId, MirrorPlane, Paint, PivotPlace, Twin};
+use crate::document::{Document, Handle, HandleId, Paint};
 use crate::edit_error::EditError;
 use crate::edit_node::Node;
 use crate::engine::region_input;
@@ -26,8 +29,10 @@ use crate::history::bits_equal;
 use crate::method_form::{method_to_value, read_method};
 use crate::project_field::{Field, Ranges, for_each_drawn, ranges_where};
 use crate::region::{Region, displaced};
-use crate::turn::{followed, means};
-use crate::{Access, Camera, HandleSetup, HandleTransform, Reach, Rest, SOFT_RANGE, STIFFNESS_RANGE, Setup};
+use crate::{Camera, HandleSetup, Rest, STIFFNESS_RANGE, Setup};
+use camera::StoredCamera;
+use handle::StoredHandle;
+use objects::{StoredObject, stored_objects};
 
 /// The version of the project format that is read and written.
 const PROJECT_VERSION: u64 = 1;
@@ -114,109 +119,6 @@ impl From<StoredLoose> for Loose {
             StoredLoose::Bend => Self::Bend,
         }
     }
-}
-
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct StoredHandle {
-    id: u16,
-    name: String,
-    colour: [u8; 4],
-    vertices: Ranges,
-    #[serde(default, skip_serializing_if = "is_empty_object")]
-    transform: Value,
-    /// The turn as it is counted, in degrees about x, y and z.
-    #[serde(default, skip_serializing_if = "is_no_turn")]
-    turn_deg: [f64; 3],
-    pivot: [f64; 3],
-    #[serde(default)]
-    pivot_place: StoredPivotPlace,
-    reach: StoredReach,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    soft: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    continuity: Option<f64>,
-    #[serde(default = "yes", skip_serializing_if = "is_yes")]
-    visible: bool,
-    #[serde(default, skip_serializing_if = "is_no")]
-    locked: bool,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    twin: Option<StoredTwin>,
-}
-
-#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum StoredPivotPlace {
-    #[default]
-    Centroid,
-    Border,
-    Picked,
-}
-
-#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum StoredReach {
-    Radii(f64),
-    Length(f64),
-}
-
-#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct StoredTwin {
-    handle: u16,
-    axis: usize,
-    at: f64,
-}
-
-#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct StoredCamera {
-    target: [f64; 3],
-    distance: f64,
-    yaw_rad: f64,
-    pitch_rad: f64,
-    fov_y_rad: f64,
-    up: StoredUp,
-    scale: f64,
-    #[serde(default)]
-    roll_rad: f64,
-    #[serde(default)]
-    projection: StoredProjection,
-}
-
-#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum StoredProjection {
-    #[default]
-    Perspective,
-    Orthographic,
-}
-
-#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum StoredUp {
-    Y,
-    Z,
-}
-
-fn yes() -> bool {
-    true
-}
-
-fn is_yes(flag: &bool) -> bool {
-    *flag
-}
-
-fn is_no(flag: &bool) -> bool {
-    !flag
-}
-
-fn is_no_turn(turn_deg: &[f64; 3]) -> bool {
-    *turn_deg == [0.0; 3]
-}
-
-fn is_empty_object(value: &Value) -> bool {
-    value.as_object().is_none_or(serde_json::Map::is_empty)
 }
 
 /// `sha256:` and the digest of what vertex numbers mean: the drawn positions' bits, the triangles and the file's
@@ -315,7 +217,7 @@ impl Project {
             handles: document
                 .handles
                 .iter()
-                .map(|handle| stored_handle(handle, painted(Paint::Handle(handle.id))))
+                .map(|handle| StoredHandle::of(handle, painted(Paint::Handle(handle.id))))
                 .collect(),
             next_handle: document.next_handle,
             objects: stored_objects(&document.access, model),
@@ -361,8 +263,7 @@ impl Project {
 
     /// Whether the shape is the file's.
     pub(crate) fn changes_nothing(&self) -> bool {
-        let is_at_rest = |handle: &StoredHandle| is_empty_object(&handle.transform);
-        self.rest.is_none() && self.handles.iter().all(is_at_rest)
+        self.rest.is_none() && self.handles.iter().all(StoredHandle::is_at_rest)
     }
 
     /// The document on its mesh.
@@ -500,188 +401,6 @@ impl Project {
     }
 }
 
-/// An object that is hidden or locked.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct StoredObject {
-    /// Its number, as the file names nodes and materials.
-    object: u32,
-    /// Its name, for a person.
-    name: String,
-    #[serde(default, skip_serializing_if = "is_no")]
-    hidden: bool,
-    #[serde(default, skip_serializing_if = "is_no")]
-    locked: bool,
-}
-
-fn stored_objects(access: &Access, model: &Model) -> Vec<StoredObject> {
-    let all = model.all_objects();
-    access
-        .hidden
-        .union(&access.locked)
-        .map(|&object| StoredObject {
-            object,
-            name: all
-                .get(object as usize)
-                .map_or(String::new(), |found| found.name.clone()),
-            hidden: access.hidden.contains(&object),
-            locked: access.locked.contains(&object),
-        })
-        .collect()
-}
-
-impl Project {
-    fn access(&self, model: &Model) -> Result<Access, EditError> {
-        let refused = |what: &str, number: u32, count: usize| {
-            EditError::Project(format!(
-                "`{what}` names number {number}, and the mesh has {count}: save it again"
-            ))
-        };
-        let count = model.all_objects().len();
-        let mut access = Access::default();
-        for stored in &self.objects {
-            if stored.object as usize >= count {
-                return Err(refused("objects", stored.object, count));
-            }
-            if stored.hidden {
-                access.hidden.insert(stored.object);
-            }
-            if stored.locked {
-                access.locked.insert(stored.object);
-            }
-        }
-        let parts = model.topology.components().len();
-        if let Some(part) = self.isolated.filter(|&part| part as usize >= parts) {
-            return Err(refused("isolated", part, parts));
-        }
-        access.isolated = self.isolated;
-        Ok(access)
-    }
-}
-
 fn shortened(hash: &str) -> String {
     hash.chars().take(19).chain("…".chars()).collect()
-}
-
-fn stored_handle(handle: &Handle, vertices: Ranges) -> StoredHandle {
-    StoredHandle {
-        id: handle.id.0,
-        name: handle.name.clone(),
-        colour: handle.colour,
-        vertices,
-        transform: handle.transform.to_value(),
-        turn_deg: handle.turn_deg.to_array(),
-        pivot: handle.pivot.to_array(),
-        pivot_place: match handle.pivot_place {
-            PivotPlace::Centroid => StoredPivotPlace::Centroid,
-            PivotPlace::Border => StoredPivotPlace::Border,
-            PivotPlace::Picked => StoredPivotPlace::Picked,
-        },
-        reach: match handle.reach {
-            Reach::Radii(radii) => StoredReach::Radii(radii),
-            Reach::Length(length) => StoredReach::Length(length),
-        },
-        soft: handle.soft,
-        continuity: handle.continuity,
-        visible: handle.visible,
-        locked: handle.locked,
-        twin: handle.twin.map(|twin| StoredTwin {
-            handle: twin.handle.0,
-            axis: twin.plane.axis,
-            at: twin.plane.at,
-        }),
-    }
-}
-
-impl StoredHandle {
-    fn handle(&self) -> Result<Handle, EditError> {
-        let (StoredReach::Radii(size) | StoredReach::Length(size)) = self.reach;
-        let refused_weight = self.soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight))
-            || self.continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value));
-        if !(size.is_finite() && size >= 0.0) || refused_weight || self.twin.is_some_and(|twin| twin.axis > 2) {
-            return Err(EditError::Project(format!(
-                "the handle `{}` has a reach, a weight, a continuity or a twin that can't be: save it again",
-                self.name
-            )));
-        }
-        let id = HandleId(self.id);
-        let transform = match is_empty_object(&self.transform) {
-            true => HandleTransform::IDENTITY,
-            false => HandleTransform::read(&Node::new(&self.transform, &format!("handles: {}", self.name)))?,
-        };
-        let counted = DVec3::from_array(self.turn_deg);
-        Ok(Handle {
-            colour: self.colour,
-            // What is counted means the rotation, whoever wrote it.
-            turn_deg: match transform {
-                HandleTransform::Trs { rotation, .. } if !means(counted, rotation) => followed(DVec3::ZERO, rotation),
-                _ => counted,
-            },
-            transform,
-            pivot: DVec3::from_array(self.pivot),
-            pivot_place: match self.pivot_place {
-                StoredPivotPlace::Centroid => PivotPlace::Centroid,
-                StoredPivotPlace::Border => PivotPlace::Border,
-                StoredPivotPlace::Picked => PivotPlace::Picked,
-            },
-            reach: match self.reach {
-                StoredReach::Radii(radii) => Reach::Radii(radii),
-                StoredReach::Length(length) => Reach::Length(length),
-            },
-            soft: self.soft,
-            continuity: self.continuity,
-            visible: self.visible,
-            locked: self.locked,
-            twin: self.twin.map(|twin| Twin {
-                handle: HandleId(twin.handle),
-                plane: MirrorPlane {
-                    axis: twin.axis,
-                    at: twin.at,
-                },
-            }),
-            ..Handle::new(id, self.name.clone())
-        })
-    }
-}
-
-impl StoredCamera {
-    fn of(camera: &Camera) -> Self {
-        Self {
-            target: camera.target.to_array(),
-            distance: camera.distance,
-            yaw_rad: camera.yaw_rad,
-            pitch_rad: camera.pitch_rad,
-            fov_y_rad: camera.fov_y_rad,
-            up: match camera.up {
-                UpAxis::Y => StoredUp::Y,
-                UpAxis::Z => StoredUp::Z,
-            },
-            scale: camera.scale,
-            roll_rad: camera.roll_rad,
-            projection: match camera.projection {
-                Projection::Perspective => StoredProjection::Perspective,
-                Projection::Orthographic => StoredProjection::Orthographic,
-            },
-        }
-    }
-
-    fn camera(self) -> Camera {
-        Camera {
-            target: DVec3::from_array(self.target),
-            distance: self.distance,
-            yaw_rad: self.yaw_rad,
-            pitch_rad: self.pitch_rad,
-            fov_y_rad: self.fov_y_rad,
-            up: match self.up {
-                StoredUp::Y => UpAxis::Y,
-                StoredUp::Z => UpAxis::Z,
-            },
-            scale: self.scale,
-            roll_rad: self.roll_rad,
-            projection: match self.projection {
-                StoredProjection::Perspective => Projection::Perspective,
-                StoredProjection::Orthographic => Projection::Orthographic,
-            },
-        }
-    }
 }

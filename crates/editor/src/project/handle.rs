@@ -1,0 +1,167 @@
+//! A handle as a project stores it.
+
+use glam::DVec3;
+use pliant_deform::CONTINUITY_RANGE;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::document::{Handle, HandleId, MirrorPlane, PivotPlace, Twin};
+use crate::edit_error::EditError;
+use crate::edit_node::Node;
+use crate::project_field::Ranges;
+use crate::turn::{followed, means};
+use crate::{HandleTransform, Reach, SOFT_RANGE};
+
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StoredHandle {
+    pub(super) id: u16,
+    pub(super) name: String,
+    colour: [u8; 4],
+    pub(super) vertices: Ranges,
+    #[serde(default, skip_serializing_if = "is_empty_object")]
+    transform: Value,
+    /// The turn as it is counted, in degrees about x, y and z.
+    #[serde(default, skip_serializing_if = "is_no_turn")]
+    turn_deg: [f64; 3],
+    pivot: [f64; 3],
+    #[serde(default)]
+    pivot_place: StoredPivotPlace,
+    reach: StoredReach,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    soft: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    continuity: Option<f64>,
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    visible: bool,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    locked: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    twin: Option<StoredTwin>,
+}
+
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum StoredPivotPlace {
+    #[default]
+    Centroid,
+    Border,
+    Picked,
+}
+
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum StoredReach {
+    Radii(f64),
+    Length(f64),
+}
+
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredTwin {
+    handle: u16,
+    axis: usize,
+    at: f64,
+}
+
+impl StoredHandle {
+    pub(super) fn of(handle: &Handle, vertices: Ranges) -> Self {
+        Self {
+            id: handle.id.0,
+            name: handle.name.clone(),
+            colour: handle.colour,
+            vertices,
+            transform: handle.transform.to_value(),
+            turn_deg: handle.turn_deg.to_array(),
+            pivot: handle.pivot.to_array(),
+            pivot_place: match handle.pivot_place {
+                PivotPlace::Centroid => StoredPivotPlace::Centroid,
+                PivotPlace::Border => StoredPivotPlace::Border,
+                PivotPlace::Picked => StoredPivotPlace::Picked,
+            },
+            reach: match handle.reach {
+                Reach::Radii(radii) => StoredReach::Radii(radii),
+                Reach::Length(length) => StoredReach::Length(length),
+            },
+            soft: handle.soft,
+            continuity: handle.continuity,
+            visible: handle.visible,
+            locked: handle.locked,
+            twin: handle.twin.map(|twin| StoredTwin {
+                handle: twin.handle.0,
+                axis: twin.plane.axis,
+                at: twin.plane.at,
+            }),
+        }
+    }
+
+    /// Whether it is where it rests.
+    pub(super) fn is_at_rest(&self) -> bool {
+        is_empty_object(&self.transform)
+    }
+
+    pub(super) fn handle(&self) -> Result<Handle, EditError> {
+        let (StoredReach::Radii(size) | StoredReach::Length(size)) = self.reach;
+        let refused_weight = self.soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight))
+            || self.continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value));
+        if !(size.is_finite() && size >= 0.0) || refused_weight || self.twin.is_some_and(|twin| twin.axis > 2) {
+            return Err(EditError::Project(format!(
+                "the handle `{}` has a reach, a weight, a continuity or a twin that can't be: save it again",
+                self.name
+            )));
+        }
+        let id = HandleId(self.id);
+        let transform = match is_empty_object(&self.transform) {
+            true => HandleTransform::IDENTITY,
+            false => HandleTransform::read(&Node::new(&self.transform, &format!("handles: {}", self.name)))?,
+        };
+        let counted = DVec3::from_array(self.turn_deg);
+        Ok(Handle {
+            colour: self.colour,
+            // What is counted means the rotation, whoever wrote it.
+            turn_deg: match transform {
+                HandleTransform::Trs { rotation, .. } if !means(counted, rotation) => followed(DVec3::ZERO, rotation),
+                _ => counted,
+            },
+            transform,
+            pivot: DVec3::from_array(self.pivot),
+            pivot_place: match self.pivot_place {
+                StoredPivotPlace::Centroid => PivotPlace::Centroid,
+                StoredPivotPlace::Border => PivotPlace::Border,
+                StoredPivotPlace::Picked => PivotPlace::Picked,
+            },
+            reach: match self.reach {
+                StoredReach::Radii(radii) => Reach::Radii(radii),
+                StoredReach::Length(length) => Reach::Length(length),
+            },
+            soft: self.soft,
+            continuity: self.continuity,
+            visible: self.visible,
+            locked: self.locked,
+            twin: self.twin.map(|twin| Twin {
+                handle: HandleId(twin.handle),
+                plane: MirrorPlane {
+                    axis: twin.axis,
+                    at: twin.at,
+                },
+            }),
+            ..Handle::new(id, self.name.clone())
+        })
+    }
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn is_yes(flag: &bool) -> bool {
+    *flag
+}
+
+fn is_no_turn(turn_deg: &[f64; 3]) -> bool {
+    *turn_deg == [0.0; 3]
+}
+
+fn is_empty_object(value: &Value) -> bool {
+    value.as_object().is_none_or(serde_json::Map::is_empty)
+}

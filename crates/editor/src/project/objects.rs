@@ -1,0 +1,67 @@
+//! What is hidden and locked, as a project stores it.
+
+use pliant_mesh::Model;
+use serde::{Deserialize, Serialize};
+
+use super::Project;
+use crate::Access;
+use crate::edit_error::EditError;
+
+/// An object that is hidden or locked.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StoredObject {
+    /// Its number, as the file names nodes and materials.
+    object: u32,
+    /// Its name, for a person.
+    name: String,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    hidden: bool,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    locked: bool,
+}
+
+pub(super) fn stored_objects(access: &Access, model: &Model) -> Vec<StoredObject> {
+    let all = model.all_objects();
+    access
+        .hidden
+        .union(&access.locked)
+        .map(|&object| StoredObject {
+            object,
+            name: all
+                .get(object as usize)
+                .map_or(String::new(), |found| found.name.clone()),
+            hidden: access.hidden.contains(&object),
+            locked: access.locked.contains(&object),
+        })
+        .collect()
+}
+
+impl Project {
+    pub(super) fn access(&self, model: &Model) -> Result<Access, EditError> {
+        let refused = |what: &str, number: u32, count: usize| {
+            EditError::Project(format!(
+                "`{what}` names number {number}, and the mesh has {count}: save it again"
+            ))
+        };
+        let count = model.all_objects().len();
+        let mut access = Access::default();
+        for stored in &self.objects {
+            if stored.object as usize >= count {
+                return Err(refused("objects", stored.object, count));
+            }
+            if stored.hidden {
+                access.hidden.insert(stored.object);
+            }
+            if stored.locked {
+                access.locked.insert(stored.object);
+            }
+        }
+        let parts = model.topology.components().len();
+        if let Some(part) = self.isolated.filter(|&part| part as usize >= parts) {
+            return Err(refused("isolated", part, parts));
+        }
+        access.isolated = self.isolated;
+        Ok(access)
+    }
+}
