@@ -14,6 +14,7 @@ mod command;
 mod command_table;
 mod consequences;
 mod constraint;
+mod dispatch;
 mod document;
 mod edit_error;
 mod edit_file;
