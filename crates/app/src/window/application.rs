@@ -7,18 +7,16 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-use eframe::egui::{self, CentralPanel, Panel, Sense, vec2};
-use glam::{DVec2, DVec3};
-use pliant_editor::{Command, Cursor, Editor, Event, JobQueue, KeyMap, Revision, Shading, method_title};
+use eframe::egui::{self, CentralPanel, Panel};
+use glam::DVec3;
+use pliant_editor::{Command, Editor, Event, JobQueue, KeyMap};
 
-use super::axis_ball;
 use super::compare::Compare;
 use super::dialog::{self, Question, Then};
-use super::hints;
-use super::input::{Attention, Input};
+use super::input::Input;
 use super::keys_window::KeysWindow;
 use super::log::Log;
-use super::message::{Dressed, Message, Opened, Posed};
+use super::message::Message;
 use super::notes::{Note, Notes};
 use super::outbox::Outbox;
 use super::palette::{Found, Outcome, Palette};
@@ -30,14 +28,12 @@ use super::settings::SettingsFile;
 use super::status;
 use super::theme;
 use super::top_bar;
-use super::viewport::{Smoothness, Viewport};
-use super::workers::{Stage, Workers};
+use super::viewport::Viewport;
+use super::workers::Workers;
 use crate::AppError;
-use crate::drawing::{self, Drawing, Field};
-use crate::legend;
 
 /// How long the view must rest before it is drawn with smooth borders on a software device.
-const REST: Duration = Duration::from_millis(300);
+pub(super) const REST: Duration = Duration::from_millis(300);
 
 /// The window's state beside the editor's: files, threads, the GPU, questions and notes.
 pub struct Application {
@@ -46,32 +42,32 @@ pub struct Application {
     /// The second view, while two methods are compared.
     pub(super) compare: Option<Compare>,
     pub(super) workers: Workers,
-    messages: Receiver<Message>,
+    pub(super) messages: Receiver<Message>,
     pub(super) session: Session,
-    poses: JobQueue<Arc<Vec<DVec3>>>,
-    next_pose: u64,
-    input: Input,
+    pub(super) poses: JobQueue<Arc<Vec<DVec3>>>,
+    pub(super) next_pose: u64,
+    pub(super) input: Input,
     pub(super) settings: SettingsFile,
-    recovery: Option<Recovery>,
+    pub(super) recovery: Option<Recovery>,
     pub(super) palette: Option<Palette>,
     /// Whether this is a person's window, where the first steps are shown.
-    shows_hints: bool,
+    pub(super) shows_hints: bool,
     pub(super) log: Log,
     pub(super) keys: KeysWindow,
     pub(super) question: Option<Question>,
     /// What to do once the save that was asked for first has ended.
     pub(super) after_saving: Option<Then>,
     pub(super) notes: Notes,
-    last_change: Instant,
+    pub(super) last_change: Instant,
     pub(super) closing: bool,
     /// The left session that is open now, until its work is kept or saved by this one.
-    recovered_from: Option<PathBuf>,
+    pub(super) recovered_from: Option<PathBuf>,
     longest_frame: Duration,
     /// Whether the open file's images were asked for.
-    is_dressed: bool,
+    pub(super) is_dressed: bool,
     /// Whether a widget had the keys in the last frame.
-    had_focus: bool,
-    view_rect: egui::Rect,
+    pub(super) had_focus: bool,
+    pub(super) view_rect: egui::Rect,
     title: String,
 }
 
@@ -284,99 +280,8 @@ impl Application {
         self.session.save(path, &displacements, keep_original, &self.workers);
     }
 
-    fn take_messages(&mut self) {
-        while let Ok(message) = self.messages.try_recv() {
-            match message {
-                Message::Job(done, posed) => {
-                    self.editor.handle(Event::JobDone(done));
-                    // A stale result's pose is not shown: the editor kept another shape.
-                    if let Some(posed) =
-                        posed.filter(|posed| Arc::ptr_eq(&posed.displacements, self.editor.view().displacements))
-                    {
-                        self.show_pose(posed);
-                    }
-                }
-                Message::Posed(stamp, result) => {
-                    self.poses.finish(stamp);
-                    match result {
-                        Ok(posed) if self.belongs_to_open_file(&posed) => self.show_pose(posed),
-                        Ok(_) => {}
-                        Err(sentence) => self.fail(sentence),
-                    }
-                }
-                // That goes to the second view.
-                Message::Uploaded(..) => {}
-                Message::Dressed(drawing, result) => self.wear(&drawing, result),
-                Message::Opened(stamp, result) => match self.session.loaded(stamp, result, &self.workers) {
-                    Some(Ok(opened)) => self.adopt(*opened),
-                    Some(Err(sentence)) => self.fail(sentence),
-                    None => {}
-                },
-                Message::Written(stamp, result) => self.written(stamp, result),
-                Message::Autosaved(key, result) => {
-                    let failed = self
-                        .recovery
-                        .as_mut()
-                        .and_then(|recovery| recovery.written(key, result));
-                    if let Some(sentence) = failed {
-                        self.fail(sentence);
-                    }
-                }
-                Message::Chosen(purpose, path) => self.chosen(purpose, path),
-            }
-        }
-    }
-
-    fn belongs_to_open_file(&self, posed: &Posed) -> bool {
-        posed.displacements.len() == self.editor.view().displacements.len()
-    }
-
-    fn adopt(&mut self, opened: Opened) {
-        self.session.adopt(&opened);
-        let Opened {
-            loaded,
-            drawing,
-            surface,
-            displacements,
-            beginning,
-            notes,
-            recovered,
-            project,
-            path,
-            ..
-        } = opened;
-        if let Some(path) = project.or(path).filter(|_| recovered.is_none()) {
-            self.settings.change(|settings| settings.remember(&path));
-        }
-        let name = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
-        self.workers.set_stage(Stage {
-            loaded: Arc::clone(&loaded),
-            drawing: Arc::clone(&drawing),
-            field: self.wanted_field(),
-            scales: Arc::default(),
-        });
-        self.poses.cancel();
-        self.is_dressed = false;
-        let lowest = loaded.model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
-        self.viewport.show(drawing, surface, displacements, lowest);
-        self.notes = Notes {
-            headline: None,
-            about_file: notes,
-        };
-        self.editor.handle(Event::Opened {
-            model: Arc::clone(&loaded.model),
-            name,
-            beginning,
-        });
-        if let Some(left) = recovered {
-            self.editor.handle(Event::Recovered);
-            self.keep_for_recovery();
-            self.recovered_from = Some(left);
-        }
-    }
-
     /// Has unsaved work written where the next session finds it.
-    fn keep_for_recovery(&mut self) {
+    pub(super) fn keep_for_recovery(&mut self) {
         let (Some(recovery), Some(open)) = (&mut self.recovery, &self.session.open) else {
             return;
         };
@@ -400,80 +305,6 @@ impl Application {
 
     pub(super) fn fail(&mut self, sentence: String) {
         self.notes.headline = Some(Note::Failed(sentence));
-    }
-
-    fn show_pose(&mut self, posed: Posed) {
-        if let Err(error) = self.viewport.pose(posed) {
-            self.fail(error.to_string());
-        }
-    }
-
-    /// The numbers of the shape that are to be shown as colours. Stiffness is none of the shape's.
-    fn wanted_field(&self) -> Option<Field> {
-        drawing::field(self.editor.view().look.shading).filter(|&field| field != Field::Stiffness)
-    }
-
-    /// Has the images decoded and uploaded when materials are first shown.
-    fn request_images(&mut self) {
-        let Some(open) = &self.session.open else { return };
-        if self.is_dressed
-            || self.editor.view().look.shading != Shading::Material
-            || !open.drawing.wardrobe.has_images()
-        {
-            return;
-        }
-        self.is_dressed = true;
-        let (drawing, gpu) = (Arc::clone(&open.drawing), self.viewport.gpu());
-        let failed = Arc::clone(&drawing);
-        self.workers.spawn(
-            "images",
-            move || {
-                let dress = drawing.wardrobe.decode();
-                let outfit = gpu.upload_images(&dress).map_err(|error| error.to_string());
-                let notes = dress.notes;
-                Message::Dressed(drawing, outfit.map(|outfit| Dressed { outfit, notes }))
-            },
-            move |sentence| Message::Dressed(Arc::clone(&failed), Err(sentence)),
-        );
-    }
-
-    fn wear(&mut self, drawing: &Arc<Drawing>, result: Result<Dressed, String>) {
-        let worn = result.and_then(|Dressed { outfit, notes }| {
-            self.notes.about_file.extend(notes);
-            self.viewport.wear(drawing, outfit).map_err(|error| error.to_string())
-        });
-        if let Err(sentence) = worn {
-            self.fail(format!("the materials are shown without their images: {sentence}"));
-        }
-    }
-
-    /// Asks for the pose of the present shape if it is not the one that is shown (after undo, or while a handle moves
-    /// before its binding is ready).
-    fn request_pose(&mut self) {
-        let field = self.wanted_field();
-        let Some(mut stage) = self.workers.stage() else { return };
-        if stage.field != field {
-            stage.field = field;
-            self.workers.set_stage(stage.clone());
-        }
-        let wanted = self.editor.view().displacements;
-        let shown = self.viewport.displacements();
-        let is_stale = shown.is_some_and(|shown| !Arc::ptr_eq(shown, wanted))
-            || (shown.is_some() && field.is_some() && self.viewport.field() != field);
-        if is_stale && !self.poses.is_busy() {
-            let wanted = Arc::clone(wanted);
-            self.next_pose += 1;
-            self.poses.request(Revision(self.next_pose), wanted);
-        }
-        let Some((running, displacements)) = self.poses.start_next() else {
-            return;
-        };
-        let stamp = running.stamp;
-        self.workers.spawn(
-            "posing",
-            move || Message::Posed(stamp, Ok(stage.pose(displacements))),
-            move |sentence| Message::Posed(stamp, Err(sentence)),
-        );
     }
 
     /// Tells the editor which keys a person has chosen.
@@ -529,129 +360,6 @@ impl Application {
             context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
         }
-    }
-
-    /// With the pointer over the view and the keys with it, Tab is the view's: it selects the next handle. Elsewhere it
-    /// goes from one widget to the next.
-    fn keep_tab(&mut self, ui: &egui::Ui, is_over_view: bool) {
-        let focused = ui.memory(egui::Memory::focused);
-        let is_tab = ui.input(|input| input.key_pressed(egui::Key::Tab));
-        if let Some(widget) = focused.filter(|_| is_tab && is_over_view && !self.had_focus) {
-            ui.memory_mut(|memory| memory.surrender_focus(widget));
-        }
-        self.had_focus = ui.memory(egui::Memory::focused).is_some();
-    }
-
-    /// The 3D view: input first, then the picture.
-    fn view(&mut self, ui: &mut egui::Ui) -> Result<(), pliant_render::RenderError> {
-        let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        let (rect, second) = match self.compare {
-            None => (whole, None),
-            Some(_) => {
-                let (first, second) = whole.split_left_right_at_fraction(0.5);
-                (first, Some(second))
-            }
-        };
-        if rect.width() < 1.0 || rect.height() < 1.0 {
-            return Ok(());
-        }
-        self.view_rect = rect;
-        let size_px = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
-        if self.editor.view().viewport_px != size_px {
-            self.editor.handle(Event::Viewport { size_px });
-        }
-        if response.is_pointer_button_down_on() {
-            ui.memory_mut(|memory| {
-                if let Some(focused) = memory.focused() {
-                    memory.surrender_focus(focused);
-                }
-            });
-        }
-        self.keep_tab(ui, response.contains_pointer());
-        let over_ball = axis_ball::contains(rect, ui.input(|input| input.pointer.latest_pos()));
-        let attention = Attention {
-            rect,
-            pointer: ui.input(|input| input.pointer.latest_pos()).unwrap_or(rect.center()),
-            pointer_over: response.contains_pointer()
-                && ui
-                    .input(|input| input.pointer.latest_pos())
-                    .is_some_and(|at| rect.contains(at))
-                && self.question.is_none()
-                && self.palette.is_none()
-                && !over_ball,
-            follows_pointer: self.editor.view().cursor == Cursor::Move,
-            keys: self.question.is_none()
-                && self.palette.is_none()
-                && !self.keys.takes_keys()
-                && !ui.ctx().egui_wants_keyboard_input(),
-        };
-        let events = self.input.events(ui.ctx(), attention);
-        if !events.is_empty() {
-            self.last_change = Instant::now();
-        }
-        for event in events {
-            self.editor.handle(event);
-        }
-        self.request_pose();
-        self.request_images();
-        ui.ctx().set_cursor_icon(match self.editor.view().cursor {
-            _ if !response.contains_pointer() => egui::CursorIcon::Default,
-            Cursor::Arrow => egui::CursorIcon::Default,
-            Cursor::Brush => egui::CursorIcon::Crosshair,
-            Cursor::Grab => egui::CursorIcon::Grab,
-            Cursor::Grabbing => egui::CursorIcon::Grabbing,
-            Cursor::Move => egui::CursorIcon::Move,
-        });
-        let resting = self.last_change.elapsed() >= REST && self.editor.view().settled;
-        let smooth = if resting {
-            Smoothness::Resting
-        } else {
-            Smoothness::Moving
-        };
-        if self.viewport.paint(ui, rect, &self.editor, smooth)? {
-            ui.ctx().request_repaint_after(
-                REST.saturating_sub(self.last_change.elapsed())
-                    .max(Duration::from_millis(10)),
-            );
-        }
-        if let (Some(second), Some(compare), Some(stage)) = (second, &mut self.compare, self.workers.stage()) {
-            compare.follow(&self.editor, &self.viewport, &stage);
-            let resting = smooth == Smoothness::Resting && compare.is_settled();
-            let smooth = if resting { smooth } else { Smoothness::Moving };
-            if compare.show(ui, second, smooth)? {
-                ui.ctx().request_repaint_after(REST);
-            }
-            let name = method_title(self.editor.document().method().name());
-            axis_ball::readout(ui.painter(), rect.center_top() + vec2(-60.0, 12.0), name);
-        }
-        let outline_px = self.editor.view().outline_px;
-        if outline_px.len() > 1 {
-            let point = |px: &DVec2| rect.min + vec2(px.x as f32, px.y as f32);
-            let mut line: Vec<egui::Pos2> = outline_px.iter().map(point).collect();
-            line.push(line[0]);
-            let shadow = egui::Stroke::new(3.0, egui::Color32::from_black_alpha(120));
-            ui.painter().add(egui::Shape::line(line.clone(), shadow));
-            ui.painter()
-                .add(egui::Shape::line(line, egui::Stroke::new(1.5, theme::ACCENT)));
-        }
-        let shown = self.editor.view();
-        if let Some(scale) = self.viewport.scale() {
-            legend::paint(ui.painter(), rect.left_top() + vec2(14.0, 14.0), scale);
-        }
-        if let Some(readout) = &shown.readout
-            && let Some(at_px) = shown.camera.project(readout.at, shown.viewport_px)
-        {
-            let at = rect.min + vec2(at_px.x as f32 + 22.0, at_px.y as f32 - 26.0);
-            axis_ball::readout(ui.painter(), at, &readout.text);
-        }
-        if let Some(command) = axis_ball::show(ui, rect, shown.camera) {
-            self.command(command);
-            ui.ctx().request_repaint();
-        }
-        if self.shows_hints && !self.settings.get().hints_seen && hints::show(ui, rect, &self.editor) {
-            self.settings.change(|settings| settings.hints_seen = true);
-        }
-        Ok(())
     }
 }
 

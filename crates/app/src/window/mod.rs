@@ -2,6 +2,7 @@
 //! and the clock are here; egui meets the renderer in `viewport.rs` alone.
 
 mod application;
+mod arrivals;
 mod axis_ball;
 mod brush_panel;
 mod coarseness;
@@ -35,6 +36,7 @@ mod shell;
 mod status;
 mod theme;
 mod top_bar;
+mod view_area;
 mod viewport;
 mod workers;
 
