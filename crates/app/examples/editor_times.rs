@@ -1,7 +1,9 @@
-//! How long the editor takes for an event on a mesh of 400k triangles, and what a hundred strokes leave in memory.
+//! How long the editor takes for an event on a mesh of 400k triangles, and what a hundred strokes leave in memory: one
+//! JSON object a line.
 //!
-//! `cargo run --release -p pliant-app --example editor_times`: jobs run in between and are not counted, as in the window,
-//! where they run on threads of their own; drawing and uploading are not in it.
+//! `cargo run --release -p pliant-app --example editor_times`: every stroke and command is done [`ROUNDS`] times. Jobs run
+//! in between and are not counted, as in the window, where they run on threads of their own; drawing and uploading are
+//! not in it.
 
 #![allow(
     clippy::expect_used,
@@ -13,6 +15,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::{DQuat, DVec2, DVec3};
+use pliant_deform::{Bilaplacian, Method};
 use pliant_editor::{
     BrushMetric, Button, Command, Depth, Editor, Event, HandleTransform, InlineExecutor, JobKind, Modifiers,
     ObjectAction, PivotPlace, Pointer, RegionAction, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
@@ -20,11 +23,14 @@ use pliant_editor::{
 use pliant_mesh::{Cancel, Model, Object, Progress, WeldOptions, shapes};
 
 const SIZE_PX: DVec2 = DVec2::new(1280.0, 800.0);
+const ROUNDS: usize = 3;
 
 struct Timed {
     editor: Editor,
     jobs: InlineExecutor,
     times: Vec<Duration>,
+    /// What was timed, in the order in which it first came.
+    noted: Vec<(String, Vec<Duration>)>,
     binds: bool,
 }
 
@@ -36,16 +42,17 @@ impl Timed {
     }
 
     fn drain(&mut self) {
-        let jobs = self.jobs.clone();
+        let (jobs, binds) = (self.jobs.clone(), self.binds);
         let next = || {
-            if self.binds {
+            if binds {
                 jobs.run_next()
             } else {
                 jobs.run(JobKind::Pick)
             }
         };
         while let Some(done) = next() {
-            self.editor.handle(Event::JobDone(done));
+            // Taking a result is the window's work too.
+            self.send(Event::JobDone(done));
         }
     }
 
@@ -71,18 +78,57 @@ impl Timed {
         self.drain();
     }
 
-    fn report(&mut self, what: &str) {
-        let mut times = std::mem::take(&mut self.times);
-        times.sort();
-        let ms = |time: Duration| time.as_secs_f64() * 1e3;
-        if let (Some(median), Some(longest)) = (times.get(times.len() / 2), times.last()) {
-            println!(
-                "{what:<44} median {:>7.2} ms, longest {:>7.2} ms",
-                ms(*median),
-                ms(*longest)
-            );
+    /// Keeps the times since the last note under a name.
+    fn note(&mut self, what: &str) {
+        let times = std::mem::take(&mut self.times);
+        match self.noted.iter_mut().find(|(known, _)| known == what) {
+            Some((_, all)) => all.extend(times),
+            None => self.noted.push((what.to_owned(), times)),
         }
     }
+
+    /// Does one thing and keeps its time.
+    fn time(&mut self, what: &str, command: Command) {
+        self.times.clear();
+        self.command(command);
+        self.note(what);
+    }
+
+    fn report(&mut self) {
+        for (what, mut times) in std::mem::take(&mut self.noted) {
+            times.sort();
+            if let (Some(median), Some(longest)) = (times.get(times.len() / 2), times.last()) {
+                println!(
+                    "{{\"event\": \"{what}\", \"times\": {}, \"median_ms\": {:.3}, \"longest_ms\": {:.2}}}",
+                    times.len(),
+                    ms(*median),
+                    ms(*longest)
+                );
+            }
+        }
+    }
+
+    /// The file once more, with nothing done to it yet.
+    fn open(&mut self, model: &Arc<Model>) {
+        self.editor.handle(Event::Opened {
+            model: Arc::clone(model),
+            name: "ball".to_owned(),
+            beginning: None,
+        });
+        self.drain();
+    }
+}
+
+fn ms(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
+}
+
+/// What the process holds in memory, in megabytes, where the system tells.
+fn resident_mb() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kilobytes: f64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
+    Some(kilobytes / 1024.0)
 }
 
 fn line(from: DVec2, to: DVec2) -> impl Iterator<Item = DVec2> {
@@ -97,32 +143,43 @@ fn main() {
         ..Object::default()
     });
     let model = Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).expect("it is whole");
-    let model = model.with_objects(objects.into());
-    println!(
-        "{} vertices, {} triangles",
-        model.surface.positions.len(),
-        model.surface.triangles.len()
-    );
+    let model = Arc::new(model.with_objects(objects.into()));
     let jobs = InlineExecutor::new();
     let mut timed = Timed {
         editor: Editor::new(Box::new(jobs.clone())),
         jobs,
         times: Vec::new(),
+        noted: Vec::new(),
         binds: true,
     };
     timed.editor.handle(Event::Viewport { size_px: SIZE_PX });
-    timed.editor.handle(Event::Opened {
-        model: Arc::new(model),
-        name: "ball".to_owned(),
-        beginning: None,
-    });
-    timed.drain();
-    let middle = SIZE_PX * 0.5;
-    let across = |y: f64| line(middle + DVec2::new(-150.0, y), middle + DVec2::new(150.0, y));
+    // First, while nothing lies about that was freed and would be taken again.
+    hundred_strokes(&mut timed, &model);
+    timed.binds = true;
+    timed.open(&model);
+    // Jobs are not counted: the method that is done soonest.
+    timed.command(Command::SetMethod(Method::Bilaplacian(Bilaplacian::default())));
+    for _ in 0..ROUNDS {
+        strokes(&mut timed);
+        regions(&mut timed);
+        handles(&mut timed);
+        timed.command(Command::GoToStep(1));
+    }
+    timed.report();
+}
 
+fn across(y: f64) -> impl Iterator<Item = DVec2> {
+    let middle = SIZE_PX * 0.5;
+    line(middle + DVec2::new(-150.0, y), middle + DVec2::new(150.0, y))
+}
+
+/// Painting with every kind of brush, and taking it back.
+fn strokes(timed: &mut Timed) {
+    timed.command(Command::SetStrokeShape(StrokeShape::Brush));
     for (metric, name) in [
         (BrushMetric::Screen, "as seen"),
         (BrushMetric::Surface, "along the surface"),
+        (BrushMetric::Through, "through"),
     ] {
         for radius_px in [30.0, 100.0] {
             timed.command(Command::SetBrushMetric(metric));
@@ -130,11 +187,11 @@ fn main() {
             timed.command(Command::SetTool(ToolMode::PaintFree));
             timed.times.clear();
             timed.stroke(across(radius_px));
-            timed.report(&format!("painting {name}, radius {radius_px} px"));
-            timed.command(Command::Undo);
-            timed.report("undo of it");
+            timed.note(&format!("painting {name}, radius {radius_px} px"));
+            timed.time("undo of painting", Command::Undo);
         }
     }
+    timed.command(Command::SetBrushMetric(BrushMetric::Screen));
     timed.command(Command::SetTool(ToolMode::PaintStiffness));
     for action in [StiffnessAction::Paint, StiffnessAction::Smooth] {
         timed.command(Command::SetStiffnessBrush(StiffnessBrush {
@@ -144,56 +201,49 @@ fn main() {
         timed.command(Command::SetBrushRadius(40.0));
         timed.times.clear();
         timed.stroke(across(0.0));
-        timed.report(&format!("stiffness, {action:?}, radius 40 px"));
+        timed.note(&format!("stiffness, {action:?}, radius 40 px"));
     }
     timed.command(Command::Undo);
-    timed.times.clear();
-    timed.command(Command::Undo);
-    timed.report("undo of stiffness");
+    timed.time("undo of stiffness", Command::Undo);
+}
+
+/// A lasso around most of it, and what is done with the region as a whole.
+fn regions(timed: &mut Timed) {
     timed.command(Command::SetTool(ToolMode::PaintFixed));
     timed.command(Command::SetStrokeShape(StrokeShape::Lasso));
     for depth in [Depth::Visible, Depth::Through] {
         timed.command(Command::SetDepth(depth));
         timed.times.clear();
-        let circle = (0..40).map(|step| {
-            let angle = f64::from(step) / 40.0 * std::f64::consts::TAU;
-            middle + DVec2::new(200.0 * angle.cos(), 200.0 * angle.sin())
+        let circle = (0..200).map(|step| {
+            let angle = f64::from(step) / 200.0 * std::f64::consts::TAU;
+            SIZE_PX * 0.5 + DVec2::new(200.0 * angle.cos(), 200.0 * angle.sin())
         });
         timed.stroke(circle);
-        timed.report(&format!("a lasso around most of it, {depth:?}"));
+        timed.note(&format!("a lasso of 200 corners, {depth:?}"));
     }
     for action in [
         RegionAction::Grow,
         RegionAction::Shrink,
         RegionAction::SmoothBorder,
+        RegionAction::FillParts,
         RegionAction::Invert,
         RegionAction::EverythingBut,
         RegionAction::Mirror(0),
     ] {
-        timed.times.clear();
-        timed.command(Command::Region(action));
-        timed.report(&format!("{action:?}"));
-        timed.command(Command::Undo);
+        timed.time(&format!("{action:?}"), Command::Region(action));
+        timed.time("undo of it", Command::Undo);
     }
-    // Every other command that goes over the whole mesh, with a large handle that is moved.
+}
+
+/// Every other command that goes over the whole mesh, with a large handle that is moved.
+fn handles(timed: &mut Timed) {
+    let middle = SIZE_PX * 0.5;
     timed.command(Command::ClearRegions);
     timed.command(Command::SetTool(ToolMode::PaintHandle));
+    timed.command(Command::NewHandle);
     timed.command(Command::SetStrokeShape(StrokeShape::Box));
     timed.command(Command::SetDepth(Depth::Visible));
     timed.stroke([middle - 180.0, middle + 60.0]);
-    for (command, name) in [
-        (Command::MakeTwin(2), "twin"),
-        (Command::Undo, "undo of it"),
-        (Command::DuplicateHandle, "split"),
-        (Command::Undo, "undo of it"),
-        (Command::FrameAll, "frame all"),
-        (Command::FrameSelected, "frame selected"),
-        (Command::FrameAll, "frame all"),
-    ] {
-        timed.times.clear();
-        timed.command(command);
-        timed.report(name);
-    }
     let id = timed.editor.view().selected.expect("the box made a handle");
     let moved = HandleTransform::Trs {
         translation: DVec3::new(0.1, 0.0, 0.0),
@@ -202,6 +252,13 @@ fn main() {
         pivot: None,
     };
     for (command, name) in [
+        (Command::MakeTwin(2), "twin"),
+        (Command::Undo, "undo of it"),
+        (Command::DuplicateHandle, "split"),
+        (Command::Undo, "undo of it"),
+        (Command::FrameAll, "frame all"),
+        (Command::FrameSelected, "frame selected"),
+        (Command::FrameAll, "frame all"),
         (Command::SetPivotPlace(id, PivotPlace::Border), "pivot at the border"),
         (Command::SetHandleTransform(id, moved), "a move in numbers"),
         (Command::SetContinuity(id, Some(0.0)), "a hinge"),
@@ -218,19 +275,27 @@ fn main() {
         (Command::Undo, "undo of it"),
         (Command::DeleteHandle, "delete handle"),
         (Command::Undo, "undo of it"),
-        (Command::GoToStep(0), "back to the first step"),
+        (Command::ClearRegions, "clear regions"),
+        (Command::Undo, "undo of it"),
+        (Command::GoToStep(1), "back to the first step"),
+        (Command::GoToStep(4), "three steps forth"),
     ] {
-        timed.times.clear();
-        timed.command(command);
-        timed.report(name);
+        timed.time(name, command);
     }
-    timed.command(Command::ClearRegions);
+}
+
+/// What a hundred strokes leave in the history and in the process.
+fn hundred_strokes(timed: &mut Timed, model: &Arc<Model>) {
+    timed.open(model);
     timed.command(Command::SetStrokeShape(StrokeShape::Brush));
     timed.command(Command::SetBrushMetric(BrushMetric::Screen));
     timed.command(Command::SetBrushRadius(30.0));
     // Nothing is bound between these strokes: only the pointer's structure is kept up.
     timed.binds = false;
-    let before = timed.editor.history().bytes();
+    // The first stroke makes the brush's own memory.
+    timed.stroke(across(0.0));
+    timed.command(Command::Undo);
+    let resident = resident_mb();
     for stroke in 0..100 {
         let tools = [
             ToolMode::PaintHandle,
@@ -243,18 +308,16 @@ fn main() {
             value: 2.0 + stroke as f64,
             ..StiffnessBrush::default()
         }));
-        timed.times.clear();
         timed.stroke(across(f64::from(stroke as u32 * 29 % 200) - 100.0));
     }
-    let bytes = timed.editor.history().bytes() - before;
-    println!(
-        "a hundred strokes in the history: {:.1} MB",
-        bytes as f64 / f64::from(1 << 20)
-    );
+    let grown = resident
+        .zip(resident_mb())
+        .map_or(f64::NAN, |(before, after)| after - before);
     let steps = timed.editor.history().names().1;
-    for (step, name) in [(steps - 100, "a hundred strokes back"), (steps, "and forth")] {
-        timed.times.clear();
-        timed.command(Command::GoToStep(step));
-        timed.report(name);
-    }
+    assert_eq!(steps, 100, "every stroke paints something");
+    let bytes = timed.editor.history().bytes() as f64 / f64::from(1 << 20);
+    timed.time("a hundred strokes back", Command::GoToStep(0));
+    timed.time("a hundred strokes forth", Command::GoToStep(steps));
+    timed.report();
+    println!("{{\"strokes\": {steps}, \"history_mb\": {bytes:.2}, \"resident_mb\": {grown:.1}}}");
 }

@@ -1,8 +1,9 @@
-//! How long the window's thread is kept busy, and how long a drag takes from the pointer to the GPU's buffers.
+//! How long the window's thread is kept busy, and how long a drag takes from the pointer to the GPU's buffers: one JSON
+//! object a line.
 //!
 //! `cargo run --release -p pliant-app --example window_times -- FILE [REACH]`: opens FILE in the whole application without a
-//! display, paints a handle on its highest part, drags it for 60 pointer moves and prints a table. Drawing itself is
-//! left out: on a software device it is the processor that draws.
+//! display, paints a handle on its highest part, drags it for 60 pointer moves and does what menus offer. Drawing itself
+//! is left out: on a software device it is the processor that draws.
 
 #![allow(
     clippy::expect_used,
@@ -16,7 +17,8 @@ use std::time::{Duration, Instant};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use pliant_app::window::{Application, Source};
-use pliant_editor::{Command, Reach};
+use pliant_deform::{Bilaplacian, Method};
+use pliant_editor::{Command, ObjectAction, Reach, RegionAction, Shading};
 
 struct Session {
     harness: Harness<'static, Application>,
@@ -48,7 +50,7 @@ impl Session {
 
     fn longest(&mut self, what: &str) {
         let longest = self.harness.state_mut().take_longest_frame();
-        println!("{what:<34} longest frame {:>7.1} ms", ms(longest));
+        println!("{{\"doing\": \"{what}\", \"longest_frame_ms\": {:.1}}}", ms(longest));
     }
 }
 
@@ -99,11 +101,7 @@ fn main() {
     session.longest("painting a handle");
     let start = Instant::now();
     session.settle();
-    println!(
-        "{:<34} {:>21.1} ms",
-        "measuring the region and binding",
-        ms(start.elapsed())
-    );
+    let bound_ms = ms(start.elapsed());
     session.longest("while it binds");
 
     // As much of the surface as the second argument says (a share of the diagonal) comes along.
@@ -146,12 +144,71 @@ fn main() {
     session.harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     session.settle();
     session.longest("committing and undoing");
+    menus(&mut session);
     latencies.sort();
     let counts = session.harness.state().editor().view().counts;
     println!(
-        "{vertex_count} vertices, {} free: pointer to GPU buffers median {:.1} ms, 95% {:.1} ms",
+        "{{\"vertices\": {vertex_count}, \"free\": {}, \"region_and_bind_ms\": {bound_ms:.1}, \"pointer_to_buffers_ms\": {:.2}, \"p95_ms\": {:.2}}}",
         counts.free,
         ms(latencies[30]),
         ms(latencies[57])
     );
+}
+
+/// Every kind of command that a menu offers, each until all that it starts has ended.
+fn menus(session: &mut Session) {
+    let commands = [
+        Command::Region(RegionAction::Grow),
+        Command::Region(RegionAction::Invert),
+        Command::Undo,
+        Command::Region(RegionAction::EverythingBut),
+        Command::Undo,
+        Command::Redo,
+        Command::Undo,
+        Command::MakeTwin(0),
+        Command::Undo,
+        Command::DuplicateHandle,
+        Command::Undo,
+        Command::SetShading(Shading::Material),
+        Command::SetShading(Shading::Curvature),
+        Command::SetShading(Shading::Zebra),
+        Command::SetShading(Shading::Clay),
+        Command::ToggleFlat,
+        Command::ToggleWireframe,
+        Command::ToggleWireframe,
+        Command::ToggleFlat,
+        Command::ToggleBorders,
+        Command::ToggleRegions,
+        Command::ToggleRegions,
+        Command::FrameSelected,
+        Command::FrameAll,
+        Command::Objects(ObjectAction::Lock, vec![0]),
+        Command::Undo,
+        Command::Objects(ObjectAction::Hide, vec![0]),
+        Command::Undo,
+        Command::SetMethod(Method::Bilaplacian(Bilaplacian::default())),
+        Command::Apply,
+        Command::ResetShape,
+        Command::ClearRegions,
+        Command::GoToStep(0),
+    ];
+    let mut longest: Vec<(Duration, String)> = Vec::new();
+    for command in commands {
+        let name = format!("{command:?}");
+        session.harness.state_mut().take_longest_frame();
+        session.harness.state_mut().command(command);
+        session.settle();
+        longest.push((session.harness.state_mut().take_longest_frame(), name));
+    }
+    let context = session.harness.ctx.clone();
+    session.harness.state_mut().toggle_compare(&context);
+    session.settle();
+    longest.push((
+        session.harness.state_mut().take_longest_frame(),
+        "a second view".to_owned(),
+    ));
+    longest.sort();
+    for (time, name) in longest.iter().rev().take(6) {
+        println!("{{\"doing\": \"{name}\", \"longest_frame_ms\": {:.1}}}", ms(*time));
+    }
 }

@@ -5,6 +5,7 @@
 //! [`meshes`]; and [`SECTIONS`] names it. Printing and keeping are done here.
 
 mod arap;
+mod editor;
 mod files;
 mod frames;
 mod linear;
@@ -62,6 +63,11 @@ const SECTIONS: &[Section] = &[
         name: "view",
         title: "Drawing at 1280×800, moving and asking: milliseconds, medians; the processor's side and the device's own clock",
         rows: view::rows,
+    },
+    Section {
+        name: "editor",
+        title: "Events on 400k triangles, drawing and jobs apart: milliseconds; a hundred strokes: megabytes",
+        rows: editor::rows,
     },
     Section {
         name: "peers",
