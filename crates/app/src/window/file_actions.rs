@@ -207,6 +207,8 @@ impl Application {
         } else if context.input(|input| input.viewport().close_requested()) && self.editor.view().unsaved {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.question = Some(Question::Discard(Then::Close));
+            // It is asked from the next frame on, and nobody need move the pointer for that.
+            context.request_repaint();
         }
     }
 }

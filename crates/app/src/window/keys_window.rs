@@ -1,7 +1,7 @@
 //! The list of commands and their keys, each of which can be changed by pressing another.
 
 use eframe::egui::{self, RichText, ScrollArea};
-use pliant_editor::{Command, Editor, Shortcut};
+use pliant_editor::{Command, Editor, Key, Shortcut};
 
 use super::input::pressed_key;
 use super::settings::SettingsFile;
@@ -28,11 +28,11 @@ impl KeysWindow {
             && let Some((key, modifiers)) = context.input(pressed_key)
         {
             self.waiting = None;
-            let key = Shortcut { modifiers, key };
-            settings.change(|settings| {
-                settings.keys.insert(name.to_owned(), vec![key.label()]);
-            });
-            changed = true;
+            // Escape leaves everything as it was.
+            if key != Key::Escape {
+                give(Shortcut { modifiers, key }, name, editor, settings);
+                changed = true;
+            }
         }
         let mut open = self.open;
         egui::Window::new("Keys")
@@ -78,4 +78,20 @@ impl KeysWindow {
         }
         changed
     }
+}
+
+/// Gives a key to the command of this name, and takes it from any other: a key sends one command.
+fn give(key: Shortcut, name: &str, editor: &Editor, settings: &mut SettingsFile) {
+    let others = Command::all_listed().filter(|listed| listed.name != name);
+    let robbed: Vec<(String, Vec<String>)> = others
+        .filter(|listed| editor.shortcuts(&listed.command).contains(&key))
+        .map(|listed| {
+            let left = editor.shortcuts(&listed.command).iter().filter(|other| **other != key);
+            (listed.name.to_owned(), left.map(Shortcut::label).collect())
+        })
+        .collect();
+    settings.change(|settings| {
+        settings.keys.extend(robbed);
+        settings.keys.insert(name.to_owned(), vec![key.label()]);
+    });
 }
