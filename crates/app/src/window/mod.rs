@@ -29,6 +29,7 @@ mod palette;
 mod panels;
 mod places;
 mod project_file;
+mod promptly;
 mod recovery;
 mod session;
 mod settings;

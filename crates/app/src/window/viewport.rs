@@ -19,6 +19,7 @@ use pliant_render::{
 
 use super::coarseness::Coarseness;
 use super::message::{Ground, PictureKind, Posed};
+use super::promptly::promptly;
 use crate::drawing::{self, Drawing, Dress, Field, Pose, Scale};
 use crate::legend;
 
@@ -436,12 +437,13 @@ impl Viewport {
             let mut colours = Vec::new();
             if let Colours::Stiffness(_) = wanted {
                 let scale = Arc::new(Scale::of(Field::Stiffness, model));
-                colours = drawing::colours(Field::Stiffness, &scale, model, &shown.displacements, stiffness);
+                let displacements = &shown.displacements;
+                colours = promptly(|| drawing::colours(Field::Stiffness, &scale, model, displacements, stiffness));
                 shown.scale = Some(scale);
             } else {
                 editor.region_colours(&mut colours);
             }
-            shown.drawn_colours = drawing::drawn_colours(model, &colours);
+            shown.drawn_colours = promptly(|| drawing::drawn_colours(model, &colours));
             shown.surface.update_regions(&renderer, &shown.drawn_colours)?;
         }
         shown.colours = wanted;
