@@ -8,12 +8,16 @@
 //! Parts: `domain` numbers the vertices, `rims` and `spokes` make the two energies' `cells` and `bending` adds the smooth
 //! one's term, `shape` evaluates them, `matrix` and `precondition` make the global step and the handles' weights, `start`
 //! chooses where to begin, `springs` are the soft handles, `history` gives the direction and `descent` takes the step.
+//! Of a large surface `clusters` make a small one, whose solver is its `coarse` level and takes the `lead`.
 
 mod bending;
 mod cells;
+mod clusters;
+mod coarse;
 mod descent;
 mod domain;
 mod history;
+mod lead;
 mod matrix;
 mod options;
 mod precondition;
@@ -30,8 +34,11 @@ use rayon::prelude::*;
 pub use self::options::{Arap, ArapEnergy};
 
 use self::cells::{Cells, quad, vector};
+use self::coarse::Coarse;
+use self::descent::End;
 use self::domain::Domain;
 use self::history::{Field, History};
+use self::lead::Corrections;
 use self::precondition::{MapRoom, PreconditionError, Preconditioner, WeightInput};
 use self::shape::{Guesses, IDENTITY, Scratch, Shape};
 use self::springs::Springs;
@@ -66,8 +73,7 @@ pub(crate) struct ArapSolver {
     history: History,
     /// Uphill, in units of `unit`.
     direction: Field,
-    /// How far against it the last step went, while the gradient there is not known; `trial` is then where it began.
-    taken: Option<f64>,
+    end: End,
     /// The length that single-precision fields are measured in: about the model's.
     unit: f64,
     /// The motions that `current` is a shape for.
@@ -77,6 +83,9 @@ pub(crate) struct ArapSolver {
     /// when it loses.
     until_blend: u32,
     patience: u32,
+    /// What leads a large surface.
+    coarse: Option<Box<Coarse>>,
+    corrections: Corrections,
     mollified_faces: usize,
 }
 
@@ -191,6 +200,10 @@ impl ArapSolver {
             .map(|(own, soft): (Vec<Prescribed>, _)| if soft.is_some() { Vec::new() } else { own })
             .collect();
         let rest: Vec<DVec3> = domain.vertices.iter().map(|&v| world_rest(v) - world_origin).collect();
+        let coarse = (domain.solved_count > options.coarse_above)
+            .then(|| Coarse::of(problem, options, handles, &domain, cancel))
+            .flatten();
+        cancel.check()?;
         let at_rest = Shape::at_rest(domain.vertices.len(), domain.cell_count, domain.solved_count);
         let unit = if cells.scale > 0.0 { cells.scale.sqrt() } else { 1.0 };
         progress.set(1.0);
@@ -215,12 +228,14 @@ impl ArapSolver {
             map_room: MapRoom::default(),
             history: History::default(),
             direction: Field::new(),
-            taken: None,
+            end: End::Known,
             unit,
             motions: vec![Motion::default(); handles.len()],
             state: State::Converged,
             until_blend: 0,
             patience: 1,
+            coarse: coarse.map(Box::new),
+            corrections: Corrections::default(),
             mollified_faces,
             domain,
         })
@@ -233,7 +248,7 @@ impl ArapSolver {
 
     /// How many numbers the factor stores.
     pub fn factor_len(&self) -> usize {
-        self.preconditioner.stored()
+        self.preconditioner.stored() + self.coarse.as_ref().map_or(0, |coarse| coarse.factor_len())
     }
 
     /// How many vertices are solved for.
@@ -281,16 +296,25 @@ impl ArapSolver {
         self.current.gradient.fill([0.0; 4]);
         self.current.energy = 0.0;
         self.history.clear();
-        self.taken = None;
+        self.end = End::Known;
+        self.springs.loads.clear();
         self.until_blend = 0;
         self.patience = 1;
         self.state = State::Converged;
+        if let Some(coarse) = &mut self.coarse {
+            coarse.rest();
+        }
     }
 
     /// One step towards `motions`: writes the solved vertices' displacements. Says whether it converged, and the energy.
     pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> (bool, f64) {
         // One entry into the pool: each of the many short loops would wait for it otherwise.
         rayon::scope(|_| {
+            if let Some(mut coarse) = self.coarse.take() {
+                self.step_led(&mut coarse, motions);
+                self.coarse = Some(coarse);
+                return;
+            }
             if self.motions != motions {
                 self.start(motions);
             }

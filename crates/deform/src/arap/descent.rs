@@ -17,6 +17,18 @@ const TRIALS: u32 = 10;
 /// Energies below this share of the rest shape's scale are rounding.
 const NOTHING: f64 = 1e-22;
 
+/// What is known where the last step ended.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) enum End {
+    /// The gradient.
+    #[default]
+    Known,
+    /// Not the gradient, but how far the step went against the direction; `trial` is then where it began.
+    Stepped(f64),
+    /// Not even that.
+    Unknown,
+}
+
 impl ArapSolver {
     /// Takes one step that lowers the energy, or finds that there is none to take.
     ///
@@ -50,17 +62,21 @@ impl ArapSolver {
     }
 
     /// Finds the gradient where the last step ended, and remembers what the step has shown.
-    fn finish_step(&mut self) {
-        let Some(length) = self.taken.take() else { return };
+    pub(super) fn finish_step(&mut self) {
+        let end = std::mem::take(&mut self.end);
+        if matches!(end, End::Known) {
+            return;
+        }
         self.cells.find_gradient(&mut self.current, &self.scratch);
         self.springs.add_gradient(&mut self.current);
+        let End::Stepped(length) = end else { return };
         let (old, new) = (&self.trial.gradient, &self.current.gradient);
         self.history
             .stepped(length, &self.direction, old, new, self.unit.recip());
     }
 
     /// The gradient in the memory's units, where displacements are measured in `unit`, and the plain step for it.
-    fn map_gradient(&mut self) {
+    pub(super) fn map_gradient(&mut self) {
         let factor = self.unit.recip();
         let gradient = &self.current.gradient;
         self.history.gradient.resize(gradient.len(), [0.0; 4]);
@@ -92,7 +108,7 @@ impl ArapSolver {
             self.springs.add_energy(&mut self.trial);
             let after = self.trial.energy;
             if after <= before + SUFFICIENT * length * slope && after < before {
-                self.taken = Some(length);
+                self.end = End::Stepped(length);
                 std::mem::swap(&mut self.current, &mut self.trial);
                 return true;
             }

@@ -50,6 +50,24 @@ pub(crate) enum Guesses<'a> {
     Given(&'a [Quad]),
 }
 
+/// Where a gradient has the cells' Σ_v w_iv D_v from.
+#[derive(Clone, Copy, Debug)]
+enum Laplacians<'a> {
+    /// From the measure.
+    Known(&'a [Quad]),
+    /// From these displacements, with weights in single precision.
+    Of(&'a [Quad]),
+}
+
+/// Which rotations cells get.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Turning {
+    /// The best ones.
+    Best,
+    /// Those where a fit would start.
+    Given,
+}
+
 impl Shape {
     /// The rest shape of `vertex_count` vertices.
     pub fn at_rest(vertex_count: usize, cell_count: usize, solved_count: usize) -> Self {
@@ -74,6 +92,39 @@ impl Cells {
 
     /// Fits the rotations to the displacements, and finds the energy.
     pub fn measure(&self, shape: &mut Shape, guesses: Guesses<'_>, scratch: &mut Scratch) {
+        self.gather_all(shape, guesses, Turning::Best, scratch);
+    }
+
+    /// Finds the gradient of the shape with its rotations as they are, best or not.
+    pub fn find_pull(&self, shape: &mut Shape, scratch: &mut Scratch) {
+        if !self.bending.is_empty() {
+            // Neighbours' moments enter, which are not known before theirs.
+            self.gather_all(shape, Guesses::Own, Turning::Given, scratch);
+            self.find_gradient(shape, scratch);
+            return;
+        }
+        scratch.turns.resize(self.count(), [[0.0; 4]; 3]);
+        scratch
+            .turns
+            .par_chunks_mut(CHUNK)
+            .zip(shape.rotations.par_chunks(CHUNK))
+            .for_each(|(turns, rotations)| {
+                for (turn, rotation) in turns.iter_mut().zip(rotations) {
+                    let turned = DMat3::from_quat(DQuat::from_array(*rotation)) - DMat3::IDENTITY;
+                    *turn = turned
+                        .to_cols_array_2d()
+                        .map(|[x, y, z]| [x, y, z, 0.0].map(|v| v as f32));
+                }
+            });
+        let Shape {
+            displacements,
+            gradient,
+            ..
+        } = shape;
+        self.gradient_pass(gradient, &scratch.turns, Laplacians::Of(displacements), &[]);
+    }
+
+    fn gather_all(&self, shape: &mut Shape, guesses: Guesses<'_>, turning: Turning, scratch: &mut Scratch) {
         let Shape {
             displacements,
             rotations,
@@ -114,6 +165,7 @@ impl Cells {
                     cells: self,
                     first,
                     displacements,
+                    turning,
                     out,
                 })
             })
@@ -138,9 +190,12 @@ impl Cells {
             laplacians,
             moments,
         } = scratch;
+        self.gradient_pass(&mut shape.gradient, turns, Laplacians::Known(laplacians), moments);
+    }
+
+    fn gradient_pass(&self, gradient: &mut [Quad], turns: &[Turn], laplacians: Laplacians<'_>, moments: &[Quad]) {
         let arch = Arch::new();
-        shape
-            .gradient
+        gradient
             .par_chunks_mut(CHUNK)
             .enumerate()
             .for_each(|(chunk, gradient)| {
@@ -157,7 +212,7 @@ impl Cells {
 
     /// Rotations, turns, Laplacians and moments of the cells from `first` on; their energy.
     #[inline(always)]
-    fn fit(&self, first: usize, displacements: &[Quad], out: Out<'_>) -> f64 {
+    fn fit(&self, first: usize, displacements: &[Quad], turning: Turning, out: Out<'_>) -> f64 {
         let Out {
             rotations,
             turns,
@@ -207,9 +262,13 @@ impl Cells {
                     s[k][k].0[lane] = 1.0;
                 }
             }
-            let (mut rotation, found) = lanes::fit(&s, guess);
-            for lane in (0..count).filter(|&lane| !found[lane]) {
-                refit(&s, guess, lane, &mut rotation);
+            let mut rotation = guess;
+            if turning == Turning::Best {
+                let found;
+                (rotation, found) = lanes::fit(&s, guess);
+                for lane in (0..count).filter(|&lane| !found[lane]) {
+                    refit(&s, guess, lane, &mut rotation);
+                }
             }
             let [x, y, z, w] = rotation;
             // ⟨R − 1, S⟩ by the quaternion: 2 w (a · v) + 2 (v · S v − |v|² tr S).
@@ -269,13 +328,34 @@ impl Cells {
 
     /// The gradient of the solved vertices from `first` on.
     #[inline(always)]
-    fn descend(&self, first: usize, gradient: &mut [Quad], turns: &[Turn], laplacians: &[Quad], moments: &[Quad]) {
+    fn descend(
+        &self,
+        first: usize,
+        gradient: &mut [Quad],
+        turns: &[Turn],
+        laplacians: Laplacians<'_>,
+        moments: &[Quad],
+    ) {
         for (place, gradient) in gradient.iter_mut().enumerate() {
             let cell = first + place;
-            let mut sum = minus(times_turn(&turns[cell], self.own[cell]), laplacians[cell]);
+            let mut sum = times_turn(&turns[cell], self.own[cell]);
             let around = self.around(cell);
-            for (&end, &back) in self.ends[around.clone()].iter().zip(&self.back[around.clone()]) {
-                sum = minus(sum, times_turn(&turns[end as usize], back.map(f64::from)));
+            let entries = self.ends[around.clone()].iter().zip(&self.back[around.clone()]);
+            match laplacians {
+                Laplacians::Known(laplacians) => {
+                    sum = minus(sum, laplacians[cell]);
+                    for (&end, &back) in entries {
+                        sum = minus(sum, times_turn(&turns[end as usize], back.map(f64::from)));
+                    }
+                }
+                Laplacians::Of(displacements) => {
+                    let own = displacements[cell];
+                    for (&end, &back) in entries {
+                        sum = minus(sum, times_turn(&turns[end as usize], back.map(f64::from)));
+                        let d = minus(displacements[end as usize], own);
+                        sum = minus(sum, d.map(|value| value * f64::from(back[3])));
+                    }
+                }
             }
             if !moments.is_empty() {
                 let own = moments[cell];
@@ -297,6 +377,7 @@ struct FitPass<'a> {
     cells: &'a Cells,
     first: usize,
     displacements: &'a [Quad],
+    turning: Turning,
     out: Out<'a>,
 }
 
@@ -305,7 +386,7 @@ impl WithSimd for FitPass<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> f64 {
-        self.cells.fit(self.first, self.displacements, self.out)
+        self.cells.fit(self.first, self.displacements, self.turning, self.out)
     }
 }
 
@@ -315,7 +396,7 @@ struct GradientPass<'a> {
     first: usize,
     gradient: &'a mut [Quad],
     turns: &'a [Turn],
-    laplacians: &'a [Quad],
+    laplacians: Laplacians<'a>,
     moments: &'a [Quad],
 }
 

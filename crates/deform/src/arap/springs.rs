@@ -11,12 +11,14 @@ use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
 use crate::{Laplacian, Problem};
 
-/// The springs of all soft handles.
+/// The springs of all soft handles, and what else pulls.
 #[derive(Clone, Debug)]
 pub(crate) struct Springs {
     springs: Vec<Spring>,
     /// c of each.
     wanted: Vec<Quad>,
+    /// A dead load at each solved vertex, or none: E loses what they give, Σ load · d.
+    pub loads: Vec<Quad>,
 }
 
 /// A spring.
@@ -59,7 +61,11 @@ impl Springs {
             }));
         }
         let wanted = vec![[0.0; 4]; springs.len()];
-        Self { springs, wanted }
+        Self {
+            springs,
+            wanted,
+            loads: Vec::new(),
+        }
     }
 
     /// All of them.
@@ -80,6 +86,13 @@ impl Springs {
             let [x, y, z, _] = minus(shape.displacements[spring.local as usize], *wanted);
             shape.energy += 0.5 * spring.strength * (x * x + y * y + z * z);
         }
+        shape.energy += self.load_energy(shape);
+    }
+
+    /// −Σ load · d.
+    pub fn load_energy(&self, shape: &Shape) -> f64 {
+        let given = |([x, y, z, _], [a, b, c, _]): (&Quad, &Quad)| x * a + y * b + z * c;
+        -self.loads.iter().zip(&shape.displacements).map(given).sum::<f64>()
     }
 
     /// Adds how they pull to a shape's gradient.
@@ -89,6 +102,9 @@ impl Springs {
             for (own, beyond) in shape.gradient[spring.local as usize].iter_mut().zip(beyond) {
                 *own += spring.strength * beyond;
             }
+        }
+        for (load, own) in self.loads.iter().zip(&mut shape.gradient) {
+            *own = minus(*own, *load);
         }
     }
 }

@@ -4,8 +4,9 @@ use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 
 use super::cells::{quad, vector};
-use super::shape::Guesses;
-use super::{ArapSolver, State, domain};
+use super::domain::ABSENT;
+use super::shape::{Guesses, Shape};
+use super::{ArapSolver, Prescribed, State};
 use crate::blend::{Origin, Screw, Screws, carried};
 use crate::handle::Motion;
 use crate::operators::CHUNK;
@@ -15,41 +16,57 @@ use crate::operators::CHUNK;
 const PATIENCE: u32 = 8;
 
 impl ArapSolver {
-    /// Makes the better of two starts the current shape for `motions`.
-    pub(super) fn start(&mut self, motions: &[Motion]) {
+    /// Makes the better of two starts the current shape for `motions`, and says which.
+    ///
+    /// Loads belong to the shape that they were found at: one from the rest shape goes without, and without them the two
+    /// are compared.
+    pub(super) fn start(&mut self, motions: &[Motion]) -> Origin {
         let was_at_rest = self.motions.iter().all(Motion::is_rest);
         let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
-        self.motions.copy_from_slice(motions);
-        self.springs.aim(motions);
-        self.history.drop_pending();
-        self.taken = None;
+        self.leave(motions);
         self.state = State::Descending;
         if was_at_rest {
             self.history.clear();
+            self.springs.loads.clear();
             self.carry(&from_rest, Origin::Rest);
             std::mem::swap(&mut self.current, &mut self.trial);
             (self.until_blend, self.patience) = (0, 1);
-            return;
+            return Origin::Rest;
         }
         self.carry(&onwards, Origin::Current);
         std::mem::swap(&mut self.current, &mut self.trial);
         if self.until_blend > 0 {
             self.until_blend -= 1;
-            return;
+            return Origin::Current;
         }
+        let onwards = self.current.energy - self.springs.load_energy(&self.current);
+        let loads = std::mem::take(&mut self.springs.loads);
         self.carry(&from_rest, Origin::Rest);
-        if self.trial.energy < self.current.energy || !self.current.energy.is_finite() {
+        let origin = if self.trial.energy < onwards || !onwards.is_finite() {
             self.history.clear();
             std::mem::swap(&mut self.current, &mut self.trial);
             self.patience = 1;
+            Origin::Rest
         } else {
+            self.springs.loads = loads;
             self.patience = PATIENCE.min(2 * self.patience);
-        }
+            Origin::Current
+        };
         self.until_blend = self.patience - 1;
+        origin
     }
 
-    /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles where they go.
+    /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles where they go, and
+    /// evaluates it.
     fn carry(&mut self, screws: &[Screw], origin: Origin) {
+        self.carry_unmeasured(screws, origin);
+        self.cells.evaluate(&mut self.trial, Guesses::Own, &mut self.scratch);
+        self.springs.add_energy(&mut self.trial);
+        self.springs.add_gradient(&mut self.trial);
+    }
+
+    /// As [`ArapSolver::carry`], without an evaluation.
+    pub(super) fn carry_unmeasured(&mut self, screws: &[Screw], origin: Origin) {
         let Self {
             current,
             trial,
@@ -79,15 +96,18 @@ impl ArapSolver {
                     *rotation = (carried.turn * turned).normalize().to_array();
                 }
             });
-        // What is constrained goes exactly where it must.
-        trial.displacements[self.domain.solved_count..].fill([0.0; 4]);
-        for (own, motion) in self.prescribed.iter().zip(&self.motions) {
-            for vertex in own.iter().filter(|vertex| vertex.local != domain::ABSENT) {
-                trial.displacements[vertex.local as usize] = quad(motion.displace(vertex.coordinates), 0.0);
+        self.trial.place(&self.prescribed, &self.motions);
+    }
+}
+
+impl Shape {
+    /// Puts the constrained vertices exactly where they must be.
+    pub(super) fn place(&mut self, prescribed: &[Vec<Prescribed>], motions: &[Motion]) {
+        self.displacements[self.gradient.len()..].fill([0.0; 4]);
+        for (own, motion) in prescribed.iter().zip(motions) {
+            for vertex in own.iter().filter(|vertex| vertex.local != ABSENT) {
+                self.displacements[vertex.local as usize] = quad(motion.displace(vertex.coordinates), 0.0);
             }
         }
-        self.cells.evaluate(&mut self.trial, Guesses::Own, &mut self.scratch);
-        self.springs.add_energy(&mut self.trial);
-        self.springs.add_gradient(&mut self.trial);
     }
 }

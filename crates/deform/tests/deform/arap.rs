@@ -1,7 +1,7 @@
 //! The laws of as-rigid-as-possible deformation.
 
 use crate::nonlinear::{self, Iterative};
-use crate::rig::{Scene, far, settle};
+use crate::rig::{Scene, apart, far, settle, turned};
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Arap, ArapEnergy, Method, Role};
 use pliant_mesh::{Drawn, SurfaceVertex, shapes};
@@ -52,6 +52,30 @@ fn the_energy_never_rises_and_handles_go_where_they_are_told() {
                 assert_eq!(energies, [0.0], "{name} {energy:?} {fixed}");
                 assert!(displacements.iter().all(|d| *d == DVec3::ZERO), "{name}");
             }
+        }
+    }
+}
+
+#[test]
+fn a_coarse_level_changes_the_way_and_not_the_end() {
+    for energy in ArapEnergy::ALL {
+        let ends = |method| {
+            let scene = nonlinear::scene(shapes::tube(24, 60, 8.0), method)
+                .with(Role::Fixed, |p| p.z < 0.5)
+                .with(Role::Handle(0), |p| p.z > 7.5);
+            let bound = &mut scene.bind();
+            let mut shapes = Vec::new();
+            // There and back and on, as under the hand.
+            for t in [0.2, 0.4, 0.6, 0.4, 0.7, 1.0] {
+                let (shape, energies) = settle(bound, &[turned(DVec3::Z * 7.5, 1.2 * t, DVec3::X * t)]);
+                shapes.push((shape, energies.last().copied().unwrap()));
+            }
+            (shapes, scene.diagonal())
+        };
+        let ((alone, size), (led, _)) = (ends(Iterative::Arap(energy)), ends(Iterative::Led(energy)));
+        for ((alone, least), (led, energy_led)) in alone.iter().zip(&led) {
+            let (error, excess) = (apart(alone, led) / size, (energy_led - least).abs() / least);
+            assert!(error < 1e-4 && excess < 1e-7, "{energy:?}: {error:e} {excess:e}");
         }
     }
 }

@@ -9,13 +9,17 @@ use pliant_mesh::{Drawn, SurfaceVertex, shapes};
 #[derive(Clone, Copy, Debug)]
 pub enum Iterative {
     Arap(ArapEnergy),
+    /// With a coarse level, however small the surface.
+    Led(ArapEnergy),
     Primo,
 }
 
-const ITERATIVE: [Iterative; 4] = [
+const ITERATIVE: [Iterative; 6] = [
     Iterative::Arap(ArapEnergy::Spokes),
     Iterative::Arap(ArapEnergy::SpokesAndRims),
     Iterative::Arap(ArapEnergy::Smooth),
+    Iterative::Led(ArapEnergy::SpokesAndRims),
+    Iterative::Led(ArapEnergy::Smooth),
     Iterative::Primo,
 ];
 
@@ -26,11 +30,14 @@ impl Iterative {
 
     fn ending(self, tolerance: f64, max_iterations: u32) -> Method {
         match self {
-            Self::Arap(energy) => {
+            Self::Arap(energy) | Self::Led(energy) => {
                 let mut options = Arap::default();
                 options.energy = energy;
                 options.tolerance = tolerance;
                 options.max_iterations = max_iterations;
+                if matches!(self, Self::Led(_)) {
+                    options.coarse_above = 0;
+                }
                 Method::Arap(options)
             }
             Self::Primo => {
@@ -90,7 +97,7 @@ fn the_result_is_the_same_bit_for_bit_on_any_number_of_threads() {
     for method in ITERATIVE {
         // Enough for more than one chunk of either's cells.
         let [around, across] = match method {
-            Iterative::Arap(_) => [90, 40],
+            Iterative::Arap(_) | Iterative::Led(_) => [90, 40],
             Iterative::Primo => [40, 30],
         };
         let mut scene = scene(shapes::torus(around, across), method).with_ends(true);
@@ -145,7 +152,7 @@ fn extreme_targets_give_finite_shapes_and_do_not_spoil_the_next() {
         for (name, drawn) in shapes::classes() {
             let mut scene = scene(drawn, method).with_ends(true);
             scene.method = method.ending_at(match method {
-                Iterative::Arap(_) => 1e-6,
+                Iterative::Arap(_) | Iterative::Led(_) => 1e-6,
                 Iterative::Primo => 1e-5,
             });
             let (centre, size) = (scene.model.bounds().unwrap().centre(), scene.diagonal());
@@ -190,7 +197,9 @@ fn a_rigid_motion_of_all_handles_moves_everything_rigidly() {
                     .collect();
                 let error = apart(&displacements, &expected) / scene.diagonal();
                 assert!(error < 1e-6, "{name} {method:?} {angle}: {error:e}");
-                assert!(energies.len() < 10, "{name} {method:?} {angle}: {}", energies.len());
+                // Where a coarse level leads, a global step in single precision goes before.
+                let most = if matches!(method, Iterative::Led(_)) { 20 } else { 10 };
+                assert!(energies.len() < most, "{name} {method:?} {angle}: {}", energies.len());
             }
         }
     }
