@@ -136,7 +136,7 @@ impl Brush {
         *seen = self.dab;
         let position = picking.position(vertex);
         let distance = position.distance(pick.point);
-        if distance <= radius && faces(picking, vertex, position, pick.front) {
+        if distance <= radius && picking.shows(vertex, position, pick.front) {
             self.stack.push((vertex, distance / radius));
         }
     }
@@ -195,16 +195,6 @@ fn tube(picking: &Picking<'_>, from_px: DVec2, to_px: DVec2, radius_px: f64) -> 
         let plane = normal.extend(-normal.dot(here.origin));
         let is_inside = plane.dot((middle.origin + middle.direction).extend(1.0)) >= 0.0;
         if is_inside { plane } else { -plane }
-    })
-}
-
-/// Whether any triangle at the vertex shows the eye the side that was met.
-pub(crate) fn faces(picking: &Picking<'_>, vertex: SurfaceVertex, position: DVec3, front: bool) -> bool {
-    let to_eye = picking.sight.towards_eye(position);
-    picking.model.topology.faces(vertex).iter().any(|&face| {
-        let [a, b, c] = picking.corners(face);
-        let outward = (b - a).cross(c - a).dot(to_eye);
-        if front { outward >= 0.0 } else { outward <= 0.0 }
     })
 }
 

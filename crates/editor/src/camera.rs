@@ -9,8 +9,6 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
-use crate::sight::Sight;
-
 /// Which axis of the world points up on the screen.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum UpAxis {
@@ -278,11 +276,6 @@ impl Camera {
                 direction: -axes.z_axis,
             },
         }
-    }
-
-    /// Where a point of the world appears in the viewport; `None` behind the eye.
-    pub fn project(&self, world: DVec3, viewport_px: DVec2) -> Option<DVec2> {
-        Sight::of(self, viewport_px).project(world)
     }
 
     /// World units that one point of the screen spans at the depth of `world` (never below that of the near plane).

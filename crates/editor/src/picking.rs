@@ -72,9 +72,19 @@ impl<'a> Picking<'a> {
         self.model.surface.triangles[triangle as usize].map(|vertex| self.position(vertex))
     }
 
+    /// Whether any triangle at the vertex shows the eye its front, or else its back.
+    pub(crate) fn shows(&self, vertex: SurfaceVertex, position: DVec3, front: bool) -> bool {
+        let to_eye = self.sight.towards_eye(position);
+        self.model.topology.faces(vertex).iter().any(|&face| {
+            let [a, b, c] = self.corners(face);
+            let outward = (b - a).cross(c - a).dot(to_eye);
+            if front { outward >= 0.0 } else { outward <= 0.0 }
+        })
+    }
+
     /// Whether nothing stands between the eye and a vertex at `position`, and the surface there faces it.
     pub(crate) fn is_seen(&self, vertex: SurfaceVertex, position: DVec3, eye: DVec3) -> bool {
-        if !crate::brush::faces(self, vertex, position, true) {
+        if !self.shows(vertex, position, true) {
             return false;
         }
         let sight = position - eye;

@@ -48,3 +48,10 @@ impl Sight {
         }
     }
 }
+
+impl Camera {
+    /// Where a point of the world appears in the viewport; `None` behind the eye.
+    pub fn project(&self, world: DVec3, viewport_px: DVec2) -> Option<DVec2> {
+        Sight::of(self, viewport_px).project(world)
+    }
+}
