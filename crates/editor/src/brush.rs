@@ -112,7 +112,8 @@ impl Brush {
             seeds.extend(corners.map(|v| (v, picking.position(v).distance(pick.point))));
         }
         let (triangles, topology) = (&picking.model.surface.triangles, &picking.model.topology);
-        let position = |v| picking.position(v);
+        let (rest, moved) = (&*picking.model.surface.positions, picking.displacements.as_slice());
+        let position = |v: SurfaceVertex| rest[v.index()] + moved[v.index()];
         let reached = self.search.within(triangles, topology, position, &seeds, radius);
         for &(vertex, distance) in reached {
             visit(vertex, distance / radius);

@@ -93,16 +93,22 @@ impl DistanceSearch {
             self.offer(u, distance + here.distance(position(u)), limit);
         }
         for &t in topology.faces(v) {
-            let triangle = triangles[t as usize];
-            for (side, third) in [(1, 2), (2, 1)] {
-                let turn = usize::from(triangle[1] == v) + 2 * usize::from(triangle[2] == v);
-                let (side, third) = (triangle[(turn + side) % 3], triangle[(turn + third) % 3]);
-                if self.is_settled[side.index()] && !self.is_settled[third.index()] {
-                    let corners = [v, side, third].map(position);
-                    if let Some(through) = through_triangle(corners, [distance, self.distance[side.index()]]) {
-                        self.offer(third, through, limit);
-                    }
-                }
+            let [a, b, c] = triangles[t as usize];
+            let (one, other) = if v == a {
+                (b, c)
+            } else if v == b {
+                (c, a)
+            } else {
+                (a, b)
+            };
+            let (side, third) = match (self.is_settled[one.index()], self.is_settled[other.index()]) {
+                (true, false) => (one, other),
+                (false, true) => (other, one),
+                _ => continue,
+            };
+            let corners = [here, position(side), position(third)];
+            if let Some(through) = through_triangle(corners, [distance, self.distance[side.index()]]) {
+                self.offer(third, through, limit);
             }
         }
     }

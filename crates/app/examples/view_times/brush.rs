@@ -91,7 +91,8 @@ pub fn rows(
 /// A press where the mesh is nearest to the eye, thirty movements of ten points each to and fro, and letting go.
 fn stroke(editor: &Editor, model: &Model) -> Vec<Event> {
     let view = editor.view();
-    let towards = |p: &DVec3| view.camera.eye().distance_squared(*p);
+    let eye = view.camera.eye();
+    let towards = |p: &DVec3| eye.distance_squared(*p);
     let positions = model.surface.positions.iter();
     let nearest = positions.min_by(|a, b| towards(a).total_cmp(&towards(b)));
     let middle_px = nearest.and_then(|&p| view.camera.project(p, view.viewport_px));

@@ -504,7 +504,10 @@ impl Viewport {
         let (Some(shown), Some(key), Ok(mut renderer)) = (&self.surface, &self.drawn, gpu.0.try_write()) else {
             return Ok(None);
         };
-        let size_px = key.size_px.map(|side| side.max(1) * kind.scale.max(1));
+        // As large as the view, though it may just be drawn with fewer pixels.
+        let [width, height] = view.viewport_px.as_vec2().to_array();
+        let size_px =
+            pixels(egui::vec2(width, height) * key.pixels_per_point).map(|side| side.max(1) * kind.scale.max(1));
         let pixels_per_point = key.pixels_per_point * kind.scale.max(1) as f32;
         let mut style = drawing::style(&view.look, pixels_per_point);
         let mut ground = shown.ground(&view);
