@@ -5,9 +5,9 @@ use std::time::SystemTime;
 
 use eframe::egui::{self, Id, Modal, RichText};
 
+use super::file_names::{file_name, original_name};
 use super::message::{Message, Purpose};
 use super::recovery::Left;
-use super::session::{file_name, original_name};
 use super::workers::Workers;
 
 /// The kinds of file that open, by extension.

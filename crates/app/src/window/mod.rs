@@ -11,6 +11,7 @@ mod compare;
 mod dialog;
 mod fault;
 mod file_actions;
+mod file_names;
 mod file_panel;
 mod handles_panel;
 mod hints;
@@ -54,8 +55,9 @@ use winit::event_loop::EventLoop;
 use winit::platform::run_on_demand::EventLoopExtRunOnDemand;
 
 pub use application::Application;
+pub use file_names::original_name;
 pub use places::Places;
-pub use session::{KeepOriginal, Source, original_name};
+pub use session::{KeepOriginal, Source};
 pub use shell::{NumpadDigits, Shared, Shell};
 
 use settings::Settings;

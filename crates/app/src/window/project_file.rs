@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use pliant_editor::{Beginning, MeshReference, Project, Snapshot, geometry_hash};
 use pliant_mesh::WeldOptions;
 
-use super::session::{SAMPLE, SAMPLE_NAME, file_name, original_name};
+use super::file_names::{SAMPLE, SAMPLE_NAME, file_name, original_name};
 use crate::AppError;
 use crate::engine::{self, Loaded};
 use crate::files::{self, Staging};
@@ -149,12 +149,4 @@ pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, AppError> {
         mesh: at,
         what,
     })
-}
-
-/// The file that `NAME.original.EXT` was kept for, if that is such a name and the file is there.
-pub fn saved_name(original: &Path) -> Option<PathBuf> {
-    let stem = original.file_stem()?.to_str()?.strip_suffix(".original")?;
-    let extension = original.extension()?.to_str()?;
-    let saved = original.with_file_name(format!("{stem}.{extension}"));
-    saved.is_file().then_some(saved)
 }

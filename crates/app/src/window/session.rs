@@ -1,6 +1,5 @@
 //! The open file: loading it, saving it, and what a person is asked before a source is written over.
 
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -9,8 +8,9 @@ use pliant_editor::{Beginning, EditFile, JobQueue, Revision, Snapshot};
 use pliant_mesh::{Cancel, Progress, WeldOptions};
 use pliant_render::Image;
 
+use super::file_names::{SAMPLE, SAMPLE_NAME, file_name, is_gltf, original_name, saved_name};
 use super::message::{Message, Opened, Written, WrittenKind};
-use super::project_file::{self, MeshSource, saved_name};
+use super::project_file::{self, MeshSource};
 use super::viewport::Gpu;
 use super::workers::Workers;
 use crate::AppError;
@@ -19,11 +19,6 @@ use crate::engine::{self, Loaded};
 use crate::files::{self, Staging};
 use crate::picture_file;
 use crate::watch::Watch;
-
-/// The sample that is shown when no file is named.
-pub(super) const SAMPLE: &[u8] = include_bytes!("../../../../assets/creature.glb");
-/// Its name.
-pub(super) const SAMPLE_NAME: &str = "creature.glb";
 
 /// The open file and the jobs that read and write it.
 #[derive(Default)]
@@ -255,31 +250,6 @@ pub enum KeepOriginal {
     Yes,
     /// It is one of ours.
     No,
-}
-
-/// `NAME.original.EXT` beside `NAME.EXT`. A `.gltf`'s buffers are saved over along with it, so that its original is
-/// kept packed, as `NAME.original.glb`.
-pub fn original_name(path: &Path) -> PathBuf {
-    let mut name = path.file_stem().unwrap_or_default().to_owned();
-    name.push(".original");
-    if let Some(extension) = path.extension() {
-        name.push(".");
-        name.push(if is_gltf(path) { OsStr::new("glb") } else { extension });
-    }
-    path.with_file_name(name)
-}
-
-fn is_gltf(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("gltf"))
-}
-
-/// A path's last part, for a person.
-pub fn file_name(path: &Path) -> String {
-    path.file_name()
-        .unwrap_or(path.as_os_str())
-        .to_string_lossy()
-        .into_owned()
 }
 
 fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Opened>, AppError> {
