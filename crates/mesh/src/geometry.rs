@@ -43,9 +43,13 @@ impl Bounds {
     }
 }
 
-/// The least box that holds all `positions`; `None` of none.
+/// The least box that holds all `positions`; `None` of none. On the caller's thread alone: the window's asks for it, too,
+/// and would wait in line behind a job's loops for longer than this takes.
 pub fn bounding_box(positions: &[DVec3]) -> Option<Bounds> {
-    bounds_of(positions.par_iter().copied())
+    positions
+        .iter()
+        .map(|&p| Bounds { min: p, max: p })
+        .reduce(|a, b| a.union(&b))
 }
 
 /// The least box of a parallel iterator's positions. Least and greatest don't depend on the order.
