@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use common::{edit, median, ms, name, read, timed};
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_deform::{Arap, ArapEnergy, Bound, Holds, Loose, Method, Ordering, Problem};
+use pliant_deform::{Arap, ArapEnergy, Bound, Holds, Loose, Method, Ordering, Problem, Step};
 use pliant_mesh::{Cancel, Model, Progress};
 
 /// A frame of a drag, in milliseconds.
@@ -30,12 +30,12 @@ fn main() {
     pool.install(|| measure(Path::new(file), threads, energy, reach.first()));
 }
 
-fn method(energy: ArapEnergy, tolerance: f64) -> Method {
+fn options(energy: ArapEnergy, tolerance: f64) -> Arap {
     let mut options = Arap::default();
     options.energy = energy;
     options.tolerance = tolerance;
     options.max_iterations = 5000;
-    Method::Arap(options)
+    options
 }
 
 fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&String>) {
@@ -43,7 +43,7 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
     let (roles, target) = edit(file, &model);
     let stiffness = vec![1.0; roles.len()];
     let (progress, cancel) = (Progress::new(), Cancel::new());
-    let exact = method(energy, 1e-10);
+    let exact = Method::Arap(options(energy, 1e-10));
     let (order_ms, ordering) =
         timed(|| Ordering::of(&model.topology, exact.operator_power(), &progress, &cancel).unwrap());
     let bind = |method: &Method| {
@@ -60,7 +60,7 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
         };
         problem.bind(&ordering, &progress, &cancel).unwrap()
     };
-    let (bind_ms, mut bound) = timed(|| bind(&method(energy, Arap::default().tolerance)));
+    let (bind_ms, mut bound) = timed(|| bind(&Method::Arap(options(energy, Arap::default().tolerance))));
     let mut displacements = vec![DVec3::ZERO; roles.len()];
     let mut exactly = bind(&exact);
 
@@ -69,7 +69,6 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
     let mut minimum = displacements.clone();
     let (_, _, least_energy) = solve(&mut exactly, target, &mut minimum);
 
-    // Single steps, each from new targets' start: the cost of an iteration is that of the later ones.
     let reached_energy = reach.map_or(0.0, |reach| {
         let mut shape = vec![DVec3::ZERO; roles.len()];
         let moved = read(Path::new(reach)).drawn.positions;
@@ -80,25 +79,19 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
         }
         bound.energy_of(&shape).unwrap()
     });
-    let mut steps = Vec::new();
     let (mut reach_ms, mut reach_iterations) = (f64::NAN, 0);
-    exactly.set_targets(&[DAffine3::IDENTITY]).unwrap();
-    exactly.step(&mut displacements).unwrap();
-    exactly.set_targets(&[target]).unwrap();
-    let start = Instant::now();
-    loop {
-        let (step_ms, step) = timed(|| exactly.step(&mut displacements).unwrap());
-        steps.push(step_ms);
+    let steps = steps(&mut exactly, target, |spent_ms, step| {
         if reach_ms.is_nan() && step.energy <= reached_energy {
-            reach_ms = ms(start);
+            reach_ms = spent_ms;
             reach_iterations = step.iteration;
         }
-        if step.finished || steps.len() >= 400 {
-            break;
-        }
-    }
+    });
     let first_ms = steps[0];
-    let iteration_ms = median(&mut steps[1..]);
+    // An iteration is a local and a global step at full resolution: a coarse level that leads would be beside the point.
+    let mut alone = options(energy, 1e-10);
+    alone.coarse_above = usize::MAX;
+    let mut iterations_ms = self::steps(&mut bind(&Method::Arap(alone)), target, |_, _| {});
+    let iteration_ms = median(&mut iterations_ms[1..]);
 
     let drag = drag(&mut bound, &model, target, &minimum);
     let reached = match reach {
@@ -119,6 +112,24 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
         drag.frame_max_ms,
         drag.rested,
     );
+}
+
+/// At most 400 steps from rest, each with its time and the time since rest: milliseconds of each.
+fn steps(bound: &mut Bound, target: DAffine3, mut look: impl FnMut(f64, Step)) -> Vec<f64> {
+    let mut displacements = vec![DVec3::ZERO; bound.vertex_count()];
+    bound.set_targets(&[DAffine3::IDENTITY]).unwrap();
+    bound.step(&mut displacements).unwrap();
+    bound.set_targets(&[target]).unwrap();
+    let mut steps = Vec::new();
+    let start = Instant::now();
+    loop {
+        let (step_ms, step) = timed(|| bound.step(&mut displacements).unwrap());
+        steps.push(step_ms);
+        look(ms(start), step);
+        if step.finished || steps.len() >= 400 {
+            return steps;
+        }
+    }
 }
 
 /// Solves to the end: milliseconds, iterations, energy.

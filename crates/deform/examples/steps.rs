@@ -47,6 +47,17 @@ fn measure(file: &Path, threads: usize, method: &Method) {
         revision: 0,
     };
     let (bind_ms, mut bound) = timed(|| problem.bind(&ordering, &progress, &cancel).unwrap());
+    // Peers' steps are at full resolution: a coarse level that leads would be beside the point.
+    let mut alone = method.clone();
+    if let Method::Arap(options) = &mut alone {
+        options.coarse_above = usize::MAX;
+        bound = Problem {
+            method: &alone,
+            ..problem
+        }
+        .bind(&ordering, &progress, &cancel)
+        .unwrap();
+    }
     bound.set_targets(&[target]).unwrap();
     let mut displacements = vec![DVec3::ZERO; roles.len()];
     let mut steps = Vec::new();
