@@ -10,6 +10,7 @@ use crate::pipelines::{ID_FORMAT, Pipeline};
 use crate::readback::Readback;
 use crate::renderer::WHOLE;
 use crate::runs::Joining;
+use crate::target::fresh_depth;
 use crate::{Frame, Partition, RenderError, Renderer, Samples, Target};
 
 /// The hidden target that triangle numbers are drawn into. Made to measure by [`Renderer::pick`]; keep it.
@@ -242,14 +243,7 @@ fn begin_ids<'a>(encoder: &'a mut wgpu::CommandEncoder, attachments: &IdAttachme
                 store: wgpu::StoreOp::Store,
             },
         })],
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &attachments.depth,
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(0.0),
-                store: wgpu::StoreOp::Discard,
-            }),
-            stencil_ops: None,
-        }),
+        depth_stencil_attachment: Some(fresh_depth(&attachments.depth)),
         ..Default::default()
     })
 }

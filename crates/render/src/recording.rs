@@ -4,7 +4,7 @@ use crate::overlay::OverlayBatch;
 use crate::pipelines::{Alpha, Part, Pipeline};
 use crate::runs::Run;
 use crate::surface_line::LineSet;
-use crate::target::Attachments;
+use crate::target::{Attachments, fresh_depth};
 use crate::{Background, Borders, Frame, Matcap, Outlines, Renderer, Samples, Shading, Surface, Wireframe};
 
 /// What a picture is drawn from, ready on the device.
@@ -186,15 +186,7 @@ pub(crate) fn begin_picture<'a>(
                 store,
             },
         })],
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &attachments.depth,
-            // Reversed depth: 0 is infinitely far away.
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(0.0),
-                store: wgpu::StoreOp::Discard,
-            }),
-            stencil_ops: None,
-        }),
+        depth_stencil_attachment: Some(fresh_depth(&attachments.depth)),
         timestamp_writes,
         ..Default::default()
     })

@@ -140,3 +140,15 @@ impl Attachments {
         }
     }
 }
+
+/// A depth buffer that a picture begins with and nobody reads afterwards. Reversed: 0 is infinitely far away.
+pub(crate) fn fresh_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations {
+            load: wgpu::LoadOp::Clear(0.0),
+            store: wgpu::StoreOp::Discard,
+        }),
+        stencil_ops: None,
+    }
+}
