@@ -6,8 +6,9 @@
 //! costs a tenth more and needs an order of magnitude fewer.
 //!
 //! Parts: `domain` numbers the vertices, `rims` and `spokes` make the two energies' `cells` and `bending` adds the smooth
-//! one's term, `shape` evaluates them, `matrix` and `precondition` make the global step and the handles' weights, `start`
-//! chooses where to begin, `springs` are the soft handles, `history` gives the direction and `descent` takes the step.
+//! one's term, `shape` evaluates them in a `fit_pass` and a `gradient_pass`, `matrix` and `precondition` make the global
+//! step and the handles' weights, `start` chooses where to begin, `springs` are the soft handles, `history` gives the
+//! direction and `descent` takes the step.
 //! Of a large surface `clusters` make a small one, whose solver is its `coarse` level and takes the `lead`.
 
 mod bending;
@@ -16,6 +17,8 @@ mod clusters;
 mod coarse;
 mod descent;
 mod domain;
+mod fit_pass;
+mod gradient_pass;
 mod history;
 mod lead;
 mod matrix;

@@ -136,3 +136,9 @@ pub(crate) fn quad(v: DVec3, fourth: f64) -> Quad {
 pub(crate) fn vector(q: Quad) -> DVec3 {
     DVec3::new(q[0], q[1], q[2])
 }
+
+/// a − b.
+#[inline(always)]
+pub(crate) fn minus(a: Quad, b: Quad) -> Quad {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
+}

@@ -10,10 +10,10 @@ use glam::DQuat;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex};
 use rayon::prelude::*;
 
-use super::cells::Quad;
+use super::cells::{Quad, minus};
 use super::clusters::Clusters;
 use super::domain::{ABSENT, Domain};
-use super::shape::{Guesses, IDENTITY, Shape, minus};
+use super::shape::{Guesses, IDENTITY, Shape};
 use super::{ArapSolver, State};
 use crate::blend::Origin;
 use crate::handle::{Handle, Motion};

@@ -2,17 +2,16 @@
 //!
 //! Two passes over the cells. The first gathers a cell's displaced ring into its matrix S, fits eight cells' rotations
 //! at once, and sums the energy; the second gathers the ring's turns into the gradient, which a shape that new targets
-//! leave behind does without. Both run on whatever vectors
-//! the machine has (see [`crate::lanes`]).
+//! leave behind does without (see `fit_pass` and `gradient_pass`).
 
-use glam::{DMat3, DQuat, DVec3};
-use pulp::{Arch, Simd, WithSimd};
+use glam::{DMat3, DQuat};
+use pulp::Arch;
 use rayon::prelude::*;
 
-use super::cells::{Cells, Quad};
-use crate::lanes::{self, LANES, Lanes, Matrices, Quaternions};
+use super::cells::{Cells, Quad, minus};
+use super::fit_pass::{FitPass, Out, Turning};
+use super::gradient_pass::{GradientPass, Laplacians, Turn};
 use crate::operators::CHUNK;
-use crate::rotation::fit_anew;
 
 /// A shape; rotations and energy belong to the displacements once they were measured, the gradient once that was found.
 #[derive(Clone, Debug, Default)]
@@ -38,9 +37,6 @@ pub(crate) struct Scratch {
     moments: Vec<Quad>,
 }
 
-/// R − 1, column by column.
-type Turn = [[f32; 4]; 3];
-
 /// Where a fit starts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Guesses<'a> {
@@ -48,24 +44,6 @@ pub(crate) enum Guesses<'a> {
     Own,
     /// At these.
     Given(&'a [Quad]),
-}
-
-/// Where a gradient has the cells' Σ_v w_iv D_v from.
-#[derive(Clone, Copy, Debug)]
-enum Laplacians<'a> {
-    /// From the measure.
-    Known(&'a [Quad]),
-    /// From these displacements, with weights in single precision.
-    Of(&'a [Quad]),
-}
-
-/// Which rotations cells get.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Turning {
-    /// The best ones.
-    Best,
-    /// Those where a fit would start.
-    Given,
 }
 
 impl Shape {
@@ -209,247 +187,6 @@ impl Cells {
                 });
             });
     }
-
-    /// Rotations, turns, Laplacians and moments of the cells from `first` on; their energy.
-    #[inline(always)]
-    fn fit(&self, first: usize, displacements: &[Quad], turning: Turning, out: Out<'_>) -> f64 {
-        let Out {
-            rotations,
-            turns,
-            laplacians,
-            moments,
-        } = out;
-        let mut sum = 0.0;
-        for start in (0..rotations.len()).step_by(LANES) {
-            let count = LANES.min(rotations.len() - start);
-            let mut s: Matrices = Default::default();
-            let mut axial: [Lanes; 3] = Default::default();
-            let mut guess: Quaternions = Default::default();
-            guess[3] = Lanes::splat(1.0);
-            for lane in 0..count {
-                let cell = first + start + lane;
-                let (mut b, laplacian, square) = self.gather(cell, displacements);
-                laplacians[start + lane] = laplacian;
-                sum += 0.25 * square;
-                let [mut xx, mut xy, mut xz, mut yy, mut yz, mut zz] = self.rest[cell];
-                if let Some(&[x, y, z, factor]) = self.bending.get(cell) {
-                    for (k, rest) in [x, y, z].into_iter().enumerate() {
-                        for row in 0..3 {
-                            b[k][row] += factor * laplacian[row] * rest;
-                        }
-                    }
-                    (xx, xy, xz) = (xx + factor * x * x, xy + factor * x * y, xz + factor * x * z);
-                    (yy, yz, zz) = (yy + factor * y * y, yz + factor * y * z, zz + factor * z * z);
-                    let square =
-                        laplacian[0] * laplacian[0] + laplacian[1] * laplacian[1] + laplacian[2] * laplacian[2];
-                    sum += 0.5 * factor * square;
-                }
-                axial[0].0[lane] = b[1][2] - b[2][1];
-                axial[1].0[lane] = b[2][0] - b[0][2];
-                axial[2].0[lane] = b[0][1] - b[1][0];
-                let rest = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-                for column in 0..3 {
-                    for row in 0..3 {
-                        s[column][row].0[lane] = b[column][row] + rest[column][row];
-                    }
-                }
-                for k in 0..4 {
-                    guess[k].0[lane] = rotations[start + lane][k];
-                }
-            }
-            for lane in count..LANES {
-                for k in 0..3 {
-                    s[k][k].0[lane] = 1.0;
-                }
-            }
-            let mut rotation = guess;
-            if turning == Turning::Best {
-                let found;
-                (rotation, found) = lanes::fit(&s, guess);
-                for lane in (0..count).filter(|&lane| !found[lane]) {
-                    refit(&s, guess, lane, &mut rotation);
-                }
-            }
-            let [x, y, z, w] = rotation;
-            // ⟨R − 1, S⟩ by the quaternion: 2 w (a · v) + 2 (v · S v − |v|² tr S).
-            let v = [x, y, z];
-            let mut inner = w * (axial[0] * x + axial[1] * y + axial[2] * z);
-            let trace = s[0][0] + s[1][1] + s[2][2];
-            for k in 0..3 {
-                let sv = s[0][k] * x + s[1][k] * y + s[2][k] * z;
-                inner = inner + v[k] * (sv - v[k] * trace);
-            }
-            let turned = lanes::turns(rotation);
-            for lane in 0..count {
-                sum -= 2.0 * inner.0[lane];
-                for k in 0..4 {
-                    rotations[start + lane][k] = rotation[k].0[lane];
-                }
-                for column in 0..3 {
-                    for row in 0..3 {
-                        turns[start + lane][column][row] = turned[column][row].0[lane] as f32;
-                    }
-                }
-            }
-            if !self.bending.is_empty() {
-                for (lane, place) in (start..start + count).enumerate() {
-                    let [x, y, z, factor] = self.bending[first + place];
-                    for row in 0..3 {
-                        let [a, b, c] = [0, 1, 2].map(|column| turned[column][row].0[lane]);
-                        moments[place][row] = factor * (laplacians[place][row] - (a * x + b * y + c * z));
-                    }
-                }
-            }
-        }
-        sum
-    }
-
-    /// B's columns, Σ w D and Σ w |D|² of a cell.
-    #[inline(always)]
-    fn gather(&self, cell: usize, displacements: &[Quad]) -> ([Quad; 3], Quad, f64) {
-        let own = displacements[cell];
-        let (mut b, mut laplacian, mut square) = ([[0.0; 4]; 3], [0.0; 4], [0.0; 4]);
-        let around = self.around(cell);
-        for (&end, towards) in self.ends[around.clone()].iter().zip(&self.towards[around]) {
-            let d = minus(displacements[end as usize], own);
-            for (k, column) in b.iter_mut().enumerate() {
-                for row in 0..4 {
-                    column[row] += d[row] * towards[k];
-                }
-            }
-            for row in 0..4 {
-                let weighted = d[row] * towards[3];
-                laplacian[row] += weighted;
-                square[row] += weighted * d[row];
-            }
-        }
-        (b, laplacian, square[0] + square[1] + square[2])
-    }
-
-    /// The gradient of the solved vertices from `first` on.
-    #[inline(always)]
-    fn descend(
-        &self,
-        first: usize,
-        gradient: &mut [Quad],
-        turns: &[Turn],
-        laplacians: Laplacians<'_>,
-        moments: &[Quad],
-    ) {
-        for (place, gradient) in gradient.iter_mut().enumerate() {
-            let cell = first + place;
-            let mut sum = times_turn(&turns[cell], self.own[cell]);
-            let around = self.around(cell);
-            let entries = self.ends[around.clone()].iter().zip(&self.back[around.clone()]);
-            match laplacians {
-                Laplacians::Known(laplacians) => {
-                    sum = minus(sum, laplacians[cell]);
-                    for (&end, &back) in entries {
-                        sum = minus(sum, times_turn(&turns[end as usize], back.map(f64::from)));
-                    }
-                }
-                Laplacians::Of(displacements) => {
-                    let own = displacements[cell];
-                    for (&end, &back) in entries {
-                        sum = minus(sum, times_turn(&turns[end as usize], back.map(f64::from)));
-                        let d = minus(displacements[end as usize], own);
-                        sum = minus(sum, d.map(|value| value * f64::from(back[3])));
-                    }
-                }
-            }
-            if !moments.is_empty() {
-                let own = moments[cell];
-                for (&end, back) in self.ends[around.clone()].iter().zip(&self.back[around]) {
-                    let other = minus(moments[end as usize], own);
-                    for row in 0..4 {
-                        sum[row] += other[row] * f64::from(back[3]);
-                    }
-                }
-            }
-            sum[3] = 0.0;
-            *gradient = sum;
-        }
-    }
-}
-
-/// [`Cells::fit`] compiled for the machine's vectors.
-struct FitPass<'a> {
-    cells: &'a Cells,
-    first: usize,
-    displacements: &'a [Quad],
-    turning: Turning,
-    out: Out<'a>,
-}
-
-impl WithSimd for FitPass<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> f64 {
-        self.cells.fit(self.first, self.displacements, self.turning, self.out)
-    }
-}
-
-/// [`Cells::descend`] compiled for the machine's vectors.
-struct GradientPass<'a> {
-    cells: &'a Cells,
-    first: usize,
-    gradient: &'a mut [Quad],
-    turns: &'a [Turn],
-    laplacians: Laplacians<'a>,
-    moments: &'a [Quad],
-}
-
-impl WithSimd for GradientPass<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self {
-            cells,
-            first,
-            gradient,
-            turns,
-            laplacians,
-            moments,
-        } = self;
-        cells.descend(first, gradient, turns, laplacians, moments);
-    }
-}
-
-/// Where a chunk's results go.
-struct Out<'a> {
-    rotations: &'a mut [Quad],
-    turns: &'a mut [Turn],
-    laplacians: &'a mut [Quad],
-    moments: &'a mut [Quad],
-}
-
-/// Fits one lane anew, without a guess.
-#[cold]
-fn refit(s: &Matrices, guess: Quaternions, lane: usize, rotation: &mut Quaternions) {
-    let column = |c: usize| DVec3::new(s[c][0].0[lane], s[c][1].0[lane], s[c][2].0[lane]);
-    let matrix = DMat3::from_cols(column(0), column(1), column(2));
-    let start = DQuat::from_array(guess.map(|value| value.0[lane]));
-    for (own, value) in rotation.iter_mut().zip(fit_anew(&matrix, start).to_array()) {
-        own.0[lane] = value;
-    }
-}
-
-/// (R − 1) v; the fourth number is nothing.
-#[inline(always)]
-fn times_turn(turn: &Turn, v: Quad) -> Quad {
-    let mut product = [0.0; 4];
-    for row in 0..4 {
-        let [a, b, c] = turn.map(|column| f64::from(column[row]));
-        product[row] = a * v[0] + b * v[1] + c * v[2];
-    }
-    product
-}
-
-#[inline(always)]
-pub(crate) fn minus(a: Quad, b: Quad) -> Quad {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
 }
 
 #[cfg(test)]

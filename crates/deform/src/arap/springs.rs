@@ -4,9 +4,9 @@
 //! [`crate::Holds`]: what a membrane of stiffness 1 opposes and, where the energy is smooth, a plate of stiffness κ A.
 //! That is a quadratic as it stands, so the majorising one has the same W on its diagonal.
 
-use super::cells::{Quad, quad};
+use super::cells::{Quad, minus, quad};
 use super::domain::Domain;
-use super::shape::{Shape, minus};
+use super::shape::Shape;
 use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
 use crate::{Laplacian, Problem};
