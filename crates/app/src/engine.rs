@@ -12,7 +12,7 @@ use std::time::Instant;
 use glam::DVec3;
 use pliant_deform::{Bound, Method, Ordering, Problem, SolveError};
 use pliant_editor::{Beginning, Setup};
-use pliant_io::{Format, MorphTarget, Opened, OutputFile, Save, Saved, Scene};
+use pliant_io::{Format, MorphTarget, Opened, OutputFile, Save, SaveError, Saved, Scene};
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 
 use crate::AppError;
@@ -129,14 +129,17 @@ pub fn bind(
 /// Prepares a scene's files for `output`: encoded, written beside their targets and synced, to be committed.
 ///
 /// # Errors
-/// What the format can't hold, or the disk can't take; nothing is left behind then.
+/// What the format can't hold, or the disk can't take; [`AppError::Interrupted`] soon after `cancel` is raised. Nothing
+/// is left behind then.
 pub fn stage_save(
     loaded: &Loaded,
     positions: &[DVec3],
     output: &Path,
     staging: &Staging,
+    progress: &Progress,
+    cancel: &Cancel,
 ) -> Result<(Staged, Vec<String>), AppError> {
-    stage_save_as(loaded, positions, None, output, staging)
+    stage_save_as(loaded, positions, None, output, staging, progress, cancel)
 }
 
 /// As [`stage_save`]; with `morph` the shape stays as it was and the new positions are saved as a morph target.
@@ -149,11 +152,18 @@ pub fn stage_save_as(
     morph: Option<&MorphTarget<'_>>,
     output: &Path,
     staging: &Staging,
+    progress: &Progress,
+    cancel: &Cancel,
 ) -> Result<(Staged, Vec<String>), AppError> {
-    let refuse = |source| AppError::Save {
-        file: output.to_owned(),
-        source,
+    let refuse = |source| match source {
+        SaveError::Cancelled(_) => AppError::Interrupted,
+        source => AppError::Save {
+            file: output.to_owned(),
+            source,
+        },
     };
+    // Making the bytes takes about as long as a disk takes to keep them.
+    let (of_making, of_writing) = (progress.part(0.0, 0.5), progress.part(0.5, 1.0));
     let name = output.file_name().unwrap_or_default().to_string_lossy();
     let save = Save {
         drawn: &loaded.model.drawn,
@@ -163,8 +173,8 @@ pub fn stage_save_as(
         placement: files::placement(&loaded.path, output),
     };
     let saved = match morph {
-        None => loaded.scene.save(&save),
-        Some(morph) => loaded.scene.save_as_morph(&save, morph),
+        None => loaded.scene.save(&save, &of_making, cancel),
+        Some(morph) => loaded.scene.save_as_morph(&save, morph, &of_making, cancel),
     };
     let saved = saved.map_err(refuse)?;
     // Neighbours first: the file that names them must not stand there without them.
@@ -177,7 +187,7 @@ pub fn stage_save_as(
         .then(|| pliant_io::with_neighbours_renamed(&saved.files[0].bytes, &passing))
         .flatten();
     let staged = match &bridged {
-        None => staging.stage(folder, names)?,
+        None => staging.stage_watched(folder, &names, &of_writing, cancel)?,
         Some(bytes) => staging.stage_bridged(
             folder,
             &names,
@@ -186,6 +196,8 @@ pub fn stage_save_as(
                 bytes,
                 neighbours: &passing,
             },
+            &of_writing,
+            cancel,
         )?,
     };
     Ok((staged, saved.warnings))
@@ -259,9 +271,10 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
         apply.morph.as_ref(),
         apply.output,
         staging,
+        &progress,
+        &watch.cancel,
     )?;
     let save_ms = ms_since(start);
-    progress.set(1.0);
 
     let distortion = pliant_mesh::Distortion::of(&model.surface, &model.topology, &solution.surface_positions);
     let mut warnings = loaded.scene.notes().to_vec();

@@ -14,9 +14,18 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use pliant_mesh::{Cancel, Progress};
 use tempfile::{NamedTempFile, TempPath};
 
+use crate::AppError;
 use crate::files::{FileError, folder_of};
+
+/// Bytes written between two looks at whether they are still wanted.
+const BLOCK: usize = 1 << 22;
+
+/// Bytes after which they are made to last: what the system only remembers is not written yet, and the bar would stand
+/// at its end for as long as the disk takes.
+const LASTING: usize = 1 << 26;
 
 /// The temporary files of a save that is under way, so that an interrupt can take them away. Cloning shares them.
 #[derive(Clone, Debug, Default)]
@@ -32,7 +41,7 @@ struct State {
 #[derive(Debug)]
 pub struct Staged {
     files: Vec<StagedFile>,
-    bridge: Option<StagedBridge>,
+    bridges: Vec<StagedBridge>,
     /// Folders that were made for them, outer ones first.
     folders: Vec<PathBuf>,
     staging: Staging,
@@ -75,8 +84,10 @@ impl Staging {
         folder: &Path,
         files: &[(&'a str, &'a [u8])],
         bridge: &Bridge<'_>,
-    ) -> Result<Staged, FileError> {
-        let mut staged = self.stage(folder, files.iter().copied())?;
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Staged, AppError> {
+        let mut staged = self.stage_watched(folder, files, progress, cancel)?;
         let place = |name: &str| {
             if folder == Path::new(".") {
                 PathBuf::from(name)
@@ -85,14 +96,12 @@ impl Staging {
             }
         };
         let name = place(bridge.name);
-        let file = self
-            .stage_one(&name, bridge.bytes)
-            .map_err(|error| FileError::writing(&name, error))?;
+        let file = self.stage_one(&name, bridge.bytes, &mut |_| Ok(()))?;
         let passing = bridge.neighbours.iter().filter_map(|(name, passing)| {
             let file = files.iter().position(|(other, _)| other == name)?;
             Some((file, place(passing)))
         });
-        staged.bridge = Some(StagedBridge {
+        staged.bridges.push(StagedBridge {
             file,
             passing: passing.collect(),
         });
@@ -108,22 +117,46 @@ impl Staging {
         &self,
         folder: &Path,
         files: impl IntoIterator<Item = (&'a str, &'a [u8])>,
-    ) -> Result<Staged, FileError> {
+    ) -> Result<Staged, AppError> {
+        let files: Vec<_> = files.into_iter().collect();
+        self.stage_watched(folder, &files, &Progress::new(), &Cancel::new())
+    }
+
+    /// As [`Self::stage`], telling how far it is.
+    ///
+    /// # Errors
+    /// As [`Self::stage`]; [`AppError::Interrupted`] soon after `cancel` is raised, and nothing is left behind then
+    /// either.
+    pub fn stage_watched(
+        &self,
+        folder: &Path,
+        files: &[(&str, &[u8])],
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Staged, AppError> {
+        let all = files.iter().map(|(_, bytes)| bytes.len()).sum::<usize>().max(1) as f64;
+        let mut written = 0;
+        let mut go_on = |bytes: usize| {
+            written += bytes;
+            progress.set((written as f64 / all) as f32);
+            cancel.check().map_err(|_| AppError::Interrupted)
+        };
         let mut staged = Staged {
             files: Vec::new(),
-            bridge: None,
+            bridges: Vec::new(),
             folders: Vec::new(),
             staging: self.clone(),
         };
-        for (name, bytes) in files {
+        for &(name, bytes) in files {
             let name = if folder == Path::new(".") {
                 PathBuf::from(name)
             } else {
                 folder.join(name)
             };
-            let refuse = |error| FileError::writing(&name, error);
-            staged.make_folders(folder, &name).map_err(refuse)?;
-            staged.files.push(self.stage_one(&name, bytes).map_err(refuse)?);
+            staged
+                .make_folders(folder, &name)
+                .map_err(|error| FileError::writing(&name, error))?;
+            staged.files.push(self.stage_one(&name, bytes, &mut go_on)?);
         }
         Ok(staged)
     }
@@ -142,25 +175,43 @@ impl Staging {
         Some(Discarded { _state: state })
     }
 
-    fn stage_one(&self, name: &Path, bytes: &[u8]) -> io::Result<StagedFile> {
+    /// Writes and syncs one file. `go_on` is told of the bytes that are written, and may end it.
+    fn stage_one(
+        &self,
+        name: &Path,
+        bytes: &[u8],
+        go_on: &mut dyn FnMut(usize) -> Result<(), AppError>,
+    ) -> Result<StagedFile, AppError> {
+        let refuse = |error| FileError::writing(name, error);
         // Replacing a link would leave the file that it names as it was.
         let target = fs::canonicalize(name).unwrap_or_else(|_| name.to_owned());
         let existing = fs::metadata(&target).ok();
         if let Some(existing) = &existing {
             if existing.is_dir() {
-                return Err(ErrorKind::IsADirectory.into());
+                return Err(refuse(ErrorKind::IsADirectory.into()).into());
             }
             // Renaming would replace it all the same; whoever took the right to write meant it.
             if existing.permissions().readonly() {
-                return Err(ErrorKind::PermissionDenied.into());
+                return Err(refuse(ErrorKind::PermissionDenied.into()).into());
             }
         }
-        let mut temporary = self.temporary_beside(&target)?;
-        temporary.write_all(bytes)?;
-        if let Some(existing) = &existing {
-            temporary.as_file().set_permissions(existing.permissions())?;
+        let mut temporary = self.temporary_beside(&target).map_err(refuse)?;
+        go_on(0)?;
+        for lasting in bytes.chunks(LASTING) {
+            for block in lasting.chunks(BLOCK) {
+                temporary.write_all(block).map_err(refuse)?;
+                go_on(block.len())?;
+            }
+            temporary.as_file().sync_data().map_err(refuse)?;
+            go_on(0)?;
         }
-        temporary.as_file().sync_all()?;
+        if let Some(existing) = &existing {
+            temporary
+                .as_file()
+                .set_permissions(existing.permissions())
+                .map_err(refuse)?;
+        }
+        temporary.as_file().sync_all().map_err(refuse)?;
         Ok(StagedFile {
             name: name.to_owned(),
             target,
@@ -197,6 +248,11 @@ pub struct Discarded<'a> {
 impl Staged {
     /// Adds the files of `other`, to be committed after these.
     pub fn and(mut self, mut other: Self) -> Self {
+        let before = self.files.len();
+        for bridge in &mut other.bridges {
+            bridge.passing.iter_mut().for_each(|(file, _)| *file += before);
+        }
+        self.bridges.append(&mut other.bridges);
         self.files.append(&mut other.files);
         self.folders.append(&mut other.folders);
         self
@@ -235,15 +291,17 @@ impl Staged {
         let mut state = staging.lock();
         let mut files = std::mem::take(&mut self.files);
         let mut passing = Passing(Vec::new());
-        if let Some(bridge) = self.bridge.take() {
+        let mut first = Vec::new();
+        for bridge in self.bridges.drain(..) {
             for (file, path) in bridge.passing {
                 before_each();
                 let temporary = &files[file].temporary;
                 second_name(temporary, &path).map_err(|error| FileError::writing(&path, error))?;
                 passing.0.push(path);
             }
-            files.insert(0, bridge.file);
+            first.push(bridge.file);
         }
+        files.splice(0..0, first);
         let mut replaced: Vec<(PathBuf, Option<TempPath>)> = Vec::new();
         let last = files.len().saturating_sub(1);
         for (i, file) in files.into_iter().enumerate() {

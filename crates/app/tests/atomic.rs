@@ -8,10 +8,11 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use glam::DVec3;
+use pliant_app::AppError;
 use pliant_app::engine::{self, Loaded};
-use pliant_app::files::Staging;
+use pliant_app::files::{Staged, Staging};
 use pliant_app::watch::Watch;
-use pliant_mesh::WeldOptions;
+use pliant_mesh::{Cancel, Progress, WeldOptions};
 
 /// A square of four vertices as `scan.gltf` with its buffer and an image beside it.
 fn write_scan(folder: &Path) {
@@ -35,6 +36,15 @@ fn load(path: &Path) -> Loaded {
     engine::load(path, &WeldOptions::default(), &Watch::default()).unwrap()
 }
 
+fn stage(loaded: &Loaded, positions: &[DVec3], out: &Path) -> Result<Staged, AppError> {
+    stage_unless(loaded, positions, out, &Cancel::new())
+}
+
+fn stage_unless(loaded: &Loaded, positions: &[DVec3], out: &Path, cancel: &Cancel) -> Result<Staged, AppError> {
+    let staged = engine::stage_save(loaded, positions, out, &Staging::default(), &Progress::new(), cancel);
+    staged.map(|(staged, _)| staged)
+}
+
 fn lifted(positions: &[DVec3]) -> Vec<DVec3> {
     positions.iter().map(|p| *p + DVec3::Z * (1.0 + p.x)).collect()
 }
@@ -49,7 +59,7 @@ fn the_one_that_is_cut_off() {
     let scan = Path::new(&scan);
     let loaded = load(scan);
     let positions = lifted(&loaded.model.drawn.positions);
-    let (staged, _) = engine::stage_save(&loaded, &positions, scan, &Staging::default()).unwrap();
+    let staged = stage(&loaded, &positions, scan).unwrap();
     let mut left: usize = cut.parse().unwrap();
     let mut cut_off = || {
         if left == 0 {
@@ -79,7 +89,7 @@ fn cut_off_at_any_step_the_old_file_or_the_new_one_stands_there_whole() {
         assert!(is_new || after == before, "cut off before step {cut}: {after:?}");
         // A file cut off on its way can be saved again.
         let loaded = load(&scan);
-        let (staged, _) = engine::stage_save(&loaded, &lifted(&after), &scan, &Staging::default()).unwrap();
+        let staged = stage(&loaded, &lifted(&after), &scan).unwrap();
         staged.commit().unwrap();
         assert_eq!(load(&scan).model.drawn.positions, lifted(&after));
         states.push(is_new);
@@ -96,6 +106,36 @@ fn cut_off_at_any_step_the_old_file_or_the_new_one_stands_there_whole() {
     }
     // Passing name, bridge, buffer, file, and taking the passing name away: cut off before each, and not at all.
     assert_eq!(states, [false, false, true, true, true, true]);
+}
+
+#[test]
+fn stopped_at_any_look_every_file_is_as_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    write_scan(folder.path());
+    let contents = || {
+        let entries = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path());
+        let mut files: Vec<_> = entries.map(|path| (fs::read(&path).unwrap(), path)).collect();
+        files.sort();
+        files
+    };
+    let before = contents();
+    let scan = folder.path().join("scan.gltf");
+    let loaded = load(&scan);
+    let positions = lifted(&loaded.model.drawn.positions);
+    let mut looks = 0;
+    let staged = loop {
+        match stage_unless(&loaded, &positions, &scan, &Cancel::after_looks(looks)) {
+            Ok(staged) => break staged,
+            Err(AppError::Interrupted) => assert!(contents() == before, "stopped at look {looks}"),
+            Err(error) => panic!("{error}"),
+        }
+        looks += 1;
+    };
+    // Before its bytes are made, while they are, and as each of the two files is begun, written and made to last.
+    assert!(looks > 8, "it looked {looks} times");
+    assert_ne!(contents(), before, "staged, the files stand beside their targets");
+    staged.commit().unwrap();
+    assert_eq!(load(&scan).model.drawn.positions, positions);
 }
 
 /// Runs the program with files held to so many blocks.
@@ -155,12 +195,7 @@ fn a_folder_that_can_not_be_written_is_named() {
     let loaded = load(&folder.path().join("scan.gltf"));
     // No one makes a file there, whatever the rights.
     let out = Path::new("/proc/out.glb");
-    let refused = engine::stage_save(
-        &loaded,
-        &lifted(&loaded.model.drawn.positions),
-        out,
-        &Staging::default(),
-    );
+    let refused = stage(&loaded, &lifted(&loaded.model.drawn.positions), out);
     let said = refused.map(|_| ()).unwrap_err().to_string();
     assert!(
         said.contains("/proc/out.glb can't be written") && !said.contains('\n'),

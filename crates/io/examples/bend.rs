@@ -96,13 +96,17 @@ fn bend(input: &Path, output: &Path, how: &str) -> Result<(), Box<dyn std::error
     let out_name = name(output);
     let format = Format::of_name(&out_name)?;
     let start = Instant::now();
-    let saved = scene.save(&Save {
-        drawn: &drawn,
-        positions: &new,
-        format,
-        name: &out_name,
-        placement,
-    })?;
+    let saved = scene.save(
+        &Save {
+            drawn: &drawn,
+            positions: &new,
+            format,
+            name: &out_name,
+            placement,
+        },
+        &Progress::new(),
+        &Cancel::new(),
+    )?;
     println!("save {:.1} ms", start.elapsed().as_secs_f64() * 1e3);
     saved.warnings.iter().for_each(|warning| println!("warning: {warning}"));
     for file in &saved.files {

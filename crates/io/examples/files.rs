@@ -58,13 +58,17 @@ fn convert(from: &Path, to: &Path) {
     let format = |path: &Path| Format::of_name(&name(path)).expect("a file of a known kind");
     let bytes = std::fs::read(from).expect("a file that can be read");
     let opened = open(bytes, format(from), &name(from));
-    let saved = opened.scene.save(&Save {
-        drawn: &opened.drawn,
-        positions: &opened.drawn.positions,
-        format: format(to),
-        name: &name(to),
-        placement: Placement::OtherFolder,
-    });
+    let saved = opened.scene.save(
+        &Save {
+            drawn: &opened.drawn,
+            positions: &opened.drawn.positions,
+            format: format(to),
+            name: &name(to),
+            placement: Placement::OtherFolder,
+        },
+        &Progress::new(),
+        &Cancel::new(),
+    );
     let saved = saved.expect("a mesh that every kind holds");
     std::fs::write(to, &saved.files[0].bytes).expect("a folder that can be written");
 }
@@ -97,7 +101,12 @@ fn measure(path: &Path) {
             name: &name,
             placement: Placement::OtherFolder,
         };
-        std::hint::black_box(opened.scene.save(&save).expect("a file that can be saved"));
+        std::hint::black_box(
+            opened
+                .scene
+                .save(&save, &Progress::new(), &Cancel::new())
+                .expect("a file that can be saved"),
+        );
         start.elapsed().as_secs_f64()
     });
     drop((opened, positions));

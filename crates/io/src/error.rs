@@ -101,6 +101,9 @@ pub enum SaveError {
         /// The kind of OUT.
         format: Format,
     },
+    /// The caller cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// Why an image could not be decoded.

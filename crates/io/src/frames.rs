@@ -7,10 +7,11 @@
 //! normals, so each keeps to its own faces.
 
 use glam::{DMat3, DVec3};
-use pliant_mesh::{Drawn, DrawnVertex, face_gradient};
+use pliant_mesh::{Cancelled, Drawn, DrawnVertex, face_gradient};
 use rayon::prelude::*;
 
 use crate::bits::bit_equal;
+use crate::course::Course;
 
 /// Frames closer to the identity than this leave stored numbers as they are: f32 resolves 6e-8.
 const UNTURNED: f64 = 1e-7;
@@ -31,10 +32,12 @@ pub(crate) struct Frames {
 
 impl Frames {
     /// The frames between a rest shape and new positions (one a drawn vertex), grouped by the rest normals given.
-    pub fn of(drawn: &Drawn, positions: &[DVec3], normals: &[DVec3]) -> Self {
-        let (group_of, group_count) = group(drawn, positions, normals);
+    pub fn of(drawn: &Drawn, positions: &[DVec3], normals: &[DVec3], course: &Course<'_>) -> Result<Self, Cancelled> {
+        let (of_groups, course) = course.split(0.4);
+        let (group_of, group_count) = group(drawn, positions, normals, &of_groups)?;
         let mut sums = vec![(DMat3::ZERO, 0.0_f64); group_count];
-        for block in drawn.triangles.chunks(BLOCK) {
+        for (number, block) in drawn.triangles.chunks(BLOCK).enumerate() {
+            course.reach(number * BLOCK, drawn.triangles.len())?;
             let gradients: Vec<(DMat3, f64)> = block
                 .par_iter()
                 .map(|corners| {
@@ -70,7 +73,7 @@ impl Frames {
             .into_iter()
             .map(|(sum, area)| turning(sum * area.recip()))
             .collect();
-        Self { group_of, gradients }
+        Ok(Self { group_of, gradients })
     }
 
     /// The gradient at a drawn vertex, in world space; `None` where the vertex did not move, its surroundings did not
@@ -129,7 +132,13 @@ fn turning(mean: DMat3) -> Option<DMat3> {
 
 /// Numbers the groups of moved twins by their first vertex, so that neighbours' sums stand near each other: numbered as
 /// the hashes fall, every sum would miss the cache. Sorting by a hash instead of filling a table keeps it parallel.
-fn group(drawn: &Drawn, positions: &[DVec3], normals: &[DVec3]) -> (Vec<u32>, usize) {
+fn group(
+    drawn: &Drawn,
+    positions: &[DVec3],
+    normals: &[DVec3],
+    course: &Course<'_>,
+) -> Result<(Vec<u32>, usize), Cancelled> {
+    course.reach(0, 4)?;
     // Adding zero makes 0 of -0, which exporters mix across a seam.
     let bits = |x: f64| (x + 0.0).to_bits();
     let key = |v: usize| {
@@ -142,7 +151,9 @@ fn group(drawn: &Drawn, positions: &[DVec3], normals: &[DVec3]) -> (Vec<u32>, us
         .filter(|&v| !bit_equal(drawn.positions[v], positions[v]))
         .map(|v| (hash(key(v)), v as u32))
         .collect();
+    course.reach(1, 4)?;
     moved.par_sort_unstable();
+    course.reach(2, 4)?;
     // First the lowest twin of each, which is itself where it has none.
     let mut group_of = vec![NO_GROUP; positions.len()];
     for run in moved.chunk_by(|a, b| a.0 == b.0) {
@@ -153,6 +164,7 @@ fn group(drawn: &Drawn, positions: &[DVec3], normals: &[DVec3]) -> (Vec<u32>, us
             group_of[v as usize] = twin.map_or(v, |&(_, other)| group_of[other as usize]);
         }
     }
+    course.reach(3, 4)?;
     // A twin is never above, so its number is known already.
     let mut group_count = 0;
     for v in 0..group_of.len() {
@@ -163,7 +175,7 @@ fn group(drawn: &Drawn, positions: &[DVec3], normals: &[DVec3]) -> (Vec<u32>, us
             group_of[v] = group_of[group_of[v] as usize];
         }
     }
-    (group_of, group_count as usize)
+    Ok((group_of, group_count as usize))
 }
 
 /// A multiplicative hash of the key's words.

@@ -8,6 +8,7 @@
 mod appearance;
 mod bits;
 mod colour;
+mod course;
 mod difference;
 mod error;
 mod format;

@@ -3,10 +3,11 @@
 use std::sync::OnceLock;
 
 use glam::DVec3;
-use pliant_mesh::{Drawn, DrawnVertex};
+use pliant_mesh::{Cancelled, Drawn, DrawnVertex};
 
 use crate::SaveError;
 use crate::bits::bit_equal;
+use crate::course::Course;
 use crate::frames::Frames;
 
 /// The rest shape and the new one, over the drawn vertices.
@@ -77,7 +78,7 @@ impl<'a> Moved<'a> {
 
     /// The local frames that carry normals and tangents along, given each drawn vertex's world-space rest normal
     /// (any length; zero where it has none).
-    pub fn frames(&self, normals: &[DVec3]) -> Frames {
-        Frames::of(self.drawn, self.positions, normals)
+    pub fn frames(&self, normals: &[DVec3], course: &Course<'_>) -> Result<Frames, Cancelled> {
+        Frames::of(self.drawn, self.positions, normals, course)
     }
 }

@@ -2,30 +2,39 @@
 //! finely a file's numbers have to be written.
 
 use glam::DVec3;
-use pliant_mesh::DrawnVertex;
+use pliant_mesh::{Cancelled, DrawnVertex};
 
 use crate::Appearance;
 use crate::bits::bit_equal;
+use crate::course::Course;
 use crate::new_mesh::NewMesh;
 
 /// Calls `visit` with the corners of each face and the number of its first triangle: the file's own polygons where
 /// there are any, else the triangles.
-pub(crate) fn for_each_face(mesh: &NewMesh<'_>, mut visit: impl FnMut(&[DrawnVertex], usize)) {
+pub(crate) fn for_each_face(
+    mesh: &NewMesh<'_>,
+    course: &Course<'_>,
+    mut visit: impl FnMut(&[DrawnVertex], usize),
+) -> Result<(), Cancelled> {
+    let count = face_count(mesh);
     match &mesh.polygons {
         Some(polygons) => {
             let mut triangle = 0;
-            for face in 0..polygons.len() {
+            for face in 0..count {
+                course.pass(face, count)?;
                 let corners = polygons.face(face);
                 visit(corners, triangle);
                 triangle += corners.len().saturating_sub(2);
             }
         }
-        None => mesh
-            .triangles
-            .iter()
-            .enumerate()
-            .for_each(|(triangle, corners)| visit(corners, triangle)),
+        None => {
+            for (triangle, corners) in mesh.triangles.iter().enumerate() {
+                course.pass(triangle, count)?;
+                visit(corners, triangle);
+            }
+        }
     }
+    Ok(())
 }
 
 /// How many faces [`for_each_face`] visits.

@@ -7,10 +7,11 @@
 use std::collections::{BTreeMap, HashMap};
 
 use glam::{DVec3, Vec3};
-use pliant_mesh::{DrawnVertex, bounding_box};
+use pliant_mesh::{Cancelled, DrawnVertex, bounding_box};
 use serde_json::{Value, json};
 
 use crate::appearance::{AlphaMode, Material, Wrap};
+use crate::course::Course;
 use crate::gltf::join_glb;
 use crate::image::mime_type;
 use crate::new_faces::coarse_in_f32;
@@ -19,8 +20,8 @@ use crate::save::{OutputFile, Saved};
 use crate::{Format, SaveError};
 
 /// The mesh as a GLB.
-pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
-    let built = build(mesh, Format::Glb)?;
+pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
+    let built = build(mesh, Format::Glb, course)?;
     let text = built.root.to_string();
     let bytes = join_glb(text.as_bytes(), &built.bin).ok_or(SaveError::TooLarge { format: Format::Glb })?;
     let file = OutputFile {
@@ -34,8 +35,8 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
 }
 
 /// The mesh as a `.gltf` and its buffer, which is called as OUT is.
-pub(crate) fn write_new_gltf(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
-    let mut built = build(mesh, Format::Gltf)?;
+pub(crate) fn write_new_gltf(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
+    let mut built = build(mesh, Format::Gltf, course)?;
     let buffer_name = format!("{}.bin", stem(mesh.name));
     built.root["buffers"][0]["uri"] = crate::gltf::encoded_uri(&buffer_name).into();
     let text = format!("{:#}\n", built.root);
@@ -75,7 +76,10 @@ const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
-fn build(mesh: &NewMesh<'_>, format: Format) -> Result<Built, SaveError> {
+fn build(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Built, SaveError> {
+    course.reach(0, 1)?;
+    let (of_looks, course) = course.split(0.5);
+    let (of_parts, of_normals) = of_looks.split(0.5);
     let mut out = Built::default();
     let finite: Vec<DVec3> = mesh
         .positions
@@ -91,7 +95,7 @@ fn build(mesh: &NewMesh<'_>, format: Format) -> Result<Built, SaveError> {
         .iter()
         .map(|&position| (position - centre).as_vec3())
         .collect();
-    let parts = parts(mesh, &positions, &mut out.warnings);
+    let parts = parts(mesh, &positions, &mut out.warnings, &of_parts)?;
     if parts.is_empty() {
         return Err(SaveError::CannotHold {
             what: "a shape without triangles".to_owned(),
@@ -99,11 +103,15 @@ fn build(mesh: &NewMesh<'_>, format: Format) -> Result<Built, SaveError> {
             remedy: "save it as the kind it was".to_owned(),
         });
     }
-    let normals = unit_normals(mesh);
+    let normals = unit_normals(mesh, &of_normals)?;
     let mut looks = Looks::default();
     let mut number = vec![u32::MAX; positions.len()];
     let (mut nodes, mut meshes) = (Vec::new(), Vec::new());
     for (place, part) in parts.iter().enumerate() {
+        let course = course.part(
+            place as f32 / parts.len() as f32,
+            (place + 1) as f32 / parts.len() as f32,
+        );
         let vertices = match parts.len() {
             1 => (0..positions.len() as u32).collect(),
             _ => part.vertices(),
@@ -111,9 +119,11 @@ fn build(mesh: &NewMesh<'_>, format: Format) -> Result<Built, SaveError> {
         for (own, &v) in (0..).zip(&vertices) {
             number[v as usize] = own;
         }
-        let attributes = attributes(&mut out, mesh, &positions, &normals, &vertices);
+        let (of_attributes, course) = course.split(0.7);
+        let attributes = attributes(&mut out, mesh, &positions, &normals, &vertices, &of_attributes)?;
         let mut primitives = Vec::new();
-        for (material, triangles) in &part.triangles {
+        for (place, (material, triangles)) in part.triangles.iter().enumerate() {
+            course.reach(place, part.triangles.len())?;
             let corners = triangles.as_flattened().iter().map(|corner| number[corner.index()]);
             let indices = indices(&mut out, corners, vertices.len());
             let mut primitive = json!({ "attributes": attributes, "indices": indices });
@@ -168,7 +178,12 @@ impl Part<'_> {
 }
 
 /// The parts in the order in which the file first names them, triangles with a vertex that glTF can't hold left out.
-fn parts<'a>(mesh: &'a NewMesh<'_>, positions: &[Vec3], warnings: &mut Vec<String>) -> Vec<Part<'a>> {
+fn parts<'a>(
+    mesh: &'a NewMesh<'_>,
+    positions: &[Vec3],
+    warnings: &mut Vec<String>,
+    course: &Course<'_>,
+) -> Result<Vec<Part<'a>>, Cancelled> {
     let groups = &mesh.appearance.groups;
     let mut names: Vec<&str> = Vec::new();
     let mut place_of: HashMap<&str, usize> = HashMap::new();
@@ -212,7 +227,9 @@ fn parts<'a>(mesh: &'a NewMesh<'_>, positions: &[Vec3], warnings: &mut Vec<Strin
         .is_empty()
         .then_some((0, usize::MAX, 0..mesh.triangles.len() as u32));
     for (place, material, range) in grouped.chain(ungrouped) {
-        for triangle in &mesh.triangles[range.start as usize..range.end as usize] {
+        let (start, end) = (range.start as usize, range.end as usize);
+        for (number, triangle) in (start..).zip(&mesh.triangles[start..end]) {
+            course.pass(number, mesh.triangles.len())?;
             if triangle.iter().all(|corner| positions[corner.index()].is_finite()) {
                 parts[place].triangles.entry(material).or_default().push(*triangle);
             } else {
@@ -239,11 +256,19 @@ fn parts<'a>(mesh: &'a NewMesh<'_>, positions: &[Vec3], warnings: &mut Vec<Strin
             ));
         }
     }
-    parts
+    Ok(parts)
 }
 
 /// The accessors of the attributes of `vertices`.
-fn attributes(out: &mut Built, mesh: &NewMesh<'_>, positions: &[Vec3], normals: &[Vec3], vertices: &[u32]) -> Value {
+fn attributes(
+    out: &mut Built,
+    mesh: &NewMesh<'_>,
+    positions: &[Vec3],
+    normals: &[Vec3],
+    vertices: &[u32],
+    course: &Course<'_>,
+) -> Result<Value, Cancelled> {
+    course.reach(0, 4)?;
     let looks = &mesh.appearance;
     let count = vertices.len();
     let each = || vertices.iter().map(|&v| v as usize);
@@ -266,12 +291,14 @@ fn attributes(out: &mut Built, mesh: &NewMesh<'_>, positions: &[Vec3], normals: 
     position["min"] = json!(low.as_dvec3().to_array());
     position["max"] = json!(high.as_dvec3().to_array());
     let position = out.accessor(position);
+    course.reach(1, 4)?;
     let view = out.view(
         each().flat_map(|v| normals[v].to_array()),
         f32::to_le_bytes,
         ARRAY_BUFFER,
     );
     let normal = out.accessor(floats("VEC3", view));
+    course.reach(2, 4)?;
     let mut attributes = json!({ "POSITION": position, "NORMAL": normal });
     if let Some(uvs) = &looks.uvs {
         let finite = |number: f32| if number.is_finite() { number } else { 0.0 };
@@ -279,6 +306,7 @@ fn attributes(out: &mut Built, mesh: &NewMesh<'_>, positions: &[Vec3], normals: 
         let view = out.view(numbers, f32::to_le_bytes, ARRAY_BUFFER);
         attributes["TEXCOORD_0"] = out.accessor(floats("VEC2", view)).into();
     }
+    course.reach(3, 4)?;
     if let Some(colours) = &looks.colours {
         let view = out.view(each().flat_map(|v| colours[v]), u8::to_le_bytes, ARRAY_BUFFER);
         attributes["COLOR_0"] = out
@@ -288,20 +316,23 @@ fn attributes(out: &mut Built, mesh: &NewMesh<'_>, positions: &[Vec3], normals: 
             }))
             .into();
     }
-    attributes
+    Ok(attributes)
 }
 
 /// Normals of unit length, as glTF insists: the file's own, or where it has none the mean of the faces around, by
 /// area; vertices of one file vertex share it.
-fn unit_normals(mesh: &NewMesh<'_>) -> Vec<Vec3> {
+fn unit_normals(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Vec<Vec3>, Cancelled> {
+    let count = mesh.positions.len();
+    let (of_faces_around, of_vertices) = course.split(0.6);
     let own = |v: usize| {
         let normals = mesh.appearance.normals.as_ref()?;
         Vec3::from(normals[v]).as_dvec3().try_normalize()
     };
-    let lacks_some = (0..mesh.positions.len()).any(|v| own(v).is_none());
+    let lacks_some = (0..count).any(|v| own(v).is_none());
     let mut of_file = vec![DVec3::ZERO; if lacks_some { mesh.file_vertex_count } else { 0 }];
     if lacks_some {
-        for corners in mesh.triangles {
+        for (number, corners) in mesh.triangles.iter().enumerate() {
+            of_faces_around.pass(number, mesh.triangles.len())?;
             let [a, b, c] = corners.map(|corner| mesh.positions[corner.index()]);
             let normal = (b - a).cross(c - a);
             for file in corners.map(|corner| mesh.file_vertex[corner.index()]) {
@@ -313,7 +344,12 @@ fn unit_normals(mesh: &NewMesh<'_>) -> Vec<Vec3> {
     }
     let of_faces = |v: usize| of_file[mesh.file_vertex[v].index()].try_normalize();
     let normal = |v: usize| own(v).or_else(|| of_faces(v)).unwrap_or(DVec3::Z).as_vec3();
-    (0..mesh.positions.len()).map(normal).collect()
+    let mut normals = Vec::with_capacity(count);
+    for v in 0..count {
+        of_vertices.pass(v, count)?;
+        normals.push(normal(v));
+    }
+    Ok(normals)
 }
 
 /// The accessor of the corners of a primitive's triangles.

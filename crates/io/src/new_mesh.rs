@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use pliant_mesh::{DrawnVertex, FileVertex};
+use pliant_mesh::{Cancelled, DrawnVertex, FileVertex};
 
 use crate::Appearance;
+use crate::course::Course;
 use crate::moved::Moved;
 
 /// A deformed shape with its looks, free of the kind of file it came from.
@@ -70,13 +71,16 @@ impl<'a> NewMesh<'a> {
         name: &'a str,
         polygons: Option<Polygons>,
         parting: Parting,
-    ) -> Self {
+        course: &Course<'_>,
+    ) -> Result<Self, Cancelled> {
         if let Some(normals) = appearance.normals.as_mut()
             && !moved.is_nothing()
         {
             let rest: Vec<DVec3> = normals.iter().map(|&n| glam::Vec3::from(n).as_dvec3()).collect();
-            let frames = moved.frames(&rest);
+            let (of_frames, course) = course.split(0.9);
+            let frames = moved.frames(&rest, &of_frames)?;
             for (v, normal) in normals.iter_mut().enumerate() {
+                course.pass(v, rest.len())?;
                 let vertex = DrawnVertex(v as u32);
                 if moved.moves(vertex) {
                     // f32 begins here: normals are displayed and saved as f32 in every kind of file.
@@ -84,7 +88,7 @@ impl<'a> NewMesh<'a> {
                 }
             }
         }
-        Self {
+        Ok(Self {
             name,
             positions: moved.positions,
             triangles: &moved.drawn.triangles,
@@ -93,6 +97,6 @@ impl<'a> NewMesh<'a> {
             file_vertex_count: moved.drawn.file_vertex_count,
             parting,
             appearance,
-        }
+        })
     }
 }

@@ -17,6 +17,7 @@ use pliant_mesh::{Drawn, DrawnVertex, Object};
 
 use crate::appearance::Group;
 use crate::colour::{byte, linear_of_srgb};
+use crate::course::Course;
 use crate::moved::Moved;
 use crate::new_mesh::Polygons;
 use crate::objects;
@@ -219,7 +220,7 @@ impl Stored {
     }
 
     /// The file with the moved vertices' numbers changed, and warnings.
-    pub(crate) fn write(&self, moved: &Moved<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
-        Ok(patch::patched(self, moved))
+    pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
+        Ok(patch::patched(self, moved, course)?)
     }
 }

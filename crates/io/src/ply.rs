@@ -16,6 +16,7 @@ use pliant_mesh::{Drawn, FileVertex};
 
 use crate::appearance::{Group, Material};
 use crate::colour::{byte, linear_of_srgb};
+use crate::course::Course;
 use crate::moved::Moved;
 use crate::new_mesh::Polygons;
 use crate::polygon::{cut_faces, left_out_note};
@@ -131,8 +132,8 @@ impl Stored {
     }
 
     /// The file with the moved vertices' numbers changed, and warnings.
-    pub(crate) fn write(&self, moved: &Moved<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
-        patch::patched(self, moved)
+    pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
+        patch::patched(self, moved, course)
     }
 
     fn cannot_hold(what: String, remedy: &str) -> SaveError {

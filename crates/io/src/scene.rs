@@ -1,9 +1,9 @@
 //! A file as stored, whatever its kind, and the one place where kinds are told apart.
 //!
 //! Each kind is one module with the same face: `read(&Source) -> Result<(Stored, Drawn), ReadError>`;
-//! `Stored::{notes, summary, appearance, write}`, where `write(&Moved)` gives the file back with only the moved
-//! vertices' numbers changed, and warnings (it is called only when something moved); and `write_new(&NewMesh)`, which makes a file
-//! of that kind from any other.
+//! `Stored::{notes, summary, appearance, write}`, where `write(&Moved, &Course)` gives the file back with only the moved
+//! vertices' numbers changed, and warnings (it is called only when something moved); and `write_new(&NewMesh, &Course)`,
+//! which makes a file of that kind from any other.
 
 use std::sync::Arc;
 
@@ -11,6 +11,7 @@ use glam::DVec3;
 use pliant_mesh::{Cancel, Drawn, Object, Progress};
 
 use crate::bits::bit_equal;
+use crate::course::Course;
 use crate::difference::{self, Difference};
 use crate::moved::Moved;
 use crate::new_faces::{lost, lost_where};
@@ -152,11 +153,17 @@ impl Scene {
     }
 
     /// The file as `save` asks for it. Nothing moved and the same kind: the very bytes that were read.
-    pub fn save(&self, save: &Save<'_>) -> Result<Saved, SaveError> {
-        self.save_parted(save, Parting::ByName)
+    ///
+    /// # Errors
+    /// What can't be held; [`SaveError::Cancelled`] soon after `cancel` is raised.
+    pub fn save(&self, save: &Save<'_>, progress: &Progress, cancel: &Cancel) -> Result<Saved, SaveError> {
+        let saved = self.save_parted(save, Parting::ByName, &Course::new(progress, cancel))?;
+        progress.set(1.0);
+        Ok(saved)
     }
 
-    fn save_parted(&self, save: &Save<'_>, parting: Parting) -> Result<Saved, SaveError> {
+    fn save_parted(&self, save: &Save<'_>, parting: Parting, course: &Course<'_>) -> Result<Saved, SaveError> {
+        course.reach(0, 1)?;
         let moved = Moved::of(save.drawn, save.positions)?;
         let own = |(bytes, warnings)| Saved {
             files: vec![OutputFile {
@@ -166,29 +173,32 @@ impl Scene {
             warnings,
         };
         match (&self.stored, save.format) {
-            (Stored::Gltf(stored), Format::Glb | Format::Gltf) => stored.save(save, &moved),
+            (Stored::Gltf(stored), Format::Glb | Format::Gltf) => stored.save(save, &moved, course),
             (Stored::Obj(stored), Format::Obj) if save.placement == Placement::OtherFolder => {
                 let unchanged = moved.is_nothing().then(|| (self.bytes.to_vec(), Vec::new()));
-                let mut saved = own(unchanged.map_or_else(|| stored.write(&moved), Ok)?);
+                let mut saved = own(unchanged.map_or_else(|| stored.write(&moved, course), Ok)?);
                 let (files, warnings) = stored.neighbours();
                 saved.files.extend(files);
                 saved.warnings.extend(warnings);
                 Ok(saved)
             }
             (_, format) if format == self.format && moved.is_nothing() => Ok(own((self.bytes.to_vec(), Vec::new()))),
-            (Stored::Obj(stored), Format::Obj) => stored.write(&moved).map(own),
-            (Stored::Ply(stored), Format::Ply) => stored.write(&moved).map(own),
-            (Stored::Stl(stored), Format::Stl) => stored.write(&moved).map(own),
-            (Stored::Off(stored), Format::Off) => stored.write(&moved).map(own),
+            (Stored::Obj(stored), Format::Obj) => stored.write(&moved, course).map(own),
+            (Stored::Ply(stored), Format::Ply) => stored.write(&moved, course).map(own),
+            (Stored::Stl(stored), Format::Stl) => stored.write(&moved, course).map(own),
+            (Stored::Off(stored), Format::Off) => stored.write(&moved, course).map(own),
             (_, format) => {
-                let mesh = NewMesh::of(&moved, self.appearance(), save.name, self.polygons(), parting);
+                let appearance = self.appearance();
+                let has_normals = appearance.normals.is_some() && !moved.is_nothing();
+                let (of_looks, course) = course.split(if has_normals { 0.4 } else { 0.0 });
+                let mesh = NewMesh::of(&moved, appearance, save.name, self.polygons(), parting, &of_looks)?;
                 let mut saved = match format {
-                    Format::Glb => new_glb::write_new(&mesh),
-                    Format::Gltf => new_glb::write_new_gltf(&mesh),
-                    Format::Obj => obj::write_new(&mesh),
-                    Format::Ply => ply::write_new(&mesh),
-                    Format::Stl => stl::write_new(&mesh),
-                    Format::Off => off::write_new(&mesh),
+                    Format::Glb => new_glb::write_new(&mesh, &course),
+                    Format::Gltf => new_glb::write_new_gltf(&mesh, &course),
+                    Format::Obj => obj::write_new(&mesh, &course),
+                    Format::Ply => ply::write_new(&mesh, &course),
+                    Format::Stl => stl::write_new(&mesh, &course),
+                    Format::Off => off::write_new(&mesh, &course),
                 }?;
                 saved.warnings.extend(self.motion_lost(format));
                 Ok(saved)
@@ -198,7 +208,23 @@ impl Scene {
 
     /// The file with the edit as a morph target: the shape stays, and the way to `save.positions` is added to each
     /// edited mesh. Only glTF holds such; a file of another kind is written as glTF first, its vertices as they are.
-    pub fn save_as_morph(&self, save: &Save<'_>, target: &MorphTarget<'_>) -> Result<Saved, SaveError> {
+    ///
+    /// # Errors
+    /// As [`Self::save`].
+    pub fn save_as_morph(
+        &self,
+        save: &Save<'_>,
+        target: &MorphTarget<'_>,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Saved, SaveError> {
+        let saved = self.with_morph(save, target, &Course::new(progress, cancel))?;
+        progress.set(1.0);
+        Ok(saved)
+    }
+
+    fn with_morph(&self, save: &Save<'_>, target: &MorphTarget<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
+        course.reach(0, 1)?;
         if !matches!(save.format, Format::Glb | Format::Gltf) {
             return Err(SaveError::CannotHold {
                 what: "a morph target".to_owned(),
@@ -208,22 +234,27 @@ impl Scene {
         }
         let moved = Moved::of(save.drawn, save.positions)?;
         if let Stored::Gltf(stored) = &self.stored {
-            return stored.save_as_morph(save, &moved, target);
+            return stored.save_as_morph(save, &moved, target, course);
         }
         // Joined, the written vertices are the drawn ones.
         let at_rest = Save {
             positions: &save.drawn.positions,
             ..*save
         };
-        let rest = self.save_parted(&at_rest, Parting::Joined)?;
+        let (of_rest, course) = course.split(0.4);
+        let (of_reading, course) = course.split(0.4);
+        let rest = self.save_parted(&at_rest, Parting::Joined, &of_rest)?;
         let fault = |what: String| SaveError::CannotHold {
             what,
             format: save.format,
             remedy: "this is a fault of the program, so report it with the file".to_owned(),
         };
         let file = rest.files[0].bytes.clone();
-        let written = read(file, save.format, save.name, &rest, &Progress::new(), &Cancel::new())
-            .map_err(|error| fault(error.to_string()))?;
+        let written = read(file, save.format, save.name, &rest, &of_reading.progress, course.cancel);
+        let written = written.map_err(|error| match error {
+            ReadError::Cancelled(cancelled) => SaveError::Cancelled(cancelled),
+            error => fault(error.to_string()),
+        })?;
         if written.drawn.positions.len() != save.positions.len() {
             return Err(fault("a shape whose vertices are not all written".to_owned()));
         }
@@ -238,7 +269,7 @@ impl Scene {
                 }
             })
             .collect();
-        let mut saved = written.scene.save_as_morph(
+        let mut saved = written.scene.with_morph(
             &Save {
                 drawn: &written.drawn,
                 positions: &positions,
@@ -246,6 +277,7 @@ impl Scene {
                 ..*save
             },
             target,
+            &course,
         )?;
         saved.warnings.splice(0..0, rest.warnings);
         Ok(saved)
@@ -288,7 +320,7 @@ impl Scene {
                 name: "same",
                 placement: Placement::SameFolder,
             };
-            if let Ok(saved) = self.save(&save) {
+            if let Ok(saved) = self.save(&save, &Progress::new(), &Cancel::new()) {
                 out.extend(difference::of_bytes(&saved.files[0].bytes, &other.bytes));
             }
         }

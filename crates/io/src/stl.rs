@@ -13,6 +13,7 @@ use glam::DVec3;
 use pliant_mesh::{Drawn, DrawnVertex, FileVertex};
 
 use crate::appearance::{Group, Material};
+use crate::course::Course;
 use crate::moved::Moved;
 use crate::source::Source;
 use crate::summary::Summary;
@@ -106,7 +107,7 @@ impl Stored {
     }
 
     /// The file with the moved corners' numbers and their facets' normals changed, and warnings.
-    pub(crate) fn write(&self, moved: &Moved<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
+    pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
         for (vertex, new) in moved.of_file().iter().enumerate() {
             // f32: STL holds nothing finer, and ascii STL is read as f32 by nearly everyone.
             if new.is_some_and(|new| !new.as_vec3().is_finite()) {
@@ -116,8 +117,8 @@ impl Stored {
             }
         }
         let bytes = match &self.layout {
-            Layout::Binary => binary::patched(&self.bytes, self.facet_count, moved),
-            Layout::Ascii(facets) => ascii::patched(&self.bytes, facets, moved),
+            Layout::Binary => binary::patched(&self.bytes, self.facet_count, moved, course)?,
+            Layout::Ascii(facets) => ascii::patched(&self.bytes, facets, moved, course)?,
         };
         Ok((bytes, Vec::new()))
     }

@@ -7,6 +7,7 @@ mod gltf_maker;
 use glam::DVec3;
 use gltf_maker::{Folder, Maker, assert_near, bent, grid, moved, open, saved_glb, shapes, split, try_open};
 use pliant_io::{Format, MorphTarget, Opened, Placement, Save, SaveError, Saved};
+use pliant_mesh::{Cancel, Progress};
 use serde_json::{Value, json};
 
 fn try_morph(opened: &Opened, positions: &[DVec3], name: &str, weight: f64) -> Result<Saved, SaveError> {
@@ -19,6 +20,8 @@ fn try_morph(opened: &Opened, positions: &[DVec3], name: &str, weight: f64) -> R
             placement: Placement::OtherFolder,
         },
         &MorphTarget { name: "smile", weight },
+        &Progress::new(),
+        &Cancel::new(),
     )
 }
 

@@ -78,13 +78,17 @@ fn save(opened: &Opened, positions: &[DVec3], path: &Path) -> Saved {
     let placement = Placement::OtherFolder;
     opened
         .scene
-        .save(&Save {
-            drawn: &opened.drawn,
-            positions,
-            format,
-            name: &name,
-            placement,
-        })
+        .save(
+            &Save {
+                drawn: &opened.drawn,
+                positions,
+                format,
+                name: &name,
+                placement,
+            },
+            &Progress::new(),
+            &Cancel::new(),
+        )
         .unwrap()
 }
 

@@ -8,6 +8,7 @@ mod text;
 
 use glam::DVec3;
 use pliant_io::{Format, Placement, Save};
+use pliant_mesh::{Cancel, Progress};
 use text::{folder, moved, open_in, same_bits, save};
 
 /// A small generator of even quality (SplitMix64); tests need no more.
@@ -156,7 +157,7 @@ fn survive(format: Format, seeds: &[&[u8]], runs: usize) {
                 name: &name,
                 placement: Placement::OtherFolder,
             };
-            let Ok(saved) = opened.scene.save(&request) else {
+            let Ok(saved) = opened.scene.save(&request, &Progress::new(), &Cancel::new()) else {
                 continue;
             };
             let again = open_in(&saved.files[0].bytes, target, &files)

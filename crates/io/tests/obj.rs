@@ -5,6 +5,7 @@ mod text;
 
 use glam::{DQuat, DVec3};
 use pliant_io::{AlphaMode, Format, Placement, Save};
+use pliant_mesh::{Cancel, Progress};
 use text::{changed_lines, folder, moved, open, open_in, refusal, save, save_as, try_open};
 
 /// Every form that a line may take: comments, both line ends, continuations, w, colours, groups, a negative index.
@@ -280,7 +281,7 @@ fn a_copy_in_another_folder_brings_its_materials_along() {
             name: "b.obj",
             placement,
         };
-        opened.scene.save(&save).unwrap()
+        opened.scene.save(&save, &Progress::new(), &Cancel::new()).unwrap()
     };
     let saved = save(Placement::OtherFolder);
     let names: Vec<&str> = saved.files.iter().map(|file| file.name.as_str()).collect();

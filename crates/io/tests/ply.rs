@@ -5,6 +5,7 @@ mod text;
 
 use glam::{DQuat, DVec3};
 use pliant_io::{Format, SaveError};
+use pliant_mesh::{Cancel, Progress};
 use text::{changed_bytes, changed_lines, moved, open, refusal, save, save_as};
 
 const ASCII: &str = "ply\r\nformat ascii 1.0\r\ncomment by hand\r\nelement camera 1\r\nproperty list uchar float view\r\n\
@@ -206,7 +207,10 @@ fn whole_number_positions_are_rounded_or_refused() {
         name: "out.ply",
         placement: pliant_io::Placement::SameFolder,
     };
-    assert!(matches!(opened.scene.save(&save), Err(SaveError::CannotHold { .. })));
+    assert!(matches!(
+        opened.scene.save(&save, &Progress::new(), &Cancel::new()),
+        Err(SaveError::CannotHold { .. })
+    ));
 }
 
 #[test]

@@ -3,11 +3,26 @@
 //! Both are cheap handles to shared atomics: the caller keeps a clone, the job gets a reference.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 
 /// How far a job is, from 0 to 1. Cloning shares the counter.
-#[derive(Clone, Debug, Default)]
-pub struct Progress(Arc<AtomicU32>);
+#[derive(Clone, Debug)]
+pub struct Progress {
+    counter: Arc<AtomicU32>,
+    /// Where on the counter the job begins and ends.
+    from: f32,
+    to: f32,
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        Self {
+            counter: Arc::default(),
+            from: 0.0,
+            to: 1.0,
+        }
+    }
+}
 
 impl Progress {
     /// A fresh counter at 0.
@@ -15,20 +30,39 @@ impl Progress {
         Self::default()
     }
 
-    /// Says that `fraction` (0 to 1, clamped) of the job is done.
-    pub fn set(&self, fraction: f32) {
-        self.0.store(fraction.clamp(0.0, 1.0).to_bits(), Ordering::Relaxed);
+    /// The part of this job from the share `from` to the share `to`, as a job of its own on the same counter.
+    #[must_use]
+    pub fn part(&self, from: f32, to: f32) -> Self {
+        let at = |share: f32| self.from + (self.to - self.from) * share.clamp(0.0, 1.0);
+        Self {
+            counter: Arc::clone(&self.counter),
+            from: at(from),
+            to: at(to),
+        }
     }
 
-    /// The last fraction that the job told, 0 to 1.
+    /// Says that `fraction` (0 to 1, clamped) of the job is done.
+    pub fn set(&self, fraction: f32) {
+        let at = self.from + (self.to - self.from) * fraction.clamp(0.0, 1.0);
+        self.counter.store(at.to_bits(), Ordering::Relaxed);
+    }
+
+    /// The last fraction that was told of the whole, 0 to 1, also where this is a part of it.
     pub fn get(&self) -> f32 {
-        f32::from_bits(self.0.load(Ordering::Relaxed))
+        f32::from_bits(self.counter.load(Ordering::Relaxed))
     }
 }
 
 /// A request to stop, which a job looks at between its steps. Cloning shares the flag.
 #[derive(Clone, Debug, Default)]
-pub struct Cancel(Arc<AtomicBool>);
+pub struct Cancel(Arc<Flag>);
+
+#[derive(Debug, Default)]
+struct Flag {
+    is_raised: AtomicBool,
+    /// At how many looks more it raises itself.
+    looks_left: Option<AtomicUsize>,
+}
 
 /// The job was cancelled: there is no result and nothing was changed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
@@ -41,18 +75,60 @@ impl Cancel {
         Self::default()
     }
 
+    /// A flag that raises itself when it has been looked at `looks` times: so a test stops a job at every place where
+    /// it can be stopped, whatever the time.
+    pub fn after_looks(looks: usize) -> Self {
+        Self(Arc::new(Flag {
+            is_raised: AtomicBool::new(false),
+            looks_left: Some(AtomicUsize::new(looks)),
+        }))
+    }
+
     /// Asks every job that holds a clone to stop.
     pub fn cancel(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.0.is_raised.store(true, Ordering::Relaxed);
     }
 
     /// Whether the flag is raised.
     pub fn is_cancelled(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        if let Some(left) = &self.0.looks_left
+            && left
+                .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1))
+                .is_err()
+        {
+            self.cancel();
+        }
+        self.0.is_raised.load(Ordering::Relaxed)
     }
 
     /// Leaves a job by `?` once the flag is raised.
     pub fn check(&self) -> Result<(), Cancelled> {
         if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_tells_its_share_of_the_whole() {
+        let whole = Progress::new();
+        let half = whole.part(0.5, 1.0);
+        assert_eq!(whole.get(), 0.0, "to make a part says nothing yet");
+        half.part(0.5, 0.75).set(1.0);
+        assert_eq!((whole.get(), half.get()), (0.875, 0.875));
+        half.set(7.0);
+        assert_eq!(whole.get(), 1.0);
+    }
+
+    #[test]
+    fn a_flag_raises_itself_after_its_looks_and_stays_up() {
+        for looks in 0..4 {
+            let cancel = Cancel::after_looks(looks);
+            let other = cancel.clone();
+            let seen: Vec<bool> = (0..6).map(|k| [&cancel, &other][k % 2].is_cancelled()).collect();
+            assert_eq!(seen, (0..6).map(|k| k >= looks).collect::<Vec<_>>());
+        }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use pliant_editor::{Beginning, MeshReference, Project, Snapshot, geometry_hash};
-use pliant_mesh::WeldOptions;
+use pliant_mesh::{Cancel, Progress, WeldOptions};
 
 use super::file_names::{SAMPLE, SAMPLE_NAME, file_name, original_name};
 use crate::AppError;
@@ -25,13 +25,15 @@ pub enum MeshSource {
 /// Writes a snapshot as a project. A mesh that stands nowhere is written beside it, as `NAME.source.EXT`.
 ///
 /// # Errors
-/// Where a file can't be written; an existing project is as it was then.
+/// Where a file can't be written, or `cancel` is raised; an existing project is as it was then.
 pub fn write(
     snapshot: &Snapshot,
     loaded: &Loaded,
     source: &MeshSource,
     path: &Path,
     staging: &Staging,
+    progress: &Progress,
+    cancel: &Cancel,
 ) -> Result<(), AppError> {
     let geometry = geometry_hash(snapshot.model());
     let folder = files::folder_of(path);
@@ -42,7 +44,9 @@ pub fn write(
         MeshSource::Gone => {
             let kept = source_name(path, &loaded.path);
             if !kept.exists() {
-                beside = Some(engine::stage_save(loaded, &loaded.model.drawn.positions, &kept, staging)?.0);
+                let at_rest = &loaded.model.drawn.positions;
+                let (staged, _) = engine::stage_save(loaded, at_rest, &kept, staging, progress, cancel)?;
+                beside = Some(staged);
             }
             Some(file_name(&kept))
         }

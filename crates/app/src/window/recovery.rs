@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
 use pliant_editor::{Snapshot, SnapshotKey};
+use pliant_mesh::{Cancel, Progress};
 
 use super::project_file::{self, MeshSource};
 use crate::engine::Loaded;
@@ -203,6 +204,8 @@ impl Work {
             &self.source,
             &self.project,
             &Staging::default(),
+            &Progress::new(),
+            &Cancel::new(),
         )
         .map_err(|error| error.to_string())
     }

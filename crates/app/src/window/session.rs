@@ -16,7 +16,7 @@ use super::workers::Workers;
 use crate::AppError;
 use crate::drawing::Drawing;
 use crate::engine::{self, Loaded};
-use crate::files::{self, Staging};
+use crate::files::{self, Staged, Staging};
 use crate::picture_file;
 use crate::watch::Watch;
 
@@ -326,11 +326,11 @@ fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<W
 
 fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, AppError> {
     let SaveRequest { path, what } = request;
-    let go_on = |share: f32| {
-        progress.set(share);
-        cancel.check().map_err(|_| AppError::Interrupted)
-    };
-    go_on(0.02)?;
+    let go_on = || cancel.check().map_err(|_| AppError::Interrupted);
+    // What has begun shows that it has.
+    progress.set(0.02);
+    go_on()?;
+    let progress = progress.part(0.02, 1.0);
     let staging = Staging::default();
     let folder = files::folder_of(&path);
     match what {
@@ -359,7 +359,7 @@ fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Canc
             loaded,
             source,
         } => {
-            project_file::write(&snapshot, &loaded, &source, &path, &staging)?;
+            project_file::write(&snapshot, &loaded, &source, &path, &staging, &progress, cancel)?;
             Ok(Written {
                 path,
                 what: WrittenKind::Project,
@@ -374,16 +374,20 @@ fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Canc
         } => {
             let mut positions = Vec::new();
             loaded.model.drawn_positions(&displacements, &mut positions);
-            go_on(0.1)?;
-            let (staged, warnings) = engine::stage_save(&loaded, &positions, &path, &staging)?;
+            go_on()?;
             let original = original_name(&path);
+            let keeps = keep_original == KeepOriginal::Yes && !original.exists();
+            let split = if keeps { 0.5 } else { 1.0 };
+            let (of_save, of_original) = (progress.part(0.0, split), progress.part(split, 1.0));
+            let (mut staged, warnings) = engine::stage_save(&loaded, &positions, &path, &staging, &of_save, cancel)?;
             let is_source = matches!(&source, MeshSource::File(mesh) if is_same(mesh, &path));
             let mut moved = is_source.then_some(MeshSource::Gone);
-            if keep_original == KeepOriginal::Yes && !original.exists() {
-                keep(&loaded, &path, &original)?;
+            if keeps {
+                // The original first: what replaces it must not stand there without it.
+                staged = stage_original(&loaded, &path, &original, &staging, &of_original, cancel)?.and(staged);
                 moved = moved.map(|_| MeshSource::File(original));
             }
-            go_on(0.9)?;
+            go_on()?;
             staged.commit()?;
             Ok(Written {
                 path,
@@ -401,18 +405,22 @@ fn is_same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// Keeps what stands at `path` under the name `original`.
-fn keep(loaded: &Loaded, path: &Path, original: &Path) -> Result<(), AppError> {
-    let staging = Staging::default();
+/// What stands at `path`, to be kept under the name `original`.
+fn stage_original(
+    loaded: &Loaded,
+    path: &Path,
+    original: &Path,
+    staging: &Staging,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<Staged, AppError> {
     if is_gltf(path) {
-        engine::stage_save(loaded, &loaded.model.drawn.positions, original, &staging)?
-            .0
-            .commit()?;
+        let at_rest = &loaded.model.drawn.positions;
+        let (staged, _) = engine::stage_save(loaded, at_rest, original, staging, progress, cancel)?;
+        Ok(staged)
     } else {
         let bytes = files::read(path)?;
-        staging
-            .stage(files::folder_of(path), [(&*file_name(original), &*bytes)])?
-            .commit()?;
+        let name = file_name(original);
+        staging.stage_watched(files::folder_of(path), &[(&*name, &*bytes)], progress, cancel)
     }
-    Ok(())
 }

@@ -153,7 +153,7 @@ impl Settings {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         Staging::default()
             .stage(folder, [(&*name, text.as_bytes())])
-            .and_then(files::Staged::commit)
+            .and_then(|staged| Ok(staged.commit()?))
             .map_err(|error| error.to_string())
     }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{DMat3, DVec3, Vec3, Vec4};
-use pliant_mesh::DrawnVertex;
+use pliant_mesh::{Cancelled, DrawnVertex};
 use rayon::prelude::*;
 
 use super::accessor::Layout;
@@ -12,6 +12,7 @@ use super::geometry::{Part, Pieces};
 use super::look;
 use super::primitive::Primitive;
 use crate::SaveError;
+use crate::course::Course;
 use crate::frames::{Frames, carried_normal, carried_tangent};
 use crate::moved::Moved;
 
@@ -81,19 +82,31 @@ impl PartChange {
 /// Vertices that a thread handles at a time.
 const CHUNK: usize = 1 << 13;
 
+/// Vertices between two looks at whether the save is still wanted.
+const BLOCK: usize = 1 << 17;
+
 /// The changes of every part, in the parts' order.
 pub(super) fn changes(
     document: &Document,
     meshes: &[Vec<Primitive>],
     pieces: &Pieces,
     moved: &Moved<'_>,
+    course: &Course<'_>,
 ) -> Result<Vec<PartChange>, SaveError> {
     let has_normals = pieces.parts.iter().any(|part| {
         let primitive = &meshes[part.mesh][part.primitive];
         primitive.normal.is_some() || primitive.tangent.is_some()
     });
-    let frames = has_normals.then(|| moved.frames(&look::world_normals(document, meshes, pieces)));
-    let of_part = |part| part_change(document, meshes, part, moved, frames.as_ref());
+    course.reach(0, 1)?;
+    let (of_frames, course) = course.split(if has_normals { 0.7 } else { 0.0 });
+    let frames = has_normals
+        .then(|| moved.frames(&look::world_normals(document, meshes, pieces), &of_frames))
+        .transpose()?;
+    let all = moved.positions.len().max(1) as f32;
+    let of_part = |part: &Part| {
+        let [from, to] = [part.vertices.start, part.vertices.end].map(|vertex| vertex as f32 / all);
+        part_change(document, meshes, part, moved, frames.as_ref(), &course.part(from, to))
+    };
     pieces.parts.iter().map(of_part).collect()
 }
 
@@ -103,9 +116,11 @@ fn part_change(
     part: &Part,
     moved: &Moved<'_>,
     frames: Option<&Frames>,
+    course: &Course<'_>,
 ) -> Result<PartChange, SaveError> {
     let vertex = |element: u32| DrawnVertex(part.vertices.start + element);
     let count = part.vertices.end - part.vertices.start;
+    course.reach(0, 1)?;
     let elements: Vec<u32> = (0..count).filter(|&element| moved.moves(vertex(element))).collect();
     if elements.is_empty() {
         return Ok(PartChange::default());
@@ -118,12 +133,14 @@ fn part_change(
     let normals = stored(primitive.normal);
     let tangents = stored(primitive.tangent);
 
-    let position = changed(&elements, &positions, |element, stored| {
+    let [of_positions, of_normals, of_tangents] =
+        [(0.0, 0.3), (0.3, 0.6), (0.6, 1.0)].map(|(from, to)| course.part(from, to));
+    let position = changed(&elements, &positions, &of_positions, |element, stored| {
         // The displacement, not the position, goes back: far from the origin nothing of it is lost. f32 begins here.
         let v = vertex(element).index();
         let by = node_from_world * (moved.positions[v] - moved.drawn.positions[v]);
         (xyz(stored) + by).as_vec3().extend(0.0)
-    });
+    })?;
     if let Some(&(element, _)) = position.iter().find(|(_, new)| !new.iter().all(|x| x.is_finite())) {
         return Err(SaveError::NotFinite {
             file_vertex: moved.drawn.file_vertex[vertex(element).index()].0,
@@ -133,14 +150,16 @@ fn part_change(
         let world = frames?.gradient(vertex(element))?;
         Some(node_from_world * world * world_from_node)
     };
-    let normal = normals.as_ref().map_or_else(Change::new, |normals| {
-        changed(&elements, normals, |element, stored| match gradient(element) {
+    let normal = normals.as_deref().unwrap_or_default();
+    let normal = changed(&elements, normal, &of_normals, |element, stored| {
+        match gradient(element) {
             Some(gradient) => carried_normal(gradient, xyz(stored)).as_vec3().extend(0.0),
             None => Vec4::from_array(stored),
-        })
-    });
-    let tangent = tangents.as_ref().map_or_else(Change::new, |tangents| {
-        changed(&elements, tangents, |element, stored| match gradient(element) {
+        }
+    })?;
+    let tangent = tangents.as_deref().unwrap_or_default();
+    let tangent = changed(&elements, tangent, &of_tangents, |element, stored| {
+        match gradient(element) {
             Some(gradient) => {
                 let up = normals
                     .as_ref()
@@ -151,8 +170,8 @@ fn part_change(
                     .extend(stored[3])
             }
             None => Vec4::from_array(stored),
-        })
-    });
+        }
+    })?;
     Ok(PartChange {
         position,
         normal,
@@ -160,14 +179,27 @@ fn part_change(
     })
 }
 
-/// The elements for which `new` gives other bits than the stored ones.
-fn changed(elements: &[u32], stored: &[[f32; 4]], new: impl Fn(u32, [f32; 4]) -> Vec4 + Sync) -> Change {
+/// The elements for which `new` gives other bits than the stored ones, which may be none at all.
+fn changed(
+    elements: &[u32],
+    stored: &[[f32; 4]],
+    course: &Course<'_>,
+    new: impl Fn(u32, [f32; 4]) -> Vec4 + Sync,
+) -> Result<Change, Cancelled> {
+    let mut out = Change::new();
+    if stored.is_empty() {
+        return Ok(out);
+    }
     let of_element = |&element: &u32| {
         let old = *stored.get(element as usize)?;
         let new = new(element, old).to_array();
         (new.map(f32::to_bits) != old.map(f32::to_bits)).then_some((element, new))
     };
-    elements.par_iter().with_min_len(CHUNK).filter_map(of_element).collect()
+    for (number, block) in elements.chunks(BLOCK).enumerate() {
+        course.reach(number * BLOCK, elements.len())?;
+        out.par_extend(block.par_iter().with_min_len(CHUNK).filter_map(of_element));
+    }
+    Ok(out)
 }
 
 fn xyz([x, y, z, _]: [f32; 4]) -> DVec3 {

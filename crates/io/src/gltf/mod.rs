@@ -29,6 +29,7 @@ use self::fault::Fault;
 use self::geometry::Pieces;
 use self::patch::Patched;
 use self::primitive::Primitive;
+use crate::course::Course;
 use crate::moved::Moved;
 use crate::save::{MorphTarget, Save, Saved};
 use crate::source::Source;
@@ -141,7 +142,7 @@ impl Stored {
     }
 
     /// The file as GLB or `.gltf`, with the moved vertices' numbers in place of the stored ones.
-    pub fn save(&self, save: &Save<'_>, moved: &Moved<'_>) -> Result<Saved, SaveError> {
+    pub fn save(&self, save: &Save<'_>, moved: &Moved<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
         let Self {
             document,
             meshes,
@@ -151,9 +152,10 @@ impl Stored {
         let patched = if moved.is_nothing() {
             Patched::unchanged(document)
         } else {
-            let changes = changes::changes(document, meshes, pieces, moved)?;
-            patch::patch(document, meshes, pieces, &changes, save.format)?
+            let changes = changes::changes(document, meshes, pieces, moved, &course.part(0.0, 0.8))?;
+            patch::patch(document, meshes, pieces, &changes, save.format, &course.part(0.8, 0.9))?
         };
+        course.reach(9, 10)?;
         self.deliver(patched, save)
     }
 
@@ -163,6 +165,7 @@ impl Stored {
         save: &Save<'_>,
         moved: &Moved<'_>,
         target: &MorphTarget<'_>,
+        course: &Course<'_>,
     ) -> Result<Saved, SaveError> {
         let Self {
             document,
@@ -176,9 +179,11 @@ impl Stored {
                 .warnings
                 .push("Nothing moved, so no morph target was added.".to_owned());
         } else {
-            let changes = changes::changes(document, meshes, pieces, moved)?;
-            patched = morph::with_target(document, meshes, pieces, &changes, target, save.format)?;
+            let changes = changes::changes(document, meshes, pieces, moved, &course.part(0.0, 0.8))?;
+            let course = course.part(0.8, 0.9);
+            patched = morph::with_target(document, meshes, pieces, &changes, target, save.format, &course)?;
         }
+        course.reach(9, 10)?;
         self.deliver(patched, save)
     }
 

@@ -14,6 +14,7 @@ use super::geometry::Pieces;
 use super::json::{At, Edits};
 use super::patch::{Bounds, Patch, Patched, cannot_hold, number};
 use super::primitive::Primitive;
+use crate::course::Course;
 use crate::save::MorphTarget;
 use crate::{Format, SaveError};
 
@@ -25,6 +26,7 @@ pub(super) fn with_target<'a>(
     changes: &[PartChange],
     target: &MorphTarget<'_>,
     format: Format,
+    course: &Course<'_>,
 ) -> Result<Patched<'a>, SaveError> {
     let copies = claims::copies(document, meshes, pieces, changes);
     let mut maker = TargetMaker {
@@ -38,6 +40,7 @@ pub(super) fn with_target<'a>(
         samplers: BTreeMap::new(),
     };
     for (number, copy) in copies.iter().enumerate() {
+        course.reach(number, copies.len())?;
         if copy.parts.iter().flatten().any(|&part| !changes[part].is_empty()) {
             maker.add_to(&copies, number)?;
         }

@@ -12,6 +12,7 @@ use super::document::{Buffer, Document};
 use super::geometry::Pieces;
 use super::json::{At, Edits};
 use super::primitive::Primitive;
+use crate::course::Course;
 use crate::{Format, SaveError};
 
 /// The JSON text and the buffers after an edit.
@@ -62,12 +63,14 @@ pub(super) fn patch<'a>(
     pieces: &Pieces,
     changes: &[PartChange],
     format: Format,
+    course: &Course<'_>,
 ) -> Result<Patched<'a>, SaveError> {
     let copies = claims::copies(document, meshes, pieces, changes);
     let outcomes = claims::outcomes(document, meshes, &copies, changes);
     let mut patch = Patch::new(document);
     let places = places(document);
-    for (&accessor, outcome) in &outcomes {
+    for (number, (&accessor, outcome)) in outcomes.iter().enumerate() {
+        course.reach(number, outcomes.len())?;
         if !outcome.kept.change.is_empty() {
             match patch.in_place(accessor, &outcome.kept, &outcomes, &places) {
                 Some(()) => {}

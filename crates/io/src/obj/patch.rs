@@ -7,10 +7,11 @@
 //! compromises are told where they are visible. New `vn` lines are not made: faces would have to change with them.
 
 use glam::DVec3;
-use pliant_mesh::DrawnVertex;
+use pliant_mesh::{Cancelled, DrawnVertex};
 
 use super::Stored;
 use super::statements::NONE;
+use crate::course::{Course, STEP};
 use crate::moved::Moved;
 use crate::text::{Cursor, Splice, push_f32, push_f64};
 
@@ -18,9 +19,14 @@ use crate::text::{Cursor, Splice, push_f32, push_f64};
 const AGREEMENT: f64 = 0.996_194_698;
 
 /// The new bytes and the warnings.
-pub(super) fn patched(stored: &Stored, moved: &Moved<'_>) -> (Vec<u8>, Vec<String>) {
+pub(super) fn patched(
+    stored: &Stored,
+    moved: &Moved<'_>,
+    course: &Course<'_>,
+) -> Result<(Vec<u8>, Vec<String>), Cancelled> {
     let mut warnings = Vec::new();
-    let normals = carried_normals(stored, moved, &mut warnings);
+    let (of_normals, course) = course.split(if stored.normal.is_empty() { 0.0 } else { 0.5 });
+    let normals = carried_normals(stored, moved, &mut warnings, &of_normals)?;
     let positions = moved.of_file();
     let mut splice = Splice::new(&stored.bytes);
     let mut normals = normals.into_iter().peekable();
@@ -36,6 +42,7 @@ pub(super) fn patched(stored: &Stored, moved: &Moved<'_>) -> (Vec<u8>, Vec<Strin
         );
     };
     for (vertex, new) in positions.iter().enumerate() {
+        course.pass(vertex, positions.len())?;
         let Some(new) = new else { continue };
         let at = stored.statements.position_at[vertex];
         while let Some(normal) = normals.next_if(|(index, _)| stored.statements.normal_at[*index as usize] < at) {
@@ -43,10 +50,13 @@ pub(super) fn patched(stored: &Stored, moved: &Moved<'_>) -> (Vec<u8>, Vec<Strin
         }
         replace_numbers(&mut splice, &stored.bytes, at, new.to_array(), push_f64);
     }
-    for normal in normals {
+    for (place, normal) in normals.enumerate() {
+        if place.is_multiple_of(STEP) {
+            course.reach(1, 1)?;
+        }
         write_normal(&mut splice, normal);
     }
-    (splice.finish(), warnings)
+    Ok((splice.finish(), warnings))
 }
 
 /// Replaces the three numbers that begin at byte `at`, each where it changes.
@@ -78,9 +88,14 @@ struct Wanted {
 }
 
 /// The `vn` lines that change, in rising order, each with its new value.
-fn carried_normals(stored: &Stored, moved: &Moved<'_>, warnings: &mut Vec<String>) -> Vec<(u32, DVec3)> {
+fn carried_normals(
+    stored: &Stored,
+    moved: &Moved<'_>,
+    warnings: &mut Vec<String>,
+    course: &Course<'_>,
+) -> Result<Vec<(u32, DVec3)>, Cancelled> {
     if stored.normal.is_empty() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let old = &stored.statements.normals;
     let of_vertex = |v: usize| {
@@ -91,7 +106,8 @@ fn carried_normals(stored: &Stored, moved: &Moved<'_>, warnings: &mut Vec<String
     let rest: Vec<DVec3> = (0..stored.normal.len())
         .map(|v| of_vertex(v).unwrap_or_default())
         .collect();
-    let frames = moved.frames(&rest);
+    let (of_frames, course) = course.split(0.8);
+    let frames = moved.frames(&rest, &of_frames)?;
     let carried = |v: usize| {
         let vertex = DrawnVertex(v as u32);
         if moved.moves(vertex) {
@@ -102,6 +118,7 @@ fn carried_normals(stored: &Stored, moved: &Moved<'_>, warnings: &mut Vec<String
     };
     let mut wanted = vec![Wanted::default(); old.len()];
     for v in 0..rest.len() {
+        course.pass(v, rest.len())?;
         if stored.normal[v] == NONE || !rest[v].is_finite() {
             continue;
         }
@@ -139,5 +156,5 @@ fn carried_normals(stored: &Stored, moved: &Moved<'_>, warnings: &mut Vec<String
             "{blended} normals ('vn' lines) turned by the mean of the vertices that share them, which bent apart by more than 5 degrees."
         ));
     }
-    changes
+    Ok(changes)
 }

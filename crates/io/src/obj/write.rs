@@ -2,9 +2,12 @@
 
 use std::collections::HashSet;
 
+use pliant_mesh::Cancelled;
+
 use super::materials;
 use crate::appearance::{AlphaMode, Material};
 use crate::colour::{srgb_bytes_of_linear, srgb_of_linear};
+use crate::course::Course;
 use crate::new_faces::for_each_face;
 use crate::new_mesh::NewMesh;
 use crate::save::{OutputFile, Saved};
@@ -13,7 +16,7 @@ use crate::{Appearance, SaveError};
 
 /// Writes a mesh as OBJ: a `v` (with its colour), `vt` and `vn` line a drawn vertex, and its faces by object and
 /// material.
-pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
+pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
     let stem = mesh.name.rsplit_once('.').map_or(mesh.name, |(stem, _)| stem);
     let has_materials = look.materials.iter().any(|material| !is_plain(material));
@@ -22,8 +25,10 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
     if has_materials {
         push_line(&mut out, &["mtllib ", stem, ".mtl"]);
     }
-    push_vertices(&mut out, mesh);
-    push_faces(&mut out, mesh, has_materials.then_some(names.as_slice()));
+    let (of_vertices, of_faces) = course.split(0.6);
+    push_vertices(&mut out, mesh, &of_vertices)?;
+    let names_of_faces = has_materials.then_some(names.as_slice());
+    push_faces(&mut out, mesh, names_of_faces, &of_faces)?;
     let mut files = vec![OutputFile {
         name: mesh.name.to_owned(),
         bytes: out,
@@ -71,9 +76,18 @@ fn push_numbers<T: Copy>(out: &mut Vec<u8>, keyword: &str, numbers: &[T], push: 
     }
 }
 
-fn push_vertices(out: &mut Vec<u8>, mesh: &NewMesh<'_>) {
+fn push_vertices(out: &mut Vec<u8>, mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<(), Cancelled> {
     let srgb = srgb_bytes_of_linear();
+    let count = mesh.positions.len();
+    let look = &mesh.appearance;
+    let share_before = |is_more: bool| if is_more { 0.5 } else { 1.0 };
+    let (of_positions, course) = course.split(share_before(look.uvs.is_some() || look.normals.is_some()));
+    let (of_uvs, of_normals) = course.split(match (&look.uvs, &look.normals) {
+        (None, _) => 0.0,
+        (Some(_), normals) => share_before(normals.is_some()),
+    });
     for (v, position) in mesh.positions.iter().enumerate() {
+        of_positions.pass(v, count)?;
         push_numbers(out, "v", &position.to_array(), push_f64);
         if let Some(colours) = &mesh.appearance.colours {
             let [r, g, b, _] = colours[v].map(|light| f32::from(srgb[usize::from(light)]) / 255.0);
@@ -86,22 +100,30 @@ fn push_vertices(out: &mut Vec<u8>, mesh: &NewMesh<'_>) {
         }
         out.push(b'\n');
     }
-    for &[u, v] in mesh.appearance.uvs.iter().flatten() {
+    for (place, &[u, v]) in mesh.appearance.uvs.iter().flatten().enumerate() {
+        of_uvs.pass(place, count)?;
         push_numbers(out, "vt", &[u, 1.0 - v], push_f32);
         out.push(b'\n');
     }
-    for normal in mesh.appearance.normals.iter().flatten() {
+    for (place, normal) in mesh.appearance.normals.iter().flatten().enumerate() {
+        of_normals.pass(place, count)?;
         push_numbers(out, "vn", normal, push_f32);
         out.push(b'\n');
     }
+    Ok(())
 }
 
-fn push_faces(out: &mut Vec<u8>, mesh: &NewMesh<'_>, material_names: Option<&[String]>) {
+fn push_faces(
+    out: &mut Vec<u8>,
+    mesh: &NewMesh<'_>,
+    material_names: Option<&[String]>,
+    course: &Course<'_>,
+) -> Result<(), Cancelled> {
     let mut groups = mesh.appearance.groups.iter().peekable();
     let (mut object, mut material) = (String::new(), None);
     let (has_uvs, has_normals) = (mesh.appearance.uvs.is_some(), mesh.appearance.normals.is_some());
     let mut number = Vec::new();
-    for_each_face(mesh, |corners, triangle| {
+    for_each_face(mesh, course, |corners, triangle| {
         while let Some(group) = groups.next_if(|group| group.triangles.start as usize <= triangle) {
             if group.triangles.is_empty() {
                 continue;
@@ -135,7 +157,7 @@ fn push_faces(out: &mut Vec<u8>, mesh: &NewMesh<'_>, material_names: Option<&[St
             }
         }
         out.push(b'\n');
-    });
+    })
 }
 
 /// A name that fits on a line.

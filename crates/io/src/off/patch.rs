@@ -1,18 +1,22 @@
 //! An edited OFF file: the bytes as read, with other numbers for the coordinates and normals of moved vertices.
 
 use glam::DVec3;
-use pliant_mesh::DrawnVertex;
+use pliant_mesh::{Cancelled, DrawnVertex};
 
 use super::Stored;
+use crate::course::Course;
 use crate::moved::Moved;
 use crate::text::{Cursor, Splice, push_f32, push_f64};
 
 /// The new bytes.
-pub(super) fn patched(stored: &Stored, moved: &Moved<'_>) -> Vec<u8> {
+pub(super) fn patched(stored: &Stored, moved: &Moved<'_>, course: &Course<'_>) -> Result<Vec<u8>, Cancelled> {
     let rest = &stored.records.normals;
-    let frames = (!rest.is_empty()).then(|| moved.frames(rest));
+    let (of_frames, course) = course.split(if rest.is_empty() { 0.0 } else { 0.5 });
+    let frames = (!rest.is_empty()).then(|| moved.frames(rest, &of_frames)).transpose()?;
     let mut splice = Splice::new(&stored.bytes);
-    for (vertex, new) in moved.of_file().iter().enumerate() {
+    let of_file = moved.of_file();
+    for (vertex, new) in of_file.iter().enumerate() {
+        course.pass(vertex, of_file.len())?;
         let Some(new) = new else { continue };
         let mut cursor = Cursor::new(&stored.bytes, stored.records.vertex_at[vertex]);
         replace_vector(&mut splice, &mut cursor, *new, push_f64);
@@ -26,7 +30,7 @@ pub(super) fn patched(stored: &Stored, moved: &Moved<'_>) -> Vec<u8> {
             }
         }
     }
-    splice.finish()
+    Ok(splice.finish())
 }
 
 /// Replaces the next three numbers, each where it changes.

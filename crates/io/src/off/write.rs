@@ -2,6 +2,7 @@
 
 use crate::SaveError;
 use crate::colour::srgb_bytes_of_linear;
+use crate::course::Course;
 use crate::new_faces::{face_count, for_each_face, has_materials, lost, lost_where, merged};
 use crate::new_mesh::NewMesh;
 use crate::save::{OutputFile, Saved};
@@ -9,13 +10,15 @@ use crate::text::push_f64;
 
 /// Writes a mesh's positions, colours and faces. Normals are left to the reader: the variants that hold them beside
 /// colours are read by few.
-pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
+pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
     let srgb = srgb_bytes_of_linear();
     let (vertices, number) = merged(mesh);
     let keyword = if look.colours.is_some() { "COFF" } else { "OFF" };
     let mut out = format!("{keyword}\n{} {} 0\n", vertices.len(), face_count(mesh)).into_bytes();
-    for vertex in &vertices {
+    let (of_vertices, of_faces) = course.split(0.5);
+    for (place, vertex) in vertices.iter().enumerate() {
+        of_vertices.pass(place, vertices.len())?;
         for (axis, coordinate) in mesh.positions[vertex.index()].to_array().into_iter().enumerate() {
             if axis > 0 {
                 out.push(b' ');
@@ -31,14 +34,14 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
         }
         out.push(b'\n');
     }
-    for_each_face(mesh, |corners, _| {
+    for_each_face(mesh, &of_faces, |corners, _| {
         push_f64(&mut out, corners.len() as f64);
         for corner in corners {
             out.push(b' ');
             push_f64(&mut out, f64::from(number[corner.index()]));
         }
         out.push(b'\n');
-    });
+    })?;
     let warning = lost(
         "OFF",
         &[

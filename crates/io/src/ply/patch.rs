@@ -1,12 +1,13 @@
 //! An edited PLY file: the bytes as read, with other numbers for the coordinates and normals of moved vertices.
 
 use glam::{DVec3, Vec3};
-use pliant_mesh::DrawnVertex;
+use pliant_mesh::{Cancelled, DrawnVertex};
 
 use super::Stored;
 use super::header::{Element, Kind};
 use super::scalar::{Encoding, Scalar, Walk, encode};
 use crate::SaveError;
+use crate::course::Course;
 use crate::moved::Moved;
 use crate::new_faces::coarse_in_f32;
 use crate::text::{Splice, push_f32, push_f64};
@@ -14,15 +15,20 @@ use crate::text::{Splice, push_f32, push_f64};
 /// The new bytes and the warnings.
 ///
 /// # Errors
-/// A position beyond what the file's type of number holds.
-pub(super) fn patched(stored: &Stored, moved: &Moved<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
+/// A position beyond what the file's type of number holds; the end of `course`.
+pub(super) fn patched(
+    stored: &Stored,
+    moved: &Moved<'_>,
+    course: &Course<'_>,
+) -> Result<(Vec<u8>, Vec<String>), SaveError> {
     let Some(element) = stored.vertex_element.map(|index| &stored.header.elements[index]) else {
         return Ok((stored.bytes.to_vec(), Vec::new()));
     };
-    let edits = Edits::of(stored, element, moved)?;
+    let (of_edits, of_bytes) = course.split(0.6);
+    let edits = Edits::of(stored, element, moved, &of_edits)?;
     let bytes = match stored.header.encoding {
-        Encoding::Ascii => edits.into_text(stored, element, moved.positions),
-        _ => edits.into_binary(stored, element),
+        Encoding::Ascii => edits.into_text(stored, element, moved.positions, &of_bytes)?,
+        _ => edits.into_binary(stored, element, &of_bytes)?,
     };
     let warnings = whole_numbers_warning(stored, element).into_iter().collect();
     Ok((bytes, warnings))
@@ -55,15 +61,20 @@ struct Edit {
 struct Edits(Vec<Edit>);
 
 impl Edits {
-    fn of(stored: &Stored, element: &Element, moved: &Moved<'_>) -> Result<Self, SaveError> {
+    fn of(stored: &Stored, element: &Element, moved: &Moved<'_>, course: &Course<'_>) -> Result<Self, SaveError> {
         let rest: Vec<DVec3> = stored
             .normals
             .iter()
             .map(|&normal| Vec3::from(normal).as_dvec3())
             .collect();
-        let frames = (!rest.is_empty()).then(|| moved.frames(&rest));
+        let (of_frames, course) = course.split(if rest.is_empty() { 0.0 } else { 0.7 });
+        let frames = (!rest.is_empty())
+            .then(|| moved.frames(&rest, &of_frames))
+            .transpose()?;
         let mut edits = Vec::new();
-        for (vertex, new) in moved.of_file().iter().enumerate() {
+        let of_file = moved.of_file();
+        for (vertex, new) in of_file.iter().enumerate() {
+            course.pass(vertex, of_file.len())?;
             let Some(new) = new else { continue };
             let mut numbers = [None; 6];
             numbers[..3].copy_from_slice(&new.to_array().map(Some));
@@ -81,24 +92,30 @@ impl Edits {
         Ok(Self(edits))
     }
 
-    fn into_binary(self, stored: &Stored, element: &Element) -> Vec<u8> {
+    fn into_binary(self, stored: &Stored, element: &Element, course: &Course<'_>) -> Result<Vec<u8>, Cancelled> {
         let encoding = stored.header.encoding;
         let mut out = stored.bytes.to_vec();
-        self.visit(stored, element, |scalar, span, value, old| {
+        self.visit(stored, element, course, |scalar, span, value, old| {
             let value = scalar.nearest(value);
             if value.to_bits() != old.to_bits() {
                 encode(&mut out, span.start, value, scalar, encoding);
             }
-        });
-        out
+        })?;
+        Ok(out)
     }
 
-    fn into_text(self, stored: &Stored, element: &Element, positions: &[DVec3]) -> Vec<u8> {
+    fn into_text(
+        self,
+        stored: &Stored,
+        element: &Element,
+        positions: &[DVec3],
+        course: &Course<'_>,
+    ) -> Result<Vec<u8>, Cancelled> {
         // A file whose text is finer than the type that it names (scans at geographic coordinates, called 'float')
         // would lose what it says by following the name.
         let is_finer = coarse_in_f32(positions).is_some();
         let mut splice = Splice::new(&stored.bytes);
-        self.visit(stored, element, |scalar, span, value, old| {
+        self.visit(stored, element, course, |scalar, span, value, old| {
             let is_short = scalar == Scalar::F32 && !is_finer;
             let value = if is_short || scalar != Scalar::F32 {
                 scalar.nearest(value)
@@ -115,8 +132,8 @@ impl Edits {
                     }
                 });
             }
-        });
-        splice.finish()
+        })?;
+        Ok(splice.finish())
     }
 
     /// Goes through the edited vertices' records and gives each edited number its type, place, new and old value, in
@@ -125,9 +142,12 @@ impl Edits {
         self,
         stored: &Stored,
         element: &Element,
+        course: &Course<'_>,
         mut change: impl FnMut(Scalar, std::ops::Range<usize>, f64, f64),
-    ) {
-        for edit in self.0 {
+    ) -> Result<(), Cancelled> {
+        let count = self.0.len();
+        for (number, edit) in self.0.into_iter().enumerate() {
+            course.pass(number, count)?;
             let mut walk = Walk::new(&stored.bytes, stored.places.of(edit.vertex), stored.header.encoding);
             for (property, description) in element.properties.iter().enumerate() {
                 let slot = stored.columns[..6].iter().position(|column| *column == Some(property));
@@ -149,6 +169,7 @@ impl Edits {
                 }
             }
         }
+        Ok(())
     }
 }
 

@@ -4,13 +4,14 @@ use pliant_mesh::DrawnVertex;
 
 use crate::SaveError;
 use crate::colour::srgb_bytes_of_linear;
+use crate::course::Course;
 use crate::new_faces::{coarse_in_f32, face_count, for_each_face, has_materials, lost, lost_where, merged};
 use crate::new_mesh::NewMesh;
 use crate::save::{OutputFile, Saved};
 
 /// Writes a mesh as PLY: positions (as `double` where `float` would round visibly), and normals, texture coordinates
 /// and colours where the mesh has them.
-pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
+pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
     let (vertices, number) = if look.normals.is_none() && look.uvs.is_none() {
         merged(mesh)
@@ -20,12 +21,16 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
     };
     let is_double = coarse_in_f32(mesh.positions).is_some();
     let mut most_corners = 0;
-    for_each_face(mesh, |corners, _| most_corners = most_corners.max(corners.len()));
+    let (of_widths, course) = course.split(0.1);
+    let (of_vertices, of_faces) = course.split(0.6);
+    for_each_face(mesh, &of_widths, |corners, _| {
+        most_corners = most_corners.max(corners.len());
+    })?;
     let is_wide = most_corners > 255;
 
     let mut out = header(mesh, vertices.len(), is_double, is_wide).into_bytes();
-    push_vertices(&mut out, mesh, &vertices, is_double)?;
-    for_each_face(mesh, |corners, _| {
+    push_vertices(&mut out, mesh, &vertices, is_double, &of_vertices)?;
+    for_each_face(mesh, &of_faces, |corners, _| {
         if is_wide {
             out.extend_from_slice(&(corners.len() as u32).to_le_bytes());
         } else {
@@ -34,7 +39,7 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
         for corner in corners {
             out.extend_from_slice(&number[corner.index()].to_le_bytes());
         }
-    });
+    })?;
     let warning = lost(
         "PLY",
         &[
@@ -82,10 +87,12 @@ fn push_vertices(
     mesh: &NewMesh<'_>,
     vertices: &[DrawnVertex],
     is_double: bool,
+    course: &Course<'_>,
 ) -> Result<(), SaveError> {
     let look = &mesh.appearance;
     let srgb = srgb_bytes_of_linear();
-    for vertex in vertices {
+    for (place, vertex) in vertices.iter().enumerate() {
+        course.pass(place, vertices.len())?;
         let v = vertex.index();
         for coordinate in mesh.positions[v].to_array() {
             if is_double {

@@ -1,8 +1,10 @@
 //! Ascii STL: `solid`s of `facet normal … outer loop vertex … vertex … vertex … endloop endfacet`.
 
 use glam::DVec3;
+use pliant_mesh::Cancelled;
 
 use super::{changed_facets, facet_normal};
+use crate::course::{Course, STEP};
 use crate::moved::Moved;
 use crate::new_faces::coarse_in_f32;
 use crate::source::Source;
@@ -91,7 +93,12 @@ fn facet(source: &Source<'_>, cursor: &mut Cursor<'_>) -> Result<[DVec3; 3], Rea
 }
 
 /// The bytes with the moved corners and their facets' normals changed.
-pub(super) fn patched(bytes: &[u8], facets: &[usize], moved: &Moved<'_>) -> Vec<u8> {
+pub(super) fn patched(
+    bytes: &[u8],
+    facets: &[usize],
+    moved: &Moved<'_>,
+    course: &Course<'_>,
+) -> Result<Vec<u8>, Cancelled> {
     // Everyone reads ascii STL as f32; only where that would round visibly is more written.
     let is_finer = coarse_in_f32(moved.positions).is_some();
     let push = |out: &mut Vec<u8>, value: f64| {
@@ -103,7 +110,11 @@ pub(super) fn patched(bytes: &[u8], facets: &[usize], moved: &Moved<'_>) -> Vec<
     };
     let is_same = |old: f64, new: f64| if is_finer { old == new } else { old as f32 == new as f32 };
     let mut splice = Splice::new(bytes);
-    for (number, corners, has_moved) in changed_facets(moved).take_while(|(number, ..)| *number < facets.len()) {
+    let changed = changed_facets(moved).take_while(|(number, ..)| *number < facets.len());
+    for (place, (number, corners, has_moved)) in changed.enumerate() {
+        if place.is_multiple_of(STEP) {
+            course.reach(number, facets.len())?;
+        }
         let vectors = [facet_normal(corners), corners[0], corners[1], corners[2]];
         let has_changed = [true, has_moved[0], has_moved[1], has_moved[2]];
         let mut cursor = Cursor::new(bytes, facets[number]);
@@ -123,5 +134,5 @@ pub(super) fn patched(bytes: &[u8], facets: &[usize], moved: &Moved<'_>) -> Vec<
             slot += 1;
         }
     }
-    splice.finish()
+    Ok(splice.finish())
 }

@@ -1,8 +1,10 @@
 //! Binary STL: 80 bytes of header, a count, and 50 bytes a facet, little-endian.
 
 use glam::{DVec3, Vec3};
+use pliant_mesh::Cancelled;
 
 use super::{changed_facets, facet_normal};
+use crate::course::{Course, STEP};
 use crate::moved::Moved;
 use crate::source::Source;
 use crate::{Format, ReadError};
@@ -74,9 +76,18 @@ fn put(out: &mut [u8], vector: DVec3) {
 }
 
 /// The bytes with the moved corners and their facets' normals changed.
-pub(super) fn patched(bytes: &[u8], facet_count: usize, moved: &Moved<'_>) -> Vec<u8> {
+pub(super) fn patched(
+    bytes: &[u8],
+    facet_count: usize,
+    moved: &Moved<'_>,
+    course: &Course<'_>,
+) -> Result<Vec<u8>, Cancelled> {
     let mut out = bytes.to_vec();
-    for (number, corners, has_moved) in changed_facets(moved).take_while(|(number, ..)| *number < facet_count) {
+    let changed = changed_facets(moved).take_while(|(number, ..)| *number < facet_count);
+    for (place, (number, corners, has_moved)) in changed.enumerate() {
+        if place.is_multiple_of(STEP) {
+            course.reach(number, facet_count)?;
+        }
         let facet = &mut out[HEADER + number * FACET..][..FACET];
         put(&mut facet[..12], facet_normal(corners));
         for k in 0..3 {
@@ -85,5 +96,5 @@ pub(super) fn patched(bytes: &[u8], facet_count: usize, moved: &Moved<'_>) -> Ve
             }
         }
     }
-    out
+    Ok(out)
 }

@@ -1,6 +1,7 @@
 //! A new binary STL file from any other kind.
 
 use crate::SaveError;
+use crate::course::Course;
 use crate::new_faces::{coarse_in_f32, has_materials, lost, lost_where};
 use crate::new_mesh::NewMesh;
 use crate::save::{OutputFile, Saved};
@@ -8,14 +9,15 @@ use crate::save::{OutputFile, Saved};
 use super::facet_normal;
 
 /// Writes a mesh's triangles as binary STL, which holds their corners and nothing else.
-pub(crate) fn write_new(mesh: &NewMesh<'_>) -> Result<Saved, SaveError> {
+pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
     let mut out = Vec::with_capacity(84 + 50 * mesh.triangles.len());
     // Not "solid", by which ascii files are told.
     out.extend_from_slice(b"Pliant");
     out.resize(80, b' ');
     out.extend_from_slice(&(mesh.triangles.len() as u32).to_le_bytes());
-    for triangle in mesh.triangles {
+    for (place, triangle) in mesh.triangles.iter().enumerate() {
+        course.pass(place, mesh.triangles.len())?;
         let corners = triangle.map(|corner| mesh.positions[corner.index()]);
         let mut push = |vector: glam::DVec3| {
             // f32: the format's own numbers.

@@ -374,13 +374,17 @@ pub fn exercise(bytes: &[u8], kind: Kind, other: Format, beside: &Beside, after_
     let save = |positions: &[DVec3], format: Format| {
         let name = format!("out.{}", format.extension());
         let placement = Placement::OtherFolder;
-        scene.save(&Save {
-            drawn,
-            positions,
-            format,
-            name: &name,
-            placement,
-        })
+        scene.save(
+            &Save {
+                drawn,
+                positions,
+                format,
+                name: &name,
+                placement,
+            },
+            &Progress::new(),
+            &Cancel::new(),
+        )
     };
     if let Ok(same) = save(&drawn.positions, format) {
         assert!(same.files[0].bytes == bytes, "unmoved: byte for byte");
@@ -420,6 +424,8 @@ pub fn exercise(bytes: &[u8], kind: Kind, other: Format, beside: &Beside, after_
                 placement: Placement::OtherFolder,
             },
             &MorphTarget { name: "x", weight: 1.0 },
+            &Progress::new(),
+            &Cancel::new(),
         );
     }
     Outcome::Read

@@ -324,13 +324,17 @@ pub fn refusal(glb: &[u8]) -> String {
 
 pub fn try_save(opened: &Opened, positions: &[DVec3], name: &str, placement: Placement) -> Result<Saved, SaveError> {
     let format = Format::of_name(name).unwrap();
-    opened.scene.save(&Save {
-        drawn: &opened.drawn,
-        positions,
-        format,
-        name,
-        placement,
-    })
+    opened.scene.save(
+        &Save {
+            drawn: &opened.drawn,
+            positions,
+            format,
+            name,
+            placement,
+        },
+        &Progress::new(),
+        &Cancel::new(),
+    )
 }
 
 /// The GLB of an edited GLB.

@@ -63,7 +63,7 @@ pub fn save_as(opened: &Opened, positions: &[DVec3], format: Format) -> Saved {
         name: &name,
         placement: Placement::SameFolder,
     };
-    opened.scene.save(&save).unwrap()
+    opened.scene.save(&save, &Progress::new(), &Cancel::new()).unwrap()
 }
 
 /// The bytes of OUT in the scene's own format.
