@@ -145,7 +145,7 @@ impl ArapSolver {
             ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => 0.0,
             ArapEnergy::Smooth => bending::stiffness(surface, &domain, options.smoothness),
         };
-        let springs = Springs::of(problem, partition, handles, &domain, &laplacian, bending);
+        let springs = Springs::of(problem, partition, handles, &domain, &laplacian, bending, cells.unit());
         let system = match options.energy {
             ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => {
                 matrix::assemble(&laplacian, &domain, springs.all(), options.energy)
@@ -208,7 +208,7 @@ impl ArapSolver {
             .flatten();
         cancel.check()?;
         let at_rest = Shape::at_rest(domain.vertices.len(), domain.cell_count, domain.solved_count);
-        let unit = if cells.scale > 0.0 { cells.scale.sqrt() } else { 1.0 };
+        let unit = cells.unit();
         progress.set(1.0);
         Ok(Self {
             options: options.clone(),
@@ -296,7 +296,7 @@ impl ArapSolver {
         self.springs.aim(&self.motions);
         self.current.displacements.fill([0.0; 4]);
         self.current.rotations.fill(IDENTITY);
-        self.current.gradient.fill([0.0; 4]);
+        self.current.gradient.fill([0.0; 3]);
         self.current.energy = 0.0;
         self.history.clear();
         self.end = End::Known;

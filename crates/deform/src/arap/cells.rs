@@ -27,11 +27,10 @@ pub(crate) struct Cells {
     pub ends: Vec<u32>,
     /// G_iv and w_iv of each entry.
     pub towards: Vec<Quad>,
-    /// G_vi and w_iv of each entry of a solved cell. **f32**: they enter the gradient alone, whose length a line search
-    /// on the energy measures.
-    pub back: Vec<[f32; 4]>,
-    /// Σ_v G_iv of each solved cell.
-    pub own: Vec<Quad>,
+    /// G_vi of each entry of a solved cell. **f32**: they enter the gradient alone.
+    pub back: Vec<[f32; 3]>,
+    /// Σ_v G_iv of each solved cell. **f32** likewise.
+    pub own: Vec<[f32; 3]>,
     /// S⁰'s entries xx, xy, xz, yy, yz, zz of each cell.
     pub rest: Vec<[f64; 6]>,
     /// Pairs of constrained vertices whose squared difference enters the energy besides, and by what factor.
@@ -49,6 +48,11 @@ impl Cells {
         self.offsets[cell] as usize..self.offsets[cell + 1] as usize
     }
 
+    /// The length that single-precision fields are measured in: about the model's.
+    pub fn unit(&self) -> f64 {
+        if self.scale > 0.0 { self.scale.sqrt() } else { 1.0 }
+    }
+
     /// How many cells there are.
     pub fn count(&self) -> usize {
         self.rest.len()
@@ -64,12 +68,12 @@ impl Cells {
             self.ends.push(entry.end);
             self.towards.push(quad(entry.towards, entry.weight));
             if solved == Solved::Yes {
-                self.back.push(quad(entry.back, entry.weight).map(|value| value as f32));
+                self.back.push(entry.back.as_vec3().to_array());
             }
         }
         if solved == Solved::Yes {
-            let own = entries.iter().map(|entry| entry.towards).sum();
-            self.own.push(quad(own, 0.0));
+            let own: DVec3 = entries.iter().map(|entry| entry.towards).sum();
+            self.own.push(own.as_vec3().to_array());
         }
         self.rest.push(rest);
         self.offsets.push(self.ends.len() as u32);

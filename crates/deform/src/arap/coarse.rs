@@ -10,10 +10,10 @@ use glam::DQuat;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex};
 use rayon::prelude::*;
 
-use super::cells::{Quad, minus};
 use super::clusters::Clusters;
 use super::domain::{ABSENT, Domain};
-use super::shape::{Guesses, IDENTITY, Shape};
+use super::history::Field;
+use super::shape::{Guesses, IDENTITY, Rotation, Shape, narrow, wide};
 use super::{ArapSolver, State};
 use crate::blend::Origin;
 use crate::handle::{Handle, Motion};
@@ -49,7 +49,7 @@ pub(crate) struct Coarse {
     /// Of each solved coarse vertex: the fine local vertex that it is.
     fine_of: Vec<u32>,
     /// The coarse rotations that the fine cells have turned along with.
-    followed: Vec<Quad>,
+    followed: Vec<Rotation>,
 }
 
 impl Coarse {
@@ -128,9 +128,9 @@ impl Coarse {
         self.followed.fill(IDENTITY);
     }
 
-    /// Takes over the fine shape for `motions`, whose gradient is known: every centre stands where it does there, and
+    /// Takes over the fine shape for `motions`, whose gradient in `unit` is known: every centre stands where it does there, and
     /// loads make the coarse gradient the fine one's.
-    pub fn learn(&mut self, fine: &Shape, motions: &[Motion]) {
+    pub fn learn(&mut self, fine: &Shape, unit: f64, motions: &[Motion]) {
         let solver = &mut *self.solver;
         solver.leave(motions);
         for (own, &place) in solver.current.displacements.iter_mut().zip(&self.fine_of) {
@@ -151,16 +151,17 @@ impl Coarse {
         springs.add_energy(current);
         springs.add_gradient(current);
         let (offsets, members) = (&self.offsets, &self.members);
+        let units = (unit / cells.unit()) as f32;
         let gathered = |vertex: usize| {
-            let mut sum = [0.0; 4];
+            let mut sum = [0.0; 3];
             for &(member, share) in &members[offsets[vertex] as usize..offsets[vertex + 1] as usize] {
                 for (sum, own) in sum.iter_mut().zip(fine.gradient[member as usize]) {
-                    *sum += f64::from(share) * own;
+                    *sum += share * own;
                 }
             }
-            sum
+            sum.map(|value| value * units)
         };
-        let wanted: Vec<Quad> = (0..current.gradient.len())
+        let wanted: Field = (0..current.gradient.len())
             .into_par_iter()
             .with_min_len(CHUNK)
             .map(gathered)
@@ -169,7 +170,7 @@ impl Coarse {
             .gradient
             .iter()
             .zip(&wanted)
-            .map(|(own, wanted)| minus(*own, *wanted))
+            .map(|(own, wanted)| std::array::from_fn(|k| own[k] - wanted[k]))
             .collect();
         current.gradient = wanted;
         current.energy += springs.load_energy(current);
@@ -202,9 +203,9 @@ impl Coarse {
 
     /// Turns the fine cells along, `from` being how they were when it last learned of them; those that have no coarse cell
     /// near stay as they are in `to`.
-    pub fn turn(&mut self, from: &[Quad], to: &mut [Quad]) {
+    pub fn turn(&mut self, from: &[Rotation], to: &mut [Rotation]) {
         let rotations = &self.solver.current.rotations;
-        let turn = |(now, before): (&Quad, &Quad)| DQuat::from_array(*now) * DQuat::from_array(*before).conjugate();
+        let turn = |(now, before): (&Rotation, &Rotation)| wide(*now) * wide(*before).conjugate();
         let turns: Vec<DQuat> = rotations.iter().zip(&self.followed).map(turn).collect();
         self.followed.copy_from_slice(rotations);
         to.par_chunks_mut(CHUNK)
@@ -226,7 +227,7 @@ impl Coarse {
                     } else {
                         DQuat::IDENTITY
                     };
-                    *to = (sum * DQuat::from_array(*from)).normalize().to_array();
+                    *to = narrow((sum * wide(*from)).normalize());
                 }
             });
     }

@@ -23,7 +23,8 @@ pub(crate) enum End {
     /// The gradient.
     #[default]
     Known,
-    /// Not the gradient, but how far the step went against the direction; `trial` is then where it began.
+    /// Not the gradient, but how far the step went against the direction; `trial` is then where it began, and `direction`
+    /// what it was.
     Stepped(f64),
     /// Not even that.
     Unknown,
@@ -39,8 +40,10 @@ impl ArapSolver {
         self.finish_step();
         self.map_gradient();
         loop {
-            let factors = self.history.factors();
-            let [along, _] = self.history.direction(&factors, &mut self.direction);
+            let factors = self.history.factors(&self.trial.gradient, &self.current.gradient);
+            let along = self
+                .history
+                .direction(&factors, &self.current.gradient, &mut self.direction);
             let slope = -along * self.unit * self.unit;
             let before = self.current.energy;
             if slope < 0.0 && self.search(slope) {
@@ -70,31 +73,15 @@ impl ArapSolver {
         self.cells.find_gradient(&mut self.current, &self.scratch);
         self.springs.add_gradient(&mut self.current);
         let End::Stepped(length) = end else { return };
-        let (old, new) = (&self.trial.gradient, &self.current.gradient);
-        self.history
-            .stepped(length, &self.direction, old, new, self.unit.recip());
+        self.history.stepped(length, &mut self.direction);
     }
 
-    /// The gradient in the memory's units, where displacements are measured in `unit`, and the plain step for it.
+    /// The plain step for the gradient.
     pub(super) fn map_gradient(&mut self) {
-        let factor = self.unit.recip();
         let gradient = &self.current.gradient;
-        self.history.gradient.resize(gradient.len(), [0.0; 4]);
-        self.history
-            .gradient
-            .par_chunks_mut(CHUNK)
-            .zip(gradient.par_chunks(CHUNK))
-            .with_min_len(CHUNKS_A_TASK)
-            .for_each(|(own, gradient)| {
-                for (own, gradient) in own.iter_mut().zip(gradient) {
-                    for k in 0..4 {
-                        own[k] = (gradient[k] * factor) as f32;
-                    }
-                }
-            });
-        self.history.mapped.resize(gradient.len(), [0.0; 4]);
+        self.history.mapped.resize(gradient.len(), [0.0; 3]);
         self.preconditioner
-            .map(gradient, factor, &mut self.history.mapped, &mut self.map_room);
+            .map(gradient, &mut self.history.mapped, &mut self.map_room);
     }
 
     /// Moves against the direction, by its whole length if that lowers the energy enough; says whether any length did.

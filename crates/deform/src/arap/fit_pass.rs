@@ -6,6 +6,7 @@ use pulp::{Simd, WithSimd};
 
 use super::cells::{Cells, Quad, minus};
 use super::gradient_pass::Turn;
+use super::shape::Rotation;
 use crate::lanes::{self, LANES, Lanes, Matrices, Quaternions};
 use crate::rotation::fit_anew;
 
@@ -38,9 +39,9 @@ impl WithSimd for FitPass<'_> {
 
 /// Where a chunk's results go.
 pub(super) struct Out<'a> {
-    pub rotations: &'a mut [Quad],
+    pub rotations: &'a mut [Rotation],
     pub turns: &'a mut [Turn],
-    pub laplacians: &'a mut [Quad],
+    pub laplacians: &'a mut [[f32; 4]],
     pub moments: &'a mut [Quad],
 }
 
@@ -61,10 +62,12 @@ impl Cells {
             let mut axial: [Lanes; 3] = Default::default();
             let mut guess: Quaternions = Default::default();
             guess[3] = Lanes::splat(1.0);
+            let mut curvatures = [[0.0; 4]; LANES];
             for lane in 0..count {
                 let cell = first + start + lane;
                 let (mut b, laplacian, square) = self.gather(cell, displacements);
-                laplacians[start + lane] = laplacian;
+                laplacians[start + lane] = laplacian.map(|value| value as f32);
+                curvatures[lane] = laplacian;
                 sum += 0.25 * square;
                 let [mut xx, mut xy, mut xz, mut yy, mut yz, mut zz] = self.rest[cell];
                 if let Some(&[x, y, z, factor]) = self.bending.get(cell) {
@@ -89,7 +92,7 @@ impl Cells {
                     }
                 }
                 for k in 0..4 {
-                    guess[k].0[lane] = rotations[start + lane][k];
+                    guess[k].0[lane] = f64::from(rotations[start + lane][k]);
                 }
             }
             for lane in count..LANES {
@@ -97,6 +100,10 @@ impl Cells {
                     s[k][k].0[lane] = 1.0;
                 }
             }
+            // What rounding has left of its length: 1 to second order.
+            let square = guess[0] * guess[0] + guess[1] * guess[1] + guess[2] * guess[2] + guess[3] * guess[3];
+            let length = Lanes::splat(1.5) - Lanes::splat(0.5) * square;
+            let guess = guess.map(|value| value * length);
             let mut rotation = guess;
             if turning == Turning::Best {
                 let found;
@@ -118,7 +125,7 @@ impl Cells {
             for lane in 0..count {
                 sum -= 2.0 * inner.0[lane];
                 for k in 0..4 {
-                    rotations[start + lane][k] = rotation[k].0[lane];
+                    rotations[start + lane][k] = rotation[k].0[lane] as f32;
                 }
                 for column in 0..3 {
                     for row in 0..3 {
@@ -131,7 +138,7 @@ impl Cells {
                     let [x, y, z, factor] = self.bending[first + place];
                     for row in 0..3 {
                         let [a, b, c] = [0, 1, 2].map(|column| turned[column][row].0[lane]);
-                        moments[place][row] = factor * (laplacians[place][row] - (a * x + b * y + c * z));
+                        moments[place][row] = factor * (curvatures[lane][row] - (a * x + b * y + c * z));
                     }
                 }
             }

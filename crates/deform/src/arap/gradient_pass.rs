@@ -11,8 +11,8 @@ pub(super) type Turn = [[f32; 4]; 3];
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Laplacians<'a> {
     /// From the measure.
-    Known(&'a [Quad]),
-    /// From these displacements, with weights in single precision.
+    Known(&'a [[f32; 4]]),
+    /// From these displacements.
     Of(&'a [Quad]),
 }
 
@@ -20,7 +20,7 @@ pub(super) enum Laplacians<'a> {
 pub(super) struct GradientPass<'a> {
     pub cells: &'a Cells,
     pub first: usize,
-    pub gradient: &'a mut [Quad],
+    pub gradient: &'a mut [[f32; 3]],
     pub turns: &'a [Turn],
     pub laplacians: Laplacians<'a>,
     pub moments: &'a [Quad],
@@ -49,54 +49,55 @@ impl Cells {
     fn descend(
         &self,
         first: usize,
-        gradient: &mut [Quad],
+        gradient: &mut [[f32; 3]],
         turns: &[Turn],
         laplacians: Laplacians<'_>,
         moments: &[Quad],
     ) {
+        let per_unit = self.unit().recip() as f32;
         for (place, gradient) in gradient.iter_mut().enumerate() {
             let cell = first + place;
-            let mut sum = times_turn(&turns[cell], self.own[cell]);
             let around = self.around(cell);
-            let entries = self.ends[around.clone()].iter().zip(&self.back[around.clone()]);
-            match laplacians {
-                Laplacians::Known(laplacians) => {
-                    sum = minus(sum, laplacians[cell]);
-                    for (&end, &back) in entries {
-                        sum = minus(sum, times_turn(&turns[end as usize], back.map(f64::from)));
+            let ends = &self.ends[around.clone()];
+            let mut sum = times_turn(&turns[cell], self.own[cell]);
+            for (&end, back) in ends.iter().zip(&self.back[around.clone()]) {
+                let term = times_turn(&turns[end as usize], *back);
+                for row in 0..4 {
+                    sum[row] -= term[row];
+                }
+            }
+            let weighted = |field: &[Quad]| {
+                let mut sum = [0.0; 4];
+                for (&end, towards) in ends.iter().zip(&self.towards[around.clone()]) {
+                    let d = minus(field[end as usize], field[cell]);
+                    for row in 0..4 {
+                        sum[row] += d[row] * towards[3];
                     }
                 }
-                Laplacians::Of(displacements) => {
-                    let own = displacements[cell];
-                    for (&end, &back) in entries {
-                        sum = minus(sum, times_turn(&turns[end as usize], back.map(f64::from)));
-                        let d = minus(displacements[end as usize], own);
-                        sum = minus(sum, d.map(|value| value * f64::from(back[3])));
-                    }
-                }
+                sum.map(|value| value as f32)
+            };
+            let laplacian = match laplacians {
+                Laplacians::Known(laplacians) => laplacians[cell],
+                Laplacians::Of(displacements) => weighted(displacements),
+            };
+            for row in 0..4 {
+                sum[row] -= laplacian[row];
             }
             if !moments.is_empty() {
-                let own = moments[cell];
-                for (&end, back) in self.ends[around.clone()].iter().zip(&self.back[around]) {
-                    let other = minus(moments[end as usize], own);
-                    for row in 0..4 {
-                        sum[row] += other[row] * f64::from(back[3]);
-                    }
+                let moment = weighted(moments);
+                for row in 0..4 {
+                    sum[row] += moment[row];
                 }
             }
-            sum[3] = 0.0;
-            *gradient = sum;
+            for row in 0..3 {
+                gradient[row] = sum[row] * per_unit;
+            }
         }
     }
 }
 
 /// (R − 1) v; the fourth number is nothing.
 #[inline(always)]
-fn times_turn(turn: &Turn, v: Quad) -> Quad {
-    let mut product = [0.0; 4];
-    for row in 0..4 {
-        let [a, b, c] = turn.map(|column| f64::from(column[row]));
-        product[row] = a * v[0] + b * v[1] + c * v[2];
-    }
-    product
+fn times_turn([a, b, c]: &Turn, v: [f32; 3]) -> [f32; 4] {
+    std::array::from_fn(|row| a[row] * v[0] + b[row] * v[1] + c[row] * v[2])
 }

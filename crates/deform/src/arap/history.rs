@@ -8,13 +8,12 @@
 //! P⁻¹ y. So two fields a step are remembered, and an iteration reads them twice (products, sum), where the two loops
 //! read four times and write their field in between. All fields here are single precision, in units of a length of the
 //! model: a direction needs no more digits, and what it is measured by, slope and energy, is not computed from them.
+//! An iteration is as long as its fields take to come from memory, so they have three numbers a vertex and not four.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::cells::Quad;
 use crate::operators::CHUNK;
-use crate::sparse::substitution::Row;
 use crate::sums::CHUNKS_A_TASK;
 
 /// Steps that are remembered. On the survey's bar, cylinder and cactus and a 43k scan 5, 8, 14 and 24 took the same
@@ -25,7 +24,7 @@ const MEMORY: usize = 5;
 const FLAT: f64 = 1e-12;
 
 /// A field of the solved vertices.
-pub(crate) type Field = Vec<Row<f32>>;
+pub(crate) type Field = Vec<[f32; 3]>;
 
 /// The last steps and what is known of them at the present point.
 #[derive(Debug, Default)]
@@ -39,17 +38,16 @@ pub(crate) struct History {
     /// Of each pair: s · g and P⁻¹ y · g at the last point asked for.
     step_gradient: Vec<f64>,
     change_mapped: Vec<f64>,
-    /// y of the pending pair.
-    change: Field,
-    /// The present point's gradient and mapped gradient, and the last one's.
-    pub gradient: Field,
+    /// The present point's mapped gradient, and the last one's.
     pub mapped: Field,
     last_mapped: Field,
 }
 
 #[derive(Debug, Default)]
 struct Pair {
-    step: Field,
+    /// s = −`length` · `direction`.
+    direction: Field,
+    length: f64,
     /// P⁻¹ y.
     mapped: Field,
     /// s_i · y of this pair's y with each pair's s up to its own, the oldest first.
@@ -75,85 +73,60 @@ impl History {
         self.spare.extend(self.pending.take());
     }
 
-    /// Remembers the step −`length` · `direction`, which changed the gradient from `old` to `new`, times `factor` in
-    /// this memory's units; its end is to be mapped next.
-    pub fn stepped(&mut self, length: f64, direction: &Field, old: &[Quad], new: &[Quad], factor: f64) {
+    /// Remembers the step −`length` · `direction`, whose end is to be mapped next; `direction` is room for another.
+    pub fn stepped(&mut self, length: f64, direction: &mut Field) {
         let mut pair = self.spare.pop().unwrap_or_default();
-        for field in [&mut pair.step, &mut self.change, &mut pair.mapped] {
-            field.resize(direction.len(), Row::default());
-        }
-        let sums = pair
-            .step
-            .par_chunks_mut(CHUNK)
-            .zip(self.change.par_chunks_mut(CHUNK))
-            .zip(direction.par_chunks(CHUNK))
-            .zip(old.par_chunks(CHUNK).zip(new.par_chunks(CHUNK)))
-            .with_min_len(CHUNKS_A_TASK)
-            .map(|(((step, change), direction), (old, new))| {
-                for (place, direction) in direction.iter().enumerate() {
-                    for k in 0..4 {
-                        step[place][k] = (-length * f64::from(direction[k])) as f32;
-                        change[place][k] = ((new[place][k] - old[place][k]) * factor) as f32;
-                    }
-                }
-                [dot(step, change), dot(step, step), dot(change, change)]
-            })
-            .collect::<Vec<_>>();
-        let [curvature, steps, changes] = sums.iter().fold([0.0; 3], |sum, part| add(sum, *part));
-        let enough = FLAT * (steps * changes).sqrt();
-        // The last point's mapped gradient is needed once more; a pair that is not kept drops it.
+        std::mem::swap(&mut pair.direction, direction);
+        pair.length = length;
+        // The last point's mapped gradient is needed once more.
         std::mem::swap(&mut self.mapped, &mut self.last_mapped);
-        if curvature.is_nan() || curvature <= enough {
-            self.spare.push(pair);
-            return;
-        }
-        pair.steps_change.clear();
-        pair.changes_mapped.clear();
-        pair.steps_change.push(curvature);
-        self.pending = Some(pair);
+        self.spare.extend(self.pending.replace(pair));
     }
 
-    /// Takes in `gradient` and `mapped`, the present point's, and gives the factors of its direction.
-    pub fn factors(&mut self) -> Factors {
-        let before = (self.step_gradient.clone(), self.change_mapped.clone());
+    /// Takes in the present point's `gradient`, which was `before` where the step that is remembered last began, and the
+    /// mapped one; gives the factors of its direction.
+    pub fn factors(&mut self, before: &Field, gradient: &Field) -> Factors {
         let mut pending = self.pending.take();
-        let mut own_mapped = 0.0;
-        if let Some(pair) = &mut pending {
-            own_mapped = self.map_change(pair);
+        let own = pending.as_mut().map(|pair| self.map_change(pair, before, gradient));
+        // A pair without curvature says nothing.
+        let is_enough = |own: &Own| own.curvature > FLAT * (own.steps * own.changes).sqrt();
+        if !own.as_ref().is_some_and(is_enough) {
+            self.spare.extend(pending.take());
         }
-        let count = self.pairs.len() + usize::from(pending.is_some());
+        let last = (self.step_gradient.clone(), self.change_mapped.clone());
         let all: Vec<&Pair> = self.pairs.iter().chain(&pending).collect();
-        let partial: Vec<[[f64; 2]; MEMORY + 1]> = (0..self.gradient.len().div_ceil(CHUNK))
+        let partial: Vec<[[f64; 2]; MEMORY + 1]> = (0..gradient.len().div_ceil(CHUNK))
             .into_par_iter()
             .with_min_len(CHUNKS_A_TASK)
             .map(|chunk| {
-                let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(self.gradient.len());
-                let gradient = &self.gradient[range.clone()];
+                let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(gradient.len());
+                let gradient = &gradient[range.clone()];
                 let mut sums = [[0.0; 2]; MEMORY + 1];
                 for (sums, pair) in sums.iter_mut().zip(&all) {
                     *sums = [
-                        dot(&pair.step[range.clone()], gradient),
+                        -pair.length * dot(&pair.direction[range.clone()], gradient),
                         dot(&pair.mapped[range.clone()], gradient),
                     ];
                 }
                 sums
             })
             .collect();
+        let count = all.len();
         self.step_gradient.clear();
         self.change_mapped.clear();
         for k in 0..count {
             self.step_gradient.push(partial.iter().map(|sums| sums[k][0]).sum());
             self.change_mapped.push(partial.iter().map(|sums| sums[k][1]).sum());
         }
-        if let Some(mut pair) = pending {
-            let curvature = pair.steps_change[0];
+        if let Some((mut pair, own)) = pending.zip(own) {
             pair.steps_change.clear();
+            pair.changes_mapped.clear();
             for k in 0..self.pairs.len() {
-                pair.steps_change.push(self.step_gradient[k] - before.0[k]);
-                pair.changes_mapped.push(self.change_mapped[k] - before.1[k]);
+                pair.steps_change.push(self.step_gradient[k] - last.0[k]);
+                pair.changes_mapped.push(self.change_mapped[k] - last.1[k]);
             }
-            pair.steps_change.push(curvature);
-            pair.changes_mapped.push(own_mapped);
+            pair.steps_change.push(own.curvature);
+            pair.changes_mapped.push(own.mapped);
             self.pairs.push(pair);
             if self.pairs.len() > MEMORY {
                 self.forget_oldest();
@@ -173,24 +146,37 @@ impl History {
         }
     }
 
-    /// P⁻¹ y of a pending pair, and y · P⁻¹ y.
-    fn map_change(&self, pair: &mut Pair) -> f64 {
-        let partial: Vec<f64> = pair
+    /// P⁻¹ y of a pending pair, and its products with itself.
+    fn map_change(&self, pair: &mut Pair, before: &Field, gradient: &Field) -> Own {
+        let length = pair.length;
+        pair.mapped.resize(gradient.len(), [0.0; 3]);
+        let partial: Vec<Own> = pair
             .mapped
             .par_chunks_mut(CHUNK)
-            .zip(self.change.par_chunks(CHUNK))
+            .zip(pair.direction.par_chunks(CHUNK))
             .zip(self.mapped.par_chunks(CHUNK).zip(self.last_mapped.par_chunks(CHUNK)))
+            .zip(gradient.par_chunks(CHUNK).zip(before.par_chunks(CHUNK)))
             .with_min_len(CHUNKS_A_TASK)
-            .map(|((difference, change), (new, old))| {
-                for ((difference, new), old) in difference.iter_mut().zip(new).zip(old) {
-                    for k in 0..4 {
-                        difference[k] = new[k] - old[k];
-                    }
+            .map(|(((mapped, direction), (new_mapped, old_mapped)), (new, old))| {
+                difference(mapped, new_mapped, old_mapped);
+                let mut room = [[0.0; 3]; CHUNK];
+                let change = &mut room[..new.len()];
+                difference(change, new, old);
+                Own {
+                    curvature: -length * dot(direction, change),
+                    mapped: dot(mapped, change),
+                    steps: length * length * dot(direction, direction),
+                    changes: dot(change, change),
                 }
-                dot(difference, change)
             })
             .collect();
-        partial.iter().sum()
+        let sum = |of: fn(&Own) -> f64| partial.iter().map(of).sum();
+        Own {
+            curvature: sum(|own| own.curvature),
+            mapped: sum(|own| own.mapped),
+            steps: sum(|own| own.steps),
+            changes: sum(|own| own.changes),
+        }
     }
 
     fn two_loops(&self) -> Factors {
@@ -216,10 +202,10 @@ impl History {
         factors
     }
 
-    /// The direction uphill in this memory's units, and its products with the gradient and itself.
-    pub fn direction(&self, factors: &Factors, direction: &mut Field) -> [f64; 2] {
-        direction.resize(self.mapped.len(), Row::default());
-        let partial: Vec<[f64; 2]> = direction
+    /// The direction uphill in this memory's units, and its product with the gradient.
+    pub fn direction(&self, factors: &Factors, gradient: &Field, direction: &mut Field) -> f64 {
+        direction.resize(self.mapped.len(), [0.0; 3]);
+        let partial: Vec<f64> = direction
             .par_chunks_mut(CHUNK)
             .enumerate()
             .with_min_len(CHUNKS_A_TASK)
@@ -227,20 +213,39 @@ impl History {
                 let range = chunk * CHUNK..chunk * CHUNK + direction.len();
                 direction.copy_from_slice(&self.mapped[range.clone()]);
                 for (k, pair) in self.pairs.iter().enumerate() {
-                    let (step, change) = (factors.steps[k] as f32, factors.changes[k] as f32);
-                    let fields = pair.step[range.clone()].iter().zip(&pair.mapped[range.clone()]);
-                    for (own, (s, y)) in direction.iter_mut().zip(fields) {
-                        for k in 0..4 {
-                            own[k] += step * s[k] + change * y[k];
-                        }
-                    }
+                    Arch::new().dispatch(AddPair {
+                        to: direction.as_flattened_mut(),
+                        fields: [&pair.direction, &pair.mapped].map(|field| field[range.clone()].as_flattened()),
+                        factors: [-pair.length * factors.steps[k], factors.changes[k]].map(|factor| factor as f32),
+                    });
                 }
-                [dot(direction, &self.gradient[range]), dot(direction, direction)]
+                dot(direction, &gradient[range])
             })
             .collect();
-        partial
-            .iter()
-            .fold([0.0; 2], |sum, part| [sum[0] + part[0], sum[1] + part[1]])
+        partial.iter().sum()
+    }
+}
+
+/// to ← to + Σ factor · field.
+struct AddPair<'a> {
+    to: &'a mut [f32],
+    fields: [&'a [f32]; 2],
+    factors: [f32; 2],
+}
+
+impl WithSimd for AddPair<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self {
+            to,
+            fields: [a, b],
+            factors: [by_a, by_b],
+        } = self;
+        for ((to, a), b) in to.iter_mut().zip(a).zip(b) {
+            *to += by_a * a + by_b * b;
+        }
     }
 }
 
@@ -251,44 +256,68 @@ pub(crate) struct Factors {
     changes: [f64; MEMORY],
 }
 
-fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+/// A pair's products with itself: s · y, y · P⁻¹ y, s · s and y · y.
+#[derive(Clone, Copy, Debug)]
+struct Own {
+    curvature: f64,
+    mapped: f64,
+    steps: f64,
+    changes: f64,
 }
 
-/// a · b, summed in double precision.
-fn dot(a: &[Row<f32>], b: &[Row<f32>]) -> f64 {
-    Arch::new().dispatch(Dot { a, b })
+/// `to` ← a − b.
+fn difference(to: &mut [[f32; 3]], a: &[[f32; 3]], b: &[[f32; 3]]) {
+    let terms = a.as_flattened().iter().zip(b.as_flattened());
+    for (to, (a, b)) in to.as_flattened_mut().iter_mut().zip(terms) {
+        *to = a - b;
+    }
+}
+
+/// a · b. **f32**: products and the sums of eight of them, like the fields themselves; all else is summed in double
+/// precision.
+fn dot(a: &[[f32; 3]], b: &[[f32; 3]]) -> f64 {
+    Arch::new().dispatch(Dot {
+        a: a.as_flattened(),
+        b: b.as_flattened(),
+    })
 }
 
 struct Dot<'a> {
-    a: &'a [Row<f32>],
-    b: &'a [Row<f32>],
+    a: &'a [f32],
+    b: &'a [f32],
 }
+
+/// Numbers side by side in a sum of products, and how many products a single-precision sum has.
+const WIDTH: usize = 16;
+const DEPTH: usize = 8;
 
 impl WithSimd for Dot<'_> {
     type Output = f64;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> f64 {
-        let mut sums = [[0.0_f64; 4]; 4];
-        let (a, a_rest) = self.a.as_chunks::<4>();
-        let (b, b_rest) = self.b.as_chunks::<4>();
+        let mut sums = [0.0_f64; WIDTH];
+        let (a, a_rest) = self.a.as_chunks::<{ WIDTH * DEPTH }>();
+        let (b, b_rest) = self.b.as_chunks::<{ WIDTH * DEPTH }>();
         for (a, b) in a.iter().zip(b) {
-            for row in 0..4 {
-                for k in 0..4 {
-                    sums[row][k] += f64::from(a[row][k]) * f64::from(b[row][k]);
+            let mut short = [0.0_f32; WIDTH];
+            for (a, b) in a.as_chunks::<WIDTH>().0.iter().zip(b.as_chunks::<WIDTH>().0) {
+                for k in 0..WIDTH {
+                    short[k] += a[k] * b[k];
                 }
             }
-        }
-        for (a, b) in a_rest.iter().zip(b_rest) {
-            for k in 0..4 {
-                sums[0][k] += f64::from(a[k]) * f64::from(b[k]);
+            for k in 0..WIDTH {
+                sums[k] += f64::from(short[k]);
             }
         }
-        let mut sum = 0.0;
-        for row in sums {
-            sum += (row[0] + row[1]) + (row[2] + row[3]);
+        let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| f64::from(a * b)).sum();
+        let mut width = WIDTH;
+        while width > 1 {
+            width /= 2;
+            for k in 0..width {
+                sums[k] += sums[k + width];
+            }
         }
-        sum
+        sums[0] + rest
     }
 }

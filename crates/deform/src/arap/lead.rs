@@ -72,7 +72,7 @@ impl ArapSolver {
             return;
         }
         self.finish_step();
-        coarse.learn(&self.current, &self.motions);
+        coarse.learn(&self.current, self.unit, &self.motions);
         let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
         let screws = match coarse.start(motions, STEPS) {
             Origin::Current => onwards,
@@ -101,8 +101,8 @@ impl ArapSolver {
         self.finish_step();
         // The memory takes in the step before, and knows the mapped gradient where this one begins.
         self.map_gradient();
-        self.history.factors();
-        coarse.learn(&self.current, &self.motions);
+        self.history.factors(&self.trial.gradient, &self.current.gradient);
+        coarse.learn(&self.current, self.unit, &self.motions);
         coarse.go_on(CORRECTING_STEPS);
         self.trial.displacements.copy_from_slice(&self.current.displacements);
         self.trial.rotations.copy_from_slice(&self.current.rotations);
@@ -147,7 +147,7 @@ impl ArapSolver {
         let unit = self.unit;
         self.direction.resize(trial.gradient.len(), Default::default());
         self.preconditioner
-            .map(&trial.gradient, unit.recip(), &mut self.direction, &mut self.map_room);
+            .map(&trial.gradient, &mut self.direction, &mut self.map_room);
         trial.displacements[..trial.gradient.len()]
             .par_chunks_mut(CHUNK)
             .zip(self.direction.par_chunks(CHUNK))

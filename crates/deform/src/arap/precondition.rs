@@ -109,27 +109,28 @@ impl Preconditioner {
         }
     }
 
-    /// `mapped` ← the inverse of the system times `factor` times `field`, which ends in single precision.
-    pub fn map(&self, field: &[Quad], factor: f64, mapped: &mut [Row<f32>], room: &mut MapRoom) {
+    /// `mapped` ← the inverse of the system times `field`.
+    pub fn map(&self, field: &[[f32; 3]], mapped: &mut [[f32; 3]], room: &mut MapRoom) {
+        let wide = |row: &[f32; 3]| [row[0], row[1], row[2], 0.0].map(f64::from);
         match &self.solver {
             Solver::Single(solver) => {
                 let (x, room) = &mut room.single;
-                self.solve(solver, field, factor, x, room);
+                self.solve(solver, field, wide, x, room);
                 narrowed(x, &self.scale, mapped);
             }
             Solver::Double(solver) => {
                 let (x, room) = &mut room.double;
-                self.solve(solver, field, factor, x, room);
+                self.solve(solver, field, wide, x, room);
                 narrowed(x, &self.scale, mapped);
             }
         }
     }
 
-    fn solve<T: Real>(
+    fn solve<T: Real, F: Sync>(
         &self,
         solver: &Substitution<T>,
-        field: &[Quad],
-        factor: f64,
+        field: &[F],
+        row: impl Fn(&F) -> Quad + Sync,
         x: &mut Vec<Row<T>>,
         room: &mut Room<T>,
     ) {
@@ -140,9 +141,7 @@ impl Preconditioner {
             .with_min_len(CHUNKS_A_TASK)
             .for_each(|((x, field), scale)| {
                 for ((x, value), &scale) in x.iter_mut().zip(field).zip(scale) {
-                    for k in 0..4 {
-                        x[k] = T::of(value[k] * (scale * factor));
-                    }
+                    *x = row(value).map(|value| T::of(value * scale));
                 }
             });
         solver.solve(x, room);
@@ -165,12 +164,12 @@ impl Preconditioner {
         match &self.solver {
             Solver::Double(solver) => {
                 let (x, room) = &mut room.double;
-                self.solve(solver, &pulls, 1.0, x, room);
+                self.solve(solver, &pulls, |row| *row, x, room);
                 widened(std::mem::take(x))
             }
             Solver::Single(solver) => {
                 let (x, room) = &mut room.single;
-                self.solve(solver, &pulls, 1.0, x, room);
+                self.solve(solver, &pulls, |row| *row, x, room);
                 widened(x.iter().map(|row| row.map(f64::from)).collect())
             }
         }
@@ -230,7 +229,7 @@ pub(crate) struct WeightInput<'a> {
 }
 
 /// `mapped` ← S x in single precision.
-fn narrowed<T: Real>(x: &[Row<T>], scale: &[f64], mapped: &mut [Row<f32>]) {
+fn narrowed<T: Real>(x: &[Row<T>], scale: &[f64], mapped: &mut [[f32; 3]]) {
     mapped
         .par_chunks_mut(CHUNK)
         .zip(x.par_chunks(CHUNK))
@@ -238,7 +237,7 @@ fn narrowed<T: Real>(x: &[Row<T>], scale: &[f64], mapped: &mut [Row<f32>]) {
         .with_min_len(CHUNKS_A_TASK)
         .for_each(|((mapped, x), scale)| {
             for ((mapped, x), &scale) in mapped.iter_mut().zip(x).zip(scale) {
-                for k in 0..4 {
+                for k in 0..3 {
                     mapped[k] = (x[k].wide() * scale) as f32;
                 }
             }

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::cells::{Cells, Quad, minus};
 use super::fit_pass::{FitPass, Out, Turning};
 use super::gradient_pass::{GradientPass, Laplacians, Turn};
+use super::history::Field;
 use crate::operators::CHUNK;
 
 /// A shape; rotations and energy belong to the displacements once they were measured, the gradient once that was found.
@@ -18,10 +19,12 @@ use crate::operators::CHUNK;
 pub(crate) struct Shape {
     /// Of each local vertex, in world units; the fourth number is zero.
     pub displacements: Vec<Quad>,
-    /// Of each cell: the best one for the displacements, as a quaternion x, y, z, w.
-    pub rotations: Vec<Quad>,
-    /// dE/dp of each solved vertex.
-    pub gradient: Vec<Quad>,
+    /// Of each cell: the best one for the displacements, as a quaternion x, y, z, w. **f32**: the next fit starts from
+    /// it, and what is found from it is no finer.
+    pub rotations: Vec<Rotation>,
+    /// dE/dp of each solved vertex, in units of [`Cells::unit`]. **f32**: it is for a direction alone, whose length a
+    /// line search on the energy measures.
+    pub gradient: Field,
     /// E, in squared world units.
     pub energy: f64,
 }
@@ -31,11 +34,14 @@ pub(crate) struct Shape {
 pub(crate) struct Scratch {
     /// R − 1 of each cell, column by column. **f32**: each is read by all its neighbours, and for the gradient alone.
     turns: Vec<Turn>,
-    /// Σ_v w_iv D_v of each cell.
-    laplacians: Vec<Quad>,
+    /// Σ_v w_iv D_v of each cell. **f32** likewise.
+    laplacians: Vec<[f32; 4]>,
     /// The bending force of each cell.
     moments: Vec<Quad>,
 }
+
+/// A quaternion: x, y, z, w.
+pub(crate) type Rotation = [f32; 4];
 
 /// Where a fit starts.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +49,7 @@ pub(crate) enum Guesses<'a> {
     /// At the shape's own rotations.
     Own,
     /// At these.
-    Given(&'a [Quad]),
+    Given(&'a [Rotation]),
 }
 
 impl Shape {
@@ -52,14 +58,24 @@ impl Shape {
         Self {
             displacements: vec![[0.0; 4]; vertex_count],
             rotations: vec![IDENTITY; cell_count],
-            gradient: vec![[0.0; 4]; solved_count],
+            gradient: vec![[0.0; 3]; solved_count],
             energy: 0.0,
         }
     }
 }
 
+/// A rotation, to compute with.
+pub(crate) fn wide(rotation: Rotation) -> DQuat {
+    DQuat::from_array(rotation.map(f64::from)).normalize()
+}
+
+/// A rotation, to keep.
+pub(crate) fn narrow(rotation: DQuat) -> Rotation {
+    rotation.to_array().map(|value| value as f32)
+}
+
 /// The quaternion that turns nothing.
-pub(crate) const IDENTITY: Quad = [0.0, 0.0, 0.0, 1.0];
+pub(crate) const IDENTITY: Rotation = [0.0, 0.0, 0.0, 1.0];
 
 impl Cells {
     /// Fits the rotations to the displacements, and finds energy and gradient.
@@ -88,7 +104,7 @@ impl Cells {
             .zip(shape.rotations.par_chunks(CHUNK))
             .for_each(|(turns, rotations)| {
                 for (turn, rotation) in turns.iter_mut().zip(rotations) {
-                    let turned = DMat3::from_quat(DQuat::from_array(*rotation)) - DMat3::IDENTITY;
+                    let turned = DMat3::from_quat(wide(*rotation)) - DMat3::IDENTITY;
                     *turn = turned
                         .to_cols_array_2d()
                         .map(|[x, y, z]| [x, y, z, 0.0].map(|v| v as f32));
@@ -171,7 +187,7 @@ impl Cells {
         self.gradient_pass(&mut shape.gradient, turns, Laplacians::Known(laplacians), moments);
     }
 
-    fn gradient_pass(&self, gradient: &mut [Quad], turns: &[Turn], laplacians: Laplacians<'_>, moments: &[Quad]) {
+    fn gradient_pass(&self, gradient: &mut [[f32; 3]], turns: &[Turn], laplacians: Laplacians<'_>, moments: &[Quad]) {
         let arch = Arch::new();
         gradient
             .par_chunks_mut(CHUNK)
@@ -194,9 +210,9 @@ impl Cells {
 mod tests {
     use pliant_mesh::{Surface, Topology, shapes};
 
-    use super::{Guesses, IDENTITY, Scratch, Shape};
+    use super::{Guesses, IDENTITY, Scratch, Shape, wide};
     use crate::Laplacian;
-    use crate::arap::cells::{Cells, vector};
+    use crate::arap::cells::Cells;
     use crate::arap::domain::Domain;
     use crate::arap::{bending, rims, spokes};
     use glam::{DQuat, DVec3};
@@ -250,7 +266,11 @@ mod tests {
         each(|surface, _, _, domain, cells, name| {
             let size = edge(surface);
             let displacements = shaken(domain, size);
-            let gradient = evaluated(domain, cells, &displacements).gradient;
+            let gradient: Vec<[f64; 3]> = evaluated(domain, cells, &displacements)
+                .gradient
+                .iter()
+                .map(|own| own.map(|value| f64::from(value) * cells.unit()))
+                .collect();
             let largest = gradient.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
             for vertex in (0..domain.solved_count).step_by(7) {
                 for axis in 0..3 {
@@ -280,11 +300,15 @@ mod tests {
                 return;
             }
             let displacements = shaken(domain, edge(surface));
-            let shape = evaluated(domain, cells, &displacements);
+            let mut shape = evaluated(domain, cells, &displacements);
+            // The best rotations to the last bit: what single precision rounds off them then enters squared.
+            for _ in 0..3 {
+                cells.measure(&mut shape, Guesses::Own, &mut Scratch::default());
+            }
             let metric = crate::operators::face_terms::Metric::cotangent_area();
             let mut expected = 0.0;
             for cell in 0..domain.cell_count {
-                let rotation = DQuat::from_array(shape.rotations[cell]);
+                let rotation = wide(shape.rotations[cell]);
                 for &face in topology.faces(pliant_mesh::SurfaceVertex(domain.vertices[cell])) {
                     let corners = surface.triangles[face as usize];
                     let lengths = pliant_mesh::edge_lengths(corners.map(|corner| surface.positions[corner.index()]));
@@ -310,7 +334,7 @@ mod tests {
         each(|surface, _, _, domain, cells, name| {
             let rest = evaluated(domain, cells, &vec![DVec3::ZERO; domain.vertices.len()]);
             assert_eq!(rest.energy, 0.0, "{name}");
-            assert!(rest.gradient.iter().all(|g| vector(*g) == DVec3::ZERO), "{name}");
+            assert!(rest.gradient.iter().all(|g| *g == [0.0; 3]), "{name}");
             assert!(rest.rotations.iter().all(|q| *q == IDENTITY), "{name}");
             let rotation = DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 2.5);
             let carried: Vec<DVec3> = domain

@@ -6,6 +6,7 @@
 
 use super::cells::{Quad, minus, quad};
 use super::domain::Domain;
+use super::history::Field;
 use super::shape::Shape;
 use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
@@ -17,8 +18,10 @@ pub(crate) struct Springs {
     springs: Vec<Spring>,
     /// c of each.
     wanted: Vec<Quad>,
-    /// A dead load at each solved vertex, or none: E loses what they give, Σ load · d.
-    pub loads: Vec<Quad>,
+    /// A dead load at each solved vertex, or none, in units of `unit`: E loses what they give, Σ load · d.
+    pub loads: Field,
+    /// The length that gradients are measured in.
+    unit: f64,
 }
 
 /// A spring.
@@ -34,7 +37,7 @@ pub(crate) struct Spring {
 
 impl Springs {
     /// Those of the handles that `partition` has soft; `laplacian` has rows for their vertices, and the energy bends with
-    /// the stiffness `bending`.
+    /// the stiffness `bending`; gradients are measured in `unit`.
     pub fn of(
         problem: &Problem,
         partition: &Partition,
@@ -42,6 +45,7 @@ impl Springs {
         domain: &Domain,
         laplacian: &Laplacian,
         bending: f64,
+        unit: f64,
     ) -> Self {
         let mut springs = Vec::new();
         for (number, (handle, weight)) in handles.iter().zip(&partition.soft).enumerate() {
@@ -64,7 +68,8 @@ impl Springs {
         Self {
             springs,
             wanted,
-            loads: Vec::new(),
+            loads: Field::new(),
+            unit,
         }
     }
 
@@ -91,8 +96,11 @@ impl Springs {
 
     /// −Σ load · d.
     pub fn load_energy(&self, shape: &Shape) -> f64 {
-        let given = |([x, y, z, _], [a, b, c, _]): (&Quad, &Quad)| x * a + y * b + z * c;
-        -self.loads.iter().zip(&shape.displacements).map(given).sum::<f64>()
+        let given = |(load, [a, b, c, _]): (&[f32; 3], &Quad)| {
+            let [x, y, z] = load.map(f64::from);
+            x * a + y * b + z * c
+        };
+        -self.unit * self.loads.iter().zip(&shape.displacements).map(given).sum::<f64>()
     }
 
     /// Adds how they pull to a shape's gradient.
@@ -100,11 +108,13 @@ impl Springs {
         for (spring, wanted) in self.springs.iter().zip(&self.wanted) {
             let beyond = minus(shape.displacements[spring.local as usize], *wanted);
             for (own, beyond) in shape.gradient[spring.local as usize].iter_mut().zip(beyond) {
-                *own += spring.strength * beyond;
+                *own += (spring.strength * beyond / self.unit) as f32;
             }
         }
         for (load, own) in self.loads.iter().zip(&mut shape.gradient) {
-            *own = minus(*own, *load);
+            for (own, load) in own.iter_mut().zip(load) {
+                *own -= load;
+            }
         }
     }
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::cells::{quad, vector};
 use super::domain::ABSENT;
-use super::shape::{Guesses, Shape};
+use super::shape::{Guesses, Shape, narrow, wide};
 use super::{ArapSolver, Prescribed, State};
 use crate::blend::{Origin, Screw, Screws, carried};
 use crate::handle::Motion;
@@ -86,14 +86,11 @@ impl ArapSolver {
                     let cell = chunk * CHUNK + place;
                     let (before, turned) = match origin {
                         Origin::Rest => (DVec3::ZERO, DQuat::IDENTITY),
-                        Origin::Current => (
-                            vector(current.displacements[cell]),
-                            DQuat::from_array(current.rotations[cell]),
-                        ),
+                        Origin::Current => (vector(current.displacements[cell]), wide(current.rotations[cell])),
                     };
                     let carried = carried(rest[cell] + before, screws, &weights[cell * count..(cell + 1) * count]);
                     *displacement = quad(before + carried.displacement, 0.0);
-                    *rotation = (carried.turn * turned).normalize().to_array();
+                    *rotation = narrow((carried.turn * turned).normalize());
                 }
             });
         self.trial.place(&self.prescribed, &self.motions);
