@@ -21,7 +21,7 @@ fn bent_with(drawn: &Drawn, edit: &Value, more: &[&str]) -> Vec<DVec3> {
     let folder = Folder::new();
     let (file, out) = (folder.write_mesh("in.off", drawn), folder.at("out.off"));
     folder.apply(&file, edit, &out, more).done();
-    open(&out).model.drawn.positions.clone()
+    open(&out).model.rest_positions()
 }
 
 fn handle(select: &Value, transform: &Value) -> Value {
@@ -30,7 +30,7 @@ fn handle(select: &Value, transform: &Value) -> Value {
 
 /// The file's vertices in the lowest and highest 5% of the longest axis of what triangles use.
 fn ends(loaded: &Loaded) -> [Vec<usize>; 2] {
-    let drawn = &loaded.model.drawn;
+    let drawn = loaded.model.rest();
     let used = || {
         drawn
             .triangles
@@ -46,8 +46,12 @@ fn ends(loaded: &Loaded) -> [Vec<usize>; 2] {
         .unwrap();
     let part = |from: f64, to: f64| {
         let inside = |p: DVec3| (from..=to).contains(&((p[axis] - min[axis]) / extent[axis]));
-        (0..drawn.positions.len())
-            .filter(|&v| loaded.model.surface_of_drawn[v].is_some() && inside(drawn.positions[v]))
+        let behind = loaded.model.drawn.surface_vertices();
+        let inside = behind.zip(&drawn.positions).map(|(v, &p)| v.is_some() && inside(p));
+        (0..)
+            .zip(inside)
+            .filter(|&(_, inside)| inside)
+            .map(|(v, _)| v)
             .collect()
     };
     [part(0.0, 0.05), part(0.95, 1.0)]
@@ -81,17 +85,18 @@ fn on_every_file_the_handle_arrives_and_the_fixed_part_stays() {
         let after = open(&out);
         let name = path.display();
         assert_eq!(
-            before.model.drawn.positions.len(),
-            after.model.drawn.positions.len(),
+            before.model.drawn.vertex_count(),
+            after.model.drawn.vertex_count(),
             "{name}"
         );
         assert!(after.model.surface.positions.iter().all(|p| p.is_finite()), "{name}");
         let [fixed, moved] = ends(&before);
+        let (rest, bent) = (before.model.rest_positions(), after.model.rest_positions());
         let motion = DAffine3::from_rotation_translation(turn, shift);
         for (part, motion) in [(fixed, DAffine3::IDENTITY), (moved, motion)] {
             for v in part {
-                let wanted = motion.transform_point3(before.model.drawn.positions[v]);
-                let error = after.model.drawn.positions[v].distance(wanted);
+                let wanted = motion.transform_point3(rest[v]);
+                let error = bent[v].distance(wanted);
                 assert!(error <= 1e-6 * size, "{name}: vertex {v} is off by {error} of {size}");
             }
         }
@@ -113,7 +118,7 @@ fn the_surveys_scenes_meet_their_constraints() {
         let folder = Folder::new();
         let out = folder.at("out.off");
         folder.apply(&mesh, &edit, &out, &["--frames", "4"]).done();
-        let (before, after) = (open(&mesh).model.drawn.clone(), open(&out).model.drawn.clone());
+        let (before, after) = (open(&mesh).model.rest(), open(&out).model.rest());
         let matrix: Vec<f64> = serde_json::from_value(edit["handles"][0]["transform"]["matrix"].clone()).unwrap();
         let motion = DAffine3::from_mat4(glam::DMat4::from_cols_slice(&matrix));
         let size = diagonal(&before.positions);
@@ -144,9 +149,11 @@ fn loose_parts_of_real_models_travel_with_the_shell() {
         let folder = Folder::new();
         let out = folder.at(&format!("out.{}", extension(&path)));
         folder.apply(&path, &edit, &out, &[]).done();
-        let after = open(&out).model.drawn.positions.clone();
-        for (v, (a, b)) in before.model.drawn.positions.iter().zip(&after).enumerate() {
-            if before.model.surface_of_drawn[v].is_some() {
+        let after = open(&out).model.rest_positions();
+        let rest = before.model.rest_positions();
+        let behind = before.model.drawn.surface_vertices();
+        for ((v, (a, b)), surface_vertex) in rest.iter().zip(&after).enumerate().zip(behind) {
+            if surface_vertex.is_some() {
                 assert!(
                     (*b - *a).distance(shift) <= 1e-5 * size,
                     "{name}: vertex {v} went {}",
@@ -169,8 +176,9 @@ fn a_translation_of_the_only_handle_moves_every_shape_as_a_whole() {
             &json!({ "translation": shift.to_array() })
         )]);
         let after = bent(&drawn, &edit);
-        for (v, (a, b)) in drawn.positions.iter().zip(&after).enumerate() {
-            match model.surface_of_drawn[v] {
+        let behind = model.drawn.surface_vertices();
+        for ((v, (a, b)), surface_vertex) in drawn.positions.iter().zip(&after).enumerate().zip(behind) {
+            match surface_vertex {
                 Some(_) => assert!(
                     (*b - *a).distance(shift) <= 2e-6 * size,
                     "{name}: vertex {v} went {}",
@@ -435,7 +443,7 @@ fn soft_handles_and_hinges_come_from_the_edit_and_other_methods_say_that_they_ha
     let hard = bend(&json!({ "translation": [2, 0, 0] }));
     let bent = |edit: &Value, more: &[&str]| {
         folder.apply(&file, edit, &out, more).done();
-        open(&out).model.drawn.positions.clone()
+        open(&out).model.rest_positions()
     };
     let plain = bent(&hard, &[]);
     let mut soft = hard.clone();

@@ -52,11 +52,11 @@ fn identity_transforms_give_the_same_bytes() {
 fn a_file_may_be_replaced_by_itself_edited() {
     let folder = Folder::new();
     let file = folder.write_mesh("mesh.off", &pliant_mesh::shapes::icosphere(2));
-    let before = open(&file).model.drawn.positions.clone();
+    let before = open(&file).model.rest_positions();
     folder
         .apply(&file, &bend(&json!({ "translation": [0, 0, 1] })), &file, &[])
         .done();
-    assert!(largest_distance(&before, &open(&file).model.drawn.positions) > 0.9);
+    assert!(largest_distance(&before, &open(&file).model.rest_positions()) > 0.9);
     assert_eq!(folder.names(), ["mesh.off"]);
 }
 
@@ -79,13 +79,9 @@ fn every_kind_becomes_every_other_kind_in_place() {
                 "{from} to {to}"
             );
             let corners = |model: &pliant_mesh::Model| -> Vec<_> {
-                model
-                    .drawn
-                    .triangles
-                    .iter()
-                    .flatten()
-                    .map(|v| model.drawn.positions[v.index()])
-                    .collect()
+                let drawn = model.rest();
+                let corners = drawn.triangles.as_flattened().iter();
+                corners.map(|v| drawn.positions[v.index()]).collect()
             };
             let (before, after) = (corners(&before), corners(&after));
             assert!(

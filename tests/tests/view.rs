@@ -114,7 +114,7 @@ fn the_triangle_under_ten_thousand_pixels_is_the_one_that_a_ray_meets() {
             let met = |offset: DVec2| {
                 let ray = camera.ray(position_px + offset, size_px);
                 bvh.ray(ray.origin, ray.direction)
-                    .map(|hit| model.drawn_triangle_of_surface[hit.triangle as usize])
+                    .map(|hit| model.drawn.triangle_of_surface()[hit.triangle as usize])
             };
             if met(DVec2::ZERO) == Some(seen) {
                 continue;

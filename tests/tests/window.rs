@@ -238,13 +238,8 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     .done();
     let (saved_file, applied_file) = (open(&saved), open(&applied));
     let size = saved_file.model.bounds().unwrap().diagonal();
-    for (a, b) in saved_file
-        .model
-        .drawn
-        .positions
-        .iter()
-        .zip(&applied_file.model.drawn.positions)
-    {
+    let [in_window, on_line] = [&saved_file, &applied_file].map(|file| file.model.rest_positions());
+    for (a, b) in in_window.iter().zip(&on_line) {
         assert!(
             a.distance(*b) <= DESCENDED * size,
             "{a} in the window, {b} on the command line"
@@ -261,7 +256,7 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     session.harness.state_mut().open(saved);
     session.settle();
     let view = session.harness.state().editor().view();
-    let reopened = &view.model.unwrap().drawn.positions;
+    let reopened = view.model.unwrap().rest_positions();
     assert_eq!(reopened.len(), before.len());
     for (a, b) in reopened.iter().zip(&before) {
         assert!(a.distance(*b) <= 1e-6 * size);

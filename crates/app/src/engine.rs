@@ -165,8 +165,9 @@ pub fn stage_save_as(
     // Making the bytes takes about as long as a disk takes to keep them.
     let (of_making, of_writing) = (progress.part(0.0, 0.5), progress.part(0.5, 1.0));
     let name = output.file_name().unwrap_or_default().to_string_lossy();
+    let drawn = loaded.model.rest();
     let save = Save {
-        drawn: &loaded.model.drawn,
+        drawn: &drawn,
         positions,
         format: Format::of_name(&name)?,
         name: &name,
@@ -282,7 +283,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     warnings.extend(save_warnings);
     let report = Report {
         method: setup.method.name().to_owned(),
-        vertices: model.drawn.file_vertex_count,
+        vertices: model.drawn.file_vertex_count(),
         welded_vertices: model.surface.positions.len(),
         free_vertices: solution.free_vertices,
         load_ms,
@@ -333,7 +334,7 @@ impl Solution {
     /// Nothing is solved where nothing is to change.
     fn at_rest(model: &Model, setup: &Setup) -> Self {
         Self {
-            positions: model.drawn.positions.clone(),
+            positions: model.rest_positions(),
             surface_positions: model.surface.positions.clone(),
             free_vertices: setup.free_count(),
             order_ms: 0.0,

@@ -58,7 +58,7 @@ fn the_one_that_is_cut_off() {
     };
     let scan = Path::new(&scan);
     let loaded = load(scan);
-    let positions = lifted(&loaded.model.drawn.positions);
+    let positions = lifted(&loaded.model.rest_positions());
     let staged = stage(&loaded, &positions, scan).unwrap();
     let mut left: usize = cut.parse().unwrap();
     let mut cut_off = || {
@@ -77,21 +77,21 @@ fn cut_off_at_any_step_the_old_file_or_the_new_one_stands_there_whole() {
         let folder = tempfile::tempdir().unwrap();
         write_scan(folder.path());
         let scan = folder.path().join("scan.gltf");
-        let before = load(&scan).model.drawn.positions.clone();
+        let before = load(&scan).model.rest_positions();
         let child = Command::new(std::env::current_exe().unwrap())
             .args(["the_one_that_is_cut_off", "--exact", "--ignored"])
             .env("SCAN", &scan)
             .env("CUT", cut.to_string())
             .output()
             .unwrap();
-        let after = load(&scan).model.drawn.positions.clone();
+        let after = load(&scan).model.rest_positions();
         let is_new = after == lifted(&before);
         assert!(is_new || after == before, "cut off before step {cut}: {after:?}");
         // A file cut off on its way can be saved again.
         let loaded = load(&scan);
         let staged = stage(&loaded, &lifted(&after), &scan).unwrap();
         staged.commit().unwrap();
-        assert_eq!(load(&scan).model.drawn.positions, lifted(&after));
+        assert_eq!(load(&scan).model.rest_positions(), lifted(&after));
         states.push(is_new);
         if child.status.success() {
             assert!(is_new);
@@ -121,7 +121,7 @@ fn stopped_at_any_look_every_file_is_as_it_was() {
     let before = contents();
     let scan = folder.path().join("scan.gltf");
     let loaded = load(&scan);
-    let positions = lifted(&loaded.model.drawn.positions);
+    let positions = lifted(&loaded.model.rest_positions());
     let mut looks = 0;
     let staged = loop {
         match stage_unless(&loaded, &positions, &scan, &Cancel::after_looks(looks)) {
@@ -135,7 +135,7 @@ fn stopped_at_any_look_every_file_is_as_it_was() {
     assert!(looks > 8, "it looked {looks} times");
     assert_ne!(contents(), before, "staged, the files stand beside their targets");
     staged.commit().unwrap();
-    assert_eq!(load(&scan).model.drawn.positions, positions);
+    assert_eq!(load(&scan).model.rest_positions(), positions);
 }
 
 /// Runs the program with files held to so many blocks.
@@ -195,7 +195,7 @@ fn a_folder_that_can_not_be_written_is_named() {
     let loaded = load(&folder.path().join("scan.gltf"));
     // No one makes a file there, whatever the rights.
     let out = Path::new("/proc/out.glb");
-    let refused = stage(&loaded, &lifted(&loaded.model.drawn.positions), out);
+    let refused = stage(&loaded, &lifted(&loaded.model.rest_positions()), out);
     let said = refused.map(|_| ()).unwrap_err().to_string();
     assert!(
         said.contains("/proc/out.glb can't be written") && !said.contains('\n'),

@@ -131,7 +131,11 @@ fn a_whole_session_by_pointer_and_keys_comes_back_by_undo_redo_and_reopening() {
     once("reopened", &|project| document(project) == document(&last));
     desktop.shoot("reopened");
     let (rest, saved) = (load(&sample()), load(&saved));
-    let moved = rest.model.drawn.positions.iter().zip(&saved.model.drawn.positions);
+    let moved = rest
+        .model
+        .rest_positions()
+        .into_iter()
+        .zip(saved.model.rest_positions());
     assert!(
         moved.filter(|(a, b)| a != b).count() > 100,
         "the saved file has the new shape"

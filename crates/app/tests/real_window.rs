@@ -72,7 +72,7 @@ fn load(path: &Path) -> Loaded {
 
 /// The largest distance between two files' drawn vertices.
 fn farthest(a: &Loaded, b: &Loaded) -> f64 {
-    let positions = |loaded: &Loaded| loaded.model.drawn.positions.clone();
+    let positions = |loaded: &Loaded| loaded.model.rest_positions();
     positions(a)
         .iter()
         .zip(positions(b))

@@ -71,8 +71,8 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
 
     let reached_energy = reach.map_or(0.0, |reach| {
         let mut shape = vec![DVec3::ZERO; roles.len()];
-        let moved = read(Path::new(reach)).drawn.positions;
-        for (vertex, place) in model.surface_of_drawn.iter().enumerate() {
+        let moved = read(Path::new(reach)).rest_positions();
+        for (vertex, place) in model.drawn.surface_vertices().enumerate() {
             if let Some(place) = place {
                 shape[place.index()] = moved[vertex] - model.surface.positions[place.index()];
             }

@@ -84,8 +84,8 @@ impl Access {
         }
         let mut shown = model.triangles_of_objects(|object| !self.hidden.contains(&(object as u32)));
         if let Some(part) = self.isolated {
-            for (shown, corners) in shown.iter_mut().zip(&model.drawn.triangles) {
-                let vertex = model.surface_of_drawn[corners[0].index()];
+            for (shown, [corner, ..]) in shown.iter_mut().zip(model.drawn_triangles()) {
+                let vertex = model.drawn.surface_vertex(corner);
                 *shown &= vertex.is_some_and(|vertex| model.topology.component(vertex) == part);
             }
         }
@@ -119,7 +119,7 @@ impl Masks {
     fn of(access: &Access, model: &Model) -> Self {
         let drawn = access.shown_triangles(model);
         let triangles = drawn.as_ref().map(|drawn| {
-            let of_surface = model.drawn_triangle_of_surface.iter().zip(0..);
+            let of_surface = model.drawn.triangle_of_surface().iter().zip(0..);
             let shown = of_surface.filter(|(triangle, _)| drawn[**triangle as usize]);
             Arc::new(shown.map(|(_, number)| number).collect::<Vec<u32>>())
         });

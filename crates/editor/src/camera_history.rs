@@ -2,6 +2,8 @@
 //!
 //! A place counts once the camera has left it: a gesture of the pointer is one way, however many events it has.
 
+use pliant_mesh::DrawnVertex;
+
 use crate::Camera;
 use crate::editor::Editor;
 use crate::tool::Tool;
@@ -63,14 +65,12 @@ impl Editor {
         let Some(model) = self.engine.model.as_ref() else {
             return;
         };
-        let drawn = model
-            .drawn
-            .file_vertex
-            .iter()
-            .position(|vertex| vertex.0 == file_vertex);
-        let Some(drawn) = drawn else { return };
-        let surface = model.surface_of_drawn[drawn];
-        let point = model.drawn.positions[drawn]
+        let drawn = model.drawn.file_vertices().position(|vertex| vertex.0 == file_vertex);
+        let Some(drawn) = drawn.map(|drawn| DrawnVertex(drawn as u32)) else {
+            return;
+        };
+        let surface = model.drawn.surface_vertex(drawn);
+        let point = model.rest_position(drawn)
             + surface.map_or(glam::DVec3::ZERO, |vertex| self.document.from_file[vertex.index()]);
         if point.is_finite() {
             self.camera.target = point;

@@ -57,8 +57,8 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
     let region = Region::measure(&region_input(model, document), &pliant_mesh::Cancel::new())
         .unwrap_or_else(|_| Region::still(document.paint.len()));
     let ranges = |role: Role| {
-        let mut selected = vec![false; model.drawn.file_vertex_count];
-        for (surface_vertex, file_vertex) in model.surface_of_drawn.iter().zip(&model.drawn.file_vertex) {
+        let mut selected = vec![false; model.drawn.file_vertex_count()];
+        for (surface_vertex, file_vertex) in model.drawn.surface_vertices().zip(model.drawn.file_vertices()) {
             if surface_vertex.is_some_and(|vertex| region.roles[vertex.index()] == role) {
                 selected[file_vertex.index()] = true;
             }

@@ -81,8 +81,8 @@ impl FieldEntry {
     /// The entry as it comes from a document: the values of the surface's vertices at the file's, `default` where a
     /// vertex of the file is no vertex of the surface.
     pub(crate) fn of_surface(field: &[f64], default: f64, model: &Model) -> Self {
-        let mut values = vec![default; model.drawn.file_vertex_count];
-        for (surface_vertex, file_vertex) in model.surface_of_drawn.iter().zip(&model.drawn.file_vertex) {
+        let mut values = vec![default; model.drawn.file_vertex_count()];
+        for (surface_vertex, file_vertex) in model.drawn.surface_vertices().zip(model.drawn.file_vertices()) {
             if let Some(vertex) = surface_vertex {
                 values[file_vertex.index()] = field[vertex.index()];
             }
@@ -100,7 +100,7 @@ impl FieldEntry {
                 }
             }
             Self::PerVertex(values) => {
-                let (found, count) = (values.len(), model.drawn.file_vertex_count);
+                let (found, count) = (values.len(), model.drawn.file_vertex_count());
                 if found != count {
                     let place = format!("{member}[{index}].per_vertex");
                     return Err(EditError::FieldLength { place, found, count });
@@ -117,7 +117,7 @@ impl FieldEntry {
 /// The lowest file vertex behind each surface vertex.
 fn lowest_file_vertices(model: &Model) -> Vec<u32> {
     let mut lowest = vec![u32::MAX; model.surface.positions.len()];
-    for (surface_vertex, file_vertex) in model.surface_of_drawn.iter().zip(&model.drawn.file_vertex) {
+    for (surface_vertex, file_vertex) in model.drawn.surface_vertices().zip(model.drawn.file_vertices()) {
         if let Some(surface_vertex) = surface_vertex {
             let slot = &mut lowest[surface_vertex.index()];
             *slot = file_vertex.0.min(*slot);

@@ -125,7 +125,7 @@ impl From<StoredLoose> for Loose {
 /// vertices behind the drawn ones.
 pub fn geometry_hash(model: &Model) -> String {
     let mut hash = Sha256::new();
-    let drawn = &model.drawn;
+    let drawn = model.rest();
     for count in [drawn.positions.len(), drawn.triangles.len(), drawn.file_vertex_count] {
         hash.update((count as u64).to_le_bytes());
     }

@@ -6,7 +6,7 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use pliant_mesh::{Model, SurfaceVertex};
+use pliant_mesh::{DrawnVertex, Model, SurfaceVertex};
 use serde::{Deserialize, Serialize};
 
 use crate::edit_error::EditError;
@@ -29,11 +29,11 @@ impl Field {
         model: &Model,
         mut value: impl FnMut(SurfaceVertex) -> Option<[f64; N]>,
     ) -> Option<Self> {
-        let mut is_stored = vec![false; model.drawn.positions.len()];
+        let mut is_stored = vec![false; model.drawn.vertex_count()];
         let mut bytes = Vec::new();
         let mut is_seen = vec![false; model.surface.positions.len()];
-        for (drawn, vertex) in model.surface_of_drawn.iter().enumerate() {
-            let Some(vertex) = *vertex else { continue };
+        for (drawn, vertex) in model.drawn.surface_vertices().enumerate() {
+            let Some(vertex) = vertex else { continue };
             if std::mem::replace(&mut is_seen[vertex.index()], true) {
                 continue;
             }
@@ -95,8 +95,8 @@ impl Field {
 /// Every drawn vertex whose surface vertex is chosen.
 pub(crate) fn ranges_where(model: &Model, is_chosen: impl Fn(SurfaceVertex) -> bool) -> Ranges {
     let chosen: Vec<bool> = model
-        .surface_of_drawn
-        .iter()
+        .drawn
+        .surface_vertices()
         .map(|vertex| vertex.is_some_and(&is_chosen))
         .collect();
     ranges_of(&chosen)
@@ -109,15 +109,15 @@ pub(crate) fn for_each_drawn(
     model: &Model,
     mut visit: impl FnMut(Option<SurfaceVertex>) -> Result<(), EditError>,
 ) -> Result<(), EditError> {
-    let count = model.surface_of_drawn.len();
+    let count = model.drawn.vertex_count();
     for &[first, last] in ranges {
         if first > last || last as usize >= count {
             return Err(EditError::Project(format!(
                 "`{name}` names the vertices {first} to {last}, and the mesh has {count}: save it again"
             )));
         }
-        for vertex in &model.surface_of_drawn[first as usize..=last as usize] {
-            visit(*vertex)?;
+        for vertex in first..=last {
+            visit(model.drawn.surface_vertex(DrawnVertex(vertex)))?;
         }
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! A selector evaluated on a model: a set of its welded vertices.
 
 use glam::DVec3;
-use pliant_mesh::{Model, SurfaceVertex};
+use pliant_mesh::{Drawn, DrawnVertex, Model, SurfaceVertex};
 
 use crate::edit_error::EditError;
 use crate::selector::{Axis, Selector};
@@ -61,7 +61,7 @@ impl Selector {
             Self::All => vec![true; model.surface.positions.len()],
             Self::None => vec![false; model.surface.positions.len()],
             Self::Vertices(vertices) => {
-                let count = model.drawn.file_vertex_count;
+                let count = model.drawn.file_vertex_count();
                 let mut named = vec![false; count];
                 for &vertex in vertices {
                     let slot = named
@@ -72,7 +72,7 @@ impl Selector {
                 by_file_vertex(model, &named)
             }
             Self::Ranges(ranges) => {
-                let count = model.drawn.file_vertex_count;
+                let count = model.drawn.file_vertex_count();
                 let mut named = vec![false; count];
                 for &[first, last] in ranges {
                     let range = first as usize..=last as usize;
@@ -126,9 +126,9 @@ fn no_such_vertex(place: &str, vertex: u32, count: usize) -> EditError {
 }
 
 /// The surface's vertices any of whose drawn vertices `test` picks.
-fn by_drawn(model: &Model, test: impl Fn(usize) -> bool) -> Vec<bool> {
+fn by_drawn(model: &Model, test: impl Fn(DrawnVertex) -> bool) -> Vec<bool> {
     let mut selected = vec![false; model.surface.positions.len()];
-    for (drawn, surface_vertex) in model.surface_of_drawn.iter().enumerate() {
+    for (drawn, surface_vertex) in (0..).map(DrawnVertex).zip(model.drawn.surface_vertices()) {
         if let Some(surface_vertex) = surface_vertex
             && test(drawn)
         {
@@ -139,11 +139,11 @@ fn by_drawn(model: &Model, test: impl Fn(usize) -> bool) -> Vec<bool> {
 }
 
 fn by_file_vertex(model: &Model, named: &[bool]) -> Vec<bool> {
-    by_drawn(model, |drawn| named[model.drawn.file_vertex[drawn].index()])
+    by_drawn(model, |drawn| named[model.drawn.file_vertex(drawn).index()])
 }
 
 fn by_position(model: &Model, test: impl Fn(DVec3) -> bool) -> Vec<bool> {
-    by_drawn(model, |drawn| test(model.drawn.positions[drawn]))
+    by_drawn(model, |drawn| test(model.rest_position(drawn)))
 }
 
 fn by_slab(model: &Model, axis: Axis, from: f64, to: f64) -> Vec<bool> {
@@ -167,12 +167,10 @@ fn by_slab(model: &Model, axis: Axis, from: f64, to: f64) -> Vec<bool> {
 
 /// The bounding box of the finite vertices that triangles of the scene use.
 fn bounds_of_used_vertices(model: &Model) -> Option<(DVec3, DVec3)> {
-    let used = model
-        .drawn
-        .triangles
-        .iter()
-        .flatten()
-        .map(|vertex| model.drawn.positions[vertex.index()]);
+    let Drawn {
+        positions, triangles, ..
+    } = model.rest();
+    let used = triangles.as_flattened().iter().map(|vertex| positions[vertex.index()]);
     used.filter(|position| position.is_finite())
         .fold(None, |bounds, p| match bounds {
             None => Some((p, p)),

@@ -140,7 +140,7 @@ fn what_is_locked_stays_where_it_is_whatever_is_painted_on_it() {
     rig.drain();
     let after = rig.drawn();
     assert!(before != after, "the rest of the handle moves");
-    for (drawn, surface) in rig.model.surface_of_drawn.iter().enumerate() {
+    for (drawn, surface) in rig.model.drawn.surface_vertices().enumerate() {
         let is_locked = surface.is_some_and(|vertex| locked.contains(&vertex.index()));
         assert!(!is_locked || before[drawn] == after[drawn]);
     }

@@ -147,7 +147,7 @@ fn what_a_project_can_not_be_is_refused_in_a_sentence() {
         assert!(Beginning::parse(&text[..end]).is_err());
     }
     // A vertex beyond the mesh's.
-    let count = rig.model.drawn.positions.len();
+    let count = rig.model.drawn.vertex_count();
     let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
     value["handles"][0]["vertices"][0][1] = count.into();
     let refused = Project::parse(&value.to_string())

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::{Drawn, FindingKind, Findings, Model, Named};
+use crate::{DrawnSet, DrawnVertex, FindingKind, Findings, Model, Named, Surface};
 
 /// One thing that is not as in a clean mesh.
 #[derive(Clone, PartialEq, Debug)]
@@ -30,16 +30,16 @@ pub struct Example {
 }
 
 impl Model {
-    /// What is wrong with the mesh, as [`Findings::diagnoses`] tells it.
+    /// What is wrong with the mesh, each with the places of its first examples, in the order of [`Findings::sentences`].
+    /// One look at every vertex, so made on request.
     pub fn diagnoses(&self) -> Vec<Diagnosis> {
-        self.findings.diagnoses(&self.drawn)
+        self.findings.diagnoses(&self.drawn, &self.surface)
     }
 }
 
 impl Findings {
-    /// What is wrong with the mesh that `drawn` was welded into, each with the places of its first examples, in the order
-    /// of [`Self::sentences`]. One look at every vertex, so made on request.
-    pub fn diagnoses(&self, drawn: &Drawn) -> Vec<Diagnosis> {
+    /// What is wrong with the mesh that `drawn` was welded into.
+    pub(crate) fn diagnoses(&self, drawn: &DrawnSet, surface: &Surface) -> Vec<Diagnosis> {
         let told = || {
             FindingKind::ALL
                 .into_iter()
@@ -48,10 +48,10 @@ impl Findings {
         let named = told()
             .filter(|(kind, _)| kind.named() == Named::FileVertex)
             .flat_map(|(kind, _)| self.of(kind).examples.iter().copied());
-        let places = places_of_file_vertices(drawn, named);
+        let places = places_of_file_vertices(drawn, surface, named);
         let place = |kind: FindingKind, number: u32| match kind.named() {
             Named::FileVertex => places.get(&number).copied(),
-            Named::DrawnTriangle => centre_of_drawn_triangle(drawn, number),
+            Named::DrawnTriangle => centre_of_drawn_triangle(drawn, surface, number),
         };
         told()
             .map(|(kind, sentence)| {
@@ -72,24 +72,32 @@ impl Findings {
 }
 
 /// Where file vertices are first drawn at a finite place.
-fn places_of_file_vertices(drawn: &Drawn, wanted: impl Iterator<Item = u32>) -> HashMap<u32, DVec3> {
-    let mut is_wanted = vec![false; drawn.file_vertex_count];
+fn places_of_file_vertices(
+    drawn: &DrawnSet,
+    surface: &Surface,
+    wanted: impl Iterator<Item = u32>,
+) -> HashMap<u32, DVec3> {
+    let mut is_wanted = vec![false; drawn.file_vertex_count()];
     for vertex in wanted {
         if let Some(is_wanted) = is_wanted.get_mut(vertex as usize) {
             *is_wanted = true;
         }
     }
     let mut places = HashMap::new();
-    for (vertex, &position) in drawn.file_vertex.iter().zip(&drawn.positions) {
-        if is_wanted.get(vertex.index()) == Some(&true) && position.is_finite() {
-            places.entry(vertex.0).or_insert(position);
+    for (drawn_vertex, file_vertex) in (0..).map(DrawnVertex).zip(drawn.file_vertices()) {
+        if is_wanted.get(file_vertex.index()) == Some(&true) {
+            let position = drawn.position(drawn_vertex, surface);
+            if position.is_finite() {
+                places.entry(file_vertex.0).or_insert(position);
+            }
         }
     }
     places
 }
 
-fn centre_of_drawn_triangle(drawn: &Drawn, triangle: u32) -> Option<DVec3> {
-    let corners = drawn.triangles.get(triangle as usize)?;
-    let centre = corners.map(|v| drawn.positions[v.index()]).iter().sum::<DVec3>() / 3.0;
+fn centre_of_drawn_triangle(drawn: &DrawnSet, surface: &Surface, triangle: u32) -> Option<DVec3> {
+    let corners = drawn.triangle(triangle, surface)?;
+    let places = corners.map(|v| drawn.position(v, surface));
+    let centre = places.iter().sum::<DVec3>() / 3.0;
     centre.is_finite().then_some(centre)
 }

@@ -18,6 +18,8 @@ mod diagnosis;
 mod distance;
 mod distortion;
 mod drawn;
+mod drawn_set;
+mod drawn_triangles;
 mod finding;
 mod findings;
 mod front;
@@ -45,6 +47,7 @@ pub use diagnosis::{Diagnosis, Example};
 pub use distance::{DistanceSearch, distances_along_surface};
 pub use distortion::Distortion;
 pub use drawn::Drawn;
+pub use drawn_set::DrawnSet;
 pub use finding::Finding;
 pub use findings::{FindingKind, Findings, Named};
 pub use geometry::{

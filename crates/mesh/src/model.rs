@@ -1,13 +1,12 @@
 //! A file's geometry, welded: the drawn set, the surface, and the tables from one to the other.
 
-use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::parts::Parts;
 use crate::weld::weld;
 use crate::{
-    Bounds, Cancel, Cancelled, Drawn, FileVertex, Findings, Object, Progress, Surface, SurfaceVertex, Topology,
-    bounding_box,
+    Bounds, Cancel, Cancelled, Drawn, DrawnSet, FileVertex, Findings, Object, Progress, Surface, SurfaceVertex,
+    Topology, bounding_box,
 };
 
 /// How equal positions are joined.
@@ -27,16 +26,12 @@ impl Default for WeldOptions {
 /// The drawn set, the welded surface and the tables between them.
 #[derive(Clone, Debug, Default)]
 pub struct Model {
-    /// What the file shows.
-    pub drawn: Drawn,
+    /// What the file shows: see [`Self::rest`].
+    pub drawn: DrawnSet,
     /// What is solved.
     pub surface: Surface,
     /// Who neighbours whom on the surface.
     pub topology: Topology,
-    /// The surface vertex behind each drawn vertex; `None` where no kept triangle uses it.
-    pub surface_of_drawn: Vec<Option<SurfaceVertex>>,
-    /// The drawn triangle behind each surface triangle, corner for corner.
-    pub drawn_triangle_of_surface: Vec<u32>,
     /// What is wrong with the mesh.
     pub findings: Findings,
     /// What the file itself tells apart; empty where nobody said.
@@ -47,8 +42,9 @@ impl Model {
     /// Welds `drawn` into a surface. Anything that can't be solved is set aside and told in the findings; a file with
     /// no usable triangle gives an empty surface.
     pub fn weld(drawn: Drawn, options: &WeldOptions, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
-        let mut welded = weld(&drawn, options, progress, cancel)?;
+        let mut welded = weld(drawn, options, progress, cancel)?;
         cancel.check()?;
+        let drawn = welded.drawn.told_by(&welded.surface);
         let topology = Topology::with_file_vertices(&welded.surface, &welded.first_file_vertex);
         cancel.check()?;
         progress.set(0.9);
@@ -59,14 +55,11 @@ impl Model {
             components: topology.components(),
         };
         parts.report(topology.oddities(), &mut welded.findings);
-        let surface_of_drawn = welded.surface_of_drawn();
         progress.set(1.0);
         Ok(Self {
             drawn,
             surface: welded.surface,
             topology,
-            surface_of_drawn,
-            drawn_triangle_of_surface: welded.drawn_triangle_of_surface,
             findings: welded.findings,
             objects: Vec::new(),
         })
@@ -79,36 +72,17 @@ impl Model {
 
     /// The lowest of the file's vertices behind a surface vertex.
     pub fn first_file_vertex(&self, vertex: SurfaceVertex) -> FileVertex {
-        let behind = self.surface_of_drawn.iter().zip(&self.drawn.file_vertex);
+        let behind = self.drawn.surface_vertices().zip(self.drawn.file_vertices());
         behind
-            .filter(|(surface_vertex, _)| **surface_vertex == Some(vertex))
-            .map(|(_, file_vertex)| *file_vertex)
+            .filter(|(surface_vertex, _)| *surface_vertex == Some(vertex))
+            .map(|(_, file_vertex)| file_vertex)
             .min()
             .unwrap_or_default()
     }
 
     /// The table from the file's vertices to the surface's.
     pub fn surface_of_file(&self) -> SurfaceOfFile {
-        SurfaceOfFile::of_drawn(&self.drawn, &self.surface_of_drawn)
-    }
-
-    /// Each drawn vertex's rest position plus the displacement of its surface vertex (`displacements`, one each),
-    /// into `out`. Where the displacement is zero, and where there is no surface vertex, the rest position's own bits.
-    pub fn drawn_positions(&self, displacements: &[DVec3], out: &mut Vec<DVec3>) {
-        out.resize(self.drawn.positions.len(), DVec3::ZERO);
-        out.par_iter_mut()
-            .zip_eq(&self.drawn.positions)
-            .zip_eq(&self.surface_of_drawn)
-            .with_min_len(8192)
-            .for_each(|((moved, &rest), surface_vertex)| {
-                let displacement = surface_vertex.map_or(DVec3::ZERO, |v| displacements[v.index()]);
-                // Adding zero would turn −0 into 0.
-                *moved = if displacement == DVec3::ZERO {
-                    rest
-                } else {
-                    rest + displacement
-                };
-            });
+        SurfaceOfFile::of_drawn(&self.drawn)
     }
 }
 
@@ -120,20 +94,19 @@ pub struct SurfaceOfFile {
 }
 
 impl SurfaceOfFile {
-    fn of_drawn(drawn: &Drawn, surface_of_drawn: &[Option<SurfaceVertex>]) -> Self {
+    fn of_drawn(drawn: &DrawnSet) -> Self {
         let mut pairs: Vec<(FileVertex, SurfaceVertex)> = drawn
-            .file_vertex
-            .iter()
-            .zip(surface_of_drawn)
-            .filter_map(|(&file_vertex, &surface_vertex)| Some((file_vertex, surface_vertex?)))
+            .file_vertices()
+            .zip(drawn.surface_vertices())
+            .filter_map(|(file_vertex, surface_vertex)| Some((file_vertex, surface_vertex?)))
             .collect();
         pairs.par_sort_unstable();
         pairs.dedup();
-        let mut offsets = vec![0; drawn.file_vertex_count + 1];
+        let mut offsets = vec![0; drawn.file_vertex_count() + 1];
         for (file_vertex, _) in &pairs {
             offsets[file_vertex.index() + 1] += 1;
         }
-        for v in 0..drawn.file_vertex_count {
+        for v in 0..drawn.file_vertex_count() {
             offsets[v + 1] += offsets[v];
         }
         Self {

@@ -28,14 +28,14 @@ impl Model {
             return self.objects.clone();
         }
         vec![Object {
-            triangles: std::iter::once(0..self.drawn.triangles.len() as u32).collect(),
+            triangles: std::iter::once(0..self.drawn.triangle_count() as u32).collect(),
             ..Object::default()
         }]
     }
 
     /// For each of [`crate::Drawn::triangles`] whether `holds` is true of its object's number.
     pub fn triangles_of_objects(&self, holds: impl Fn(usize) -> bool) -> Vec<bool> {
-        let mut chosen = vec![false; self.drawn.triangles.len()];
+        let mut chosen = vec![false; self.drawn.triangle_count()];
         for (number, object) in self.all_objects().iter().enumerate() {
             if holds(number) {
                 for run in &object.triangles {
@@ -50,7 +50,7 @@ impl Model {
 
     /// The number of the object that a triangle of the surface belongs to.
     pub fn object_of(&self, surface_triangle: u32) -> Option<usize> {
-        let drawn = *self.drawn_triangle_of_surface.get(surface_triangle as usize)?;
+        let drawn = *self.drawn.triangle_of_surface().get(surface_triangle as usize)?;
         self.all_objects()
             .iter()
             .position(|object| object.triangles.iter().any(|run| run.contains(&drawn)))
@@ -59,7 +59,7 @@ impl Model {
     /// The surface's vertices of some of [`crate::Drawn::triangles`]: a flag each.
     pub fn vertices_of_triangles(&self, chosen: &[bool]) -> Vec<bool> {
         let mut of = vec![false; self.surface.positions.len()];
-        let corners = self.surface.triangles.iter().zip(&self.drawn_triangle_of_surface);
+        let corners = self.surface.triangles.iter().zip(self.drawn.triangle_of_surface());
         for (corners, &drawn) in corners {
             if chosen.get(drawn as usize) == Some(&true) {
                 for &SurfaceVertex(vertex) in corners {

@@ -3,14 +3,18 @@
 use crate::components::{Component, components};
 use crate::parts::Parts;
 use crate::rings::oddities;
-use crate::weld::weld;
-use crate::{Bounds, Cancel, Cancelled, Drawn, Findings, Progress, WeldOptions, bounding_box};
+use crate::weld::{Welded, weld};
+use crate::{Bounds, Cancel, Cancelled, Diagnosis, Drawn, Findings, Progress, WeldOptions, bounding_box};
 
 /// What [`Model::weld`](crate::Model::weld) would find, in less memory and time: nothing can be edited by it.
 #[derive(Clone, Debug, Default)]
 pub struct Survey {
-    /// What the file shows.
-    pub drawn: Drawn,
+    /// How many vertices the file has, drawn or not.
+    pub file_vertices: usize,
+    /// How many vertices are drawn: one of the file's through two nodes is two.
+    pub drawn_vertices: usize,
+    /// How many triangles are drawn.
+    pub drawn_triangles: usize,
     /// How many vertices the welded surface has.
     pub surface_vertices: usize,
     /// How many triangles it has.
@@ -21,12 +25,19 @@ pub struct Survey {
     pub components: Vec<Component>,
     /// What is wrong with the mesh.
     pub findings: Findings,
+    /// The same with the places of examples.
+    pub diagnoses: Vec<Diagnosis>,
 }
 
 impl Survey {
     /// Welds `drawn`, looks at the surface and lets it go.
     pub fn of(drawn: Drawn, options: &WeldOptions, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
-        let (surface, first_file_vertex, mut findings) = weld(&drawn, options, progress, cancel)?.without_tables();
+        let Welded {
+            surface,
+            drawn,
+            first_file_vertex,
+            mut findings,
+        } = weld(drawn, options, progress, cancel)?;
         cancel.check()?;
         let vertex_count = surface.positions.len();
         let oddities = oddities(vertex_count, &surface.triangles, cancel)?;
@@ -42,11 +53,14 @@ impl Survey {
         parts.report(&oddities, &mut findings);
         progress.set(1.0);
         Ok(Self {
-            drawn,
+            file_vertices: drawn.file_vertex_count(),
+            drawn_vertices: drawn.vertex_count(),
+            drawn_triangles: drawn.triangle_count(),
             surface_vertices: vertex_count,
             surface_triangles: surface.triangles.len(),
             bounds: bounding_box(&surface.positions),
             components,
+            diagnoses: findings.diagnoses(&drawn, &surface),
             findings,
         })
     }

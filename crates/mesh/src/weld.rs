@@ -2,6 +2,8 @@
 
 use rayon::prelude::*;
 
+use crate::drawn_set::{DrawnSet, FileVertices, NONE};
+use crate::drawn_triangles::Corners;
 use crate::finding::{collect, sort_out};
 use crate::geometry::{bounds_of, is_without_area};
 use crate::joining::{self, Joined};
@@ -18,9 +20,8 @@ const LARGEST_TOLERANCE: f64 = 1e-4;
 /// What welding makes.
 pub(crate) struct Welded {
     pub(crate) surface: Surface,
-    /// The surface vertex behind each drawn vertex, [`NONE`] where no kept triangle uses it.
-    surface_of_drawn: Vec<u32>,
-    pub(crate) drawn_triangle_of_surface: Vec<u32>,
+    /// What was welded, its triangles as they came.
+    pub(crate) drawn: DrawnSet,
     /// The lowest file vertex behind each surface vertex.
     pub(crate) first_file_vertex: Vec<FileVertex>,
     /// Those findings that are about file vertices and triangles; the topology's are still empty.
@@ -35,21 +36,24 @@ enum Use {
     Triangle,
 }
 
-/// Welds `drawn`; progress goes from 0 to 0.6.
+/// Welds `drawn`; progress goes from 0 to 0.6. What is no longer needed goes at once: a scan's positions alone are as
+/// much as its file.
 pub(crate) fn weld(
-    drawn: &Drawn,
+    drawn: Drawn,
     options: &WeldOptions,
     progress: &Progress,
     cancel: &Cancel,
 ) -> Result<Welded, Cancelled> {
     let mut findings = Findings::default();
-    let usable: Vec<bool> = drawn
-        .positions
+    let drawn_positions = drawn.positions;
+    let file_vertices = FileVertices::new(drawn.file_vertex_count, drawn.file_vertex);
+    let corners = Corners::new(drawn.triangles);
+    let usable: Vec<bool> = drawn_positions
         .par_iter()
         .map(|p| p.is_finite() && p.abs().max_element() <= LARGEST_COORDINATE)
         .collect();
-    let uses = uses_of_vertices(drawn, &usable);
-    report_vertices(drawn, &usable, &uses, &mut findings);
+    let uses = uses_of_vertices(&corners, &usable);
+    report_vertices(&file_vertices, &usable, &uses, &mut findings);
     drop(usable);
     cancel.check()?;
     progress.set(0.1);
@@ -58,81 +62,74 @@ pub(crate) fn weld(
         .filter(|&v| uses[v as usize] == Use::Triangle)
         .collect();
     drop(uses);
-    let Some(bounds) = bounds_of(members.par_iter().map(|&v| drawn.positions[v as usize])) else {
-        findings.non_finite_triangles = collect(drawn.triangles.len(), |_| true);
-        return Ok(nothing_to_weld(drawn, findings));
+    let Some(bounds) = bounds_of(members.par_iter().map(|&v| drawn_positions[v as usize])) else {
+        findings.non_finite_triangles = collect(corners.len(), |_| true);
+        let nowhere = vec![NONE; drawn_positions.len()];
+        let drawn = DrawnSet::new(drawn_positions, nowhere, &[], file_vertices);
+        return Ok(Welded {
+            surface: Surface::default(),
+            drawn: drawn.with_triangles(corners, Vec::new()),
+            first_file_vertex: Vec::new(),
+            findings,
+        });
     };
     let tolerance = options
         .tolerance
         .map(|share| share.clamp(0.0, LARGEST_TOLERANCE) * bounds.diagonal());
-    let joined = joining::join(&drawn.positions, members, &bounds, tolerance);
+    let joined = joining::join(&drawn_positions, members, &bounds, tolerance);
     cancel.check()?;
     progress.set(0.35);
 
-    let mut surface_of_drawn = groups_by_vertex(drawn.positions.len(), &joined);
+    let mut surface_vertices = groups_by_vertex(drawn_positions.len(), &joined);
     let Joined { order, representative } = joined;
     drop(representative);
-    let in_groups = |t: usize| drawn.triangles[t].map(|v| surface_of_drawn[v.index()]);
-    [findings.non_finite_triangles, findings.collapsed_triangles] = sort_out(drawn.triangles.len(), |t| {
-        let corners = in_groups(t);
-        if has_unusable_corner(corners) {
+    let in_groups = |t: usize| corners.of(t).map(|v| surface_vertices[v.index()]);
+    [findings.non_finite_triangles, findings.collapsed_triangles] = sort_out(corners.len(), |t| {
+        let groups = in_groups(t);
+        if has_unusable_corner(groups) {
             Some(0)
         } else {
-            is_collapsed(corners).then_some(1)
+            is_collapsed(groups).then_some(1)
         }
     });
-    let surface_of_group = number_used_groups((0..drawn.triangles.len()).map(in_groups), order.len());
+    let surface_of_group = number_used_groups((0..corners.len()).map(in_groups), order.len());
     cancel.check()?;
     progress.set(0.45);
 
     let used = (0..order.len()).filter(|&group| surface_of_group[group] != NONE);
     let mut positions = Vec::with_capacity(used.clone().count());
-    positions.extend(used.map(|group| drawn.positions[order[group] as usize]));
+    positions.extend(used.map(|group| drawn_positions[order[group] as usize]));
     drop(order);
-    surface_of_drawn.par_iter_mut().for_each(|group| {
+    surface_vertices.par_iter_mut().for_each(|group| {
         *group = surface_of_group.get(*group as usize).copied().unwrap_or(NONE);
     });
     drop(surface_of_group);
-    let (triangles, drawn_triangle_of_surface) = sort_triangles(
-        &drawn.triangles,
-        &surface_of_drawn,
+    let drawn = DrawnSet::new(drawn_positions, surface_vertices, &positions, file_vertices);
+    let in_surface = |v: DrawnVertex| drawn.surface_vertex(v).map_or(NONE, |v| v.0);
+    let (triangles, triangle_of_surface) = sort_triangles(
+        corners.len(),
+        |t| corners.of(t).map(in_surface),
         positions.len(),
         &mut findings.duplicate_triangles,
     );
     let mut first_file_vertex = vec![FileVertex(u32::MAX); positions.len()];
-    for (&surface_vertex, &file_vertex) in surface_of_drawn.iter().zip(&drawn.file_vertex) {
-        if let Some(first) = first_file_vertex.get_mut(surface_vertex as usize) {
+    for (surface_vertex, file_vertex) in drawn.surface_vertices().zip(drawn.file_vertices()) {
+        if let Some(surface_vertex) = surface_vertex {
+            let first = &mut first_file_vertex[surface_vertex.index()];
             *first = file_vertex.min(*first);
         }
     }
     let surface = Surface { positions, triangles };
     findings.zero_area_triangles = collect(surface.triangles.len(), |t| is_without_area(surface.corners(t)))
-        .renamed(|t| drawn_triangle_of_surface[t as usize]);
+        .renamed(|t| triangle_of_surface[t as usize]);
     progress.set(0.6);
     Ok(Welded {
         surface,
-        surface_of_drawn,
-        drawn_triangle_of_surface,
+        drawn: drawn.with_triangles(corners, triangle_of_surface),
         first_file_vertex,
         findings,
     })
 }
-
-impl Welded {
-    /// The surface, the lowest file vertex behind each of its vertices, and the findings.
-    pub(crate) fn without_tables(self) -> (Surface, Vec<FileVertex>, Findings) {
-        (self.surface, self.first_file_vertex, self.findings)
-    }
-
-    /// Its table, as a model keeps it.
-    pub(crate) fn surface_of_drawn(&self) -> Vec<Option<SurfaceVertex>> {
-        let known = |&v: &u32| (v != NONE).then_some(SurfaceVertex(v));
-        self.surface_of_drawn.par_iter().map(known).collect()
-    }
-}
-
-/// No group, no surface vertex.
-const NONE: u32 = u32::MAX;
 
 fn has_unusable_corner(corners: [u32; 3]) -> bool {
     corners.contains(&NONE)
@@ -143,9 +140,9 @@ fn is_collapsed([a, b, c]: [u32; 3]) -> bool {
 }
 
 /// Triangles with an unusable corner don't count as users: their other corners would float.
-fn uses_of_vertices(drawn: &Drawn, usable: &[bool]) -> Vec<Use> {
-    let mut uses = vec![Use::None; drawn.positions.len()];
-    for triangle in &drawn.triangles {
+fn uses_of_vertices(corners: &Corners, usable: &[bool]) -> Vec<Use> {
+    let mut uses = vec![Use::None; usable.len()];
+    for triangle in corners.iter() {
         let by = if triangle.iter().all(|v| usable[v.index()]) {
             Use::Triangle
         } else {
@@ -159,28 +156,20 @@ fn uses_of_vertices(drawn: &Drawn, usable: &[bool]) -> Vec<Use> {
 }
 
 /// Finds the file's vertices that are not finite or that no triangle uses.
-fn report_vertices(drawn: &Drawn, usable: &[bool], uses: &[Use], findings: &mut Findings) {
-    let mut is_used = vec![false; drawn.file_vertex_count];
-    let mut is_bad = vec![false; drawn.file_vertex_count];
-    for (v, file_vertex) in drawn.file_vertex.iter().enumerate() {
-        let Some(is_used) = is_used.get_mut(file_vertex.index()) else {
+fn report_vertices(file_vertices: &FileVertices, usable: &[bool], uses: &[Use], findings: &mut Findings) {
+    let count = file_vertices.count();
+    let mut is_used = vec![false; count];
+    let mut is_bad = vec![false; count];
+    for v in 0..uses.len() {
+        let file_vertex = file_vertices.of(v).index();
+        let Some(is_used) = is_used.get_mut(file_vertex) else {
             continue;
         };
         *is_used |= uses[v] != Use::None;
-        is_bad[file_vertex.index()] |= !usable[v];
+        is_bad[file_vertex] |= !usable[v];
     }
-    findings.non_finite_vertices = collect(drawn.file_vertex_count, |v| is_bad[v]);
-    findings.unreferenced_vertices = collect(drawn.file_vertex_count, |v| !is_used[v]);
-}
-
-fn nothing_to_weld(drawn: &Drawn, findings: Findings) -> Welded {
-    Welded {
-        surface: Surface::default(),
-        surface_of_drawn: vec![NONE; drawn.positions.len()],
-        drawn_triangle_of_surface: Vec::new(),
-        first_file_vertex: Vec::new(),
-        findings,
-    }
+    findings.non_finite_vertices = collect(count, |v| is_bad[v]);
+    findings.unreferenced_vertices = collect(count, |v| !is_used[v]);
 }
 
 /// The place of each vertex's representative, [`NONE`] for vertices that took no part.
@@ -213,13 +202,12 @@ fn number_used_groups(triangles: impl Iterator<Item = [u32; 3]>, group_count: us
 ///
 /// A triangle with a corner that no proper triangle uses is not proper, so the vertices alone say which are.
 fn sort_triangles(
-    drawn: &[[DrawnVertex; 3]],
-    surface_of_drawn: &[u32],
+    count: usize,
+    in_surface: impl Fn(usize) -> [u32; 3] + Sync,
     vertex_count: usize,
     duplicates: &mut Finding,
 ) -> (Vec<[SurfaceVertex; 3]>, Vec<u32>) {
-    let in_surface = |t: usize| drawn[t].map(|v| surface_of_drawn[v.index()]);
-    let lowest: Vec<u32> = (0..drawn.len())
+    let lowest: Vec<u32> = (0..count)
         .into_par_iter()
         .map(|t| {
             let [a, b, c] = in_surface(t);

@@ -58,7 +58,7 @@ fn every_example_stands_where_it_was_found() {
     let mut seen = 0;
     for drawn in all {
         let model = shapes::model(drawn);
-        let diagnoses = model.diagnoses();
+        let (diagnoses, rest) = (model.diagnoses(), model.rest());
         let sentences: Vec<String> = diagnoses.iter().map(|diagnosis| diagnosis.sentence.clone()).collect();
         assert_eq!(sentences, model.findings.sentences());
         for diagnosis in &diagnoses {
@@ -74,11 +74,11 @@ fn every_example_stands_where_it_was_found() {
                         assert_eq!(place, None);
                     }
                     (_, Named::FileVertex, place) => {
-                        assert_eq!(place, Some(model.drawn.positions[example.number as usize]));
+                        assert_eq!(place, Some(rest.positions[example.number as usize]));
                     }
                     (_, Named::DrawnTriangle, place) => {
-                        let corners = model.drawn.triangles[example.number as usize];
-                        let corners = corners.map(|v| model.drawn.positions[v.index()]);
+                        let corners = rest.triangles[example.number as usize];
+                        let corners = corners.map(|v| rest.positions[v.index()]);
                         assert_eq!(place, Some(corners.iter().sum::<DVec3>() / 3.0));
                     }
                 }
@@ -98,10 +98,16 @@ fn a_look_finds_what_welding_finds() {
         let survey = Survey::of(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new());
         let survey = survey.expect("nobody cancels it");
         assert_eq!(survey.findings, model.findings);
-        assert_eq!(survey.findings.diagnoses(&survey.drawn), model.diagnoses());
+        assert_eq!(survey.diagnoses, model.diagnoses());
         assert_eq!(survey.components, model.topology.components());
         assert_eq!(survey.bounds, model.bounds());
         let counts = [model.surface.positions.len(), model.surface.triangles.len()];
         assert_eq!([survey.surface_vertices, survey.surface_triangles], counts);
+        let drawn = &model.drawn;
+        let counts = [drawn.file_vertex_count(), drawn.vertex_count(), drawn.triangle_count()];
+        assert_eq!(
+            [survey.file_vertices, survey.drawn_vertices, survey.drawn_triangles],
+            counts
+        );
     }
 }

@@ -43,11 +43,12 @@ fn the_surface_keeps_its_promises_on_every_class() {
         }
         assert!(is_used.iter().all(|&used| used), "{class}: every vertex is used");
         assert!(surface.positions.iter().all(|p| p.is_finite()), "{class}");
-        for (t, &drawn_triangle) in model.drawn_triangle_of_surface.iter().enumerate() {
-            let through_table =
-                model.drawn.triangles[drawn_triangle as usize].map(|v| model.surface_of_drawn[v.index()]);
+        let drawn_triangles = model.drawn_triangles();
+        for (t, &drawn_triangle) in model.drawn.triangle_of_surface().iter().enumerate() {
+            let corners = drawn_triangles[drawn_triangle as usize];
+            assert_eq!(corners, model.drawn_corners(t), "{class}");
             assert_eq!(
-                through_table,
+                corners.map(|v| model.drawn.surface_vertex(v)),
                 surface.triangles[t].map(Some),
                 "{class}: corner for corner"
             );
@@ -112,9 +113,8 @@ fn joining_agrees_with_comparing_all_pairs() {
     assert!((0..positions.len()).any(|i| representative[i] != i));
     for i in 0..positions.len() {
         for j in 0..i {
-            let (Some(a), Some(b)) = (model.surface_of_drawn[i], model.surface_of_drawn[j]) else {
-                continue;
-            };
+            let [a, b] = [i, j].map(|v| model.drawn.surface_vertex(DrawnVertex(v as u32)));
+            let (Some(a), Some(b)) = (a, b) else { continue };
             assert_eq!(a == b, representative[i] == representative[j], "{i} {j}");
         }
     }
@@ -181,8 +181,8 @@ fn everything_broken_is_left_out_or_kept_and_counted() {
     assert_eq!(findings.non_manifold_edges.count, 1);
     assert_eq!(model.surface.triangles.len(), shape.triangles.len() + 1);
     assert_eq!(model.surface.positions.len(), shape.positions.len() + 1);
-    assert_eq!(model.surface_of_drawn[vertices as usize], None);
-    assert_eq!(model.surface_of_drawn[vertices as usize + 1], None);
+    assert_eq!(model.drawn.surface_vertex(DrawnVertex(vertices)), None);
+    assert_eq!(model.drawn.surface_vertex(DrawnVertex(vertices + 1)), None);
     assert_eq!(findings.sentences().len(), 8, "{:#?}", findings.sentences());
     assert_eq!(shapes::model(shape).findings.sentences(), Vec::<String>::new());
 }
@@ -200,10 +200,10 @@ fn files_without_a_usable_triangle_give_an_empty_surface() {
         let model = shapes::model(drawn);
         assert!(model.surface.positions.is_empty() && model.surface.triangles.is_empty());
         assert!(model.bounds().is_none() && model.topology.components().is_empty());
-        assert!(model.surface_of_drawn.iter().all(Option::is_none));
+        assert!(model.drawn.surface_vertices().all(|vertex| vertex.is_none()));
         let mut out = Vec::new();
         model.drawn_positions(&[], &mut out);
-        assert_eq!(out.len(), model.drawn.positions.len());
+        assert_eq!(out.len(), model.drawn.vertex_count());
     }
 }
 
@@ -213,8 +213,9 @@ fn twins_move_alike_and_others_stay() {
     let displacements: Vec<DVec3> = (0..model.surface.positions.len()).map(noise3).collect();
     let mut out = Vec::new();
     model.drawn_positions(&displacements, &mut out);
-    for (i, surface_vertex) in model.surface_of_drawn.iter().enumerate() {
-        let rest = model.drawn.positions[i];
+    let rest = model.rest_positions();
+    for (i, surface_vertex) in model.drawn.surface_vertices().enumerate() {
+        let rest = rest[i];
         match surface_vertex {
             Some(v) => assert_eq!(out[i], rest + displacements[v.index()]),
             None => assert_eq!(out[i].to_array().map(f64::to_bits), rest.to_array().map(f64::to_bits)),

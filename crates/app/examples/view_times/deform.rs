@@ -45,17 +45,13 @@ pub fn frame_ms(
         done?;
         processor.push(ms);
     }
-    let triangles: Vec<[u32; 3]> = model
-        .drawn
-        .triangles
-        .iter()
-        .map(|corners| corners.map(|v| v.0))
-        .collect();
-    let of_drawn = |drawn: usize| model.surface_of_drawn[drawn].map_or(DeformerData::STILL, |v| v.0);
-    let of_drawn: Vec<u32> = (0..model.drawn.positions.len()).map(of_drawn).collect();
+    let rest = model.rest();
+    let triangles: Vec<[u32; 3]> = rest.triangles.iter().map(|corners| corners.map(|v| v.0)).collect();
+    let of_drawn = model.drawn.surface_vertices();
+    let of_drawn: Vec<u32> = of_drawn.map(|v| v.map_or(DeformerData::STILL, |v| v.0)).collect();
     let relative = |p: &DVec3| (*p - drawing.centre).as_vec3().to_array();
     let data = DeformerData {
-        rest: &model.drawn.positions.iter().map(relative).collect::<Vec<_>>(),
+        rest: &rest.positions.iter().map(relative).collect::<Vec<_>>(),
         row_of_vertex: &of_drawn,
         rows: &bases,
         handle_count: 1,

@@ -72,9 +72,7 @@ fn as_text(LookedAt { path, scene, survey }: &LookedAt<'_>) -> String {
         "vertices",
         format!(
             "{} in the file, {} drawn, {} welded",
-            survey.drawn.file_vertex_count,
-            survey.drawn.positions.len(),
-            survey.surface_vertices
+            survey.file_vertices, survey.drawn_vertices, survey.surface_vertices
         ),
     );
     if survey.surface_triangles == 0 {
@@ -82,11 +80,7 @@ fn as_text(LookedAt { path, scene, survey }: &LookedAt<'_>) -> String {
     } else {
         line(
             "triangles",
-            format!(
-                "{} drawn, {} kept",
-                survey.drawn.triangles.len(),
-                survey.surface_triangles
-            ),
+            format!("{} drawn, {} kept", survey.drawn_triangles, survey.surface_triangles),
         );
     }
     if let Some(bounds) = survey.bounds {
@@ -138,14 +132,13 @@ fn as_json(LookedAt { path, scene, survey }: &LookedAt<'_>) -> Value {
             })
         })
         .collect();
-    let diagnoses = findings.diagnoses(&survey.drawn);
     let mut found = serde_json::Map::new();
     for kind in FindingKind::ALL
         .into_iter()
         .filter(|kind| *kind != FindingKind::Components)
     {
         let finding = findings.of(kind);
-        let diagnosis = diagnoses.iter().find(|diagnosis| diagnosis.kind == kind);
+        let diagnosis = survey.diagnoses.iter().find(|diagnosis| diagnosis.kind == kind);
         let places = diagnosis.into_iter().flat_map(|diagnosis| &diagnosis.examples);
         let places: Vec<Value> = places
             .map(|example| example.position.map_or(Value::Null, |place| json!(place.to_array())))
@@ -160,10 +153,10 @@ fn as_json(LookedAt { path, scene, survey }: &LookedAt<'_>) -> Value {
         "file": path.to_string_lossy(),
         "format": scene.format().extension(),
         "holds": scene.summary(),
-        "vertices": survey.drawn.file_vertex_count,
-        "drawn_vertices": survey.drawn.positions.len(),
+        "vertices": survey.file_vertices,
+        "drawn_vertices": survey.drawn_vertices,
         "welded_vertices": survey.surface_vertices,
-        "drawn_triangles": survey.drawn.triangles.len(),
+        "drawn_triangles": survey.drawn_triangles,
         "triangles": survey.surface_triangles,
         "bounding_box": bounds,
         "components": components,

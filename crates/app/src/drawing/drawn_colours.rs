@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pliant_mesh::{Model, SurfaceVertex};
+use pliant_mesh::{DrawnVertex, Model, SurfaceVertex};
 use rayon::prelude::*;
 
 /// Drawn vertices are recoloured and uploaded in blocks of so many.
@@ -10,12 +10,11 @@ const BLOCK: usize = 1024;
 
 /// The colour of each drawn vertex; those that belong to no kept triangle get a transparent one.
 pub fn drawn_colours(model: &Model, surface_colours: &[[u8; 4]]) -> Vec<[u8; 4]> {
-    model
-        .surface_of_drawn
-        .par_iter()
+    (0..model.drawn.vertex_count() as u32)
+        .into_par_iter()
         .with_min_len(8192)
         .map(|vertex| {
-            vertex
+            (model.drawn.surface_vertex(DrawnVertex(vertex)))
                 .and_then(|vertex| surface_colours.get(vertex.index()).copied())
                 .unwrap_or_default()
         })
@@ -32,16 +31,15 @@ pub fn recolour(
 ) -> Vec<Range<usize>> {
     let mut is_touched = vec![false; drawn_colours.len().div_ceil(BLOCK)];
     // As many of either: each surface vertex has one drawn one, which any of its triangles names.
-    let is_one_to_one = model.surface_of_drawn.len() == model.surface.positions.len();
+    let is_one_to_one = model.drawn.vertex_count() == model.surface.positions.len();
     for &vertex in vertices {
         let colour = colour(vertex);
         // A drawn vertex belongs to a triangle behind one of the surface's around the vertex.
         let faces = model.topology.faces(vertex);
         let telling = if is_one_to_one { faces.len().min(1) } else { faces.len() };
         for &face in &faces[..telling] {
-            let triangle = model.drawn_triangle_of_surface[face as usize];
-            for drawn in model.drawn.triangles[triangle as usize] {
-                let is_behind = model.surface_of_drawn[drawn.index()] == Some(vertex);
+            for drawn in model.drawn_corners(face as usize) {
+                let is_behind = model.drawn.surface_vertex(drawn) == Some(vertex);
                 if let (true, Some(present)) = (is_behind, drawn_colours.get_mut(drawn.index())) {
                     *present = colour;
                     is_touched[drawn.index() / BLOCK] = true;
@@ -75,7 +73,7 @@ mod tests {
             (shapes::model(shapes::soup(&torus)), false),
         ] {
             let count = model.surface.positions.len();
-            assert_eq!(model.surface_of_drawn.len() == count, is_one_to_one);
+            assert_eq!(model.drawn.vertex_count() == count, is_one_to_one);
             let colour = |vertex: SurfaceVertex| (vertex.0 * 7919).to_le_bytes();
             let mut colours = vec![[0; 4]; count];
             let mut drawn = drawn_colours(&model, &colours);

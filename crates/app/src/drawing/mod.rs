@@ -60,36 +60,28 @@ impl Drawing {
                 material: group.material,
             })
             .collect();
-        let triangles: Vec<[u32; 3]> = model
-            .drawn
-            .triangles
-            .iter()
-            .map(|corners| corners.map(|vertex| vertex.0))
-            .collect();
-        let relative = model
-            .drawn
-            .positions
-            .iter()
-            .map(|&position| pose::finite(position - centre));
-        let positions: Vec<[f32; 3]> = relative.collect();
+        let triangles = model.drawn_triangles().into_iter();
+        let triangles: Vec<[u32; 3]> = triangles.map(|corners| corners.map(|vertex| vertex.0)).collect();
+        let relative = model.rest_positions().into_iter();
+        let positions: Vec<[f32; 3]> = relative.map(|position| pose::finite(position - centre)).collect();
         let partition = Partition::new(&positions, &triangles, &groups, &wardrobe.plain());
         Self {
             centre,
             wardrobe,
-            triangles,
             twins: twins(model),
             partition: Arc::new(partition),
-            normals: NormalGroups::of(model, appearance.normals),
+            normals: NormalGroups::of(model, &triangles, appearance.normals),
             uvs: appearance.uvs,
             second_uvs: appearance.second_uvs,
             colours: appearance.colours,
             groups,
+            triangles,
         }
     }
 
     /// The shape that `displacements` (one a surface vertex, from the file's shape) give, ready for the renderer.
     pub fn pose(&self, model: &Model, displacements: &[DVec3]) -> Pose {
-        Pose::of(model, displacements, self.centre, &self.normals, &self.partition)
+        Pose::of(model, displacements, self)
     }
 
     /// Uploads everything but the images, in the shape of `pose`.
@@ -121,7 +113,7 @@ impl Drawing {
 /// For each drawn vertex the first one that is welded with it.
 fn twins(model: &Model) -> Vec<u32> {
     let mut first = vec![u32::MAX; model.surface.positions.len()];
-    let of_drawn = model.surface_of_drawn.iter().enumerate();
+    let of_drawn = model.drawn.surface_vertices().enumerate();
     of_drawn
         .map(|(drawn, surface)| match surface {
             Some(surface) => {

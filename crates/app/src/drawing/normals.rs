@@ -30,14 +30,14 @@ struct RestNormals {
 }
 
 impl NormalGroups {
-    /// Groups the model's drawn vertices; `stored` has one unit normal a drawn vertex, in world space.
-    pub fn of(model: &Model, stored: Option<Vec<[f32; 3]>>) -> Self {
+    /// Groups the model's drawn vertices, which `triangles` are over; `stored` has one unit normal a drawn vertex, in world
+    /// space.
+    pub fn of(model: &Model, triangles: &[[u32; 3]], stored: Option<Vec<[f32; 3]>>) -> Self {
         let (group_of_drawn, stored_of_group) = group_vertices(model, stored.as_deref());
         let group_count = stored_of_group.len();
         let mut offsets = vec![0_u32; group_count + 1];
-        let corner_groups =
-            |corners: &[pliant_mesh::DrawnVertex; 3]| corners.map(|v| group_of_drawn[v.index()] as usize);
-        for corners in &model.drawn.triangles {
+        let corner_groups = |corners: &[u32; 3]| corners.map(|v| group_of_drawn[v as usize] as usize);
+        for corners in triangles {
             for group in corner_groups(corners) {
                 offsets[group + 1] += 1;
             }
@@ -46,8 +46,8 @@ impl NormalGroups {
             offsets[group + 1] += offsets[group];
         }
         let mut next = offsets.clone();
-        let mut faces = vec![0_u32; 3 * model.drawn.triangles.len()];
-        for (face, corners) in model.drawn.triangles.iter().enumerate() {
+        let mut faces = vec![0_u32; 3 * triangles.len()];
+        for (face, corners) in triangles.iter().enumerate() {
             for group in corner_groups(corners) {
                 faces[next[group] as usize] = face as u32;
                 next[group] += 1;
@@ -60,7 +60,7 @@ impl NormalGroups {
             rest: None,
         };
         if stored.is_some() {
-            let geometric = groups.geometric(&model.drawn.positions, model);
+            let geometric = groups.geometric(&model.rest_positions(), triangles);
             groups.rest = Some(RestNormals {
                 geometric,
                 stored: stored_of_group,
@@ -69,9 +69,10 @@ impl NormalGroups {
         groups
     }
 
-    /// One unit normal a drawn vertex, of the shape in which the drawn vertices stand at `positions`.
-    pub fn at(&self, positions: &[DVec3], model: &Model) -> Vec<[f32; 3]> {
-        let mut normals = self.geometric(positions, model);
+    /// One unit normal a drawn vertex, of the shape in which the drawn vertices stand at `positions`; `triangles` are those
+    /// that were grouped.
+    pub fn at(&self, positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<[f32; 3]> {
+        let mut normals = self.geometric(positions, triangles);
         if let Some(rest) = &self.rest {
             normals
                 .par_iter_mut()
@@ -95,14 +96,12 @@ impl NormalGroups {
     }
 
     /// Area-weighted geometric normals per group; the z axis where a group's triangles have no area.
-    fn geometric(&self, positions: &[DVec3], model: &Model) -> Vec<Vec3> {
+    fn geometric(&self, positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
         // f32 begins here: a doubled area vector only tells a direction for shading.
-        let doubled_areas: Vec<Vec3> = model
-            .drawn
-            .triangles
+        let doubled_areas: Vec<Vec3> = triangles
             .par_iter()
             .map(|corners| {
-                let [a, b, c] = corners.map(|vertex| positions[vertex.index()]);
+                let [a, b, c] = corners.map(|vertex| positions[vertex as usize]);
                 (b - a).cross(c - a).as_vec3()
             })
             .collect();
@@ -132,11 +131,11 @@ fn carry(stored: Vec3, from: Vec3, to: Vec3) -> Vec3 {
 
 /// The group of each drawn vertex and each group's stored normal (zero where the file has none).
 fn group_vertices(model: &Model, stored: Option<&[[f32; 3]]>) -> (Vec<u32>, Vec<Vec3>) {
-    let vertex_count = model.drawn.positions.len();
+    let vertex_count = model.drawn.vertex_count();
     let mut group_of_drawn = Vec::with_capacity(vertex_count);
     let mut stored_of_group = Vec::new();
     let mut group_of_key: HashMap<(u32, [u32; 3]), u32> = HashMap::with_capacity(vertex_count);
-    for drawn in 0..vertex_count {
+    for (drawn, surface_vertex) in model.drawn.surface_vertices().enumerate() {
         let normal = stored
             .and_then(|normals| normals.get(drawn).copied())
             .unwrap_or_default();
@@ -144,7 +143,7 @@ fn group_vertices(model: &Model, stored: Option<&[[f32; 3]]>) -> (Vec<u32>, Vec<
             stored_of_group.push(Vec3::from(normal));
             stored_of_group.len() as u32 - 1
         };
-        let group = match model.surface_of_drawn[drawn] {
+        let group = match surface_vertex {
             Some(surface) => *group_of_key
                 .entry((surface.0, normal.map(f32::to_bits)))
                 .or_insert_with(new_group),

@@ -49,8 +49,8 @@ pub fn outlines(editor: &Editor, model: &Model) -> Vec<SurfaceLine> {
 
 /// A line's ends on the edges of the drawn triangle behind the surface's.
 fn drawn_ends(line: &ContourLine, model: &Model) -> Option<[EdgePoint; 2]> {
-    let drawn = *model.drawn_triangle_of_surface.get(line.triangle as usize)?;
-    let corners = model.drawn.triangles.get(drawn as usize)?;
+    let triangle = line.triangle as usize;
+    let corners = (triangle < model.surface.triangles.len()).then(|| model.drawn_corners(triangle))?;
     Some(line.ends.map(|end| EdgePoint {
         vertices: end.corners.map(|corner| corners[usize::from(corner)].0),
         share: end.share,

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 use pliant_mesh::Model;
-use pliant_render::{ChunkBounds, Partition, ShapeData};
+use pliant_render::{ChunkBounds, ShapeData};
 use rayon::prelude::*;
 
-use super::normals::NormalGroups;
+use super::Drawing;
 
 /// Positions and normals of the drawn vertices. f32 begins here: positions are relative to the drawing's centre.
 #[derive(Debug)]
@@ -19,16 +19,11 @@ pub struct Pose {
 }
 
 impl Pose {
-    pub(super) fn of(
-        model: &Model,
-        displacements: &[DVec3],
-        centre: DVec3,
-        groups: &NormalGroups,
-        partition: &Partition,
-    ) -> Self {
+    pub(super) fn of(model: &Model, displacements: &[DVec3], drawing: &Drawing) -> Self {
+        let (centre, partition) = (drawing.centre, &drawing.partition);
         let mut world = Vec::new();
         model.drawn_positions(displacements, &mut world);
-        let normals = groups.at(&world, model);
+        let normals = drawing.normals.at(&world, &drawing.triangles);
         let positions: Vec<[f32; 3]> = world.par_iter().map(|&position| finite(position - centre)).collect();
         let bounds = (0..partition.chunk_count())
             .into_par_iter()

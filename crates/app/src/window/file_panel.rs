@@ -16,7 +16,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, notes: &Notes, commands: &mut Ou
     };
     ui.label(format!(
         "{} vertices, {} triangles",
-        thousands(model.drawn.file_vertex_count),
+        thousands(model.drawn.file_vertex_count()),
         thousands(model.surface.triangles.len())
     ));
     for kind in FindingKind::ALL {
@@ -40,8 +40,8 @@ fn finding(ui: &mut egui::Ui, model: &Model, kind: FindingKind, sentence: &str, 
         .filter_map(|&number| match kind.named() {
             Named::FileVertex => Some(number),
             Named::DrawnTriangle => {
-                let corner = model.drawn.triangles.get(number as usize)?[0];
-                Some(model.drawn.file_vertex[corner.index()].0)
+                let [corner, ..] = model.drawn_triangle(number)?;
+                Some(model.drawn.file_vertex(corner).0)
             }
         })
         .collect();

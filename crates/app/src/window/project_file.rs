@@ -44,7 +44,7 @@ pub fn write(
         MeshSource::Gone => {
             let kept = source_name(path, &loaded.path);
             if !kept.exists() {
-                let at_rest = &loaded.model.drawn.positions;
+                let at_rest = &loaded.model.rest_positions();
                 let (staged, _) = engine::stage_save(loaded, at_rest, &kept, staging, progress, cancel)?;
                 beside = Some(staged);
             }

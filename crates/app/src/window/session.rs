@@ -415,7 +415,7 @@ fn stage_original(
     cancel: &Cancel,
 ) -> Result<Staged, AppError> {
     if is_gltf(path) {
-        let at_rest = &loaded.model.drawn.positions;
+        let at_rest = &loaded.model.rest_positions();
         let (staged, _) = engine::stage_save(loaded, at_rest, original, staging, progress, cancel)?;
         Ok(staged)
     } else {

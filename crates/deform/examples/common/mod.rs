@@ -46,7 +46,7 @@ pub fn edit(mesh: &Path, model: &Model) -> (Vec<Role>, DAffine3) {
         return peers_edit(model);
     };
     let mut roles = vec![Role::Free; model.surface.positions.len()];
-    for (status, vertex) in selected.iter().zip(&model.surface_of_drawn) {
+    for (status, vertex) in selected.iter().zip(model.drawn.surface_vertices()) {
         if let Some(vertex) = vertex {
             roles[vertex.index()] = match *status as i32 {
                 0 => Role::Fixed,
