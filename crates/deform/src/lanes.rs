@@ -1,112 +1,307 @@
-//! Eight numbers side by side, and eight cells' rotations fitted at once.
+//! Eight cells' rotations fitted side by side.
 //!
-//! Plain arrays and loops: inside [`pulp::Arch::dispatch`] the compiler makes vectors of them, as wide as the machine
-//! has, elsewhere pairs. No operation is fused or reordered, and no lane sees another, so every machine and every
-//! grouping of cells gives the same bits.
+//! Matrices and quaternions lie in memory as numbers of eight cells each, and are computed on in the machine's own
+//! vectors, as many at a time as those hold. The vectors are asked for by name: left to the compiler, arrays of eight
+//! became pairs and single numbers. A closure is compiled
+//! apart from the vectors that it is called for, so there is none in the loops. No operation is fused and no lane sees another, so every
+//! machine and every grouping of cells gives the same bits.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use crate::rotation::{OPEN, SMALL_RAD, STATIONARY, STEPS};
+use glam::{DMat3, DQuat, DVec3};
+use pulp::Simd;
 
-/// How many lanes there are.
+use crate::rotation::{OPEN, SMALL_RAD, STATIONARY, STEPS, fit_anew};
+
+/// How many cells there are.
 pub(crate) const LANES: usize = 8;
 
-/// Eight numbers.
+/// A number of each cell.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 pub(crate) struct Lanes(pub [f64; LANES]);
 
+/// Eight cells on their way from matrices to rotations.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Fits {
+    /// What is added to the symmetric matrix `rest` to make S, column by column.
+    pub change: [[Lanes; 3]; 3],
+    /// xx, xy, xz, yy, yz, zz.
+    pub rest: [Lanes; 6],
+    /// The unit quaternions x, y, z, w: where to begin, and then what was found.
+    pub rotation: [Lanes; 4],
+    /// R − 1, column by column: near the identity they keep their digits.
+    pub turn: [[Lanes; 3]; 3],
+    /// ½ ⟨R − 1, S⟩.
+    pub inner: Lanes,
+}
+
+impl Fits {
+    /// Makes of unit quaternions that were rounded such whose length is 1 to second order.
+    #[inline(always)]
+    pub fn normalise<S: Simd>(&mut self, simd: S) {
+        for place in 0..LANES / S::F64_LANES {
+            let q = Vector::each(simd, &self.rotation, place);
+            let square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+            let length = Vector::splat(simd, 1.5) - Vector::splat(simd, 0.5) * square;
+            Vector::put_each(
+                [q[0] * length, q[1] * length, q[2] * length, q[3] * length],
+                &mut self.rotation,
+                place,
+            );
+        }
+    }
+
+    /// The rotations that maximise tr(Rᵀ S) of the first `count` cells, from those they have.
+    #[inline(always)]
+    pub fn fit<S: Simd>(&mut self, simd: S, count: usize) {
+        for place in 0..LANES / S::F64_LANES {
+            let s = self.matrices(simd, place);
+            let start = Vector::each(simd, &self.rotation, place);
+            let (rotation, found) = newton(simd, &s, start);
+            Vector::put_each(rotation, &mut self.rotation, place);
+            if !found.is_full() {
+                let mut flags = Lanes::default();
+                Vector::splat(simd, 1.0)
+                    .or(found, Vector::splat(simd, 0.0))
+                    .put(&mut flags, place);
+                let lanes = place * S::F64_LANES..((place + 1) * S::F64_LANES).min(count);
+                for lane in lanes.filter(|&lane| flags.0[lane] == 0.0) {
+                    self.refit(lane);
+                }
+            }
+        }
+    }
+
+    /// Finds turns and products of the rotations.
+    #[inline(always)]
+    pub fn finish<S: Simd>(&mut self, simd: S) {
+        for place in 0..LANES / S::F64_LANES {
+            let s = self.matrices(simd, place);
+            let b = self.changes(simd, place);
+            let rotation = Vector::each(simd, &self.rotation, place);
+            let [x, y, z, w] = rotation;
+            // ⟨R − 1, S⟩ by the quaternion: 2 w (a · v) + 2 (v · S v − |v|² tr S), a of B, whose digits S has lost.
+            let v = [x, y, z];
+            let axial = [b[1][2] - b[2][1], b[2][0] - b[0][2], b[0][1] - b[1][0]];
+            let mut inner = w * (axial[0] * x + axial[1] * y + axial[2] * z);
+            let trace = s[0][0] + s[1][1] + s[2][2];
+            for k in 0..3 {
+                let sv = s[0][k] * x + s[1][k] * y + s[2][k] * z;
+                inner = inner + v[k] * (sv - v[k] * trace);
+            }
+            inner.put(&mut self.inner, place);
+            for (column, turn) in turns(rotation).into_iter().zip(&mut self.turn) {
+                Vector::put_each(column, turn, place);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn changes<S: Simd>(&self, simd: S, place: usize) -> Matrices<S> {
+        let [a, b, c] = &self.change;
+        [
+            Vector::each(simd, a, place),
+            Vector::each(simd, b, place),
+            Vector::each(simd, c, place),
+        ]
+    }
+
+    #[inline(always)]
+    fn matrices<S: Simd>(&self, simd: S, place: usize) -> Matrices<S> {
+        let mut s = self.changes(simd, place);
+        let [xx, xy, xz, yy, yz, zz] = Vector::each(simd, &self.rest, place);
+        let rest = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+        for column in 0..3 {
+            for row in 0..3 {
+                s[column][row] = s[column][row] + rest[column][row];
+            }
+        }
+        s
+    }
+
+    /// Fits one lane anew, without a guess.
+    #[cold]
+    fn refit(&mut self, lane: usize) {
+        let [xx, xy, xz, yy, yz, zz] = self.rest.map(|value| value.0[lane]);
+        let rest = DMat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]);
+        let column = |[x, y, z]: [Lanes; 3]| DVec3::new(x.0[lane], y.0[lane], z.0[lane]);
+        let [a, b, c] = self.change.map(column);
+        let start = DQuat::from_array(self.rotation.map(|value| value.0[lane]));
+        let found = fit_anew(&(DMat3::from_cols(a, b, c) + rest), start);
+        for (own, value) in self.rotation.iter_mut().zip(found.to_array()) {
+            own.0[lane] = value;
+        }
+    }
+}
+
+/// A machine's vector of numbers, a cell each.
+#[derive(Clone, Copy, Debug)]
+struct Vector<S: Simd> {
+    simd: S,
+    numbers: S::f64s,
+}
+
+/// Matrices, column by column.
+type Matrices<S> = [[Vector<S>; 3]; 3];
+
 macro_rules! lanewise {
-    ($operation:ident, $name:ident, $symbol:tt) => {
-        impl $operation for Lanes {
+    ($operation:ident, $name:ident, $intrinsic:ident) => {
+        impl<S: Simd> $operation for Vector<S> {
             type Output = Self;
             #[inline(always)]
-            fn $name(mut self, other: Self) -> Self {
-                for k in 0..LANES {
-                    self.0[k] $symbol other.0[k];
-                }
-                self
+            fn $name(self, other: Self) -> Self {
+                let numbers = self.simd.$intrinsic(self.numbers, other.numbers);
+                Self { numbers, ..self }
             }
         }
     };
 }
-lanewise!(Add, add, +=);
-lanewise!(Sub, sub, -=);
-lanewise!(Mul, mul, *=);
-lanewise!(Div, div, /=);
+lanewise!(Add, add, add_f64s);
+lanewise!(Sub, sub, sub_f64s);
+lanewise!(Mul, mul, mul_f64s);
+lanewise!(Div, div, div_f64s);
 
-impl Neg for Lanes {
+impl<S: Simd> Neg for Vector<S> {
     type Output = Self;
     #[inline(always)]
-    fn neg(mut self) -> Self {
-        for k in 0..LANES {
-            self.0[k] = -self.0[k];
+    fn neg(self) -> Self {
+        Self {
+            numbers: self.simd.neg_f64s(self.numbers),
+            ..self
         }
-        self
     }
 }
 
-impl Lanes {
-    /// One number in all lanes.
+impl<S: Simd> Vector<S> {
     #[inline(always)]
-    pub fn splat(value: f64) -> Self {
-        Self([value; LANES])
+    fn splat(simd: S, value: f64) -> Self {
+        Self {
+            simd,
+            numbers: simd.splat_f64s(value),
+        }
+    }
+
+    /// The vector at one of the places of each.
+    #[inline(always)]
+    fn each<const N: usize>(simd: S, lanes: &[Lanes; N], place: usize) -> [Self; N] {
+        let mut vectors = [Self::splat(simd, 0.0); N];
+        for (vector, lanes) in vectors.iter_mut().zip(lanes) {
+            vector.numbers = S::as_simd_f64s(&lanes.0).0[place];
+        }
+        vectors
     }
 
     #[inline(always)]
-    fn sqrt(mut self) -> Self {
-        for k in 0..LANES {
-            self.0[k] = self.0[k].sqrt();
-        }
-        self
+    fn put(self, lanes: &mut Lanes, place: usize) {
+        S::as_mut_simd_f64s(&mut lanes.0).0[place] = self.numbers;
     }
 
     #[inline(always)]
-    fn max(mut self, other: Self) -> Self {
-        for k in 0..LANES {
-            self.0[k] = if self.0[k] > other.0[k] { self.0[k] } else { other.0[k] };
+    fn put_each<const N: usize>(vectors: [Self; N], lanes: &mut [Lanes; N], place: usize) {
+        for (vector, lanes) in vectors.into_iter().zip(lanes) {
+            vector.put(lanes, place);
         }
-        self
-    }
-
-    /// Its own lanes where `mask` is set, else the other's.
-    #[inline(always)]
-    fn or(mut self, mask: Mask, other: Self) -> Self {
-        for k in 0..LANES {
-            self.0[k] = if mask[k] { self.0[k] } else { other.0[k] };
-        }
-        self
     }
 
     #[inline(always)]
-    fn less(self, other: Self) -> Mask {
-        let mut mask = [false; LANES];
-        for k in 0..LANES {
-            mask[k] = self.0[k] < other.0[k];
+    fn sqrt(self) -> Self {
+        Self {
+            numbers: self.simd.sqrt_f64s(self.numbers),
+            ..self
         }
-        mask
     }
 
     #[inline(always)]
-    fn abs(mut self) -> Self {
-        for k in 0..LANES {
-            self.0[k] = self.0[k].abs();
+    fn abs(self) -> Self {
+        Self {
+            numbers: self.simd.abs_f64s(self.numbers),
+            ..self
         }
-        self
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.or(other.less(self), other)
+    }
+
+    /// Its own numbers where `mask` is set, else the other's.
+    #[inline(always)]
+    fn or(self, mask: Mask<S>, other: Self) -> Self {
+        Self {
+            numbers: self.simd.select_f64s(mask.lanes, self.numbers, other.numbers),
+            ..self
+        }
+    }
+
+    /// Where it is less; not where either is not a number.
+    #[inline(always)]
+    fn less(self, other: Self) -> Mask<S> {
+        Mask {
+            simd: self.simd,
+            lanes: self.simd.less_than_f64s(self.numbers, other.numbers),
+        }
     }
 }
 
-type Mask = [bool; LANES];
+/// Which cells of a vector.
+#[derive(Clone, Copy, Debug)]
+struct Mask<S: Simd> {
+    simd: S,
+    lanes: S::m64s,
+}
 
-/// Eight quaternions: x, y, z, w.
-pub(crate) type Quaternions = [Lanes; 4];
+impl<S: Simd> Mask<S> {
+    /// None of them.
+    #[inline(always)]
+    fn none(simd: S) -> Self {
+        let one = Vector::splat(simd, 1.0);
+        one.less(one)
+    }
 
-/// Eight matrices, column by column: `[column][row]`.
-pub(crate) type Matrices = [[Lanes; 3]; 3];
+    #[inline(always)]
+    fn is_full(self) -> bool {
+        self.simd.first_true_m64s((!self).lanes) >= S::F64_LANES
+    }
+}
 
-/// The rotation matrices less the identity: near the identity they keep their digits.
+impl<S: Simd> BitAnd for Mask<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self {
+            lanes: self.simd.and_m64s(self.lanes, other.lanes),
+            ..self
+        }
+    }
+}
+
+impl<S: Simd> BitOr for Mask<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        Self {
+            lanes: self.simd.or_m64s(self.lanes, other.lanes),
+            ..self
+        }
+    }
+}
+
+impl<S: Simd> Not for Mask<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        let full = Vector::splat(self.simd, 0.0).less(Vector::splat(self.simd, 1.0));
+        Self {
+            lanes: self.simd.xor_m64s(self.lanes, full.lanes),
+            ..self
+        }
+    }
+}
+
+/// The rotation matrices less the identity.
 #[inline(always)]
-pub(crate) fn turns([x, y, z, w]: Quaternions) -> Matrices {
+fn turns<S: Simd>([x, y, z, w]: [Vector<S>; 4]) -> Matrices<S> {
     let (x2, y2, z2) = (x + x, y + y, z + z);
     let (xx, yy, zz) = (x * x2, y * y2, z * z2);
     let (xy, xz, yz) = (x * y2, x * z2, y * z2);
@@ -119,24 +314,32 @@ pub(crate) fn turns([x, y, z, w]: Quaternions) -> Matrices {
 }
 
 /// Newton's method of [`crate::rotation`] in every lane at once: the rotations that maximise tr(Rᵀ S), from the guesses
-/// `start`. Lanes marked false found none.
+/// `start`, and which lanes found theirs.
 #[inline(always)]
-pub(crate) fn fit(s: &Matrices, start: Quaternions) -> (Quaternions, Mask) {
+fn newton<S: Simd>(simd: S, s: &Matrices<S>, start: [Vector<S>; 4]) -> ([Vector<S>; 4], Mask<S>) {
+    let (zero, one, half) = (
+        Vector::splat(simd, 0.0),
+        Vector::splat(simd, 1.0),
+        Vector::splat(simd, 0.5),
+    );
     let mut rotation = start;
-    let mut done = [false; LANES];
-    let mut found = [true; LANES];
-    let (zero, one, half) = (Lanes::splat(0.0), Lanes::splat(1.0), Lanes::splat(0.5));
+    let mut done = Mask::none(simd);
+    let mut found = !done;
     for _ in 0..STEPS {
         let mut r = turns(rotation);
         for k in 0..3 {
             r[k][k] = r[k][k] + one;
         }
         // b[c][k]: entry k, c of Rᵀ S.
-        let b: Matrices =
-            std::array::from_fn(|c| std::array::from_fn(|k| r[k][0] * s[c][0] + r[k][1] * s[c][1] + r[k][2] * s[c][2]));
+        let mut b = *s;
+        for c in 0..3 {
+            for k in 0..3 {
+                b[c][k] = r[k][0] * s[c][0] + r[k][1] * s[c][1] + r[k][2] * s[c][2];
+            }
+        }
         let skew = [b[1][2] - b[2][1], b[2][0] - b[0][2], b[0][1] - b[1][0]];
         let trace = b[0][0] + b[1][1] + b[2][2];
-        let open = Lanes::splat(OPEN) * trace;
+        let open = Vector::splat(simd, OPEN) * trace;
         let (hxx, hyy, hzz) = (
             b[1][1] + b[2][2] + open,
             b[0][0] + b[2][2] + open,
@@ -163,10 +366,9 @@ pub(crate) fn fit(s: &Matrices, start: Quaternions) -> (Quaternions, Mask) {
         let square = turn_x * turn_x + turn_y * turn_y + turn_z * turn_z;
         let residual = skew[0].abs().max(skew[1].abs()).max(skew[2].abs());
         // H positive definite and a sound turn; also false where anything is not a number.
-        let positive = [zero.less(trace), zero.less(hxx), zero.less(d2), zero.less(d3)];
-        let sound = square.less(Lanes::splat(4.0));
-        let stationary = residual.less(Lanes::splat(STATIONARY) * trace);
-        let small = square.less(Lanes::splat(SMALL_RAD * SMALL_RAD));
+        let definite = zero.less(trace) & zero.less(hxx) & zero.less(d2) & zero.less(d3);
+        let sound = square.less(Vector::splat(simd, 4.0));
+        let ends = definite & residual.less(Vector::splat(simd, STATIONARY) * trace);
         let [qx, qy, qz, qw] = rotation;
         let (x, y, z) = (half * turn_x, half * turn_y, half * turn_z);
         let turned = [
@@ -177,24 +379,16 @@ pub(crate) fn fit(s: &Matrices, start: Quaternions) -> (Quaternions, Mask) {
         ];
         let norm = turned[0] * turned[0] + turned[1] * turned[1] + turned[2] * turned[2] + turned[3] * turned[3];
         let inverse = one / norm.sqrt();
-        let mut keeps = [false; LANES];
-        for k in 0..LANES {
-            let definite = positive[0][k] & positive[1][k] & positive[2][k] & positive[3][k];
-            let ends = definite & stationary[k];
-            let fails = !done[k] & !ends & !(definite & sound[k]);
-            keeps[k] = done[k] | ends | fails;
-            found[k] &= !fails;
-            done[k] = keeps[k] | small[k];
-        }
+        let fails = !(done | ends | (definite & sound));
+        let keeps = done | ends | fails;
+        found = found & !fails;
+        done = keeps | square.less(Vector::splat(simd, SMALL_RAD * SMALL_RAD));
         for k in 0..4 {
             rotation[k] = rotation[k].or(keeps, turned[k] * inverse);
         }
-        if done == [true; LANES] {
+        if done.is_full() {
             break;
         }
     }
-    for k in 0..LANES {
-        found[k] &= done[k];
-    }
-    (rotation, found)
+    (rotation, found & done)
 }

@@ -20,6 +20,7 @@ mod lbfgs;
 mod method;
 mod operators;
 mod partition;
+mod prefetch;
 mod primo;
 mod problem;
 mod rigid_fit;

@@ -16,7 +16,6 @@ pub(crate) mod matrix;
 mod multifrontal;
 mod ordering;
 mod passes;
-mod prefetch;
 mod reuse;
 pub(crate) mod substitution;
 mod symbolic;

@@ -14,9 +14,9 @@ const SUFFICIENT: f64 = 1e-4;
 /// Lengths that a line search tries.
 const TRIALS: u32 = 10;
 
-/// Energies below this share of the rest shape's scale, edges that are off by 3e-8 of their length, are rounding: of turns
-/// and gradients in single precision.
-const NOTHING: f64 = 1e-15;
+/// Energies below this share of the rest shape's scale, edges that are off by what single precision rounds off, are
+/// rounding: of turns and gradients.
+const NOTHING: f64 = 3.6e-15;
 
 /// What is known where the last step ended.
 #[derive(Clone, Copy, Debug, Default)]

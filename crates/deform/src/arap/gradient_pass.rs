@@ -3,6 +3,10 @@
 use pulp::{Simd, WithSimd};
 
 use super::cells::{Cells, Quad, minus};
+use crate::prefetch::Prefetch;
+
+/// Entries between those that are gathered and those that are asked for: some cells'.
+const AHEAD: usize = 24;
 
 /// R − 1, column by column.
 pub(super) type Turn = [[f32; 4]; 3];
@@ -55,6 +59,7 @@ impl Cells {
         moments: &[Quad],
     ) {
         let per_unit = self.unit().recip() as f32;
+        let prefetch = Prefetch::new();
         for (place, gradient) in gradient.iter_mut().enumerate() {
             let cell = first + place;
             let around = self.around(cell);
@@ -64,6 +69,12 @@ impl Cells {
                 let term = times_turn(&turns[end as usize], *back);
                 for row in 0..4 {
                     sum[row] -= term[row];
+                }
+            }
+            let ahead = around.start + AHEAD..around.end + AHEAD;
+            for &end in self.ends.get(ahead).unwrap_or_default() {
+                if let Some(turn) = turns.get(end as usize) {
+                    prefetch.item(turn);
                 }
             }
             let weighted = |field: &[Quad]| {

@@ -2,14 +2,17 @@
 
 use pulp::{Simd, WithSimd};
 
+use crate::prefetch::Prefetch;
 use crate::sparse::line::{LANES, Line, Shape};
-use crate::sparse::prefetch::Prefetch;
 
 /// K right-hand sides of eight rows, each a line.
 pub(crate) type Strip<const K: usize> = [Line; K];
 
 /// Strips that are taken at once: their sums are independent, which hides how long an addition takes.
 const STRIPS: usize = 4;
+
+/// Lines between the one that is read and the one that is asked for: some blocks of the usual size.
+const AHEAD: usize = 128;
 
 /// Columns whose sums are kept near: their lines lie one after the other.
 const COLUMNS: usize = 64;
@@ -52,7 +55,7 @@ fn gather<S: Simd, const V: usize, const R: usize, const K: usize>(
     for (c, row) in rows.iter().enumerate() {
         let factors = row.map(|value| simd.splat_f64s(value));
         for r in 0..R {
-            prefetch.above(&lines[r][c]);
+            prefetch.above(&lines[r][c], AHEAD);
             let line = vectors::<S, V>(&lines[r][c]);
             for k in 0..K {
                 for v in 0..V {
@@ -133,7 +136,7 @@ fn spread<S: Simd, const V: usize, const R: usize, const K: usize>(
     let x: [[[S::f64s; V]; K]; R] = std::array::from_fn(|r| std::array::from_fn(|k| vectors::<S, V>(&x[r][k])));
     for (c, sums) in sums.iter_mut().enumerate().rev() {
         let lines: [[S::f64s; V]; R] = std::array::from_fn(|r| {
-            prefetch.below(&lines[r][c]);
+            prefetch.below(&lines[r][c], AHEAD);
             vectors::<S, V>(&lines[r][c])
         });
         for k in 0..K {
