@@ -13,6 +13,8 @@ struct Clay {
     colour: vec4f,
     // The inside, where an open surface shows its back.
     inside: vec4f,
+    // What the studio's light is multiplied by where it falls on a region's colour, and in w, its gloss.
+    on_regions: vec4f,
 }
 
 @group(2) @binding(0) var<uniform> clay: Clay;
@@ -64,7 +66,10 @@ fn fs_clay(in: SurfaceFragment, @builtin(front_facing) is_front: bool) -> @locat
     let n = seen_normal(in.normal_view, in.position_view, to_eye, is_front);
     let light = studio_light(n, to_eye);
     let colour = mix(select(clay.inside.rgb, clay.colour.rgb, is_front), in.region.rgb, in.region.a);
-    return vec4f(rolled_off(colour * light.diffuse + light.gloss), 1.0);
+    // Lamps that suit a dark clay would bleach a region's colour, and coloured ones change it.
+    let diffuse = light.diffuse * mix(vec3f(1.0), clay.on_regions.rgb, in.region.a);
+    let gloss = light.gloss * mix(1.0, clay.on_regions.w, in.region.a);
+    return vec4f(rolled_off(colour * diffuse + gloss), 1.0);
 }
 
 // Colours that carry numbers: shaded just enough to show the form, so that they still match their legend.

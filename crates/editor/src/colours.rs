@@ -21,7 +21,8 @@ pub fn stiffness_colour(stiffness: f64) -> [u8; 4] {
 
 impl Editor {
     /// The colour of each surface vertex by what it does, sRGB with alpha, replacing `out`: handles in their own
-    /// colours, the free region blue, what is held still grey, and darker where that was painted.
+    /// colours, the free region blue, what was painted to be held still dark grey, and nothing (alpha 0) on what rests
+    /// by itself.
     ///
     /// To be fetched again when [`SceneView::regions_revision`](crate::SceneView::regions_revision) has grown.
     pub fn region_colours(&self, out: &mut Vec<[u8; 4]>) {
@@ -38,7 +39,8 @@ impl Editor {
     /// What tells the colour of a vertex: see [`Editor::region_colours`].
     pub fn region_colour(&self) -> impl Fn(SurfaceVertex) -> [u8; 4] {
         const FREE: [u8; 4] = [96, 150, 222, 255];
-        const STILL: [u8; 4] = [178, 178, 178, 96];
+        // The clay or the material as it is: a share of any grey would wash it out.
+        const STILL: [u8; 4] = [0; 4];
         const FIXED: [u8; 4] = [112, 112, 116, 255];
         let handles = &self.document.handles;
         let largest = handles.iter().map(|handle| usize::from(handle.id.0) + 1).max();

@@ -130,6 +130,7 @@ fn uniform_structs_are_laid_out_alike() {
     let clay = layout!(ClayUniform {
         colour: [f32; 4],
         inside: [f32; 4],
+        on_regions: [f32; 4],
     });
     assert_eq!(wgsl_layout(Shader::Surface, "Clay"), clay);
     let material = layout!(MaterialUniform {

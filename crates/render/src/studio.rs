@@ -3,9 +3,10 @@
 //!
 //! A texture rather than lamps in the shader: any number of lamps costs one look-up a pixel, which software devices
 //! feel. Computed rather than painted: a clay is a dozen numbers that can be read and changed here. Light and gloss are
-//! kept apart, so that a region's colour can take the clay's place under the same light.
+//! kept apart, so that a region's colour can take the clay's place under the same light, evened out: each region is told
+//! by its colour on every clay.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use crate::uniforms::ClayUniform;
 
@@ -197,13 +198,43 @@ pub(crate) fn texture(matcap: Matcap) -> Vec<u8> {
     rgba
 }
 
-/// A clay's own colours.
+/// A clay's own colours, and what its light does to those of regions.
 pub(crate) fn uniform(matcap: Matcap) -> ClayUniform {
     let studio = studio(matcap);
     ClayUniform {
         colour: studio.colour.extend(1.0).to_array(),
         inside: studio.inside.extend(1.0).to_array(),
+        on_regions: on_regions(&studio).to_array(),
     }
+}
+
+/// The strongest highlight on a region's colour.
+const GLOSS_ON_REGIONS: f32 = 0.15;
+
+/// What brings a studio's light to that of the plain clay, for which the regions' colours are made: its mean over a
+/// sphere in each channel, and in w its gloss to no more than [`GLOSS_ON_REGIONS`].
+fn on_regions(studio: &Studio) -> Vec4 {
+    let light = mean_light(&CLAY) / mean_light(studio);
+    let strongest = studio
+        .gloss
+        .iter()
+        .fold(studio.sheen, |most, (_, strength)| most.max(*strength));
+    light.extend((GLOSS_ON_REGIONS / strongest).min(1.0))
+}
+
+/// The mean light over a sphere as it is seen.
+fn mean_light(studio: &Studio) -> Vec3 {
+    let lights: Vec<Vec3> = sphere().map(|n| lit(studio, n).0).collect();
+    lights.iter().sum::<Vec3>() / lights.len() as f32
+}
+
+/// Normals of a sphere, evenly spread over its picture.
+fn sphere() -> impl Iterator<Item = Vec3> {
+    const STEPS: i32 = 24;
+    let at = |step: i32| (step as f32 + 0.5) / STEPS as f32;
+    let pixels = (-STEPS..STEPS).flat_map(move |row| (-STEPS..STEPS).map(move |column| (at(column), at(row))));
+    let inside = pixels.filter(|(x, y)| x * x + y * y < 1.0);
+    inside.map(|(x, y)| Vec3::new(x, y, (1.0 - x * x - y * y).sqrt()))
 }
 
 /// Light and gloss of a sphere's point of unit normal `n`, seen from +z.
@@ -243,6 +274,49 @@ fn encoded(linear: f32) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Blue, gold, red and grey, linear, as they come out of the shader on a sphere of each clay: as deep as on the plain
+    /// one (grey stays grey), and with the form to be seen.
+    #[test]
+    fn a_regions_colour_is_as_deep_on_every_clay_and_shows_the_form() {
+        let colours = [
+            [0.12, 0.31, 0.73],
+            [0.81, 0.48, 0.09],
+            [0.62, 0.06, 0.04],
+            [0.16, 0.16, 0.17],
+        ];
+        // `rolled_off` in shaders/lib/tone.wgsl.
+        let shown = |light: Vec3| {
+            let over = (light - 0.5).max(Vec3::ZERO) / 0.5;
+            light.min(Vec3::splat(0.5)) + 0.5 * over / (1.0 + over)
+        };
+        let depth = |colour: Vec3| 1.0 - colour.min_element() / colour.max_element();
+        for colour in colours.map(Vec3::from) {
+            let on = |matcap: Matcap| {
+                let studio = studio(matcap);
+                let even = on_regions(&studio);
+                let pixels: Vec<Vec3> = sphere()
+                    .map(|n| {
+                        let (light, gloss) = lit(&studio, n);
+                        shown(colour * light * even.truncate() + gloss * even.w)
+                    })
+                    .collect();
+                let mean = pixels.iter().sum::<Vec3>() / pixels.len() as f32;
+                let mut bright: Vec<f32> = pixels.iter().map(|pixel| pixel.element_sum()).collect();
+                bright.sort_by(f32::total_cmp);
+                (depth(mean), bright[bright.len() * 9 / 10] / bright[bright.len() / 10])
+            };
+            let (plain_depth, _) = on(Matcap::Clay);
+            for matcap in Matcap::ALL {
+                let (its_depth, form) = on(matcap);
+                assert!(
+                    (its_depth - plain_depth).abs() < 0.04,
+                    "{matcap:?}: {colour} is {its_depth} deep, not {plain_depth}"
+                );
+                assert!(form > 3.0, "{matcap:?}: {colour} spans {form}");
+            }
+        }
+    }
 
     #[test]
     fn every_clay_is_lit_from_above_and_never_clips_its_light() {

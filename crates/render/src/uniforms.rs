@@ -68,6 +68,7 @@ pub(crate) struct SurfaceUniform {
 pub(crate) struct ClayUniform {
     pub(crate) colour: [f32; 4],
     pub(crate) inside: [f32; 4],
+    pub(crate) on_regions: [f32; 4],
 }
 
 /// `Map` in `shaders/material.wgsl`.
