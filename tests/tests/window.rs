@@ -8,10 +8,14 @@
     reason = "tests fail by panicking and say what they skip"
 )]
 
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
 use pliant_app::window::{Application, KeepOriginal, NumpadDigits, Shared, Shell, Source};
 use pliant_deform::{Loose, Method};
@@ -119,6 +123,13 @@ impl Session {
     /// A modal transform is under way after G, R, S: only a confirmed one settles.
     fn settle_if_idle(&mut self) {
         self.harness.step();
+    }
+
+    /// Opens the palette and types there.
+    fn palette(&mut self, text: &str) {
+        self.key(Key::F1, Modifiers::NONE);
+        self.harness.event(Event::Text(text.to_owned()));
+        self.harness.run_steps(2);
     }
 
     fn shape(&self) -> Vec<DVec3> {
@@ -561,4 +572,164 @@ fn a_lost_graphics_device_is_opened_again_and_the_document_is_as_it_was() {
         assert_eq!(application.editor().document().loose(), Loose::Rest);
         assert!(application.drawings() > 0, "it is drawn on the new device");
     });
+}
+
+/// The threads that jobs share, every one of them kept busy until this is dropped.
+struct Crowd {
+    gate: Arc<(Mutex<bool>, Condvar)>,
+    jobs: Option<JoinHandle<()>>,
+}
+
+impl Crowd {
+    fn gather() -> Self {
+        let gate = Arc::new((Mutex::new(false), Condvar::new()));
+        let present = Arc::new(AtomicUsize::new(0));
+        let (its_gate, its_present) = (Arc::clone(&gate), Arc::clone(&present));
+        // From a thread that is no window's.
+        let jobs = std::thread::spawn(move || {
+            rayon::broadcast(|_| {
+                its_present.fetch_add(1, Ordering::SeqCst);
+                let mut is_open = its_gate.0.lock().unwrap();
+                while !*is_open {
+                    is_open = its_gate.1.wait(is_open).unwrap();
+                }
+            });
+        });
+        let threads = std::thread::spawn(rayon::current_num_threads).join().unwrap();
+        while present.load(Ordering::SeqCst) < threads {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let jobs = Some(jobs);
+        Self { gate, jobs }
+    }
+
+    fn disperse(gate: &(Mutex<bool>, Condvar)) {
+        *gate.0.lock().unwrap() = true;
+        gate.1.notify_all();
+    }
+}
+
+impl Drop for Crowd {
+    fn drop(&mut self) {
+        Self::disperse(&self.gate);
+        if let Some(jobs) = self.jobs.take() {
+            jobs.join().unwrap();
+        }
+    }
+}
+
+/// While every thread that jobs share is taken, the window shows regions, rims and colours all the same: none of its
+/// loops stands in line with jobs. What would wait for ever is let go after two minutes, and the test fails.
+#[test]
+fn the_windows_loops_wait_for_no_job() {
+    let Some(mut session) = Session::begin() else { return };
+    let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
+    session.stroke(top + vec2(0.0, 6.0), top + vec2(0.0, 16.0));
+    let drawings = session.harness.state().drawings();
+
+    let crowd = Crowd::gather();
+    let gate = Arc::clone(&crowd.gate);
+    let is_over = Arc::new(AtomicBool::new(false));
+    let (its_end, was_stuck) = (Arc::clone(&is_over), Arc::new(AtomicBool::new(false)));
+    let its_word = Arc::clone(&was_stuck);
+    let watchdog = std::thread::spawn(move || {
+        let start = Instant::now();
+        while !its_end.load(Ordering::SeqCst) {
+            if start.elapsed() > Duration::from_secs(120) {
+                its_word.store(true, Ordering::SeqCst);
+                return Crowd::disperse(&gate);
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    });
+    let document = Command::all_listed().map(|listed| listed.command.clone());
+    for command in document.filter(|command| !matches!(command, Command::Move | Command::Turn | Command::Scale)) {
+        session.harness.state_mut().command(command);
+        session.harness.run_steps(2);
+    }
+    session.pointer(top, None);
+    session.pointer(top, Some(true));
+    session.pointer(top + vec2(10.0, 10.0), None);
+    session.pointer(top + vec2(10.0, 10.0), Some(false));
+    is_over.store(true, Ordering::SeqCst);
+    drop(crowd);
+    watchdog.join().unwrap();
+    assert!(
+        !was_stuck.load(Ordering::SeqCst),
+        "a loop of the window stood in line with jobs"
+    );
+    assert!(session.harness.state().drawings() > drawings, "and all that was shown");
+}
+
+#[test]
+fn escape_closes_the_window_on_top_and_then_means_the_editor_again() {
+    let Some(mut session) = Session::begin() else { return };
+    let has = |session: &Session, label: &str| session.harness.query_by_label(label).is_some();
+    let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
+    session.stroke(top + vec2(0.0, 6.0), top + vec2(0.0, 10.0));
+    for name in ["log", "keys"] {
+        session.palette(name);
+        session.key(Key::Enter, Modifiers::NONE);
+    }
+    let (of_log, of_keys) = ("Copy all", "The program's own keys");
+    assert!(has(&session, of_log) && has(&session, of_keys));
+    // The palette comes first.
+    session.palette("log");
+    session.key(Key::Escape, Modifiers::NONE);
+    assert!(has(&session, of_log) && has(&session, of_keys));
+    // Then a key that is awaited.
+    session.harness.get_by_label("Key of Undo").click();
+    session.harness.run_steps(2);
+    session.key(Key::Escape, Modifiers::NONE);
+    assert!(has(&session, of_log) && has(&session, of_keys));
+    // Then what a tool is doing.
+    session.key(Key::G, Modifiers::NONE);
+    assert!(session.harness.state().editor().is_acting());
+    session.key(Key::Escape, Modifiers::NONE);
+    assert!(!session.harness.state().editor().is_acting());
+    assert!(has(&session, of_log) && has(&session, of_keys));
+    // Then the windows, the one that was touched last first.
+    session.key(Key::Escape, Modifiers::NONE);
+    assert!(has(&session, of_log) && !has(&session, of_keys));
+    session.key(Key::Escape, Modifiers::NONE);
+    assert!(!has(&session, of_log) && !has(&session, of_keys));
+}
+
+#[test]
+fn what_can_not_be_done_now_says_why_in_the_palette() {
+    let Some(mut session) = Session::begin() else { return };
+    session.palette("delete handle");
+    session.key(Key::Enter, Modifiers::NONE);
+    let said = session.harness.query_by_label_contains("No handle is selected");
+    assert!(said.is_some(), "it stays open and says why");
+    session.key(Key::Escape, Modifiers::NONE);
+    assert!(
+        session
+            .harness
+            .query_by_label_contains("No handle is selected")
+            .is_none()
+    );
+}
+
+#[test]
+fn a_key_that_the_window_has_is_refused_by_name_and_another_is_awaited() {
+    let Some(mut session) = Session::begin() else { return };
+    session.palette("keys");
+    session.key(Key::Enter, Modifiers::NONE);
+    session.harness.get_by_label("Key of Undo").click();
+    session.harness.run_steps(2);
+    session.key(Key::S, Modifiers::COMMAND);
+    assert!(
+        session.harness.query_by_label_contains("Save model").is_some(),
+        "who has it is named"
+    );
+    session.key(Key::F5, Modifiers::NONE);
+    assert!(
+        session.harness.query_by_label_contains("F5").is_some(),
+        "what is no command's key is said"
+    );
+    session.key(Key::J, Modifiers::COMMAND);
+    let keys = session.harness.state().editor().shortcuts(&Command::Undo);
+    assert_eq!(keys.iter().map(|key| key.label()).collect::<Vec<_>>(), ["Ctrl+J"]);
+    assert!(session.harness.query_by_label_contains("Save model").is_none());
 }

@@ -202,7 +202,7 @@ fn main() {
     walk.harness.key_press(Key::Escape);
     walk.harness.run_steps(3);
 
-    walk.harness.get_by_label("View").click();
+    walk.harness.get_by_label("Window").click();
     walk.harness.run_steps(4);
     walk.harness.get_by_label("Light or dark").click();
     walk.shoot("light");

@@ -1,4 +1,4 @@
-//! What each command does, and when it can.
+//! What each command does.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use pliant_mesh::SurfaceVertex;
 use crate::camera_history::CameraStep;
 use crate::command::{Command, Reach};
 use crate::constraint::Constraint;
-use crate::document::{Handle, HandleId, Paint};
+use crate::document::{HandleId, Paint};
 use crate::editor::Editor;
 use crate::exchange::without_pivot;
 use crate::tool::{Tool, TransformDrag, TransformKind, Widen};
@@ -22,88 +22,6 @@ const BRUSH_STEP: f64 = 1.2;
 const VIEW_STEP_RAD: f64 = std::f64::consts::PI / 12.0;
 
 impl Editor {
-    /// Whether the command would do anything now.
-    pub fn is_enabled(&self, command: &Command) -> bool {
-        let open = self.engine.model.is_some();
-        let selected = self.selected.and_then(|id| self.document.handle(id));
-        match command {
-            Command::Undo => self.history.undo_name().is_some(),
-            Command::GoToStep(steps) => *steps <= self.history.names().0.len(),
-            Command::Region(_) => self.can_act_on_region(),
-            Command::ClearStiffness => self.document.stiffness.is_some(),
-            Command::DuplicateHandle | Command::PickPivot | Command::Widen | Command::ResetRegion => {
-                selected.is_some_and(|handle| !handle.locked)
-            }
-            Command::MakeTwin(_) => selected.is_some_and(|handle| handle.twin.is_none() && !handle.locked),
-            Command::Untwin => selected.is_some_and(|handle| handle.twin.is_some()),
-            Command::ToggleSelected(id)
-            | Command::SetHandleColour(id, _)
-            | Command::ToggleHandleVisible(id)
-            | Command::ToggleHandleLocked(id)
-            | Command::SetPivotPlace(id, _)
-            | Command::SetPivot(id, _) => self.document.handle(*id).is_some(),
-            Command::Redo => self.history.redo_name().is_some(),
-            Command::DeleteHandle => selected.is_some_and(|handle| !handle.locked),
-            Command::Deselect | Command::Move | Command::Turn | Command::Scale => selected.is_some(),
-            Command::ResetHandle => selected.is_some_and(Handle::is_displaced),
-            Command::NextHandle => !self.document.handles.is_empty(),
-            Command::SelectHandle(id)
-            | Command::RenameHandle(id, _)
-            | Command::SetHandleTransform(id, _)
-            | Command::SetTurn(id, _)
-            | Command::SetReach(id, _)
-            | Command::SetContinuity(id, _)
-            | Command::SetSoft(id, _) => self.document.handle(*id).is_some(),
-            Command::Apply => self.document.is_displaced(),
-            Command::ResetShape => self.document.is_displaced() || self.document.applied,
-            Command::ClearRegions => self.document.paint.iter().any(|paint| *paint != Paint::Bare),
-            Command::CancelJobs => self
-                .engine
-                .running()
-                .iter()
-                .any(|(kind, _)| *kind != crate::JobKind::Pick),
-            Command::ShowEverything => !self.document.access.shows_all(),
-            Command::NewHandle
-            | Command::Objects(..)
-            | Command::ObjectHere(_)
-            | Command::Isolate
-            | Command::SetMethod(_)
-            | Command::SetLoose(_)
-            | Command::SetLoosePart(..)
-            | Command::FramePart(_)
-            | Command::SetStiffness(_)
-            | Command::FrameAll
-            | Command::FrameSelected
-            | Command::FrameFileVertex(_) => open,
-            Command::CameraBack => !self.camera_history.behind.is_empty(),
-            Command::CameraForth => !self.camera_history.ahead.is_empty(),
-            Command::SetTool(_)
-            | Command::SetBrushRadius(_)
-            | Command::GrowBrush
-            | Command::ShrinkBrush
-            | Command::View(_)
-            | Command::SetUp(_)
-            | Command::SetShading(_)
-            | Command::SetClay(_)
-            | Command::ToggleFlat
-            | Command::ToggleWireframe
-            | Command::ToggleBorders
-            | Command::ToggleOutlines
-            | Command::ToggleRegions
-            | Command::SetOrientation(_)
-            | Command::SetStrokeShape(_)
-            | Command::SetDepth(_)
-            | Command::SetBrushMetric(_)
-            | Command::SetStiffnessBrush(_)
-            | Command::ToggleGrid
-            | Command::ToggleProjection
-            | Command::SetOrbit(_)
-            | Command::StepView(_)
-            | Command::TurnAround
-            | Command::SetGizmo(_) => true,
-        }
-    }
-
     /// Does what the command says; a command that can't do anything now is ignored.
     pub(crate) fn execute(&mut self, command: Command) {
         if !self.is_enabled(&command) {

@@ -39,6 +39,7 @@ mod look;
 mod method_form;
 mod mirror;
 mod number_entry;
+mod obstacle;
 mod overlay;
 mod picking;
 mod polar;

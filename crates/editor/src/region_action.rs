@@ -64,14 +64,6 @@ impl Editor {
         }
     }
 
-    pub(crate) fn can_act_on_region(&self) -> bool {
-        let locked = |id: HandleId| self.document.handle(id).is_none_or(|handle| handle.locked);
-        match self.role_in_hand() {
-            Some(Paint::Handle(id)) => !locked(id),
-            other => other.is_some() && self.engine.model.is_some(),
-        }
-    }
-
     pub(crate) fn act_on_region(&mut self, action: RegionAction) {
         let (Some(role), Some(model)) = (self.role_in_hand(), self.engine.model.clone()) else {
             return;

@@ -14,14 +14,16 @@ use pliant_editor::{Command, Editor, Event, JobQueue, KeyMap};
 use super::compare::Compare;
 use super::dialog::{self, Question, Then};
 use super::input::Input;
-use super::keys_window::KeysWindow;
-use super::log::Log;
+use super::keys_window::{self, KeysWindow};
+use super::log::{self, Log};
 use super::message::Message;
 use super::notes::{Note, Notes};
 use super::outbox::Outbox;
+use super::own_keys;
 use super::palette::{Found, Outcome, Palette};
 use super::panels;
 use super::places::Places;
+use super::promptly;
 use super::recovery::{self, Recovery};
 use super::session::{KeepOriginal, OpenFile, Session, Source};
 use super::settings::SettingsFile;
@@ -89,6 +91,7 @@ impl Application {
         source: Source,
         places: &Places,
     ) -> Result<Self, AppError> {
+        promptly::take_this_thread();
         let Some(state) = context.wgpu_render_state.clone() else {
             return Err(AppError::System(
                 "the window has no graphics device: install a Vulkan driver".to_owned(),
@@ -309,7 +312,10 @@ impl Application {
 
     /// Tells the editor which keys a person has chosen.
     fn take_keys(&mut self) {
-        let (keys, problems) = KeyMap::of_names(&self.settings.get().keys);
+        let mut chosen = self.settings.get().keys.clone();
+        let mut problems = own_keys::refuse(&mut chosen);
+        let (keys, misread) = KeyMap::of_names(&chosen);
+        problems.extend(misread);
         self.editor.handle(Event::Keys(keys));
         if !problems.is_empty() {
             self.fail(problems.join(" "));
@@ -326,6 +332,35 @@ impl Application {
                 None => {}
             }
             context.request_repaint();
+        }
+    }
+
+    /// Esc means the nearest thing: a question, the palette, an open menu, a field that is typed into and what a tool is
+    /// doing come first; then it closes the list of keys or the log, and only where neither is open does the editor
+    /// get it.
+    fn close_by_escape(&mut self, context: &egui::Context) {
+        let is_taken = self.question.is_some()
+            || self.palette.is_some()
+            || self.keys.takes_keys()
+            || egui::Popup::is_any_open(context)
+            || context.egui_wants_keyboard_input()
+            || self.editor.is_acting();
+        let open = [
+            self.keys.open.then_some(keys_window::ID),
+            self.log.open.then_some(log::ID),
+        ];
+        if is_taken || open == [None, None] {
+            return;
+        }
+        if !context.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape)) {
+            return;
+        }
+        let top = context.memory(|memory| memory.areas().top_layer_id(egui::Order::Middle));
+        let is_top = |name: &str| top.is_some_and(|layer| layer.id == egui::Id::unique(name));
+        if self.keys.open && (!self.log.open || !is_top(log::ID)) {
+            self.keys.open = false;
+        } else {
+            self.log.open = false;
         }
     }
 
@@ -365,6 +400,10 @@ impl Application {
 
 impl eframe::App for Application {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        debug_assert!(
+            promptly::has_this_thread(),
+            "the window's loops would wait behind jobs' on this thread"
+        );
         let (start, drawn_before) = (Instant::now(), self.drawing_time());
         let context = ui.ctx().clone();
         self.take_messages();
@@ -373,6 +412,7 @@ impl eframe::App for Application {
             return;
         }
         self.file_shortcuts(&context);
+        self.close_by_escape(&context);
 
         let mut commands = Outbox::default();
         let mut file_command = None;

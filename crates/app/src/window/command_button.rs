@@ -1,5 +1,7 @@
 //! A button for a command: its name, tooltip and shortcut come from the editor's list.
 
+use std::borrow::Cow;
+
 use eframe::egui::{self, Button};
 use pliant_editor::{Command, Editor};
 
@@ -10,7 +12,7 @@ pub fn command_button(ui: &mut egui::Ui, editor: &Editor, command: &Command) -> 
     if let Some(shortcut) = editor.shortcuts(command).first() {
         button = button.shortcut_text(shortcut.label());
     }
-    ui.add_enabled(editor.is_enabled(command), button)
+    enabled_unless(ui, editor.obstacle(command), button)
         .on_hover_text(listed.tooltip)
         .clicked()
 }
@@ -23,9 +25,18 @@ pub fn command_choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, cho
         None => listed.tooltip.to_owned(),
     };
     let button = Button::selectable(chosen, listed.name);
-    ui.add_enabled(editor.is_enabled(command), button)
+    enabled_unless(ui, editor.obstacle(command), button)
         .on_hover_text(tooltip)
         .clicked()
+}
+
+/// A button that is greyed where something stands in its way, which it tells.
+fn enabled_unless(ui: &mut egui::Ui, obstacle: Option<Cow<'_, str>>, button: Button<'_>) -> egui::Response {
+    let response = ui.add_enabled(obstacle.is_none(), button);
+    match obstacle {
+        Some(obstacle) => response.on_disabled_hover_text(&*obstacle),
+        None => response,
+    }
 }
 
 /// Choices side by side, each with its name and what it means; the one that is clicked.

@@ -18,7 +18,7 @@ use crate::engine::is_project;
 
 impl Application {
     pub(super) fn file_shortcuts(&mut self, context: &egui::Context) {
-        if self.question.is_some() {
+        if self.question.is_some() || self.keys.takes_keys() {
             return;
         }
         for command in FileCommand::WITH_SHORTCUTS {

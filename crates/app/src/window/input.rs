@@ -153,7 +153,7 @@ pub fn pressed_key(input: &egui::InputState) -> Option<(Key, Modifiers)> {
     })
 }
 
-fn held_modifiers(modifiers: egui::Modifiers) -> Modifiers {
+pub fn held_modifiers(modifiers: egui::Modifiers) -> Modifiers {
     Modifiers {
         shift: modifiers.shift,
         ctrl: modifiers.command,
@@ -175,7 +175,7 @@ fn digit_of(key: egui::Key) -> Option<u8> {
     key.symbol_or_name().parse::<u8>().ok().filter(|digit| *digit < 10)
 }
 
-fn key_of(key: egui::Key) -> Option<Key> {
+pub fn key_of(key: egui::Key) -> Option<Key> {
     Some(match key {
         egui::Key::Escape => Key::Escape,
         egui::Key::Enter => Key::Enter,

@@ -3,8 +3,11 @@
 use eframe::egui::{self, RichText, ScrollArea};
 use pliant_editor::{Command, Editor, Key, Shortcut};
 
-use super::input::pressed_key;
 use super::settings::SettingsFile;
+use super::{own_keys, status};
+
+/// What egui tells its window by.
+pub const ID: &str = "keys window";
 
 /// The open list.
 #[derive(Debug, Default)]
@@ -13,6 +16,8 @@ pub struct KeysWindow {
     pub open: bool,
     /// The command that waits for its key.
     waiting: Option<&'static str>,
+    /// Why the key that was pressed last was not taken.
+    refusal: Option<String>,
 }
 
 impl KeysWindow {
@@ -25,17 +30,25 @@ impl KeysWindow {
     pub fn show(&mut self, context: &egui::Context, editor: &Editor, settings: &mut SettingsFile) -> bool {
         let mut changed = false;
         if let Some(name) = self.waiting
-            && let Some((key, modifiers)) = context.input(pressed_key)
+            && let Some(key) = context.input(own_keys::pressed)
         {
-            self.waiting = None;
-            // Escape leaves everything as it was.
-            if key != Key::Escape {
-                give(Shortcut { modifiers, key }, name, editor, settings);
-                changed = true;
+            let allowed = key.and_then(|key| own_keys::refusal(key, name).map_or(Ok(key), Err));
+            match allowed {
+                // It waits for another.
+                Err(refusal) => self.refusal = Some(refusal),
+                Ok(key) => {
+                    (self.waiting, self.refusal) = (None, None);
+                    // Escape leaves everything as it was.
+                    if key.key != Key::Escape {
+                        give(key, name, editor, settings);
+                        changed = true;
+                    }
+                }
             }
         }
         let mut open = self.open;
         egui::Window::new("Keys")
+            .id(egui::Id::unique(ID))
             .open(&mut open)
             .default_width(360.0)
             .show(context, |ui| {
@@ -46,6 +59,9 @@ impl KeysWindow {
                 {
                     settings.change(|settings| settings.keys.clear());
                     changed = true;
+                }
+                if let Some(refusal) = &self.refusal {
+                    ui.label(RichText::new(refusal).color(status::failed(ui)));
                 }
                 ui.separator();
                 ScrollArea::vertical()
@@ -66,6 +82,7 @@ impl KeysWindow {
                                 button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
                                 if button.clicked() {
                                     self.waiting = Some(listed.name);
+                                    self.refusal = None;
                                 }
                                 ui.end_row();
                             }
@@ -75,6 +92,7 @@ impl KeysWindow {
         self.open = open;
         if !open {
             self.waiting = None;
+            self.refusal = None;
         }
         changed
     }

@@ -7,6 +7,9 @@ use eframe::egui::{self, RichText, ScrollArea};
 /// Sentences that are kept.
 const MOST: usize = 500;
 
+/// What egui tells its window by.
+pub const ID: &str = "log window";
+
 /// The log.
 #[derive(Debug, Default)]
 pub struct Log {
@@ -36,6 +39,7 @@ impl Log {
     pub fn show(&mut self, context: &egui::Context) {
         let mut open = self.open;
         egui::Window::new("Log")
+            .id(egui::Id::unique(ID))
             .open(&mut open)
             .default_width(520.0)
             .show(context, |ui| {

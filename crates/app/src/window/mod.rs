@@ -26,6 +26,7 @@ mod method_panel;
 mod notes;
 mod objects_panel;
 mod outbox;
+mod own_keys;
 mod palette;
 mod panels;
 mod places;

@@ -1,9 +1,12 @@
 //! The command palette: every command by its name, found by typing a part of it.
 
+use std::borrow::Cow;
+
 use eframe::egui::{self, Id, Key, Modal, RichText, ScrollArea};
 use pliant_deform::Method;
 use pliant_editor::{Command, Editor, method_keywords, method_title, when_to_use};
 
+use super::status;
 use super::top_bar::FileCommand;
 
 /// The open palette.
@@ -11,6 +14,8 @@ use super::top_bar::FileCommand;
 pub struct Palette {
     typed: String,
     chosen: usize,
+    /// Why what was asked for last can't be done now.
+    refusal: Option<String>,
 }
 
 /// What the palette offers.
@@ -37,7 +42,8 @@ struct Entry {
     keywords: &'static str,
     shortcut: String,
     found: Found,
-    enabled: bool,
+    /// Why it can't be done now.
+    obstacle: Option<String>,
 }
 
 impl Palette {
@@ -65,11 +71,17 @@ impl Palette {
             if field.changed() {
                 self.chosen = 0;
             }
+            if field.changed() || up || down {
+                self.refusal = None;
+            }
             let entries = entries(context, editor, &self.typed);
             self.chosen = (self.chosen + usize::from(down))
                 .saturating_sub(usize::from(up))
                 .min(entries.len().saturating_sub(1));
             ui.add_space(4.0);
+            if let Some(refusal) = &self.refusal {
+                ui.add(egui::Label::new(RichText::new(refusal).color(status::failed(ui))).wrap());
+            }
             ScrollArea::vertical()
                 .max_height(320.0)
                 .auto_shrink(false)
@@ -81,12 +93,21 @@ impl Palette {
                         let button = egui::Button::selectable(number == self.chosen, &entry.name)
                             .right_text(RichText::new(&entry.shortcut).weak())
                             .min_size(egui::vec2(ui.available_width(), 0.0));
-                        let button = ui.add_enabled(entry.enabled, button).on_hover_text(&entry.tooltip);
+                        let button = ui.add_enabled(entry.obstacle.is_none(), button);
+                        let button = button
+                            .on_hover_text(&entry.tooltip)
+                            .on_disabled_hover_text(entry.obstacle.as_deref().unwrap_or_default());
                         if number == self.chosen && (up || down) {
                             button.scroll_to_me(None);
                         }
-                        if button.clicked() || (enter && number == self.chosen && entry.enabled) {
-                            outcome = Outcome::Chosen(Some(entry.found.clone()));
+                        // A button that is greyed is never clicked in egui's eyes.
+                        let is_pointed_at =
+                            button.contains_pointer() && ui.input(|input| input.pointer.primary_clicked());
+                        if is_pointed_at || button.clicked() || (enter && number == self.chosen) {
+                            match &entry.obstacle {
+                                None => outcome = Outcome::Chosen(Some(entry.found.clone())),
+                                Some(obstacle) => self.refusal = Some(obstacle.clone()),
+                            }
                         }
                     }
                 });
@@ -112,7 +133,7 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
             .map(|s| s.label())
             .unwrap_or_default(),
         found: Found::Editor(listed.command.clone()),
-        enabled: editor.is_enabled(&listed.command),
+        obstacle: editor.obstacle(&listed.command).map(Cow::into_owned),
     });
     let files = FileCommand::LISTED.iter().map(|command| Entry {
         name: command.name().trim_end_matches('…').to_owned(),
@@ -123,7 +144,7 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
             .map(|shortcut| context.format_shortcut(&shortcut))
             .unwrap_or_default(),
         found: Found::File(command.clone()),
-        enabled: true,
+        obstacle: None,
     });
     let methods = Method::NAMES.iter().filter_map(|name| {
         let command = Command::SetMethod(Method::from_name(name)?);
@@ -132,7 +153,10 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
             tooltip: when_to_use(name).to_owned(),
             keywords: method_keywords(name),
             shortcut: String::new(),
-            enabled: editor.is_enabled(&command) && editor.document().method().name() != *name,
+            obstacle: match editor.document().method().name() == *name {
+                true => Some("The surface bends by this method already.".to_owned()),
+                false => editor.obstacle(&command).map(Cow::into_owned),
+            },
             found: Found::Editor(command),
         })
     });

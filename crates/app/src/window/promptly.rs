@@ -1,20 +1,23 @@
-//! Threads for the window's own short loops.
+//! Threads for the parallel loops of the window's own thread.
 
-use std::sync::OnceLock;
+use rayon::ThreadPoolBuilder;
 
-use rayon::{ThreadPool, ThreadPoolBuilder};
-
-static THREADS: OnceLock<Option<ThreadPool>> = OnceLock::new();
-
-/// Does `work` with its parallel loops on threads that no job has: on those that jobs share it would wait in line until
-/// one of them comes to a pause, which has kept the window still for a third of a second.
-pub fn promptly<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    let threads = THREADS.get_or_init(|| {
-        let builder = ThreadPoolBuilder::new().thread_name(|number| format!("window {number}"));
-        builder.build().ok()
-    });
-    match threads {
-        Some(threads) => threads.install(work),
-        None => work(),
+/// Gives the thread that calls it threads of its own: from now on its parallel loops run on those, whoever wrote them.
+/// On those that jobs share a loop waits in line until one of them comes to a pause, which has kept the window still for
+/// a third of a second.
+pub fn take_this_thread() {
+    if has_this_thread() {
+        return;
     }
+    let builder = ThreadPoolBuilder::new().use_current_thread();
+    // Where the system gives no threads, loops wait in line as everybody's do.
+    if let Ok(pool) = builder.thread_name(|number| format!("window {number}")).build() {
+        // It goes with the thread.
+        std::mem::forget(pool);
+    }
+}
+
+/// Whether the thread that calls it has threads of its own.
+pub fn has_this_thread() -> bool {
+    rayon::current_thread_index().is_some()
 }

@@ -7,7 +7,7 @@ use super::notes::Note;
 use super::outbox::Outbox;
 
 /// The colour of what went wrong, legible on a dim and on a bright ground.
-fn failed(ui: &egui::Ui) -> Color32 {
+pub fn failed(ui: &egui::Ui) -> Color32 {
     if ui.visuals().dark_mode {
         Color32::from_rgb(255, 138, 122)
     } else {

@@ -159,10 +159,8 @@ pub fn show(
         ui.menu_button("File", |ui| chosen = file_menu(ui, editor, recent));
         ui.menu_button("Edit", |ui| edit_menu(ui, editor, commands));
         ui.menu_button("Region", |ui| region_menu(ui, editor, commands));
-        ui.menu_button("View", |ui| {
-            view_menu(ui, editor, commands);
-            window_menu(ui, &mut chosen);
-        });
+        ui.menu_button("View", |ui| view_menu(ui, editor, commands));
+        ui.menu_button("Window", |ui| window_menu(ui, &mut chosen));
         let unsaved = if editor.view().unsaved { " •" } else { "" };
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.label(RichText::new(format!("{file_name}{unsaved}")).weak());
@@ -293,39 +291,43 @@ fn region_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
 
 /// How the window itself looks, and what it can tell.
 fn window_menu(ui: &mut egui::Ui, chosen: &mut Option<FileCommand>) {
-    ui.separator();
-    for (command, name) in [
-        (FileCommand::Compare, None),
-        (FileCommand::Palette, None),
-        (FileCommand::Log, None),
-        (FileCommand::Keys, None),
-        (FileCommand::NextTheme, None),
-        (FileCommand::Scale(1), Some("Larger")),
-        (FileCommand::Scale(-1), Some("Smaller")),
-        (FileCommand::Hints, None),
-    ] {
-        let mut button = egui::Button::new(name.unwrap_or(command.name()));
-        if let Some(shortcut) = command.shortcut() {
-            button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+    let groups: [&[(FileCommand, Option<&str>)]; 3] = [
+        &[
+            (FileCommand::Palette, None),
+            (FileCommand::Keys, None),
+            (FileCommand::Log, None),
+            (FileCommand::Hints, None),
+        ],
+        &[(FileCommand::Compare, None)],
+        &[
+            (FileCommand::NextTheme, None),
+            (FileCommand::Scale(1), Some("Larger")),
+            (FileCommand::Scale(-1), Some("Smaller")),
+        ],
+    ];
+    for (number, group) in groups.into_iter().enumerate() {
+        if number > 0 {
+            ui.separator();
         }
-        if ui.add(button).clicked() {
-            *chosen = Some(command);
-            ui.close();
+        for (command, name) in group {
+            let mut button = egui::Button::new(name.unwrap_or(command.name()));
+            if let Some(shortcut) = command.shortcut() {
+                button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+            }
+            if ui.add(button).clicked() {
+                *chosen = Some(command.clone());
+                ui.close();
+            }
         }
     }
 }
 
 fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
-    for command in [Command::FrameAll, Command::FrameSelected] {
+    for command in [Command::FrameAll, Command::FrameSelected, Command::ShowEverything] {
         if command_button(ui, editor, &command) {
             commands.push(command);
             ui.close();
         }
-    }
-    ui.separator();
-    if command_button(ui, editor, &Command::ShowEverything) {
-        commands.push(Command::ShowEverything);
-        ui.close();
     }
     ui.separator();
     let view = editor.view();
@@ -352,33 +354,28 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     }
     ui.separator();
     ui.menu_button("Clay", |ui| {
-        for (name, clay) in Clay::NAMES {
+        for (_, clay) in Clay::NAMES {
             let chosen = look.shading == Shading::Clay && look.clay == clay;
-            let (initial, rest) = name.split_at(1);
-            let title = initial.to_uppercase() + rest;
-            if ui.selectable_label(chosen, title).clicked() {
-                commands.push(Command::SetClay(clay));
-                ui.close();
-            }
+            choice(ui, Command::SetClay(clay), chosen);
         }
     });
-    let mut choice = |ui: &mut egui::Ui, command: Command, chosen: bool| {
-        if command_choice(ui, editor, &command, chosen) {
-            commands.push(command);
-            ui.close();
+    choice(
+        ui,
+        Command::SetShading(Shading::Material),
+        look.shading == Shading::Material,
+    );
+    ui.menu_button("Colours and stripes", |ui| {
+        for shading in [
+            Shading::Stretch,
+            Shading::Area,
+            Shading::Stiffness,
+            Shading::Curvature,
+            Shading::Zebra,
+            Shading::Normals,
+        ] {
+            choice(ui, Command::SetShading(shading), look.shading == shading);
         }
-    };
-    for shading in [
-        Shading::Material,
-        Shading::Stretch,
-        Shading::Area,
-        Shading::Stiffness,
-        Shading::Curvature,
-        Shading::Zebra,
-        Shading::Normals,
-    ] {
-        choice(ui, Command::SetShading(shading), look.shading == shading);
-    }
+    });
     ui.separator();
     choice(ui, Command::ToggleFlat, look.flat);
     choice(ui, Command::ToggleWireframe, look.wireframe);

@@ -19,7 +19,6 @@ use pliant_render::{
 
 use super::coarseness::Coarseness;
 use super::message::{Ground, PictureKind, Posed};
-use super::promptly::promptly;
 use crate::drawing::{self, Drawing, Dress, Field, Pose, Scale};
 use crate::legend;
 
@@ -438,12 +437,12 @@ impl Viewport {
             if let Colours::Stiffness(_) = wanted {
                 let scale = Arc::new(Scale::of(Field::Stiffness, model));
                 let displacements = &shown.displacements;
-                colours = promptly(|| drawing::colours(Field::Stiffness, &scale, model, displacements, stiffness));
+                colours = drawing::colours(Field::Stiffness, &scale, model, displacements, stiffness);
                 shown.scale = Some(scale);
             } else {
                 editor.region_colours(&mut colours);
             }
-            shown.drawn_colours = promptly(|| drawing::drawn_colours(model, &colours));
+            shown.drawn_colours = drawing::drawn_colours(model, &colours);
             shown.surface.update_regions(&renderer, &shown.drawn_colours)?;
         }
         shown.colours = wanted;

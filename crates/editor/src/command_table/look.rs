@@ -1,7 +1,7 @@
 //! How the surface is shown.
 
 use super::{Listed, character, listed};
-use crate::{Command, Shading};
+use crate::{Clay, Command, Shading};
 
 pub(super) const LISTED: &[Listed] = &[
     listed(
@@ -9,6 +9,48 @@ pub(super) const LISTED: &[Listed] = &[
         "Clay",
         "Shades the surface like clay.",
         "matcap shading",
+        &[],
+    ),
+    listed(
+        Command::SetClay(Clay::Clay),
+        "Plain clay",
+        "Warm grey modelling clay: shape and nothing else.",
+        "clay matcap shading",
+        &[],
+    ),
+    listed(
+        Command::SetClay(Clay::Plaster),
+        "Plaster",
+        "White plaster in soft daylight: the finest shades.",
+        "clay matcap shading",
+        &[],
+    ),
+    listed(
+        Command::SetClay(Clay::Wax),
+        "Wax",
+        "Red wax with a soft gloss, as sculptors take it.",
+        "clay matcap shading",
+        &[],
+    ),
+    listed(
+        Command::SetClay(Clay::Bronze),
+        "Bronze",
+        "Dark bronze: highlights that run along every ridge.",
+        "clay matcap shading",
+        &[],
+    ),
+    listed(
+        Command::SetClay(Clay::Porcelain),
+        "Porcelain",
+        "Glazed porcelain: sharp lamps that show every dent.",
+        "clay matcap shading",
+        &[],
+    ),
+    listed(
+        Command::SetClay(Clay::Graphite),
+        "Graphite",
+        "Graphite lit from the side: relief.",
+        "clay matcap shading",
         &[],
     ),
     listed(
