@@ -733,3 +733,12 @@ fn a_key_that_the_window_has_is_refused_by_name_and_another_is_awaited() {
     assert_eq!(keys.iter().map(|key| key.label()).collect::<Vec<_>>(), ["Ctrl+J"]);
     assert!(session.harness.query_by_label_contains("Save model").is_none());
 }
+
+#[test]
+fn nothing_at_the_panels_edge_lies_under_its_scroll_bar() {
+    let Some(session) = Session::begin() else { return };
+    let right = session.harness.get_by_label("Lock creature").rect().right();
+    let width = session.harness.ctx.content_rect().width();
+    let bar = session.harness.ctx.global_style().spacing.scroll.bar_width;
+    assert!(right <= width - bar, "{right} of {width}, less the bar's {bar}");
+}

@@ -98,4 +98,5 @@ pub use selector::{Axis, Selector};
 pub use setup::{HandleSetup, Rest, Setup};
 pub use shortcut::Shortcut;
 pub use snapshot::{Snapshot, SnapshotKey};
+pub use status::thousands;
 pub use tool::{Depth, HANDLE_COLOURS, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode};

@@ -78,6 +78,7 @@ impl Editor {
             "Drag the gizmo, or press G, R or S to move, turn or scale"
         };
         let Counts { fixed, free, handle } = self.engine.region.counts;
+        let [handle, free, fixed] = [handle, free, fixed].map(thousands);
         format!("{hint} · {handle} handle, {free} free, {fixed} fixed vertices")
     }
 
@@ -108,4 +109,17 @@ impl Editor {
             doing
         })
     }
+}
+
+/// A count with its thousands apart: 48 485.
+pub fn thousands(count: usize) -> String {
+    let digits = count.to_string();
+    let mut spaced = String::with_capacity(digits.len() + digits.len() / 3);
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            spaced.push('\u{202f}');
+        }
+        spaced.push(digit);
+    }
+    spaced
 }

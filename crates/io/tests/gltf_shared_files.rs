@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use gltf_maker::{assert_near, bent, moved};
-use pliant_io::{Difference, Format, Opened, Placement, ReadError, Resolver, Save, Saved, What, read};
+use pliant_io::{Difference, Format, Material, Opened, Placement, ReadError, Resolver, Save, Saved, What, read};
 use pliant_mesh::{Cancel, Drawn, Progress};
 use serde_json::Value;
 
@@ -253,4 +253,31 @@ fn the_bytes_do_not_depend_on_the_number_of_threads() {
         let alone = run(1);
         assert!(run(2) == alone && run(3) == alone, "{}", path.display());
     }
+}
+
+#[test]
+fn what_an_obj_can_not_say_of_the_materials_is_named() {
+    type Has = fn(&Material) -> bool;
+    let kinds: [(&str, Has); 4] = [
+        ("metal and roughness", |material| {
+            material.metallic_roughness_map.is_some()
+        }),
+        ("normal maps", |material| material.normal_map.is_some()),
+        ("occlusion maps", |material| material.occlusion_map.is_some()),
+        ("emission", |material| {
+            material.emissive != [0.0; 3] || material.emissive_map.is_some()
+        }),
+    ];
+    let mut named = 0;
+    for path in files() {
+        let (opened, _) = open_file(&path).unwrap_or_else(|error| panic!("{error}"));
+        let saved = save(&opened, &opened.drawn.positions, Path::new("out.obj"));
+        for (kind, has) in kinds {
+            let is_lost = opened.scene.appearance().materials.iter().any(has);
+            let is_named = saved.warnings.iter().any(|warning| warning.contains(kind));
+            assert!(is_named || !is_lost, "{}: {kind}, {:?}", path.display(), saved.warnings);
+            named += usize::from(is_lost);
+        }
+    }
+    assert!(named > 0 || files().is_empty());
 }

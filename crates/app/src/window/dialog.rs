@@ -72,6 +72,8 @@ pub enum Question {
     WriteOver(PathBuf),
     /// A path to type, where the system has no dialog.
     Path(Purpose, String),
+    /// Whether a file that stands where a typed path leads may be replaced.
+    Replace(Purpose, PathBuf),
     /// Whether unsaved work may be lost.
     Discard(Then),
     /// Whether what earlier sessions have left is to be opened.
@@ -89,6 +91,7 @@ impl Question {
             Self::Recover(_) => "Recover unsaved work?",
             Self::Path(Purpose::ExportEdit, _) => "Export the edit",
             Self::Path(Purpose::SavePicture(_), _) => "Save the picture as",
+            Self::Replace(..) => "Replace the file?",
             Self::Discard(_) => "There is unsaved work",
         }
     }
@@ -114,6 +117,10 @@ pub enum Answer {
     Save,
     /// This path.
     Path(Purpose, PathBuf),
+    /// This path, whatever stands there.
+    Replace(Purpose, PathBuf),
+    /// Another path than this one.
+    Rename(Purpose, PathBuf),
     /// Go on and lose the unsaved work.
     Discard(Then),
     /// Open what an earlier session has left.
@@ -132,6 +139,7 @@ pub fn ask(context: &egui::Context, question: &mut Question) -> Option<Answer> {
         match question {
             Question::WriteOver(path) => write_over(ui, path, &mut answer),
             Question::Path(purpose, typed) => path(ui, *purpose, typed, &mut answer),
+            Question::Replace(purpose, path) => replace(ui, *purpose, path, &mut answer),
             Question::Discard(then) => discard(ui, then, &mut answer),
             Question::Recover(left) => recover(ui, left, &mut answer),
         }
@@ -158,6 +166,23 @@ fn write_over(ui: &mut egui::Ui, path: &Path, answer: &mut Option<Answer>) {
         }
         if ui.button("Save as…").clicked() {
             *answer = Some(Answer::SaveAs);
+        }
+        if ui.button("Cancel").clicked() {
+            *answer = Some(Answer::Cancel);
+        }
+    });
+}
+
+fn replace(ui: &mut egui::Ui, purpose: Purpose, path: &Path, answer: &mut Option<Answer>) {
+    ui.heading(format!("Replace {}?", file_name(path)));
+    ui.label("There is such a file already, which is lost then.");
+    ui.add_space(8.0);
+    ui.horizontal(|ui| {
+        if main_button(ui, "Another name…") {
+            *answer = Some(Answer::Rename(purpose, path.to_owned()));
+        }
+        if ui.button("Replace").clicked() {
+            *answer = Some(Answer::Replace(purpose, path.to_owned()));
         }
         if ui.button("Cancel").clicked() {
             *answer = Some(Answer::Cancel);

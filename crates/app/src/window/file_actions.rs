@@ -11,7 +11,7 @@ use super::message::{Purpose, Written, WrittenKind};
 use super::notes::Note;
 use super::palette::Palette;
 use super::recovery;
-use super::session::{KeepOriginal, Source};
+use super::session::{KeepOriginal, Source, is_same};
 use super::theme;
 use super::top_bar::FileCommand;
 use crate::engine::is_project;
@@ -77,6 +77,18 @@ impl Application {
         }
     }
 
+    /// Whether saving under a typed path would take a file away that is not the open one: the system's dialogs ask
+    /// for themselves.
+    fn would_be_lost(&self, purpose: Purpose, path: &Path) -> bool {
+        let path = match purpose {
+            Purpose::SaveProject => project_path(path.to_owned()),
+            _ => path.to_owned(),
+        };
+        let project = self.session.open.as_ref().and_then(|open| open.project.as_deref());
+        let is_own = |own: Option<&Path>| own.is_some_and(|own| is_same(own, &path));
+        purpose != Purpose::Open && path.is_file() && !is_own(self.path()) && !is_own(project)
+    }
+
     fn may_write_over(&self) -> bool {
         self.session.open.as_ref().is_some_and(|open| open.may_write_over)
     }
@@ -124,15 +136,8 @@ impl Application {
 
     /// Saves the project under `path`, which gets its extension if it has none.
     pub fn save_project_to(&mut self, path: PathBuf) {
-        let path = if is_project(&path) {
-            path
-        } else {
-            let mut name = path.into_os_string();
-            name.push(".pliant");
-            PathBuf::from(name)
-        };
         if let Some(snapshot) = self.editor.snapshot() {
-            self.session.save_project(path, snapshot, &self.workers);
+            self.session.save_project(project_path(path), snapshot, &self.workers);
         }
     }
 
@@ -164,7 +169,13 @@ impl Application {
                 }
                 self.save();
             }
-            Answer::Path(purpose, path) => self.chosen(purpose, Some(path)),
+            Answer::Path(purpose, path) if self.would_be_lost(purpose, &path) => {
+                self.question = Some(Question::Replace(purpose, path));
+            }
+            Answer::Path(purpose, path) | Answer::Replace(purpose, path) => self.chosen(purpose, Some(path)),
+            Answer::Rename(purpose, path) => {
+                self.question = Some(Question::Path(purpose, path.display().to_string()));
+            }
             Answer::Discard(then) => self.go_on(then),
             Answer::Recover(project) => {
                 self.session
@@ -211,4 +222,14 @@ impl Application {
             context.request_repaint();
         }
     }
+}
+
+/// A project's path, with its extension.
+fn project_path(path: PathBuf) -> PathBuf {
+    if is_project(&path) {
+        return path;
+    }
+    let mut name = path.into_os_string();
+    name.push(".pliant");
+    PathBuf::from(name)
 }

@@ -1,12 +1,11 @@
 //! What is to be known about the open file; each thing found in its mesh leads to where it is.
 
 use eframe::egui::{self, RichText};
-use pliant_editor::{Command, Editor};
+use pliant_editor::{Command, Editor, thousands};
 use pliant_mesh::{FindingKind, Model, Named};
 
 use super::notes::Notes;
 use super::outbox::Outbox;
-use super::status::thousands;
 
 /// Shows the file's numbers, notes and findings.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, notes: &Notes, commands: &mut Outbox) {

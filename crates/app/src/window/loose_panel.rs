@@ -2,12 +2,11 @@
 
 use eframe::egui::{self, ComboBox, RichText, ScrollArea};
 use pliant_deform::Loose;
-use pliant_editor::{Command, Editor};
+use pliant_editor::{Command, Editor, thousands};
 use pliant_mesh::Model;
 
 use super::command_button::choices;
 use super::outbox::Outbox;
-use super::status::thousands;
 
 const CHOICES: [(Loose, &str, &str); 3] = [
     (

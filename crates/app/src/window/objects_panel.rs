@@ -4,13 +4,12 @@ use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 use eframe::egui::{self, Align, Layout, RichText, ScrollArea};
-use pliant_editor::{Access, Command, Editor, ObjectAction, object_name};
+use pliant_editor::{Access, Command, Editor, ObjectAction, object_name, thousands};
 use pliant_mesh::{Model, Object};
 
 use super::command_button::command_button;
 use super::icon::{Icon, toggle};
 use super::outbox::Outbox;
-use super::status::thousands;
 
 /// How many rows are seen at a time.
 const ROWS: f32 = 7.0;

@@ -82,16 +82,3 @@ fn progress(ui: &mut egui::Ui, doing: &str, share: f32) {
         .on_hover_text(doing);
     ui.label(RichText::new(format!("{doing}…")).weak());
 }
-
-/// A count with its thousands apart: 48 485.
-pub fn thousands(count: usize) -> String {
-    let digits = count.to_string();
-    let mut spaced = String::with_capacity(digits.len() + digits.len() / 3);
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            spaced.push('\u{202f}');
-        }
-        spaced.push(digit);
-    }
-    spaced
-}

@@ -7,6 +7,7 @@ use glam::DVec2;
 use pliant_editor::{Cursor, Event, method_title};
 
 use super::application::{Application, REST};
+use super::file_names::file_name;
 use super::input::Attention;
 use super::viewport::Smoothness;
 use super::{axis_ball, hints, theme};
@@ -126,6 +127,7 @@ impl Application {
             let at = rect.min + vec2(at_px.x as f32 + 22.0, at_px.y as f32 - 26.0);
             axis_ball::readout(ui.painter(), at, &readout.text);
         }
+        drop_target(ui, rect);
         if let Some(command) = axis_ball::show(ui, rect, shown.camera) {
             self.command(command);
             ui.ctx().request_repaint();
@@ -135,4 +137,22 @@ impl Application {
         }
         Ok(())
     }
+}
+
+/// While files are held over the window: what letting go of them does.
+fn drop_target(ui: &egui::Ui, rect: egui::Rect) {
+    let held = ui.input(|input| input.raw.hovered_files.first().map(|file| file.path.clone()));
+    let Some(path) = held else { return };
+    let name = path.as_deref().map(file_name);
+    let text = name.map_or_else(
+        || "Let go to open it".to_owned(),
+        |name| format!("Let go to open {name}"),
+    );
+    ui.painter().rect_stroke(
+        rect.shrink(6.0),
+        8.0,
+        egui::Stroke::new(2.0, theme::ACCENT),
+        egui::StrokeKind::Inside,
+    );
+    axis_ball::readout(ui.painter(), rect.center_top() + vec2(-60.0, 24.0), &text);
 }

@@ -8,7 +8,7 @@ use super::materials;
 use crate::appearance::{AlphaMode, Material};
 use crate::colour::{srgb_bytes_of_linear, srgb_of_linear};
 use crate::course::Course;
-use crate::new_faces::for_each_face;
+use crate::new_faces::{for_each_face, lost, lost_where};
 use crate::new_mesh::NewMesh;
 use crate::save::{OutputFile, Saved};
 use crate::text::{push_f32, push_f64};
@@ -50,8 +50,31 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
     }
     Ok(Saved {
         files,
-        warnings: Vec::new(),
+        warnings: left_out(look).into_iter().collect(),
     })
+}
+
+/// What a material library can't say of the materials.
+fn left_out(look: &Appearance) -> Option<String> {
+    let any = |has: &dyn Fn(&Material) -> bool| lost_where(look.materials.iter().any(has));
+    // Metal that is rough all over is what glTF takes where a file says nothing.
+    let is_said = |material: &Material| material.metallic > 0.0 && material.roughness < 1.0;
+    lost(
+        "OBJ",
+        &[
+            (
+                "metal and roughness",
+                any(&|material| material.metallic_roughness_map.is_some() || is_said(material)),
+            ),
+            ("normal maps", any(&|material| material.normal_map.is_some())),
+            ("occlusion maps", any(&|material| material.occlusion_map.is_some())),
+            (
+                "emission",
+                any(&|material| material.emissive != [0.0; 3] || material.emissive_map.is_some()),
+            ),
+            ("second texture coordinates", lost_where(look.second_uvs.is_some())),
+        ],
+    )
 }
 
 /// Whether a material says nothing that a reader wouldn't assume.
