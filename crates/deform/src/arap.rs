@@ -127,33 +127,33 @@ impl ArapSolver {
         let domain = Domain::of(surface, topology, &order);
         let mut rows = match options.energy {
             ArapEnergy::Spokes => domain.vertices.clone(),
-            ArapEnergy::SpokesAndRims => order,
-            ArapEnergy::Smooth => domain.vertices[..domain.cell_count].to_vec(),
+            ArapEnergy::SpokesAndRims | ArapEnergy::Smooth => order,
         };
         rows.sort_unstable();
         let laplacian = Laplacian::with_rows(surface, topology, problem.stiffness, &rows);
         let mollified_faces = laplacian.mollified_faces();
         cancel.check()?;
         progress.set(0.3);
-        let mut cells = match options.energy {
-            ArapEnergy::Spokes => spokes::cells(surface, &laplacian, &domain),
-            ArapEnergy::SpokesAndRims | ArapEnergy::Smooth => {
-                rims::cells(surface, topology, problem.stiffness, &domain)
-            }
-        };
         let bending = match options.energy {
             ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => 0.0,
             ArapEnergy::Smooth => bending::stiffness(surface, &domain, options.smoothness),
+        };
+        let cells = match options.energy {
+            ArapEnergy::Spokes => spokes::cells(surface, &laplacian, &domain),
+            ArapEnergy::SpokesAndRims => rims::cells(surface, topology, problem.stiffness, &domain, &[]),
+            ArapEnergy::Smooth => {
+                let ties = bending::ties(surface, topology, &domain, bending);
+                let mut cells = rims::cells(surface, topology, problem.stiffness, &domain, &ties);
+                bending::add(&mut cells, &ties);
+                cells
+            }
         };
         let springs = Springs::of(problem, partition, handles, &domain, &laplacian, bending, cells.unit());
         let system = match options.energy {
             ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => {
                 matrix::assemble(&laplacian, &domain, springs.all(), options.energy)
             }
-            ArapEnergy::Smooth => {
-                bending::add(&mut cells, surface, &laplacian, &domain, bending);
-                matrix::assemble_plate(laplacian, &domain, springs.all(), bending)
-            }
+            ArapEnergy::Smooth => matrix::assemble_plate(&cells, &domain, springs.all()),
         };
         cancel.check()?;
         progress.set(0.4);

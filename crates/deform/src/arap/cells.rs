@@ -8,12 +8,15 @@
 //! which is ½ Σ w |e' − R_i e|² multiplied out so that nothing but differences of displacements and R_i − 1 enter: it is
 //! zero at rest to the last bit and keeps its digits near it. Its gradient is
 //!
-//! dE/dd_i = −Σ_v w_iv D_v + (R_i − 1) Σ_v G_iv − Σ_v (R_v − 1) G_vi,
+//! dE/dd_i = −Σ_v w_iv D_v + (R_i − 1) Σ_v (G_iv − G_vi) − Σ_v (R_v − R_i) G_vi,
 //!
-//! so a solver meets two gathers over the ring: positions for the matrices, turns for the gradient. `rims` and `spokes`
-//! say what G, S⁰ and w are; the edges that both ends' sums miscount are all constrained, and stand in `constant`.
+//! so a solver meets two gathers over the ring: positions for the matrices, turns for the gradient. Where cells bend, Z
+//! (see `bending`) stands for R − 1 here, and w, G_iv and G_vi have grown by their cells' 1 + β. `rims` and `spokes` say
+//! what G, S⁰ and w are; the edges that both ends' sums miscount are all constrained, and stand in `constant`.
 
 use glam::DVec3;
+
+use super::bending::Bend;
 
 /// Four numbers: a vector and one more.
 pub(crate) type Quad = [f64; 4];
@@ -27,16 +30,17 @@ pub(crate) struct Cells {
     pub ends: Vec<u32>,
     /// G_iv and w_iv of each entry.
     pub towards: Vec<Quad>,
-    /// G_vi of each entry of a solved cell. **f32**: they enter the gradient alone.
+    /// G_vi of each entry of a solved cell, times 1 + β_v. **f32**: they enter the gradient alone, and differences of
+    /// turns are what they multiply.
     pub back: Vec<[f32; 3]>,
-    /// Σ_v G_iv of each solved cell. **f32** likewise.
-    pub own: Vec<[f32; 3]>,
+    /// Σ_v (1 + β_i) G_iv − (1 + β_v) G_vi of each solved cell.
+    pub own: Vec<DVec3>,
     /// S⁰'s entries xx, xy, xz, yy, yz, zz of each cell.
     pub rest: Vec<[f64; 6]>,
     /// Pairs of constrained vertices whose squared difference enters the energy besides, and by what factor.
     pub constant: Vec<(u32, u32, f64)>,
-    /// The bending term of each cell, or none: the rest shape's Σ_v w_iv e_iv, and its factor.
-    pub bending: Vec<Quad>,
+    /// The bending term of each cell, or none.
+    pub bending: Vec<Bend>,
     /// ½ Σ w |e|² of the rest shape.
     pub scale: f64,
 }
@@ -59,8 +63,8 @@ impl Cells {
     }
 
     /// Appends the cell with these entries: the end, its rest edge e_iv, G_iv, G_vi and w_iv; `is_solved` ones come
-    /// first.
-    pub fn push(&mut self, entries: &[Entry], rest: [f64; 6], solved: Solved) {
+    /// first. `firmness` is its 1 + β, and is in the weights and in G_vi already.
+    pub fn push(&mut self, entries: &[Entry], rest: [f64; 6], solved: Solved, firmness: f64) {
         if self.offsets.is_empty() {
             self.offsets.push(0);
         }
@@ -72,8 +76,8 @@ impl Cells {
             }
         }
         if solved == Solved::Yes {
-            let own: DVec3 = entries.iter().map(|entry| entry.towards).sum();
-            self.own.push(own.as_vec3().to_array());
+            let own = entries.iter().map(|entry| entry.towards * firmness - entry.back);
+            self.own.push(own.sum());
         }
         self.rest.push(rest);
         self.offsets.push(self.ends.len() as u32);

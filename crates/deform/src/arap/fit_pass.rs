@@ -3,11 +3,10 @@
 
 use std::hint::black_box;
 
-use glam::DVec3;
 use pulp::{Simd, WithSimd};
 
-use super::cells::{Cells, Quad, add_square, minus};
-use super::gradient_pass::Turn;
+use super::cells::{Cells, Quad, minus};
+use super::gradient_pass::{Turn, times_turn};
 use super::shape::Rotation;
 use crate::lanes::{Fits, LANES};
 use crate::prefetch::Prefetch;
@@ -48,48 +47,38 @@ pub(super) struct Out<'a> {
     pub rotations: &'a mut [Rotation],
     pub turns: &'a mut [Turn],
     pub laplacians: &'a mut [[f32; 4]],
-    pub moments: &'a mut [Quad],
 }
 
 impl Cells {
-    /// Rotations, turns, Laplacians and moments of the cells from `first` on; their energy.
+    /// Rotations, turns and Laplacians of the cells from `first` on; their energy.
     #[inline(always)]
     fn fit<S: Simd>(&self, simd: S, first: usize, displacements: &[Quad], turning: Turning, out: Out<'_>) -> f64 {
         let Out {
             rotations,
             turns,
             laplacians,
-            moments,
         } = out;
         let mut sum = 0.0;
         let mut fits = Fits::default();
         for start in (0..rotations.len()).step_by(LANES) {
             let count = LANES.min(rotations.len() - start);
-            let mut curvatures = [[0.0; 4]; LANES];
+            let (mut loads, mut forces) = ([[0.0; 4]; LANES], [[[0.0; 4]; 3]; LANES]);
             for lane in 0..count {
                 let cell = first + start + lane;
                 let (mut b, laplacian, square) = self.gather(cell, displacements);
-                laplacians[start + lane] = laplacian.map(|value| value as f32);
-                curvatures[lane] = laplacian;
+                loads[lane] = laplacian;
                 sum += 0.25 * square;
-                let mut rest = self.rest[cell];
-                if let Some(&[x, y, z, factor]) = self.bending.get(cell) {
-                    for (k, rest) in [x, y, z].into_iter().enumerate() {
-                        for row in 0..3 {
-                            b[k][row] += factor * laplacian[row] * rest;
-                        }
-                    }
-                    add_square(&mut rest, factor, DVec3::new(x, y, z));
-                    let square =
-                        laplacian[0] * laplacian[0] + laplacian[1] * laplacian[1] + laplacian[2] * laplacian[2];
-                    sum += 0.5 * factor * square;
+                if let Some(bend) = self.bending.get(cell) {
+                    let held;
+                    (forces[lane], held) = bend.bear(&mut b);
+                    sum -= held;
                 }
                 for (lanes, column) in fits.change.iter_mut().zip(b) {
                     for (lanes, value) in lanes.iter_mut().zip(column) {
                         lanes.0[lane] = value;
                     }
                 }
-                for (lanes, value) in fits.rest.iter_mut().zip(rest) {
+                for (lanes, value) in fits.rest.iter_mut().zip(self.rest[cell]) {
                     lanes.0[lane] = value;
                 }
                 for (lanes, value) in fits.rotation.iter_mut().zip(rotations[start + lane]) {
@@ -106,20 +95,18 @@ impl Cells {
                 for (own, lanes) in rotations[start + lane].iter_mut().zip(&fits.rotation) {
                     *own = lanes.0[lane] as f32;
                 }
-                for (own, lanes) in turns[start + lane].iter_mut().zip(&fits.turn) {
-                    for (own, lanes) in own.iter_mut().zip(lanes) {
-                        *own = lanes.0[lane] as f32;
-                    }
+                let mut turn = fits.turn.map(|column| {
+                    let [x, y, z] = column.map(|lanes| lanes.0[lane]);
+                    [x, y, z, 0.0]
+                });
+                if let Some(bend) = self.bending.get(first + start + lane) {
+                    turn = bend.pull(&turn, &forces[lane]);
                 }
-            }
-            if !self.bending.is_empty() {
-                for (lane, place) in (start..start + count).enumerate() {
-                    let [x, y, z, factor] = self.bending[first + place];
-                    for row in 0..3 {
-                        let [a, b, c] = [0, 1, 2].map(|column| fits.turn[column][row].0[lane]);
-                        moments[place][row] = factor * (curvatures[lane][row] - (a * x + b * y + c * z));
-                    }
+                if let Some(own) = self.own.get(first + start + lane) {
+                    let turned = times_turn(&turn, own);
+                    laplacians[start + lane] = minus(loads[lane], turned).map(|value| value as f32);
                 }
+                turns[start + lane] = turn.map(|column| column.map(|value| value as f32));
             }
         }
         sum

@@ -1,5 +1,6 @@
 //! The second pass: the turns of a vertex' ring become its gradient, on whatever vectors the machine has.
 
+use glam::DVec3;
 use pulp::{Simd, WithSimd};
 
 use super::cells::{Cells, Quad, minus};
@@ -8,10 +9,10 @@ use crate::prefetch::Prefetch;
 /// Entries between those that are gathered and those that are asked for: some cells'.
 const AHEAD: usize = 24;
 
-/// R − 1, column by column.
+/// R − 1, or Z where cells bend, column by column.
 pub(super) type Turn = [[f32; 4]; 3];
 
-/// Where a gradient has the cells' Σ_v w_iv D_v from.
+/// Where a gradient has the cells' Σ_v w_iv D_v − (R_i − 1) Σ_v (G_iv − G_vi) from.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Laplacians<'a> {
     /// From the measure.
@@ -27,7 +28,6 @@ pub(super) struct GradientPass<'a> {
     pub gradient: &'a mut [[f32; 3]],
     pub turns: &'a [Turn],
     pub laplacians: Laplacians<'a>,
-    pub moments: &'a [Quad],
 }
 
 impl WithSimd for GradientPass<'_> {
@@ -41,34 +41,28 @@ impl WithSimd for GradientPass<'_> {
             gradient,
             turns,
             laplacians,
-            moments,
         } = self;
-        cells.descend(first, gradient, turns, laplacians, moments);
+        cells.descend(first, gradient, turns, laplacians);
     }
 }
 
 impl Cells {
     /// The gradient of the solved vertices from `first` on.
     #[inline(always)]
-    fn descend(
-        &self,
-        first: usize,
-        gradient: &mut [[f32; 3]],
-        turns: &[Turn],
-        laplacians: Laplacians<'_>,
-        moments: &[Quad],
-    ) {
+    fn descend(&self, first: usize, gradient: &mut [[f32; 3]], turns: &[Turn], laplacians: Laplacians<'_>) {
         let per_unit = self.unit().recip() as f32;
         let prefetch = Prefetch::new();
         for (place, gradient) in gradient.iter_mut().enumerate() {
             let cell = first + place;
             let around = self.around(cell);
             let ends = &self.ends[around.clone()];
-            let mut sum = times_turn(&turns[cell], self.own[cell]);
-            for (&end, back) in ends.iter().zip(&self.back[around.clone()]) {
-                let term = times_turn(&turns[end as usize], *back);
+            let (mut sum, here) = ([0.0; 4], turns[cell]);
+            for (&end, [x, y, z]) in ends.iter().zip(&self.back[around.clone()]) {
+                let there = &turns[end as usize];
                 for row in 0..4 {
-                    sum[row] -= term[row];
+                    sum[row] += (there[0][row] - here[0][row]) * x
+                        + (there[1][row] - here[1][row]) * y
+                        + (there[2][row] - here[2][row]) * z;
                 }
             }
             let ahead = around.start + AHEAD..around.end + AHEAD;
@@ -77,31 +71,22 @@ impl Cells {
                     prefetch.item(turn);
                 }
             }
-            let weighted = |field: &[Quad]| {
-                let mut sum = [0.0; 4];
-                for (&end, towards) in ends.iter().zip(&self.towards[around.clone()]) {
-                    let d = minus(field[end as usize], field[cell]);
-                    for row in 0..4 {
-                        sum[row] += d[row] * towards[3];
-                    }
-                }
-                sum.map(|value| value as f32)
-            };
             let laplacian = match laplacians {
                 Laplacians::Known(laplacians) => laplacians[cell],
-                Laplacians::Of(displacements) => weighted(displacements),
-            };
-            for row in 0..4 {
-                sum[row] -= laplacian[row];
-            }
-            if !moments.is_empty() {
-                let moment = weighted(moments);
-                for row in 0..4 {
-                    sum[row] += moment[row];
+                Laplacians::Of(displacements) => {
+                    let mut sum = [0.0; 4];
+                    for (&end, towards) in ends.iter().zip(&self.towards[around.clone()]) {
+                        let d = minus(displacements[end as usize], displacements[cell]);
+                        for row in 0..4 {
+                            sum[row] += d[row] * towards[3];
+                        }
+                    }
+                    let turned = times_turn(&here.map(|column| column.map(f64::from)), &self.own[cell]);
+                    minus(sum, turned).map(|value| value as f32)
                 }
-            }
+            };
             for row in 0..3 {
-                gradient[row] = sum[row] * per_unit;
+                gradient[row] = -(sum[row] + laplacian[row]) * per_unit;
             }
         }
     }
@@ -109,6 +94,6 @@ impl Cells {
 
 /// (R − 1) v; the fourth number is nothing.
 #[inline(always)]
-fn times_turn([a, b, c]: &Turn, v: [f32; 3]) -> [f32; 4] {
-    std::array::from_fn(|row| a[row] * v[0] + b[row] * v[1] + c[row] * v[2])
+pub(super) fn times_turn([a, b, c]: &[Quad; 3], v: &DVec3) -> Quad {
+    std::array::from_fn(|row| a[row] * v.x + b[row] * v.y + c[row] * v.z)
 }

@@ -1,100 +1,108 @@
 //! The majorising quadratic's matrix on the solved vertices, as compressed columns in the order of elimination, scaled
 //! to a unit diagonal: the Laplacian −L, or with bending a plate.
 
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::cells::{Cells, vector};
 use super::domain::Domain;
 use super::spokes::{floored, largest_weights};
 use super::springs::Spring;
-use crate::shell::assembly::assemble_shell;
-use crate::shell::operator::ShellOperator;
-use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
-use crate::{ArapEnergy, Bilaplacian, Laplacian};
+use crate::operators::CHUNK;
+use crate::sparse::matrix::ScaledMatrix;
+use crate::{ArapEnergy, Laplacian};
 
 /// The matrix on the solved vertices, and how constrained ones pull at them.
 pub(crate) struct System {
     /// S A S, A the majorising quadratic's matrix.
     pub matrix: ScaledMatrix,
-    coupling: Coupling,
+    /// Solved vertex, constrained local vertex, −A's entry.
+    coupling: Vec<(u32, u32, f64)>,
     springs: Vec<Spring>,
-}
-
-enum Coupling {
-    /// Solved vertex, constrained local vertex, weight.
-    Edges(Vec<(u32, u32, f64)>),
-    /// The operator, each solved vertex's row in it, and the domain's local vertex of each of its.
-    Plate {
-        operator: Box<ShellOperator>,
-        columns: Vec<u32>,
-        domain_of: Vec<u32>,
-    },
 }
 
 impl System {
     /// −A_sc x for the values `x` of constrained local vertices, and W x for those that a soft handle wants of its solved
     /// ones: the right-hand side whose solution extends them.
     pub fn pull(&self, x: &impl Fn(u32) -> f64) -> Vec<f64> {
-        let mut pull = self.pull_of_constrained(x);
+        let mut pull = vec![0.0; self.matrix.scale.len()];
+        for &(vertex, other, weight) in &self.coupling {
+            pull[vertex as usize] += weight * x(other);
+        }
         for spring in &self.springs {
             pull[spring.local as usize] += spring.strength * x(spring.local);
         }
         pull
     }
-
-    fn pull_of_constrained(&self, x: &impl Fn(u32) -> f64) -> Vec<f64> {
-        match &self.coupling {
-            Coupling::Edges(edges) => {
-                let mut pull = vec![0.0; self.matrix.scale.len()];
-                for &(vertex, other, weight) in edges {
-                    pull[vertex as usize] += weight * x(other);
-                }
-                pull
-            }
-            Coupling::Plate {
-                operator,
-                columns,
-                domain_of,
-            } => {
-                let value = |&vertex: &u32| {
-                    let is_solved = (vertex as usize) < columns.len();
-                    [if is_solved { 0.0 } else { x(vertex) }]
-                };
-                let values: Vec<[f64; 1]> = domain_of.iter().map(value).collect();
-                let potential = operator.potential(&values);
-                let pull = |&column: &u32| -operator.force(column as usize, &potential)[0];
-                columns.iter().map(pull).collect()
-            }
-        }
-    }
 }
 
-/// The thin plate that also stretches, −L + `bending` L M⁻¹ L; `laplacian` has full rows for all cells.
-pub(crate) fn assemble_plate(laplacian: Laplacian, domain: &Domain, springs: &[Spring], bending: f64) -> System {
-    let domain_of: Vec<u32> = laplacian
-        .vertices()
-        .iter()
-        .map(|&vertex| domain.local_of[vertex as usize])
+/// A solved vertex' diagonal entry, and minus the others of its row by local vertex.
+struct Row {
+    diagonal: f64,
+    others: Vec<(u32, f64)>,
+}
+
+/// Assembles the plate of cells that bend: their weights' Laplacian less Σ_i Z_i β_i K_i Z_iᵀ, Z_i's rows being G_iv for
+/// the ring's vertices and minus their sum for the cell's own.
+pub(crate) fn assemble_plate(cells: &Cells, domain: &Domain, springs: &[Spring]) -> System {
+    let rows: Vec<Row> = (0..domain.solved_count.div_ceil(CHUNK))
+        .into_par_iter()
+        .map_init(
+            || vec![0_u32; domain.vertices.len()],
+            |slots, chunk| {
+                let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(domain.solved_count);
+                range
+                    .map(|column| plate_row(cells, column as u32, slots))
+                    .collect::<Vec<_>>()
+            },
+        )
+        .flatten()
         .collect();
-    let mut columns = vec![0; domain.solved_count];
-    let mut column_of = vec![CONSTRAINED; domain_of.len()];
-    for (local, &vertex) in domain_of.iter().enumerate() {
-        if (vertex as usize) < domain.solved_count {
-            columns[vertex as usize] = local as u32;
-            column_of[local] = vertex;
+    assembled(&rows, domain, springs)
+}
+
+/// `slots` are all zero, and are so again behind it.
+fn plate_row(cells: &Cells, column: u32, slots: &mut [u32]) -> Row {
+    let mut others: Vec<(u32, f64)> = Vec::new();
+    let mut add = |others: &mut Vec<(u32, f64)>, end: u32, value: f64| {
+        let slot = &mut slots[end as usize];
+        if *slot == 0 {
+            others.push((end, 0.0));
+            *slot = others.len() as u32;
+        }
+        others[*slot as usize - 1].1 += value;
+    };
+    let around = cells.around(column as usize);
+    add(&mut others, column, 0.0);
+    for place in around.clone() {
+        let weight = cells.towards[place][3];
+        add(&mut others, cells.ends[place], weight);
+        add(&mut others, column, -weight);
+    }
+    for &cell in std::iter::once(&column).chain(&cells.ends[around]) {
+        let ring = cells.around(cell as usize);
+        let sum: DVec3 = ring.clone().map(|place| vector(cells.towards[place])).sum();
+        let row = |end: u32| {
+            let own = ring.clone().find(|&place| cells.ends[place] == end);
+            own.map_or(-sum, |place| vector(cells.towards[place]))
+        };
+        let [xx, xy, xz, yy, yz, zz] = cells.bending[cell as usize].hold;
+        let z = row(column);
+        let held = DVec3::new(
+            xx * z.x + xy * z.y + xz * z.z,
+            xy * z.x + yy * z.y + yz * z.z,
+            xz * z.x + yz * z.y + zz * z.z,
+        );
+        add(&mut others, cell, -held.dot(sum));
+        for place in ring.clone() {
+            add(&mut others, cells.ends[place], held.dot(vector(cells.towards[place])));
         }
     }
-    let mut operator = ShellOperator::new(laplacian, &Bilaplacian::default(), 1.0);
-    (operator.stretching, operator.bending) = (1.0, bending);
-    let hung: Vec<u32> = springs.iter().map(|spring| columns[spring.local as usize]).collect();
-    let strengths: Vec<f64> = springs.iter().map(|spring| spring.strength).collect();
-    operator.springs.add(column_of.len(), &hung, &strengths);
-    System {
-        springs: springs.to_vec(),
-        matrix: assemble_shell(&operator, &columns, &column_of),
-        coupling: Coupling::Plate {
-            operator: Box::new(operator),
-            columns,
-            domain_of,
-        },
+    for (end, _) in &others {
+        slots[*end as usize] = 0;
     }
+    let diagonal = -others.swap_remove(0).1;
+    Row { diagonal, others }
 }
 
 /// Assembles the Laplacian −L of the energy; `laplacian` has full rows for the solved vertices at least.
@@ -103,30 +111,32 @@ pub(crate) fn assemble(laplacian: &Laplacian, domain: &Domain, springs: &[Spring
         ArapEnergy::Spokes => largest_weights(laplacian),
         ArapEnergy::SpokesAndRims | ArapEnergy::Smooth => Vec::new(),
     };
-    let mut rows: Vec<Vec<(u32, f64)>> = Vec::with_capacity(domain.solved_count);
-    let mut constrained = Vec::new();
-    let mut diagonal = Vec::with_capacity(domain.solved_count);
-    for (column, &vertex) in domain.vertices[..domain.solved_count].iter().enumerate() {
-        let mut row = Vec::new();
-        let mut sum = 0.0;
-        if let Some(local) = laplacian.local(vertex) {
-            for (place, &neighbour) in laplacian.neighbours(local).iter().enumerate() {
-                let weight = match energy {
-                    ArapEnergy::Spokes => floored(laplacian, &largest, local, place),
-                    ArapEnergy::SpokesAndRims | ArapEnergy::Smooth => laplacian.weights(local)[place],
-                };
-                sum += weight;
-                let other = domain.local_of[laplacian.vertices()[neighbour as usize] as usize];
-                if (other as usize) < domain.solved_count {
-                    row.push((other, -weight));
-                } else {
-                    constrained.push((column as u32, other, weight));
+    let rows: Vec<Row> = domain.vertices[..domain.solved_count]
+        .iter()
+        .map(|&vertex| {
+            let mut row = Row {
+                diagonal: 0.0,
+                others: Vec::new(),
+            };
+            if let Some(local) = laplacian.local(vertex) {
+                for (place, &neighbour) in laplacian.neighbours(local).iter().enumerate() {
+                    let weight = match energy {
+                        ArapEnergy::Spokes => floored(laplacian, &largest, local, place),
+                        ArapEnergy::SpokesAndRims | ArapEnergy::Smooth => laplacian.weights(local)[place],
+                    };
+                    row.diagonal += weight;
+                    let other = domain.local_of[laplacian.vertices()[neighbour as usize] as usize];
+                    row.others.push((other, weight));
                 }
             }
-        }
-        diagonal.push(sum);
-        rows.push(row);
-    }
+            row
+        })
+        .collect();
+    assembled(&rows, domain, springs)
+}
+
+fn assembled(rows: &[Row], domain: &Domain, springs: &[Spring]) -> System {
+    let mut diagonal: Vec<f64> = rows.iter().map(|row| row.diagonal).collect();
     for spring in springs {
         diagonal[spring.local as usize] += spring.strength;
     }
@@ -140,14 +150,17 @@ pub(crate) fn assemble(laplacian: &Laplacian, domain: &Domain, springs: &[Spring
         lower_rows: Vec::new(),
         lower_values: Vec::new(),
     };
+    let mut coupling = Vec::new();
     for (column, row) in rows.iter().enumerate() {
         let scale = matrix.scale[column];
         matrix.lower_rows.push(column as u32);
         matrix.lower_values.push(diagonal[column] * scale * scale);
-        for &(other, value) in row {
-            if other as usize > column {
+        for &(other, value) in &row.others {
+            if other as usize >= domain.solved_count {
+                coupling.push((column as u32, other, value));
+            } else if other as usize > column {
                 matrix.lower_rows.push(other);
-                matrix.lower_values.push(value * scale * matrix.scale[other as usize]);
+                matrix.lower_values.push(-value * scale * matrix.scale[other as usize]);
             }
         }
         matrix.lower_offsets.push(matrix.lower_rows.len() as u32);
@@ -155,6 +168,6 @@ pub(crate) fn assemble(laplacian: &Laplacian, domain: &Domain, springs: &[Spring
     System {
         springs: springs.to_vec(),
         matrix,
-        coupling: Coupling::Edges(constrained),
+        coupling,
     }
 }

@@ -6,8 +6,9 @@
 pub struct Arap {
     /// Which edges a vertex's cell consists of.
     pub energy: ArapEnergy,
-    /// κ of the smooth energy (see [`ArapEnergy::Smooth`]), without unit and independent of the mesh's size and density:
-    /// within [`Arap::SMOOTHNESS`]. Other energies have no use for it.
+    /// κ of the smooth energy (see [`ArapEnergy::Smooth`]), which bends like ½ κ A ∫ |Hess p'|², A being the area of what
+    /// can move: without unit and independent of the mesh's size and density, within [`Arap::SMOOTHNESS`]. Other energies
+    /// have no use for it.
     pub smoothness: f64,
     /// Iteration ends where a step lowers the energy by less than this share of it; above 0.
     pub tolerance: f64,
@@ -36,7 +37,7 @@ impl Default for Arap {
     fn default() -> Self {
         Self {
             energy: ArapEnergy::default(),
-            smoothness: 0.01,
+            smoothness: 0.003,
             tolerance: 1e-7,
             max_iterations: 1000,
             coarse_above: 20_000,
@@ -53,8 +54,9 @@ pub enum ArapEnergy {
     /// All edges of its vertex's triangles (Chao et al. 2010), with plain cotangents; never negative.
     #[default]
     SpokesAndRims,
-    /// Spokes and rims, and the curvature turning along with each cell: the second order of Levi & Gotsman (2015) and
-    /// Oehri et al. (2025). No spikes at handles of a single vertex; twists spread evenly.
+    /// Spokes and rims, and every cell held to an affine map of its own: a thin plate in which neither bumps nor free
+    /// borders tell, for what Levi & Gotsman (2015) and Oehri et al. (2025) smooth. No spikes at handles of a single
+    /// vertex; twists spread evenly.
     Smooth,
 }
 

@@ -21,6 +21,8 @@ struct Face {
     /// w_fe of the edge opposite each corner.
     weights: [f64; 3],
     edges: [DVec3; 3],
+    /// The mean over its corners of 1 and the cell's tie; nothing where a corner has no cell.
+    factor: f64,
 }
 
 impl Face {
@@ -37,8 +39,8 @@ impl Face {
     }
 }
 
-/// The stencils of `domain`'s cells.
-pub(crate) fn cells(surface: &Surface, topology: &Topology, stiffness: &[f64], domain: &Domain) -> Cells {
+/// The stencils of `domain`'s cells, whose weights in the squares of differences are 1 and their `ties`; none are zero.
+pub(crate) fn cells(surface: &Surface, topology: &Topology, stiffness: &[f64], domain: &Domain, ties: &[f64]) -> Cells {
     let metric = Metric::cotangent_area();
     let faces: Vec<Face> = domain
         .faces
@@ -47,8 +49,14 @@ pub(crate) fn cells(surface: &Surface, topology: &Topology, stiffness: &[f64], d
         .map(|&face| {
             let corners = surface.triangles[face as usize];
             let [a, b, c] = corners.map(|corner| surface.positions[corner.index()]);
+            let locals = corners.map(|corner| domain.local_of[corner.index()]);
+            let factor = |local: u32| match local as usize {
+                cell if cell < domain.cell_count => firmness(ties, cell),
+                _ => 0.0,
+            };
             Face {
-                corners: corners.map(|corner| domain.local_of[corner.index()]),
+                corners: locals,
+                factor: locals.map(factor).iter().sum::<f64>() / 3.0,
                 weights: metric.face(stiffness, corners, edge_lengths([a, b, c])).half_cotangents,
                 edges: [c - b, a - c, b - a],
             }
@@ -84,7 +92,10 @@ pub(crate) fn cells(surface: &Surface, topology: &Topology, stiffness: &[f64], d
                 } else {
                     Solved::No
                 };
-                part.push(&entries, rest, solved);
+                for entry in &mut entries {
+                    entry.back *= firmness(ties, entry.end as usize);
+                }
+                part.push(&entries, rest, solved, firmness(ties, cell));
             }
             part
         })
@@ -98,6 +109,11 @@ pub(crate) fn cells(surface: &Surface, topology: &Topology, stiffness: &[f64], d
     cells
 }
 
+/// 1 + β of a cell.
+fn firmness(ties: &[f64], cell: usize) -> f64 {
+    1.0 + ties.get(cell).copied().unwrap_or(0.0)
+}
+
 /// Adds a triangle's part to a cell's entries and to its rest matrix.
 fn add(face: &Face, cell: u32, entries: &mut [Entry], rest: &mut [f64; 6]) {
     for own in (0..3).filter(|&own| face.corners[own] == cell) {
@@ -106,7 +122,7 @@ fn add(face: &Face, cell: u32, entries: &mut [Entry], rest: &mut [f64; 6]) {
             if let Some(entry) = entries.iter_mut().find(|entry| entry.end == end) {
                 entry.towards += face.towards(other) / 3.0;
                 entry.back += face.towards(own) / 3.0;
-                entry.weight += face.weights[3 - own - other];
+                entry.weight += face.weights[3 - own - other] * face.factor;
             }
         }
         for edge in 0..3 {
@@ -121,13 +137,12 @@ fn constant(faces: &[Face], domain: &Domain) -> Vec<(u32, u32, f64)> {
     let mut pairs = Vec::new();
     let has_cell = |corner: u32| f64::from(u8::from((corner as usize) < domain.cell_count));
     for face in faces {
-        let count: f64 = face.corners.map(has_cell).iter().sum();
         for k in 0..3 {
             let (a, b) = (face.corners[(k + 1) % 3], face.corners[(k + 2) % 3]);
             let is_constrained = a.min(b) as usize >= domain.solved_count;
-            let share = count / 6.0 - 0.25 * (has_cell(a) + has_cell(b));
-            if is_constrained && a != b && share.abs() > 1e-9 {
-                pairs.push((a, b, face.weights[k] * share));
+            let share = 0.5 - 0.25 * (has_cell(a) + has_cell(b));
+            if is_constrained && a != b && share > 0.0 {
+                pairs.push((a, b, face.weights[k] * face.factor * share));
             }
         }
     }

@@ -32,12 +32,11 @@ pub(crate) struct Shape {
 /// Room for an evaluation, kept from one to the next.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
-    /// R − 1 of each cell, column by column. **f32**: each is read by all its neighbours, and for the gradient alone.
+    /// R − 1 of each cell, or Z of one that bends, column by column. **f32**: each is read by all its neighbours, and for
+    /// the gradient alone.
     turns: Vec<Turn>,
-    /// Σ_v w_iv D_v of each cell. **f32** likewise.
+    /// Σ_v w_iv D_v − (R_i − 1) Σ_v (G_iv − G_vi) of each solved cell: what is left of two large sums. **f32** likewise.
     laplacians: Vec<[f32; 4]>,
-    /// The bending force of each cell.
-    moments: Vec<Quad>,
 }
 
 /// A quaternion: x, y, z, w.
@@ -92,7 +91,7 @@ impl Cells {
     /// Finds the gradient of the shape with its rotations as they are, best or not.
     pub fn find_pull(&self, shape: &mut Shape, scratch: &mut Scratch) {
         if !self.bending.is_empty() {
-            // Neighbours' moments enter, which are not known before theirs.
+            // What holds the cells' affine maps enters, which gathers their rings.
             self.gather_all(shape, Guesses::Own, Turning::Given, scratch);
             self.find_gradient(shape, scratch);
             return;
@@ -115,7 +114,7 @@ impl Cells {
             gradient,
             ..
         } = shape;
-        self.gradient_pass(gradient, &scratch.turns, Laplacians::Of(displacements), &[]);
+        self.gradient_pass(gradient, &scratch.turns, Laplacians::Of(displacements));
     }
 
     fn gather_all(&self, shape: &mut Shape, guesses: Guesses<'_>, turning: Turning, scratch: &mut Scratch) {
@@ -126,25 +125,16 @@ impl Cells {
             ..
         } = shape;
         let displacements = displacements.as_slice();
-        let Scratch {
-            turns,
-            laplacians,
-            moments,
-        } = scratch;
+        let Scratch { turns, laplacians } = scratch;
         turns.resize(self.count(), [[0.0; 4]; 3]);
         laplacians.resize(self.count(), [0.0; 4]);
-        moments.resize(self.bending.len(), [0.0; 4]);
-        let mut moment_chunks: Vec<&mut [Quad]> = moments.chunks_mut(CHUNK).collect();
-        // Without bending there are no moments.
-        moment_chunks.resize_with(self.count().div_ceil(CHUNK), Default::default);
         let arch = Arch::new();
         let partial: Vec<f64> = rotations
             .par_chunks_mut(CHUNK)
             .zip(turns.par_chunks_mut(CHUNK))
             .zip(laplacians.par_chunks_mut(CHUNK))
-            .zip(moment_chunks)
             .enumerate()
-            .map(|(chunk, (((rotations, turns), laplacians), moments))| {
+            .map(|(chunk, ((rotations, turns), laplacians))| {
                 let first = chunk * CHUNK;
                 if let Guesses::Given(given) = guesses {
                     rotations.copy_from_slice(&given[first..first + rotations.len()]);
@@ -153,7 +143,6 @@ impl Cells {
                     rotations,
                     turns,
                     laplacians,
-                    moments,
                 };
                 arch.dispatch(FitPass {
                     cells: self,
@@ -179,15 +168,11 @@ impl Cells {
 
     /// Finds the gradient of the shape that was measured with this scratch last.
     pub fn find_gradient(&self, shape: &mut Shape, scratch: &Scratch) {
-        let Scratch {
-            turns,
-            laplacians,
-            moments,
-        } = scratch;
-        self.gradient_pass(&mut shape.gradient, turns, Laplacians::Known(laplacians), moments);
+        let Scratch { turns, laplacians } = scratch;
+        self.gradient_pass(&mut shape.gradient, turns, Laplacians::Known(laplacians));
     }
 
-    fn gradient_pass(&self, gradient: &mut [[f32; 3]], turns: &[Turn], laplacians: Laplacians<'_>, moments: &[Quad]) {
+    fn gradient_pass(&self, gradient: &mut [[f32; 3]], turns: &[Turn], laplacians: Laplacians<'_>) {
         let arch = Arch::new();
         gradient
             .par_chunks_mut(CHUNK)
@@ -199,7 +184,6 @@ impl Cells {
                     gradient,
                     turns,
                     laplacians,
-                    moments,
                 });
             });
     }
@@ -250,13 +234,14 @@ mod tests {
             let domain = Domain::of(surface, topology, &order);
             let stiffness: Vec<f64> = (0..count).map(|v| 1.0 + f64::from(v % 5)).collect();
             let laplacian = Laplacian::of(surface, topology, &stiffness);
-            let rims = rims::cells(surface, topology, &stiffness, &domain);
+            let rims = rims::cells(surface, topology, &stiffness, &domain, &[]);
             check(surface, topology, &stiffness, &domain, &rims, "rims");
             let spokes = spokes::cells(surface, &laplacian, &domain);
             check(surface, topology, &stiffness, &domain, &spokes, "spokes");
-            let mut smooth = rims;
             let bends = bending::stiffness(surface, &domain, 0.05);
-            bending::add(&mut smooth, surface, &laplacian, &domain, bends);
+            let ties = bending::ties(surface, topology, &domain, bends);
+            let mut smooth = rims::cells(surface, topology, &stiffness, &domain, &ties);
+            bending::add(&mut smooth, &ties);
             check(surface, topology, &stiffness, &domain, &smooth, "smooth");
         }
     }

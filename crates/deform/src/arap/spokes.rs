@@ -57,7 +57,7 @@ pub(crate) fn cells(surface: &Surface, laplacian: &Laplacian, domain: &Domain) -
         } else {
             Solved::No
         };
-        cells.push(&entries, rest, solved);
+        cells.push(&entries, rest, solved, 1.0);
     }
     cells
 }

@@ -194,3 +194,52 @@ fn a_handle_of_one_vertex_draws_no_spike_with_smoothness() {
     assert!(fine > 0.6 * coarse, "{coarse} {fine}");
     assert!(spike(ArapEnergy::Smooth, 0.01, 32) < 0.3 * fine, "{fine}");
 }
+
+/// A strip that is lifted at one end, free along its sides; the cells' diagonals alternate, since where all run one way
+/// a strip that bends also twists.
+#[test]
+fn a_free_border_bends_like_the_middle_with_smoothness() {
+    let (along, across) = (60, 30);
+    let mut strip = shapes::grid(along, across);
+    for p in &mut strip.positions {
+        p.x *= 2.0;
+    }
+    for (cell, pair) in strip.triangles.chunks_exact_mut(2).enumerate() {
+        if (cell / along + cell % along) % 2 == 1 {
+            let ([a, b, c], [_, _, d]) = (pair[0], pair[1]);
+            pair.copy_from_slice(&[[a, b, d], [b, c, d]]);
+        }
+    }
+    let scene = scene(strip, ArapEnergy::Smooth)
+        .with(Role::Fixed, |p| p.x < 0.1)
+        .with(Role::Handle(0), |p| p.x > 1.9);
+    let lift = DVec3::Z * 0.4;
+    let (displacements, _) = settle(&mut scene.bind(), &[DAffine3::from_translation(lift)]);
+    let mut heights: Vec<(f64, f64)> = vec![(f64::INFINITY, f64::NEG_INFINITY); along + 1];
+    for (p, d) in scene.positions().iter().zip(&displacements) {
+        let (least, most) = &mut heights[(p.x * 30.0).round() as usize];
+        (*least, *most) = (least.min(d.z), most.max(d.z));
+    }
+    let bulge = heights.iter().map(|(least, most)| most - least).fold(0.0, f64::max);
+    assert!(bulge < 0.02 * lift.z, "{bulge}");
+}
+
+#[test]
+fn bumps_do_not_slow_the_smooth_energy() {
+    let steps = |bump: f64| {
+        let mut tube = shapes::tube(40, 100, 8.0);
+        for p in &mut tube.positions {
+            let out = 1.0 + bump * (9.0 * p.y.atan2(p.x)).sin() * (9.0 * p.z).sin();
+            *p = DVec3::new(p.x * out, p.y * out, p.z);
+        }
+        let mut scene = scene(tube, ArapEnergy::Smooth)
+            .with(Role::Fixed, |p| p.z < 0.5)
+            .with(Role::Handle(0), |p| p.z > 7.5);
+        scene.method = Iterative::Arap(ArapEnergy::Smooth).ending_at(1e-7);
+        settle(&mut scene.bind(), &[turned(DVec3::Z * 4.0, 1.2, DVec3::X)])
+            .1
+            .len()
+    };
+    let (even, bumpy) = (steps(0.0), steps(0.08));
+    assert!(bumpy < 2 * even, "{even} {bumpy}");
+}

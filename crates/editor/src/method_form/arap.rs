@@ -10,7 +10,7 @@ use crate::edit_node::Members;
 pub(super) const OPTIONS: &[MethodOption] = &[
     MethodOption {
         name: "energy",
-        says: "a vertex's cell: \"spokes\", its edges, \"spokes-and-rims\", its triangles' edges, or \"smooth\", those and their curvature; default \"spokes-and-rims\"",
+        says: "a vertex's cell: \"spokes\", its edges, \"spokes-and-rims\", its triangles' edges, or \"smooth\", those and how it bends; default \"spokes-and-rims\"",
         takes: OptionKind::Named {
             choices: &["spokes", "spokes-and-rims", "smooth"],
             default: "spokes-and-rims",
@@ -18,10 +18,10 @@ pub(super) const OPTIONS: &[MethodOption] = &[
     },
     MethodOption {
         name: "smoothness",
-        says: "how much the energy \"smooth\" resists bending, whatever the mesh's size and density, 1e-6 to 10; default 0.01",
+        says: "how much the energy \"smooth\" resists bending, whatever the mesh's size and density, 1e-6 to 10; default 0.003",
         takes: OptionKind::Number {
             range: [*Arap::SMOOTHNESS.start(), *Arap::SMOOTHNESS.end()],
-            default: 0.01,
+            default: 0.003,
             unit: "",
         },
     },
