@@ -9,9 +9,9 @@ use pliant_mesh::{Cancel, Progress, WeldOptions};
 use pliant_render::Image;
 
 use super::file_names::{SAMPLE, SAMPLE_NAME, file_name, is_gltf, original_name, saved_name};
+use super::gpu::Gpu;
 use super::message::{Message, Opened, Written, WrittenKind};
 use super::project_file::{self, MeshSource};
-use super::viewport::Gpu;
 use super::workers::Workers;
 use crate::AppError;
 use crate::drawing::Drawing;

@@ -4,22 +4,22 @@
 //! On a device that is the processor itself a changing view is drawn with one sample a pixel and large meshes with fewer
 //! triangles, and once more in full when it has come to rest.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, TextureId};
 use eframe::egui_wgpu::RenderState;
 use glam::DVec3;
-use pliant_editor::{Editor, Look, SceneView, Shading, UpAxis};
-use pliant_mesh::SurfaceVertex;
-use pliant_render::{
-    Background, Detail, Frame, Grid, Image, Outfit, RenderError, Renderer, Samples, Style, Surface, Target,
-};
+use pliant_editor::{Editor, SceneView, Shading};
+use pliant_render::{Background, Detail, Frame, Image, Outfit, RenderError, Renderer, Samples, Style, Surface, Target};
 
 use super::coarseness::Coarseness;
+use super::drawn_key::DrawnKey;
+use super::gpu::Gpu;
 use super::message::{Ground, PictureKind, Posed};
-use crate::drawing::{self, Drawing, Dress, Field, Pose, Scale};
+use super::shown::{Colours, Shown, address};
+use crate::drawing::{self, Drawing, Field, Scale};
 use crate::legend;
 
 /// Surfaces above this many triangles are not drawn a second time for smooth borders on a software device.
@@ -40,112 +40,6 @@ pub struct Viewport {
     coarseness: Coarseness,
 }
 
-/// The device, shared with the threads that upload files. Drawing needs it alone, and rather skips a frame than wait.
-#[derive(Clone)]
-pub struct Gpu(Arc<RwLock<Renderer>>);
-
-impl Gpu {
-    /// Uploads a file's images.
-    ///
-    /// # Errors
-    /// As [`Outfit::new`].
-    pub fn upload_images(&self, dress: &Dress) -> Result<Outfit, RenderError> {
-        dress.upload(&self.read())
-    }
-
-    /// Uploads a file's surface.
-    ///
-    /// # Errors
-    /// As [`Surface::new`].
-    pub fn upload(&self, drawing: &Drawing, pose: &Pose) -> Result<Surface, RenderError> {
-        drawing.upload(&self.read(), pose)
-    }
-
-    fn read(&self) -> RwLockReadGuard<'_, Renderer> {
-        // A panic elsewhere leaves the device as it is.
-        self.0.read().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-/// The surface in GPU buffers and what it shows.
-struct Shown {
-    surface: Surface,
-    drawing: Arc<Drawing>,
-    displacements: Arc<Vec<DVec3>>,
-    /// The height of the file's lowest point along each axis, in world units.
-    lowest: DVec3,
-    colours: Colours,
-    /// One a drawn vertex, where they are regions.
-    drawn_colours: Vec<[u8; 4]>,
-    /// Which of the editor's rims it has.
-    rims: Option<u64>,
-    scale: Option<Arc<Scale>>,
-    /// Its materials with their images, once there are any.
-    outfit: Option<Outfit>,
-    /// How often its materials changed.
-    outfits: u64,
-    /// The triangles that are drawn.
-    shown: Option<Arc<Vec<bool>>>,
-}
-
-impl Shown {
-    /// The grid under the file's lowest point, where it is to be seen.
-    fn ground(&self, view: &SceneView<'_>) -> Option<Grid> {
-        let height = match view.camera.up {
-            UpAxis::Y => self.lowest.y,
-            UpAxis::Z => self.lowest.z,
-        };
-        let grid = || drawing::ground(view.camera, view.viewport_px, height, self.drawing.centre);
-        view.look.grid.then(grid)
-    }
-}
-
-/// What the surface's region colours are at present.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Colours {
-    /// Not set.
-    None,
-    /// The editor's regions.
-    Regions(u64),
-    /// Numbers of the shape.
-    Field(Field),
-    /// The stiffness, as of a revision of the editor's regions.
-    Stiffness(u64),
-}
-
-/// What the picture in the texture was drawn from.
-#[derive(Clone, PartialEq)]
-struct DrawnKey {
-    pixels_per_point: f32,
-    shape: usize,
-    colours: Colours,
-    outfits: u64,
-    rims: u64,
-    shown: usize,
-    overlay: u64,
-    camera: u64,
-    look: Look,
-    size_px: [u32; 2],
-    samples: Samples,
-    detail: Detail,
-}
-
-impl DrawnKey {
-    /// Whether this picture is as good as the one asked for: of the same thing, with as many samples, and as large or
-    /// as large as the view, `full_px`, itself.
-    fn serves(&self, wanted: &Self, full_px: [u32; 2]) -> bool {
-        let same = Self {
-            size_px: wanted.size_px,
-            samples: wanted.samples,
-            detail: wanted.detail,
-            ..self.clone()
-        };
-        let is_as_detailed = self.detail == wanted.detail || self.detail == Detail::Full;
-        let is_as_large = self.size_px == wanted.size_px || self.size_px == full_px;
-        same == *wanted && is_as_large && is_as_detailed && self.samples.count() >= wanted.samples.count()
-    }
-}
-
 impl Viewport {
     /// A view on the window's device.
     ///
@@ -162,7 +56,7 @@ impl Viewport {
         state.device.on_uncaptured_error(Arc::new(|_| {}));
         let renderer = Renderer::new(&state.device, &state.queue)?;
         let software = renderer.is_software().then(|| renderer.device_name());
-        Ok(Self::of(state, Gpu(Arc::new(RwLock::new(renderer))), software, lost))
+        Ok(Self::of(state, Gpu::new(renderer), software, lost))
     }
 
     /// Another view on the same device, of nothing yet.
@@ -324,8 +218,10 @@ impl Viewport {
             Smoothness::Resting if software && triangles > SOFT_SMOOTH_TRIANGLES => Samples::One,
             Smoothness::Moving | Smoothness::Resting => Samples::Four,
         };
-        self.update_regions(editor, &view)?;
-        self.update_rims(editor, &view)?;
+        if let Some(shown) = &mut self.surface {
+            shown.update_regions(editor, &self.gpu)?;
+            shown.update_rims(editor, &self.gpu)?;
+        }
         let factor = match smooth {
             Smoothness::Moving => self.coarseness.factor(),
             Smoothness::Resting => 1,
@@ -371,7 +267,7 @@ impl Viewport {
 
     /// How long the device worked on a drawing of late.
     fn device_ms(&self) -> Option<f64> {
-        self.gpu.0.try_read().ok()?.device_ms()
+        self.gpu.try_read()?.device_ms()
     }
 
     fn key(&self, view: &SceneView<'_>, pixels_per_point: f32, size_px: [u32; 2], samples: Samples) -> DrawnKey {
@@ -394,77 +290,10 @@ impl Viewport {
         }
     }
 
-    fn update_regions(&mut self, editor: &Editor, view: &SceneView<'_>) -> Result<(), RenderError> {
-        let (Some(shown), Some(model)) = (&mut self.surface, view.model) else {
-            return Ok(());
-        };
-        let wanted_triangles = editor.shown_triangles();
-        if address(shown.shown.as_ref()) != address(wanted_triangles) {
-            let wanted_triangles = wanted_triangles.cloned();
-            shown.surface.show(&self.gpu.read(), wanted_triangles.clone())?;
-            shown.shown = wanted_triangles;
-        }
-        let stiffness = editor.document().stiffness();
-        let wanted = match drawing::field(view.look.shading) {
-            None => Colours::Regions(view.regions_revision),
-            Some(Field::Stiffness) => Colours::Stiffness(view.regions_revision),
-            // These come with the shape that they belong to.
-            Some(_) => return Ok(()),
-        };
-        if shown.colours == wanted {
-            return Ok(());
-        }
-        let renderer = self.gpu.read();
-        let recoloured = match (shown.colours, wanted) {
-            (Colours::Regions(known), Colours::Regions(_)) | (Colours::Stiffness(known), Colours::Stiffness(_)) => {
-                editor.recoloured_since(known)
-            }
-            _ => None,
-        };
-        if let Some(vertices) = recoloured {
-            let of_region = editor.region_colour();
-            let colour = |vertex: SurfaceVertex| match (wanted, &shown.scale) {
-                (Colours::Stiffness(_), Some(scale)) => {
-                    scale.colour(stiffness.map_or(1.0, |field| field[vertex.index()]))
-                }
-                _ => of_region(vertex),
-            };
-            let ranges = drawing::recolour(model, vertices, colour, &mut shown.drawn_colours);
-            let colours = &shown.drawn_colours;
-            shown.surface.update_some_regions(&renderer, colours, &ranges)?;
-        } else {
-            let mut colours = Vec::new();
-            if let Colours::Stiffness(_) = wanted {
-                let scale = Arc::new(Scale::of(Field::Stiffness, model));
-                let displacements = &shown.displacements;
-                colours = drawing::colours(Field::Stiffness, &scale, model, displacements, stiffness);
-                shown.scale = Some(scale);
-            } else {
-                editor.region_colours(&mut colours);
-            }
-            shown.drawn_colours = drawing::drawn_colours(model, &colours);
-            shown.surface.update_regions(&renderer, &shown.drawn_colours)?;
-        }
-        shown.colours = wanted;
-        Ok(())
-    }
-
-    fn update_rims(&mut self, editor: &Editor, view: &SceneView<'_>) -> Result<(), RenderError> {
-        let (Some(shown), Some(model)) = (&mut self.surface, view.model) else {
-            return Ok(());
-        };
-        if shown.rims != Some(view.rims_revision) && view.look.outlines {
-            let lines = drawing::outlines(editor, model);
-            shown.surface.update_lines(&self.gpu.read(), &lines)?;
-            shown.rims = Some(view.rims_revision);
-        }
-        Ok(())
-    }
-
     /// Draws; false if a file is just being uploaded, which this thread does not wait for.
     fn draw(&mut self, view: &SceneView<'_>, key: &DrawnKey) -> Result<bool, RenderError> {
         let gpu = self.gpu.clone();
-        let Ok(mut renderer) = gpu.0.try_write() else {
+        let Some(mut renderer) = gpu.try_write() else {
             return Ok(false);
         };
         if self.target.resize(&renderer, key.size_px, key.samples)? {
@@ -500,7 +329,7 @@ impl Viewport {
     /// As [`Renderer::draw_to_image`].
     pub fn picture(&mut self, editor: &Editor, kind: PictureKind) -> Result<Option<Image>, RenderError> {
         let (view, gpu) = (editor.view(), self.gpu.clone());
-        let (Some(shown), Some(key), Ok(mut renderer)) = (&self.surface, &self.drawn, gpu.0.try_write()) else {
+        let (Some(shown), Some(key), Some(mut renderer)) = (&self.surface, &self.drawn, gpu.try_write()) else {
             return Ok(None);
         };
         // As large as the view, though it may just be drawn with fewer pixels.
@@ -543,11 +372,6 @@ impl Viewport {
             None => self.texture = Some(egui_renderer.register_native_texture(device, view, filter)),
         }
     }
-}
-
-/// What tells two lists of triangles apart; 0 for all of them.
-fn address(shown: Option<&Arc<Vec<bool>>>) -> usize {
-    shown.map_or(0, |shown| Arc::as_ptr(shown) as usize)
 }
 
 /// Whether the view changes or rests.

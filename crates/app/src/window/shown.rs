@@ -1,0 +1,135 @@
+//! The surface in the device's buffers: its colours and lines follow the editor, its shape the poses that jobs make.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_editor::{Editor, SceneView, UpAxis};
+use pliant_mesh::SurfaceVertex;
+use pliant_render::{Grid, Outfit, RenderError, Surface};
+
+use super::gpu::Gpu;
+use crate::drawing::{self, Drawing, Field, Scale};
+
+/// The surface in GPU buffers and what it shows.
+pub struct Shown {
+    pub surface: Surface,
+    pub drawing: Arc<Drawing>,
+    pub displacements: Arc<Vec<DVec3>>,
+    /// The height of the file's lowest point along each axis, in world units.
+    pub lowest: DVec3,
+    pub colours: Colours,
+    /// One a drawn vertex, where they are regions.
+    pub drawn_colours: Vec<[u8; 4]>,
+    /// Which of the editor's rims it has.
+    pub rims: Option<u64>,
+    pub scale: Option<Arc<Scale>>,
+    /// Its materials with their images, once there are any.
+    pub outfit: Option<Outfit>,
+    /// How often its materials changed.
+    pub outfits: u64,
+    /// The triangles that are drawn.
+    pub shown: Option<Arc<Vec<bool>>>,
+}
+
+impl Shown {
+    /// The grid under the file's lowest point, where it is to be seen.
+    pub fn ground(&self, view: &SceneView<'_>) -> Option<Grid> {
+        let height = match view.camera.up {
+            UpAxis::Y => self.lowest.y,
+            UpAxis::Z => self.lowest.z,
+        };
+        let grid = || drawing::ground(view.camera, view.viewport_px, height, self.drawing.centre);
+        view.look.grid.then(grid)
+    }
+
+    /// Brings the colours and the shown triangles to what the editor has now.
+    ///
+    /// # Errors
+    /// As [`Surface::update_regions`].
+    pub fn update_regions(&mut self, editor: &Editor, gpu: &Gpu) -> Result<(), RenderError> {
+        let view = editor.view();
+        let Some(model) = view.model else { return Ok(()) };
+        let wanted_triangles = editor.shown_triangles();
+        if address(self.shown.as_ref()) != address(wanted_triangles) {
+            let wanted_triangles = wanted_triangles.cloned();
+            self.surface.show(&gpu.read(), wanted_triangles.clone())?;
+            self.shown = wanted_triangles;
+        }
+        let stiffness = editor.document().stiffness();
+        let wanted = match drawing::field(view.look.shading) {
+            None => Colours::Regions(view.regions_revision),
+            Some(Field::Stiffness) => Colours::Stiffness(view.regions_revision),
+            // These come with the shape that they belong to.
+            Some(_) => return Ok(()),
+        };
+        if self.colours == wanted {
+            return Ok(());
+        }
+        let renderer = gpu.read();
+        let recoloured = match (self.colours, wanted) {
+            (Colours::Regions(known), Colours::Regions(_)) | (Colours::Stiffness(known), Colours::Stiffness(_)) => {
+                editor.recoloured_since(known)
+            }
+            _ => None,
+        };
+        if let Some(vertices) = recoloured {
+            let of_region = editor.region_colour();
+            let colour = |vertex: SurfaceVertex| match (wanted, &self.scale) {
+                (Colours::Stiffness(_), Some(scale)) => {
+                    scale.colour(stiffness.map_or(1.0, |field| field[vertex.index()]))
+                }
+                _ => of_region(vertex),
+            };
+            let ranges = drawing::recolour(model, vertices, colour, &mut self.drawn_colours);
+            let colours = &self.drawn_colours;
+            self.surface.update_some_regions(&renderer, colours, &ranges)?;
+        } else {
+            let mut colours = Vec::new();
+            if let Colours::Stiffness(_) = wanted {
+                let scale = Arc::new(Scale::of(Field::Stiffness, model));
+                let displacements = &self.displacements;
+                colours = drawing::colours(Field::Stiffness, &scale, model, displacements, stiffness);
+                self.scale = Some(scale);
+            } else {
+                editor.region_colours(&mut colours);
+            }
+            self.drawn_colours = drawing::drawn_colours(model, &colours);
+            self.surface.update_regions(&renderer, &self.drawn_colours)?;
+        }
+        self.colours = wanted;
+        Ok(())
+    }
+
+    /// Brings the outlines to what the editor has now, where they are to be seen.
+    ///
+    /// # Errors
+    /// As [`Surface::update_lines`].
+    pub fn update_rims(&mut self, editor: &Editor, gpu: &Gpu) -> Result<(), RenderError> {
+        let view = editor.view();
+        let Some(model) = view.model else { return Ok(()) };
+        if self.rims != Some(view.rims_revision) && view.look.outlines {
+            let lines = drawing::outlines(editor, model);
+            self.surface.update_lines(&gpu.read(), &lines)?;
+            self.rims = Some(view.rims_revision);
+        }
+        Ok(())
+    }
+}
+
+/// What the surface's region colours are at present.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Colours {
+    /// Not set.
+    None,
+    /// The editor's regions.
+    Regions(u64),
+    /// Numbers of the shape.
+    Field(Field),
+    /// The stiffness, as of a revision of the editor's regions.
+    Stiffness(u64),
+}
+
+/// What tells two lists of triangles apart; 0 for all of them.
+pub fn address(shown: Option<&Arc<Vec<bool>>>) -> usize {
+    shown.map_or(0, |shown| Arc::as_ptr(shown) as usize)
+}
