@@ -2,8 +2,6 @@
 //!
 //! A place counts once the camera has left it: a gesture of the pointer is one way, however many events it has.
 
-use pliant_mesh::DrawnVertex;
-
 use crate::Camera;
 use crate::editor::Editor;
 use crate::tool::Tool;
@@ -56,25 +54,6 @@ impl Editor {
             to.push(self.camera);
             self.camera = camera;
             history.resting = Some(camera);
-            self.is_framed = false;
-        }
-    }
-
-    /// Comes close to a vertex, by the file's number.
-    pub(crate) fn frame_file_vertex(&mut self, file_vertex: u32) {
-        let Some(model) = self.engine.model.as_ref() else {
-            return;
-        };
-        let drawn = model.drawn.file_vertices().position(|vertex| vertex.0 == file_vertex);
-        let Some(drawn) = drawn.map(|drawn| DrawnVertex(drawn as u32)) else {
-            return;
-        };
-        let surface = model.drawn.surface_vertex(drawn);
-        let point = model.rest_position(drawn)
-            + surface.map_or(glam::DVec3::ZERO, |vertex| self.document.from_file[vertex.index()]);
-        if point.is_finite() {
-            self.camera.target = point;
-            self.camera.distance = 0.15 * self.camera.scale;
             self.is_framed = false;
         }
     }

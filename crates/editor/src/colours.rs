@@ -1,10 +1,11 @@
-//! The colours of regions and handles on the surface.
+//! The colours of regions and handles on the surface, and the lines between them.
 
 use pliant_deform::Role;
-use pliant_mesh::SurfaceVertex;
+use pliant_mesh::{ContourLine, SurfaceVertex};
 
 use crate::document::{HandleId, Paint};
 use crate::editor::Editor;
+use crate::rim::{Rim, bounded};
 
 /// The colour of a stiffness, sRGB with alpha: blue where it gives way (0.001), grey at 1, red where it is firm (1000).
 pub fn stiffness_colour(stiffness: f64) -> [u8; 4] {
@@ -64,5 +65,17 @@ impl Editor {
                 },
             }
         }
+    }
+
+    /// The lines between the regions as they were last measured, each with what it bounds; those of hidden handles are
+    /// left out. To be fetched again when [`SceneView::rims_revision`](crate::SceneView::rims_revision) has grown.
+    pub fn rims(&self) -> impl Iterator<Item = (&ContourLine, Rim)> {
+        let region = &self.engine.region;
+        let is_seen = |rim: &Rim| match rim {
+            Rim::Held => true,
+            Rim::Handle(id) => self.document.handle(*id).is_some_and(|handle| handle.visible),
+        };
+        let lines = region.rims.iter().filter(|line| self.is_triangle_shown(line.triangle));
+        lines.filter_map(move |line| Some((line, bounded(line.label, &region.handles).filter(is_seen)?)))
     }
 }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use pliant_deform::{Arap, CONTINUITY_RANGE, Loose, Method};
 
-use crate::tool::handle_colour;
+use crate::handle_colour::handle_colour;
 use crate::turn::followed;
 use crate::{Access, HandleTransform, Reach};
 
@@ -148,7 +148,7 @@ impl Handle {
         Self {
             id,
             name,
-            colour: handle_colour(id),
+            colour: handle_colour(id.0),
             transform: HandleTransform::IDENTITY,
             turn_deg: DVec3::ZERO,
             pivot: DVec3::ZERO,

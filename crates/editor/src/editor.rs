@@ -341,18 +341,6 @@ impl Editor {
         }
     }
 
-    pub(crate) fn frame_all(&mut self) {
-        let Some(model) = self.engine.model.as_ref() else {
-            return;
-        };
-        let rest = model.surface.positions.iter();
-        let moved = rest.zip(self.document.from_file.iter()).map(|(&p, &d)| p + d);
-        let shown = moved.enumerate().filter(|(vertex, _)| self.masks.is_shown(*vertex));
-        let positions: Vec<DVec3> = shown.map(|(_, position)| position).collect();
-        self.camera.frame(&positions, self.viewport_px);
-        self.is_framed = true;
-    }
-
     /// Ends what the tool is doing without a trace.
     pub(crate) fn abort_tool(&mut self) {
         let tool = std::mem::take(&mut self.tool);

@@ -3,18 +3,17 @@
 use std::sync::Arc;
 
 use glam::DVec2;
-use pliant_deform::{CONTINUITY_RANGE, Loose};
+use pliant_deform::Loose;
 use pliant_mesh::SurfaceVertex;
 
 use crate::camera_history::CameraStep;
-use crate::command::{Command, Reach};
+use crate::command::Command;
 use crate::constraint::Constraint;
 use crate::document::{HandleId, Paint};
 use crate::editor::Editor;
 use crate::exchange::without_pivot;
 use crate::tool::{Tool, TransformDrag, TransformKind, Widen};
-use crate::turn::rotation_of;
-use crate::{HandleTransform, Orbit, Projection, SOFT_RANGE, STIFFNESS_RANGE};
+use crate::{HandleTransform, Orbit, Projection, STIFFNESS_RANGE};
 
 /// The factor by which a key sizes the brush.
 const BRUSH_STEP: f64 = 1.2;
@@ -229,13 +228,6 @@ impl Editor {
         }
     }
 
-    fn transform_handle(&mut self, verb: &str, id: HandleId, transform: HandleTransform) {
-        let Some(name) = self.document.handle(id).map(|handle| handle.name.clone()) else {
-            return;
-        };
-        self.step(format!("{verb} {name}"), |editor| editor.put_handle(id, transform));
-    }
-
     fn select_next(&mut self) {
         let handles = &self.document.handles;
         let present = self
@@ -266,56 +258,6 @@ impl Editor {
         });
     }
 
-    /// Widening the region changes roles: the present shape becomes the rest shape first.
-    fn set_reach(&mut self, id: HandleId, reach: Reach) {
-        let (Reach::Radii(size) | Reach::Length(size)) = reach;
-        if !(size.is_finite() && size >= 0.0) {
-            self.problem = Some("A reach is a length of at least 0: enter another number.".to_owned());
-            return;
-        }
-        if self.document.handle(id).is_none_or(|handle| handle.reach == reach) {
-            return;
-        }
-        self.engine.drop_solves();
-        self.change("Change reach", |document| {
-            document.apply_shape();
-            if let Some(handle) = document.handle_mut(id) {
-                handle.reach = reach;
-            }
-        });
-    }
-
-    fn set_turn(&mut self, id: HandleId, turn_deg: glam::DVec3) {
-        if !turn_deg.is_finite() {
-            self.problem = Some("The handle's turn is not finite: enter other numbers.".to_owned());
-            return;
-        }
-        let Some(handle) = self.document.handle(id) else { return };
-        let HandleTransform::Trs {
-            translation,
-            scale,
-            pivot,
-            ..
-        } = handle.transform
-        else {
-            self.problem = Some(format!(
-                "{} is moved by a matrix: reset it to turn it by angles.",
-                handle.name
-            ));
-            return;
-        };
-        let turned = HandleTransform::Trs {
-            translation,
-            rotation: rotation_of(turn_deg),
-            scale,
-            pivot,
-        };
-        self.step(format!("Turn {}", handle.name.clone()), |editor| {
-            editor.put_handle(id, turned);
-            editor.count_turn(id, turn_deg);
-        });
-    }
-
     fn set_loose_part(&mut self, part: u32, loose: Option<Loose>) {
         let count = self
             .engine
@@ -337,58 +279,6 @@ impl Editor {
             if parts != *document.loose_parts {
                 document.settled &= !document.is_displaced();
                 document.loose_parts = Arc::new(parts);
-            }
-        });
-    }
-
-    fn frame_part(&mut self, part: u32) {
-        let Some(model) = self.engine.model.as_ref() else {
-            return;
-        };
-        let Some(component) = model.topology.components().get(part as usize) else {
-            return;
-        };
-        let position =
-            |vertex: &SurfaceVertex| model.surface.positions[vertex.index()] + self.document.from_file[vertex.index()];
-        let positions: Vec<glam::DVec3> = component.vertices.iter().map(position).collect();
-        self.camera.frame(&positions, self.viewport_px);
-        // What it lies on is to be seen, too.
-        self.camera.distance *= 3.0;
-        self.is_framed = false;
-    }
-
-    fn set_continuity(&mut self, id: HandleId, continuity: Option<f64>) {
-        if continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value)) {
-            self.problem = Some("A continuity is from 0 (a hinge) to 2 (smooth): enter another number.".to_owned());
-            return;
-        }
-        self.change("Change continuity", |document| {
-            if document
-                .handle(id)
-                .is_some_and(|handle| handle.continuity != continuity)
-            {
-                document.settled &= !document.is_displaced();
-                if let Some(handle) = document.handle_mut(id) {
-                    handle.continuity = continuity;
-                }
-            }
-        });
-    }
-
-    fn set_soft(&mut self, id: HandleId, soft: Option<f64>) {
-        if soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight)) {
-            let (least, most) = (SOFT_RANGE.start(), SOFT_RANGE.end());
-            self.problem = Some(format!(
-                "A soft handle's weight is from {least} to {most}: enter another number."
-            ));
-            return;
-        }
-        self.change("Change softness", |document| {
-            if document.handle(id).is_some_and(|handle| handle.soft != soft) {
-                document.settled &= !document.is_displaced();
-                if let Some(handle) = document.handle_mut(id) {
-                    handle.soft = soft;
-                }
             }
         });
     }
@@ -432,22 +322,6 @@ impl Editor {
                     document.stiffness = field;
                 }
             });
-        }
-    }
-
-    fn frame_selected(&mut self) {
-        let (Some(model), Some(id)) = (self.engine.model.as_ref(), self.selected) else {
-            return;
-        };
-        let members: Vec<glam::DVec3> = (0..self.document.paint.len())
-            .filter(|&vertex| self.document.paint[vertex] == Paint::Handle(id))
-            .map(|vertex| model.surface.positions[vertex] + self.document.from_file[vertex])
-            .collect();
-        if !members.is_empty() {
-            self.camera.frame(&members, self.viewport_px);
-            // Its region shows what bends: as much room again on every side.
-            self.camera.distance *= 3.0;
-            self.is_framed = false;
         }
     }
 }

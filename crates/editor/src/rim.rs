@@ -4,7 +4,6 @@ use pliant_deform::Role;
 use pliant_mesh::{ContourLine, Surface, contours};
 
 use crate::document::HandleId;
-use crate::editor::Editor;
 
 /// What a line on the surface bounds.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
@@ -19,6 +18,14 @@ const FREE: u16 = 0;
 const HELD: u16 = 1;
 const FIRST_HANDLE: u16 = 2;
 
+/// What a line of this label bounds, given the handles in the roles' order; `None` for one that is gone.
+pub(crate) fn bounded(label: u16, handles: &[HandleId]) -> Option<Rim> {
+    match label.checked_sub(FIRST_HANDLE) {
+        None => Some(Rim::Held),
+        Some(index) => handles.get(usize::from(index)).copied().map(Rim::Handle),
+    }
+}
+
 /// The lines between roles; where a handle meets anything else the line is the handle's.
 pub(crate) fn rims(surface: &Surface, roles: &[Role]) -> Vec<ContourLine> {
     let label = |role: &Role| match *role {
@@ -28,22 +35,4 @@ pub(crate) fn rims(surface: &Surface, roles: &[Role]) -> Vec<ContourLine> {
     };
     let labels: Vec<u16> = roles.iter().map(label).collect();
     contours(surface, &labels)
-}
-
-impl Editor {
-    /// The lines between the regions as they were last measured, each with what it bounds; those of hidden handles are
-    /// left out. To be fetched again when [`SceneView::rims_revision`](crate::SceneView::rims_revision) has grown.
-    pub fn rims(&self) -> impl Iterator<Item = (&ContourLine, Rim)> {
-        let region = &self.engine.region;
-        let of_label = |label: u16| match label.checked_sub(FIRST_HANDLE) {
-            None => Some(Rim::Held),
-            Some(index) => {
-                let id = *region.handles.get(usize::from(index))?;
-                let is_seen = self.document.handle(id).is_some_and(|handle| handle.visible);
-                is_seen.then_some(Rim::Handle(id))
-            }
-        };
-        let lines = region.rims.iter().filter(|line| self.is_triangle_shown(line.triangle));
-        lines.filter_map(move |line| Some((line, of_label(line.label)?)))
-    }
 }

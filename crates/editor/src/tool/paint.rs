@@ -15,18 +15,6 @@ use crate::engine::Activity;
 use crate::transaction::Transaction;
 use crate::{Button, Pointer};
 
-/// The colours that handles get in turn: gold first, as in the survey's figures.
-pub const HANDLE_COLOURS: [[u8; 4]; 8] = [
-    [232, 184, 48, 255],
-    [222, 96, 72, 255],
-    [120, 190, 88, 255],
-    [176, 112, 214, 255],
-    [64, 190, 190, 255],
-    [236, 132, 176, 255],
-    [150, 128, 84, 255],
-    [244, 222, 120, 255],
-];
-
 /// What is said where paint does not take.
 const LOCKED_OBJECT: &str = "This object is locked: unlock it in the list of objects to paint on it.";
 
@@ -193,11 +181,6 @@ fn handle_to_paint(editor: &mut Editor) -> HandleId {
         return id;
     }
     editor.document.add_handle()
-}
-
-/// The colour that a handle gets when it is made.
-pub(crate) fn handle_colour(id: HandleId) -> [u8; 4] {
-    HANDLE_COLOURS[usize::from(id.0) % HANDLE_COLOURS.len()]
 }
 
 /// After regions have changed: handles without a vertex go, and the pivot of each handle whose vertices are others
