@@ -106,7 +106,11 @@ impl Palette {
                         if is_pointed_at || button.clicked() || (enter && number == self.chosen) {
                             match &entry.obstacle {
                                 None => outcome = Outcome::Chosen(Some(entry.found.clone())),
-                                Some(obstacle) => self.refusal = Some(obstacle.clone()),
+                                Some(obstacle) => {
+                                    self.refusal = Some(obstacle.clone());
+                                    // It stands above the list, where this frame has passed already.
+                                    ui.ctx().request_repaint();
+                                }
                             }
                         }
                     }
