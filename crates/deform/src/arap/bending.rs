@@ -77,11 +77,17 @@ impl Bend {
     }
 }
 
-/// m a, by columns.
+/// m a, by columns. Plain loops: a closure would be compiled apart from the vectors that the pass runs on.
 #[inline(always)]
 fn times(m: &[Quad; 3], &[xx, xy, xz, yy, yz, zz]: &[f64; 6]) -> [Quad; 3] {
-    [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
-        .map(|[x, y, z]| std::array::from_fn(|row| m[0][row] * x + m[1][row] * y + m[2][row] * z))
+    let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+    let mut product = [[0.0; 4]; 3];
+    for (own, [x, y, z]) in product.iter_mut().zip(columns) {
+        for row in 0..4 {
+            own[row] = m[0][row] * x + m[1][row] * y + m[2][row] * z;
+        }
+    }
+    product
 }
 
 /// κ A for cells on this domain.

@@ -95,18 +95,26 @@ impl Cells {
                 for (own, lanes) in rotations[start + lane].iter_mut().zip(&fits.rotation) {
                     *own = lanes.0[lane] as f32;
                 }
-                let mut turn = fits.turn.map(|column| {
-                    let [x, y, z] = column.map(|lanes| lanes.0[lane]);
-                    [x, y, z, 0.0]
-                });
+                let mut turn = [[0.0; 4]; 3];
+                for (own, column) in turn.iter_mut().zip(&fits.turn) {
+                    for (own, lanes) in own.iter_mut().zip(column) {
+                        *own = lanes.0[lane];
+                    }
+                }
                 if let Some(bend) = self.bending.get(first + start + lane) {
                     turn = bend.pull(&turn, &forces[lane]);
                 }
                 if let Some(own) = self.own.get(first + start + lane) {
                     let turned = times_turn(&turn, own);
-                    laplacians[start + lane] = minus(loads[lane], turned).map(|value| value as f32);
+                    for row in 0..4 {
+                        laplacians[start + lane][row] = (loads[lane][row] - turned[row]) as f32;
+                    }
                 }
-                turns[start + lane] = turn.map(|column| column.map(|value| value as f32));
+                for (own, column) in turns[start + lane].iter_mut().zip(&turn) {
+                    for row in 0..4 {
+                        own[row] = column[row] as f32;
+                    }
+                }
             }
         }
         sum

@@ -95,5 +95,9 @@ impl Cells {
 /// (R − 1) v; the fourth number is nothing.
 #[inline(always)]
 pub(super) fn times_turn([a, b, c]: &[Quad; 3], v: &DVec3) -> Quad {
-    std::array::from_fn(|row| a[row] * v.x + b[row] * v.y + c[row] * v.z)
+    let mut product = [0.0; 4];
+    for row in 0..4 {
+        product[row] = a[row] * v.x + b[row] * v.y + c[row] * v.z;
+    }
+    product
 }
