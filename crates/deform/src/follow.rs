@@ -70,7 +70,7 @@ pub(crate) fn followers(
     following
         .par_iter()
         .filter_map(|&(component, how)| {
-            let vertices = topology.components()[component as usize].vertices.clone();
+            let vertices = topology.vertices_of(component).collect();
             match how {
                 Loose::Follow => rigid(surface, topology, vertices, &nearby),
                 Loose::Bend => bending(surface, topology, vertices, &nearby),

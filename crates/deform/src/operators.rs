@@ -188,7 +188,7 @@ impl Laplacian {
                 if neighbours.is_empty() {
                     continue;
                 }
-                for &face in net.faces(vertex) {
+                net.for_each_face(vertex, |face| {
                     let terms = &terms[slot_of_face[face as usize] as usize];
                     let corners = net.corners(face);
                     for own in (0..3).filter(|&corner| corners[corner] == vertex) {
@@ -202,7 +202,7 @@ impl Laplacian {
                             }
                         }
                     }
-                }
+                });
                 if let Some(common) = common_area {
                     *area = common;
                 }

@@ -203,7 +203,7 @@ fn warnings(problem: &Problem, loose: &[u32], unheld: &[u32]) -> Vec<String> {
     if problem.handle_count == 0 {
         return sentences;
     }
-    let size = |component: u32| problem.topology.components()[component as usize].vertices.len();
+    let size = |component: u32| problem.topology.components()[component as usize].vertex_count;
     let sum = |components: &[u32]| components.iter().map(|&component| size(component)).sum::<usize>();
     for (how, [it, they]) in [
         (

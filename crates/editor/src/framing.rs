@@ -39,12 +39,12 @@ impl Editor {
         let Some(model) = self.engine.model.as_ref() else {
             return;
         };
-        let Some(component) = model.topology.components().get(part as usize) else {
+        if part as usize >= model.topology.components().len() {
             return;
-        };
+        }
         let position =
-            |vertex: &SurfaceVertex| model.surface.positions[vertex.index()] + self.document.from_file[vertex.index()];
-        let positions: Vec<DVec3> = component.vertices.iter().map(position).collect();
+            |vertex: SurfaceVertex| model.surface.positions[vertex.index()] + self.document.from_file[vertex.index()];
+        let positions: Vec<DVec3> = model.topology.vertices_of(part).map(position).collect();
         self.camera.frame(&positions, self.viewport_px);
         // What it lies on is to be seen, too.
         self.camera.distance *= 3.0;

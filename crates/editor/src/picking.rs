@@ -75,7 +75,8 @@ impl<'a> Picking<'a> {
     /// Whether any triangle at the vertex shows the eye its front, or else its back.
     pub(crate) fn shows(&self, vertex: SurfaceVertex, position: DVec3, front: bool) -> bool {
         let to_eye = self.sight.towards_eye(position);
-        self.model.topology.faces(vertex).iter().any(|&face| {
+        let model = &self.model;
+        model.topology.faces(vertex, &model.surface.triangles).any(|face| {
             let [a, b, c] = self.corners(face);
             let outward = (b - a).cross(c - a).dot(to_eye);
             if front { outward >= 0.0 } else { outward <= 0.0 }

@@ -217,10 +217,10 @@ pub(crate) fn reach_length(reach: Reach, surface: &Surface, topology: &Topology,
 /// Farthest distances or moments would do as well for one round patch, but a handle of two patches far apart would
 /// then reach across everything between them.
 fn handle_radius(surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
-    let area_of = |&face: &u32| face_area(surface.triangles[face as usize].map(|v| surface.positions[v.index()]));
+    let area_of = |face: u32| face_area(surface.triangles[face as usize].map(|v| surface.positions[v.index()]));
     let area: f64 = members
         .iter()
-        .map(|&vertex| topology.faces(vertex).iter().map(area_of).sum::<f64>() / 3.0)
+        .map(|&vertex| topology.faces(vertex, &surface.triangles).map(area_of).sum::<f64>() / 3.0)
         .sum();
     (area / PI).sqrt()
 }

@@ -5,49 +5,90 @@ use crate::{FileVertex, SurfaceVertex};
 /// A connected part of the surface: vertices joined by edges.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Component {
-    /// Its surface vertices, ascending.
-    pub vertices: Vec<SurfaceVertex>,
+    /// How many surface vertices it has.
+    pub vertex_count: usize,
     /// How many triangles it has.
     pub face_count: usize,
     /// The lowest file vertex that was welded into it (for a bare surface: its lowest surface vertex's number).
     pub first_file_vertex: FileVertex,
 }
 
-/// Each vertex's component and the components, by falling vertex count, then by rising first file vertex.
-pub(crate) fn components(
-    triangles: &[[SurfaceVertex; 3]],
-    first_file_vertex: &[FileVertex],
-) -> (Vec<u32>, Vec<Component>) {
-    let mut root = roots(first_file_vertex.len(), triangles);
-    let mut found: Vec<Component> = Vec::new();
-    let mut sizes = vec![0u32; root.len()];
-    for &r in &root {
-        sizes[r as usize] += 1;
-    }
-    // A root is its component's lowest vertex, so it comes before all others; `root` turns into labels on the way.
-    for v in 0..root.len() {
-        let is_new = root[v] as usize == v;
-        let label = if is_new {
-            found.len() as u32
-        } else {
-            root[root[v] as usize]
-        };
-        if is_new {
-            found.push(Component {
-                vertices: Vec::with_capacity(sizes[v] as usize),
-                face_count: 0,
-                first_file_vertex: first_file_vertex[v],
-            });
+/// The components of a surface, and who belongs to them. A scan is mostly one, of which nothing need be listed.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Components {
+    /// By falling vertex count, then by rising first file vertex.
+    pub(crate) all: Vec<Component>,
+    /// Of each vertex; empty where there is but one.
+    of_vertex: Vec<u32>,
+    /// Component after component, ascending in each; empty where there is but one.
+    vertices: Vec<SurfaceVertex>,
+    /// Where each one's vertices begin.
+    starts: Vec<u32>,
+}
+
+impl Components {
+    pub(crate) fn of(triangles: &[[SurfaceVertex; 3]], first_file_vertex: &[FileVertex]) -> Self {
+        let mut of_vertex = roots(first_file_vertex.len(), triangles);
+        let mut all: Vec<Component> = Vec::new();
+        // A root is its component's lowest vertex, so it comes before all others; roots turn into labels on the way.
+        for v in 0..of_vertex.len() {
+            let root = of_vertex[v] as usize;
+            of_vertex[v] = if root == v { all.len() as u32 } else { of_vertex[root] };
+            if root == v {
+                all.push(Component {
+                    vertex_count: 0,
+                    face_count: 0,
+                    first_file_vertex: first_file_vertex[v],
+                });
+            }
+            let component = &mut all[of_vertex[v] as usize];
+            component.vertex_count += 1;
+            component.first_file_vertex = component.first_file_vertex.min(first_file_vertex[v]);
         }
-        root[v] = label;
-        let component = &mut found[label as usize];
-        component.vertices.push(SurfaceVertex(v as u32));
-        component.first_file_vertex = component.first_file_vertex.min(first_file_vertex[v]);
+        for [v, ..] in triangles {
+            all[of_vertex[v.index()] as usize].face_count += 1;
+        }
+        if all.len() < 2 {
+            return Self {
+                starts: vec![0; all.len()],
+                all,
+                ..Self::default()
+            };
+        }
+        let all = sort(&mut of_vertex, all);
+        let starts = all.iter().scan(0, |start, component| {
+            *start += component.vertex_count as u32;
+            Some(*start - component.vertex_count as u32)
+        });
+        let starts: Vec<u32> = starts.collect();
+        let mut next = starts.clone();
+        let mut vertices = vec![SurfaceVertex(0); of_vertex.len()];
+        for (v, &component) in (0..).zip(&of_vertex) {
+            let place = &mut next[component as usize];
+            vertices[*place as usize] = SurfaceVertex(v);
+            *place += 1;
+        }
+        Self {
+            all,
+            of_vertex,
+            vertices,
+            starts,
+        }
     }
-    for [v, ..] in triangles {
-        found[root[v.index()] as usize].face_count += 1;
+
+    /// The component of a vertex.
+    #[inline]
+    pub(crate) fn of_vertex(&self, v: SurfaceVertex) -> u32 {
+        self.of_vertex.get(v.index()).copied().unwrap_or(0)
     }
-    sort(root, found)
+
+    /// The vertices of a component, ascending.
+    pub(crate) fn vertices(&self, component: usize) -> impl ExactSizeIterator<Item = SurfaceVertex> + Clone + '_ {
+        let start = self.starts[component] as usize;
+        let vertex = |place: usize| self.vertices.get(place).copied();
+        (start..start + self.all[component].vertex_count)
+            .map(move |place| vertex(place).unwrap_or(SurfaceVertex(place as u32)))
+    }
 }
 
 /// The lowest vertex of each vertex's component.
@@ -79,11 +120,11 @@ fn find(parent: &mut [u32], mut v: u32) -> u32 {
 }
 
 /// Puts components into their order and renames the labels.
-fn sort(mut labels: Vec<u32>, found: Vec<Component>) -> (Vec<u32>, Vec<Component>) {
+fn sort(labels: &mut [u32], found: Vec<Component>) -> Vec<Component> {
     let mut order: Vec<(u32, Component)> = (0..).zip(found).collect();
     order.sort_by_key(|(label, component)| {
         (
-            std::cmp::Reverse(component.vertices.len()),
+            std::cmp::Reverse(component.vertex_count),
             component.first_file_vertex,
             *label,
         )
@@ -92,8 +133,8 @@ fn sort(mut labels: Vec<u32>, found: Vec<Component>) -> (Vec<u32>, Vec<Component
     for (new, (old, _)) in (0..).zip(&order) {
         place[*old as usize] = new;
     }
-    for label in &mut labels {
+    for label in labels {
         *label = place[*label as usize];
     }
-    (labels, order.into_iter().map(|(_, component)| component).collect())
+    order.into_iter().map(|(_, component)| component).collect()
 }

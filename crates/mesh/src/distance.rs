@@ -92,7 +92,7 @@ impl DistanceSearch {
             }
             self.offer(u, distance + here.distance(position(u)), limit);
         }
-        for &t in topology.faces(v) {
+        for t in topology.faces(v, triangles) {
             let [a, b, c] = triangles[t as usize];
             let (one, other) = if v == a {
                 (b, c)

@@ -109,9 +109,8 @@ fn opposing_faces(surface: &Surface, topology: &Topology, positions: &[DVec3]) -
         .into_par_iter()
         .map(|v| {
             topology
-                .faces(SurfaceVertex(v))
-                .iter()
-                .map(|&t| areas[t as usize])
+                .faces(SurfaceVertex(v), &surface.triangles)
+                .map(|t| areas[t as usize])
                 .sum()
         })
         .collect();

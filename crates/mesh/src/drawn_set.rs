@@ -170,6 +170,27 @@ impl DrawnSet {
         &self.triangle_of_surface
     }
 
+    /// The lowest of the file's vertices behind each of some surface vertices, which ascend.
+    pub(crate) fn first_file_vertices(&self, of: &[SurfaceVertex]) -> Vec<FileVertex> {
+        let mut first = vec![FileVertex(u32::MAX); of.len()];
+        let (Some(lowest), Some(highest)) = (of.first(), of.last()) else {
+            return first;
+        };
+        let mut is_wanted = vec![false; highest.index() - lowest.index() + 1];
+        for v in of {
+            is_wanted[v.index() - lowest.index()] = true;
+        }
+        for (v, file_vertex) in self.surface_vertices().zip(self.file_vertices()) {
+            let Some(v) = v else { continue };
+            let place = v.index().checked_sub(lowest.index());
+            if place.and_then(|place| is_wanted.get(place)) == Some(&true) {
+                let first = &mut first[of.partition_point(|u| *u < v)];
+                *first = file_vertex.min(*first);
+            }
+        }
+        first
+    }
+
     /// Where a drawn vertex stands at rest.
     pub(crate) fn position(&self, vertex: DrawnVertex, surface: &Surface) -> DVec3 {
         // One without a surface vertex strays.

@@ -20,6 +20,7 @@ mod distortion;
 mod drawn;
 mod drawn_set;
 mod drawn_triangles;
+mod faces;
 mod finding;
 mod findings;
 mod front;
@@ -48,6 +49,7 @@ pub use distance::{DistanceSearch, distances_along_surface};
 pub use distortion::Distortion;
 pub use drawn::Drawn;
 pub use drawn_set::DrawnSet;
+pub use faces::Faces;
 pub use finding::Finding;
 pub use findings::{FindingKind, Findings, Named};
 pub use geometry::{

@@ -45,14 +45,13 @@ impl Model {
         let mut welded = weld(drawn, options, progress, cancel)?;
         cancel.check()?;
         let drawn = welded.drawn.told_by(&welded.surface);
-        let topology = Topology::with_file_vertices(&welded.surface, &welded.first_file_vertex);
+        let topology = Topology::with_components(&welded.surface, welded.components, cancel)?;
         cancel.check()?;
         progress.set(0.9);
         let parts = Parts {
             surface: &welded.surface,
-            first_file_vertex: &welded.first_file_vertex,
-            component_of_vertex: topology.component_of_vertex(),
-            components: topology.components(),
+            drawn: &drawn,
+            components: topology.parts(),
         };
         parts.report(topology.oddities(), &mut welded.findings);
         progress.set(1.0);
@@ -72,12 +71,7 @@ impl Model {
 
     /// The lowest of the file's vertices behind a surface vertex.
     pub fn first_file_vertex(&self, vertex: SurfaceVertex) -> FileVertex {
-        let behind = self.drawn.surface_vertices().zip(self.drawn.file_vertices());
-        behind
-            .filter(|(surface_vertex, _)| *surface_vertex == Some(vertex))
-            .map(|(_, file_vertex)| file_vertex)
-            .min()
-            .unwrap_or_default()
+        self.drawn.first_file_vertices(&[vertex])[0]
     }
 
     /// The table from the file's vertices to the surface's.

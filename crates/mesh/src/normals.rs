@@ -128,11 +128,11 @@ impl Around<'_> {
 
     /// The same sum, whatever the triangles look like.
     fn triangles(self, v: SurfaceVertex) -> DVec3 {
-        let doubled_area = |&t: &u32| {
+        let doubled_area = |t: u32| {
             let [a, b, c] = corners(self.triangles[t as usize], self.positions);
             (b - a).cross(c - a)
         };
-        self.topology.faces(v).iter().map(doubled_area).sum()
+        self.topology.faces(v, self.triangles).map(doubled_area).sum()
     }
 }
 

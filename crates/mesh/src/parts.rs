@@ -4,8 +4,9 @@
 use glam::DVec3;
 
 use crate::boundary::trace_loops;
+use crate::components::Components;
 use crate::rings::Oddities;
-use crate::{Bounds, Component, FileVertex, Finding, Findings, Surface, SurfaceVertex};
+use crate::{Bounds, Component, DrawnSet, Finding, Findings, Surface, SurfaceVertex};
 
 /// A part with less than this share of the largest one's vertices is a loose bit.
 const BIT: f64 = 0.01;
@@ -16,16 +17,16 @@ const HOLLOW_CANDIDATES: usize = 64;
 /// A surface and its connected parts.
 pub(crate) struct Parts<'a> {
     pub(crate) surface: &'a Surface,
-    /// The lowest file vertex behind each surface vertex.
-    pub(crate) first_file_vertex: &'a [FileVertex],
-    pub(crate) component_of_vertex: &'a [u32],
-    pub(crate) components: &'a [Component],
+    pub(crate) drawn: &'a DrawnSet,
+    pub(crate) components: &'a Components,
 }
 
 impl Parts<'_> {
     /// Tells what is odd, in file vertices.
     pub(crate) fn report(&self, oddities: &Oddities, findings: &mut Findings) {
-        let file_vertex = |v: &SurfaceVertex| self.first_file_vertex[v.index()].0;
+        let odd = oddities.vertices();
+        let first_file_vertices = self.drawn.first_file_vertices(&odd);
+        let file_vertex = |v: &SurfaceVertex| first_file_vertices[odd.partition_point(|u| u < v)].0;
         let at = |found: &[SurfaceVertex]| Finding::at_vertices(found.iter().map(file_vertex));
         findings.non_manifold_edges = at(&oddities.non_manifold_edges);
         findings.non_manifold_vertices = at(&oddities.non_manifold_vertices);
@@ -33,22 +34,25 @@ impl Parts<'_> {
         findings.boundary_edges = Finding::at_vertices(oddities.boundary.iter().map(|[v, _]| file_vertex(v)));
         let rims = trace_loops(&oddities.boundary);
         findings.boundary_loops = Finding::at_vertices(rims.iter().filter_map(|rim| rim.iter().map(file_vertex).min()));
-        let firsts: Vec<u32> = self.components.iter().map(|part| part.first_file_vertex.0).collect();
+        let firsts: Vec<u32> = self
+            .components
+            .all
+            .iter()
+            .map(|part| part.first_file_vertex.0)
+            .collect();
         findings.components = Finding::of(&firsts);
-        findings.loose_bits = loose_bits(self.components);
+        findings.loose_bits = loose_bits(&self.components.all);
         findings.inside_out_components = self.inside_out(oddities);
     }
 
     fn component(&self, v: SurfaceVertex) -> usize {
-        self.component_of_vertex[v.index()] as usize
+        self.components.of_vertex(v) as usize
     }
 
     /// Closed, consistently wound parts that enclose a negative volume and lie within no other closed part's box.
     fn inside_out(&self, oddities: &Oddities) -> Finding {
-        let Self {
-            surface, components, ..
-        } = self;
-        let count = components.len();
+        let surface = self.surface;
+        let count = self.components.all.len();
         let mut is_closed = vec![true; count];
         let Oddities {
             boundary,
@@ -61,9 +65,10 @@ impl Parts<'_> {
             is_closed[self.component(v)] = false;
         }
         // Each part's volume is taken around one of its own vertices: far from the origin nothing of it is lost.
-        let origin: Vec<DVec3> = components
-            .iter()
-            .map(|component| surface.positions[component.vertices[0].index()])
+        let first = |component: usize| self.components.vertices(component).next();
+        let position = |v: SurfaceVertex| surface.positions[v.index()];
+        let origin: Vec<DVec3> = (0..count)
+            .map(|component| first(component).map_or(DVec3::ZERO, position))
             .collect();
         let mut six_volumes = vec![0.0; count];
         for corners in &surface.triangles {
@@ -74,14 +79,13 @@ impl Parts<'_> {
             }
         }
         let bounds = |component: usize| {
-            let positions = components[component].vertices.iter();
             let mut out = Bounds {
                 min: DVec3::INFINITY,
                 max: DVec3::NEG_INFINITY,
             };
-            for v in positions {
-                out.min = out.min.min(surface.positions[v.index()]);
-                out.max = out.max.max(surface.positions[v.index()]);
+            for p in self.components.vertices(component).map(position) {
+                out.min = out.min.min(p);
+                out.max = out.max.max(p);
             }
             out
         };
@@ -97,14 +101,14 @@ impl Parts<'_> {
         };
         let found = (0..count)
             .filter(|&component| is_closed[component] && six_volumes[component] < 0.0 && !is_cavity(component))
-            .map(|component| components[component].first_file_vertex.0);
+            .map(|component| self.components.all[component].first_file_vertex.0);
         Finding::at_vertices(found)
     }
 }
 
 /// Parts that are loose bits, by their first vertices.
 pub(crate) fn loose_bits(components: &[Component]) -> Finding {
-    let size = |component: &Component| component.vertices.len() as f64;
+    let size = |component: &Component| component.vertex_count as f64;
     let largest = components.first().map_or(0.0, size);
     let bits = components
         .iter()

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use crate::faces::{Blocks, FaceRows};
 use crate::{Cancel, Cancelled, SurfaceVertex};
 
 /// Vertices a piece of the parallel walk.
@@ -12,7 +13,7 @@ const PIECE: usize = 2048;
 /// The rows and findings of a range of vertices, or of all.
 #[derive(Default)]
 pub(crate) struct Rings {
-    /// The length of each vertex's row.
+    /// The length of each vertex's row; of a range.
     pub(crate) degrees: Vec<u32>,
     /// The rows: neighbours ascending.
     pub(crate) neighbours: Vec<SurfaceVertex>,
@@ -50,6 +51,20 @@ impl Rings {
 }
 
 impl Oddities {
+    /// Every vertex that is named, ascending, each once.
+    pub(crate) fn vertices(&self) -> Vec<SurfaceVertex> {
+        let edges = self.boundary.as_flattened();
+        let others = [
+            &self.non_manifold_edges,
+            &self.misoriented_edges,
+            &self.non_manifold_vertices,
+        ];
+        let mut all: Vec<SurfaceVertex> = edges.iter().chain(others.into_iter().flatten()).copied().collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
     fn clear(&mut self) {
         self.boundary.clear();
         self.non_manifold_edges.clear();
@@ -78,85 +93,78 @@ pub enum FanKind {
     Irregular,
 }
 
-/// Rows of triangles around a range of vertices.
-pub(crate) struct FaceRows {
-    /// Where each vertex's row starts, and where the last one ends.
-    pub(crate) offsets: Vec<u32>,
-    pub(crate) list: Vec<u32>,
-}
-
-/// The triangles around each vertex of a range, ascending.
-pub(crate) fn face_rows(vertices: Range<usize>, triangles: &[[SurfaceVertex; 3]]) -> FaceRows {
-    let place = |v: &SurfaceVertex| {
-        v.index()
-            .checked_sub(vertices.start)
-            .filter(|&place| place < vertices.len())
-    };
-    let mut offsets = vec![0u32; vertices.len() + 2];
-    for triangle in triangles {
-        for place in triangle.iter().filter_map(place) {
-            offsets[place + 2] += 1;
-        }
-    }
-    for row in 2..offsets.len() {
-        offsets[row] += offsets[row - 1];
-    }
-    // Shifted by one, each start moves on to the next row's start while its row fills.
-    let mut list = vec![0u32; offsets[vertices.len() + 1] as usize];
-    for (t, triangle) in triangles.iter().enumerate() {
-        for place in triangle.iter().filter_map(place) {
-            let next = &mut offsets[place + 1];
-            list[*next as usize] = t as u32;
-            *next += 1;
-        }
-    }
-    offsets.pop();
-    FaceRows { offsets, list }
-}
-
 /// Pieces that are walked before they are put behind the rows that are done: few, so that hardly anything is held twice.
 const BATCH: usize = 64;
 
-/// Walks around every vertex.
-pub(crate) fn rings(vertex_count: usize, triangles: &[[SurfaceVertex; 3]], faces: &FaceRows) -> Rings {
-    // A closed surface has three neighbours a triangle, an open one a few more.
+/// Parts of the vertices, one after the other, whose triangles are listed: all their rows would be as much as the
+/// triangles themselves.
+const PARTS: usize = 16;
+
+/// Walks around every vertex, and gives where each one's row begins (and the last one ends), and the rows.
+pub(crate) fn rings(
+    vertex_count: usize,
+    triangles: &[[SurfaceVertex; 3]],
+    cancel: &Cancel,
+) -> Result<(Vec<u32>, Rings), Cancelled> {
+    // A closed surface has three neighbours a triangle, an open one a few more: room for those is made as they come,
+    // since a vector would double.
     let total = 3 * triangles.len();
+    let mut offsets = Vec::with_capacity(vertex_count + 1);
+    offsets.push(0);
     let mut all = Rings {
-        degrees: Vec::with_capacity(vertex_count),
         neighbours: Vec::with_capacity(total),
         fans: Vec::with_capacity(total),
         fan_kinds: Vec::with_capacity(vertex_count),
         ..Rings::default()
     };
-    walk_around(0..vertex_count, triangles, faces, |piece| {
-        all.degrees.extend_from_slice(&piece.degrees);
+    walk_around_all(vertex_count, triangles, cancel, |piece| {
+        let mut end = all.neighbours.len() as u32;
+        offsets.extend(piece.degrees.iter().map(|degree| {
+            end += degree;
+            end
+        }));
+        if all.neighbours.capacity() < end as usize {
+            let more = end as usize - all.neighbours.len() + total / 16;
+            all.neighbours.reserve_exact(more);
+            all.fans.reserve_exact(more);
+        }
         all.neighbours.extend_from_slice(&piece.neighbours);
         all.fans.extend_from_slice(&piece.fans);
         all.fan_kinds.extend_from_slice(&piece.fan_kinds);
         all.oddities.extend(&piece.oddities);
-    });
+    })?;
     all.neighbours.shrink_to_fit();
     all.fans.shrink_to_fit();
-    all
+    Ok((offsets, all))
 }
 
-/// What is odd around the vertices, without their rings. A part of the vertices after the other has its triangles
-/// listed: all their rows would be as much as the triangles themselves.
+/// What is odd around the vertices, without their rings.
 pub(crate) fn oddities(
     vertex_count: usize,
     triangles: &[[SurfaceVertex; 3]],
     cancel: &Cancel,
 ) -> Result<Oddities, Cancelled> {
-    const PARTS: usize = 4;
     let mut all = Oddities::default();
-    let size = vertex_count.div_ceil(PARTS).max(PIECE);
+    walk_around_all(vertex_count, triangles, cancel, |piece| all.extend(&piece.oddities))?;
+    Ok(all)
+}
+
+/// Walks around all vertices, part by part, and gives their rings in order.
+fn walk_around_all(
+    vertex_count: usize,
+    triangles: &[[SurfaceVertex; 3]],
+    cancel: &Cancel,
+    mut take: impl FnMut(&Rings),
+) -> Result<(), Cancelled> {
+    let blocks = Blocks::of(triangles);
+    let size = vertex_count.div_ceil(PARTS).max(BATCH * PIECE / 4);
     for first in (0..vertex_count).step_by(size) {
         cancel.check()?;
         let vertices = first..(first + size).min(vertex_count);
-        let faces = face_rows(vertices.clone(), triangles);
-        walk_around(vertices, triangles, &faces, |piece| all.extend(&piece.oddities));
+        let faces = blocks.rows(vertices.clone());
+        walk_around(vertices, triangles, &faces, &mut take);
     }
-    Ok(all)
+    Ok(())
 }
 
 /// Walks around a range of vertices, whose triangles `faces` has, and gives their rings in order, piece by piece.

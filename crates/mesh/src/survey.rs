@@ -1,6 +1,6 @@
 //! A look at a file's geometry: its counts and findings, without the tables that an edit needs.
 
-use crate::components::{Component, components};
+use crate::components::Component;
 use crate::parts::Parts;
 use crate::rings::oddities;
 use crate::weld::{Welded, weld};
@@ -35,7 +35,7 @@ impl Survey {
         let Welded {
             surface,
             drawn,
-            first_file_vertex,
+            components,
             mut findings,
         } = weld(drawn, options, progress, cancel)?;
         cancel.check()?;
@@ -43,11 +43,9 @@ impl Survey {
         let oddities = oddities(vertex_count, &surface.triangles, cancel)?;
         cancel.check()?;
         progress.set(0.9);
-        let (component_of_vertex, components) = components(&surface.triangles, &first_file_vertex);
         let parts = Parts {
             surface: &surface,
-            first_file_vertex: &first_file_vertex,
-            component_of_vertex: &component_of_vertex,
+            drawn: &drawn,
             components: &components,
         };
         parts.report(&oddities, &mut findings);
@@ -59,7 +57,7 @@ impl Survey {
             surface_vertices: vertex_count,
             surface_triangles: surface.triangles.len(),
             bounds: bounding_box(&surface.positions),
-            components,
+            components: components.all,
             diagnoses: findings.diagnoses(&drawn, &surface),
             findings,
         })

@@ -1,9 +1,10 @@
 //! Who neighbours whom: one-rings, triangles around vertices, components and rims, as compressed rows.
 
 use crate::boundary::trace_loops;
-use crate::components::{Component, components};
-use crate::rings::{FaceRows, FanKind, Oddities, face_rows, rings};
-use crate::{FileVertex, Surface, SurfaceVertex};
+use crate::components::{Component, Components};
+use crate::faces::{Faces, are_in_order, runs};
+use crate::rings::{FanKind, Oddities, rings};
+use crate::{Cancel, Cancelled, FileVertex, Surface, SurfaceVertex};
 
 /// The connectivity of a [`Surface`].
 ///
@@ -16,50 +17,46 @@ pub struct Topology {
     /// Places in `neighbour_list`'s rows.
     fans: Vec<u8>,
     fan_kinds: Vec<FanKind>,
-    face_offsets: Vec<u32>,
-    face_list: Vec<u32>,
+    /// Where the triangles begin of which each vertex is the lowest, and the triangles' number.
+    runs: Vec<u32>,
     oddities: Oddities,
-    component_of_vertex: Vec<u32>,
-    components: Vec<Component>,
+    components: Components,
 }
 
 impl Topology {
-    /// The connectivity of `surface`; components of equal size stand by their lowest surface vertex.
+    /// The connectivity of `surface`, whose triangles stand by their lowest, then their middle, then their highest
+    /// vertex; components of equal size stand by their lowest surface vertex.
     pub fn of(surface: &Surface) -> Self {
         let own: Vec<FileVertex> = (0..surface.positions.len() as u32).map(FileVertex).collect();
-        Self::with_file_vertices(surface, &own)
+        let components = Components::of(&surface.triangles, &own);
+        drop(own);
+        // Nobody else holds the flag that cancels, so the default is never taken.
+        Self::with_components(surface, components, &Cancel::new()).unwrap_or_default()
     }
 
-    /// The connectivity of `surface`; components of equal size stand by their lowest file vertex, which is the least
-    /// of `first_file_vertex` (one entry a surface vertex) over their vertices.
-    pub fn with_file_vertices(surface: &Surface, first_file_vertex: &[FileVertex]) -> Self {
+    /// The connectivity of `surface`, whose components are known.
+    pub(crate) fn with_components(
+        surface: &Surface,
+        components: Components,
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
         let vertex_count = surface.positions.len();
-        let faces: FaceRows = face_rows(0..vertex_count, &surface.triangles);
-        let rings = rings(vertex_count, &surface.triangles, &faces);
-        let mut neighbour_offsets = Vec::with_capacity(vertex_count + 1);
-        neighbour_offsets.push(0);
-        let mut end = 0;
-        for degree in rings.degrees {
-            end += degree;
-            neighbour_offsets.push(end);
-        }
-        let (component_of_vertex, components) = components(&surface.triangles, first_file_vertex);
-        Self {
+        debug_assert!(are_in_order(&surface.triangles), "triangles stand by their vertices");
+        let (neighbour_offsets, rings) = rings(vertex_count, &surface.triangles, cancel)?;
+        Ok(Self {
             neighbour_offsets,
             neighbour_list: rings.neighbours,
             fans: rings.fans,
             fan_kinds: rings.fan_kinds,
-            face_offsets: faces.offsets,
-            face_list: faces.list,
+            runs: runs(vertex_count, &surface.triangles),
             oddities: rings.oddities,
-            component_of_vertex,
             components,
-        }
+        })
     }
 
     /// How many vertices the surface has.
     pub fn vertex_count(&self) -> usize {
-        self.component_of_vertex.len()
+        self.fan_kinds.len()
     }
 
     /// The vertices that share an edge with `v`, ascending, without `v`.
@@ -91,10 +88,10 @@ impl Topology {
         )
     }
 
-    /// The triangles around `v`, ascending.
+    /// The triangles around `v`, ascending; `triangles` are the surface's.
     #[inline]
-    pub fn faces(&self, v: SurfaceVertex) -> &[u32] {
-        &self.face_list[row(&self.face_offsets, v)]
+    pub fn faces<'a>(&'a self, v: SurfaceVertex, triangles: &'a [[SurfaceVertex; 3]]) -> Faces<'a> {
+        Faces::around(v, self.neighbours(v), triangles, &self.runs)
     }
 
     /// Row starts into [`Self::neighbour_list`]: one a vertex and the list's length (nothing for a default topology).
@@ -107,29 +104,24 @@ impl Topology {
         &self.neighbour_list
     }
 
-    /// Row starts into [`Self::face_list`]: one a vertex and the list's length (nothing for a default topology).
-    pub fn face_offsets(&self) -> &[u32] {
-        &self.face_offsets
-    }
-
-    /// Every vertex's triangles, row after row: three times the triangles.
-    pub fn face_list(&self) -> &[u32] {
-        &self.face_list
-    }
-
     /// The component that `v` belongs to, as an index into [`Self::components`].
     #[inline]
     pub fn component(&self, v: SurfaceVertex) -> u32 {
-        self.component_of_vertex[v.index()]
+        self.components.of_vertex(v)
     }
 
-    /// The component that each vertex belongs to.
-    pub(crate) fn component_of_vertex(&self) -> &[u32] {
-        &self.component_of_vertex
+    /// The vertices of a component, ascending.
+    pub fn vertices_of(&self, component: u32) -> impl ExactSizeIterator<Item = SurfaceVertex> + Clone + '_ {
+        self.components.vertices(component as usize)
     }
 
     /// The components by falling vertex count, equal ones by their first file vertex.
     pub fn components(&self) -> &[Component] {
+        &self.components.all
+    }
+
+    /// The components, and who belongs to them.
+    pub(crate) fn parts(&self) -> &Components {
         &self.components
     }
 

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::components::Components;
 use crate::drawn_set::{DrawnSet, FileVertices, NONE};
 use crate::drawn_triangles::Corners;
 use crate::finding::{collect, sort_out};
@@ -22,8 +23,7 @@ pub(crate) struct Welded {
     pub(crate) surface: Surface,
     /// What was welded, its triangles as they came.
     pub(crate) drawn: DrawnSet,
-    /// The lowest file vertex behind each surface vertex.
-    pub(crate) first_file_vertex: Vec<FileVertex>,
+    pub(crate) components: Components,
     /// Those findings that are about file vertices and triangles; the topology's are still empty.
     pub(crate) findings: Findings,
 }
@@ -69,7 +69,7 @@ pub(crate) fn weld(
         return Ok(Welded {
             surface: Surface::default(),
             drawn: drawn.with_triangles(corners, Vec::new()),
-            first_file_vertex: Vec::new(),
+            components: Components::default(),
             findings,
         });
     };
@@ -124,9 +124,9 @@ pub(crate) fn weld(
         .renamed(|t| triangle_of_surface[t as usize]);
     progress.set(0.6);
     Ok(Welded {
-        surface,
         drawn: drawn.with_triangles(corners, triangle_of_surface),
-        first_file_vertex,
+        components: Components::of(&surface.triangles, &first_file_vertex),
+        surface,
         findings,
     })
 }

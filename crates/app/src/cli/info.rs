@@ -96,7 +96,7 @@ fn as_text(LookedAt { path, scene, survey }: &LookedAt<'_>) -> String {
     let sizes: Vec<usize> = survey
         .components
         .iter()
-        .map(|component| component.vertices.len())
+        .map(|component| component.vertex_count)
         .collect();
     if !sizes.is_empty() {
         let listed: Vec<String> = sizes.iter().take(LISTED_COMPONENTS).map(usize::to_string).collect();
@@ -127,7 +127,7 @@ fn as_json(LookedAt { path, scene, survey }: &LookedAt<'_>) -> Value {
         .iter()
         .map(|component| {
             json!({
-                "vertices": component.vertices.len(), "triangles": component.face_count,
+                "vertices": component.vertex_count, "triangles": component.face_count,
                 "first_vertex": component.first_file_vertex.0,
             })
         })

@@ -35,9 +35,9 @@ pub fn recolour(
     for &vertex in vertices {
         let colour = colour(vertex);
         // A drawn vertex belongs to a triangle behind one of the surface's around the vertex.
-        let faces = model.topology.faces(vertex);
-        let telling = if is_one_to_one { faces.len().min(1) } else { faces.len() };
-        for &face in &faces[..telling] {
+        let faces = model.topology.faces(vertex, &model.surface.triangles);
+        let telling = if is_one_to_one { 1 } else { usize::MAX };
+        for face in faces.take(telling) {
             for drawn in model.drawn_corners(face as usize) {
                 let is_behind = model.drawn.surface_vertex(drawn) == Some(vertex);
                 if let (true, Some(present)) = (is_behind, drawn_colours.get_mut(drawn.index())) {

@@ -147,8 +147,8 @@ pub fn colours(
         Field::Area => {
             let ratio = |v: u32| {
                 let around = |positions: &[DVec3]| {
-                    let faces = model.topology.faces(SurfaceVertex(v)).iter();
-                    let area = |&face: &u32| {
+                    let faces = model.topology.faces(SurfaceVertex(v), &model.surface.triangles);
+                    let area = |face: u32| {
                         face_area(model.surface.triangles[face as usize].map(|corner| positions[corner.index()]))
                     };
                     faces.map(area).sum::<f64>()
@@ -202,7 +202,7 @@ fn mean_curvatures(model: &Model, positions: &[DVec3]) -> Vec<f64> {
                 return 0.0;
             }
             let (mut pull, mut area, mut normal) = (DVec3::ZERO, 0.0, DVec3::ZERO);
-            for &face in model.topology.faces(v) {
+            for face in model.topology.faces(v, triangles) {
                 let corners = triangles[face as usize];
                 let (cotangents, areas, doubled) = &faces[face as usize];
                 let Some(at) = corners.iter().position(|&corner| corner == v) else {

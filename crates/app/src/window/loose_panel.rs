@@ -65,7 +65,7 @@ fn row(ui: &mut egui::Ui, editor: &Editor, model: &Model, part: u32, commands: &
     };
     let own = editor.document().loose_parts().get(&part).copied();
     ui.horizontal(|ui| {
-        let name = format!("Part {} · {} vertices", part + 1, thousands(component.vertices.len()));
+        let name = format!("Part {} · {} vertices", part + 1, thousands(component.vertex_count));
         let label = ui.button(name).on_hover_text("Comes close to it.");
         if label.clicked() {
             commands.push(Command::FramePart(part));

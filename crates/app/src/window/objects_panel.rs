@@ -93,7 +93,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         list(ui, "materials", &rows.materials, rows.count, access, commands);
     }
     if let Some(part) = access.isolated {
-        let count = model.topology.components()[part as usize].vertices.len();
+        let count = model.topology.components()[part as usize].vertex_count;
         let text = format!("Part {} alone ({} vertices)", part + 1, thousands(count));
         ui.label(RichText::new(text).weak().small());
     }

@@ -109,7 +109,7 @@ pub(crate) fn ties(surface: &Surface, topology: &Topology, domain: &Domain, stif
         .map(|&vertex| {
             let own = surface.positions[vertex as usize];
             let (mut area, mut squares) = (0.0, 0.0);
-            for &face in topology.faces(SurfaceVertex(vertex)) {
+            for face in topology.faces(SurfaceVertex(vertex), &surface.triangles) {
                 let corners = surface.triangles[face as usize];
                 for k in (0..3).filter(|&k| corners[k].0 == vertex) {
                     let [a, b] = [1, 2].map(|next| surface.positions[corners[(k + next) % 3].index()] - own);

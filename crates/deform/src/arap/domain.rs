@@ -46,7 +46,7 @@ impl Domain {
         }
         let mut seen = vec![false; surface.triangles.len()];
         for &vertex in &domain.vertices[..domain.cell_count] {
-            for &face in topology.faces(SurfaceVertex(vertex)) {
+            for face in topology.faces(SurfaceVertex(vertex), &surface.triangles) {
                 if !std::mem::replace(&mut seen[face as usize], true) {
                     domain.faces.push(face);
                 }

@@ -80,9 +80,8 @@ pub(crate) fn cells(surface: &Surface, topology: &Topology, stiffness: &[f64], d
                     ..Entry::default()
                 }));
                 let around = topology
-                    .faces(vertex)
-                    .iter()
-                    .map(|&face| &faces[slots[face as usize] as usize]);
+                    .faces(vertex, &surface.triangles)
+                    .map(|face| &faces[slots[face as usize] as usize]);
                 let mut rest = [0.0; 6];
                 for face in around {
                     add(face, cell as u32, &mut entries, &mut rest);

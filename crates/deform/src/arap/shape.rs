@@ -294,7 +294,8 @@ mod tests {
             let mut expected = 0.0;
             for cell in 0..domain.cell_count {
                 let rotation = wide(shape.rotations[cell]);
-                for &face in topology.faces(pliant_mesh::SurfaceVertex(domain.vertices[cell])) {
+                let vertex = pliant_mesh::SurfaceVertex(domain.vertices[cell]);
+                for face in topology.faces(vertex, &surface.triangles) {
                     let corners = surface.triangles[face as usize];
                     let lengths = pliant_mesh::edge_lengths(corners.map(|corner| surface.positions[corner.index()]));
                     let weights = metric.face(stiffness, corners, lengths).half_cotangents;

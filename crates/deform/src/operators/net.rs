@@ -95,11 +95,11 @@ impl<'a> Net<'a> {
         }
     }
 
-    /// The triangles around a vertex, each once, ascending.
-    pub fn faces(&self, vertex: SurfaceVertex) -> &[u32] {
+    /// Visits the triangles around a vertex, each once, ascending.
+    pub fn for_each_face(&self, vertex: SurfaceVertex, visit: impl FnMut(u32)) {
         match self {
-            Self::Surface(net) => net.topology.faces(vertex),
-            Self::Intrinsic(net, _) => net.faces(vertex),
+            Self::Surface(net) => net.topology.faces(vertex, &net.surface.triangles).for_each(visit),
+            Self::Intrinsic(net, _) => net.faces(vertex).iter().copied().for_each(visit),
         }
     }
 

@@ -57,7 +57,7 @@ pub(crate) fn across<'a>(
     face: u32,
     [a, b]: [SurfaceVertex; 2],
 ) -> impl Iterator<Item = u32> + 'a {
-    let around = topology.faces(a).iter().copied();
+    let around = topology.faces(a, &surface.triangles);
     around.filter(move |&other| other != face && surface.triangles[other as usize].contains(&b))
 }
 
@@ -157,7 +157,7 @@ fn pins(surface: &Surface, topology: &Topology, roles: &[Role], grounds: &[u32])
         if ground == NONE {
             continue;
         }
-        for &face in topology.faces(vertex) {
+        for face in topology.faces(vertex, &surface.triangles) {
             if grounds[face as usize] == NONE && !stands(surface, topology, grounds, (vertex, ground), face, &mut seen)
             {
                 pins.push(Pin {

@@ -35,15 +35,15 @@ impl Vertices {
             around: Vec::new(),
         };
         for (vertex, &role) in roles.iter().enumerate() {
-            let bodies = topology.faces(SurfaceVertex(vertex as u32));
-            let body = |&face: &u32| prisms.body_of[face as usize];
-            if ground_of(role) != NONE || bodies.iter().map(body).all(|body| body as usize >= prisms.count()) {
+            let bodies = topology.faces(SurfaceVertex(vertex as u32), &surface.triangles);
+            let body = |face: u32| prisms.body_of[face as usize];
+            if ground_of(role) != NONE || bodies.clone().map(body).all(|body| body as usize >= prisms.count()) {
                 continue;
             }
             let point = surface.positions[vertex] - world_origin;
             own.vertices.push(vertex as u32);
             let arm = |body: u32| (body, point - centres[body as usize]);
-            own.around.extend(bodies.iter().map(body).map(arm));
+            own.around.extend(bodies.map(body).map(arm));
             own.offsets.push(own.around.len() as u32);
         }
         own

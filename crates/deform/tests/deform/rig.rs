@@ -50,8 +50,8 @@ impl Scene {
 
     /// In every component: its first vertices in x, y or z fixed if `fixed`, its last ones the handles 0 and 1 by turns.
     pub fn with_ends(mut self, fixed: bool) -> Self {
-        for (number, component) in self.model.topology.components().iter().enumerate() {
-            let mut vertices = component.vertices.clone();
+        for number in 0..self.model.topology.components().len() {
+            let mut vertices: Vec<_> = self.model.topology.vertices_of(number as u32).collect();
             vertices.sort_by(|a, b| {
                 let key = |v: &SurfaceVertex| self.model.surface.positions[v.index()].dot(DVec3::new(1.0, 0.31, 0.12));
                 key(a).total_cmp(&key(b)).then(a.cmp(b))
