@@ -33,6 +33,8 @@ pub(crate) struct Cells {
     /// G_vi of each entry of a solved cell, times 1 + β_v. **f32**: they enter the gradient alone, and differences of
     /// turns are what they multiply.
     pub back: Vec<[f32; 3]>,
+    /// w_iv of each entry of a solved cell, **f32** for the gradient of cells whose turns are given.
+    pub weights: Vec<f32>,
     /// Σ_v (1 + β_i) G_iv − (1 + β_v) G_vi of each solved cell.
     pub own: Vec<DVec3>,
     /// S⁰'s entries xx, xy, xz, yy, yz, zz of each cell.
@@ -73,6 +75,7 @@ impl Cells {
             self.towards.push(quad(entry.towards, entry.weight));
             if solved == Solved::Yes {
                 self.back.push(entry.back.as_vec3().to_array());
+                self.weights.push(entry.weight as f32);
             }
         }
         if solved == Solved::Yes {
@@ -94,6 +97,7 @@ impl Cells {
         self.ends.extend(part.ends);
         self.towards.extend(part.towards);
         self.back.extend(part.back);
+        self.weights.extend(part.weights);
         self.own.extend(part.own);
         self.rest.extend(part.rest);
         self.bending.extend(part.bending);

@@ -6,14 +6,14 @@
 //! along with the coarse cells around it, and one global step (see `lead`) puts the vertices where the turned cells
 //! want them, so nothing of the clusters shows and what the fine shape has of its own stays.
 
-use glam::DQuat;
+use glam::Quat;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex};
 use rayon::prelude::*;
 
 use super::clusters::Clusters;
 use super::domain::{ABSENT, Domain};
 use super::history::Field;
-use super::shape::{Guesses, IDENTITY, Rotation, Shape, narrow, wide};
+use super::shape::{Guesses, IDENTITY, Rotation, Shape, wide};
 use super::{ArapSolver, State};
 use crate::blend::Origin;
 use crate::handle::{Handle, Motion};
@@ -205,8 +205,8 @@ impl Coarse {
     /// near stay as they are in `to`.
     pub fn turn(&mut self, from: &[Rotation], to: &mut [Rotation]) {
         let rotations = &self.solver.current.rotations;
-        let turn = |(now, before): (&Rotation, &Rotation)| wide(*now) * wide(*before).conjugate();
-        let turns: Vec<DQuat> = rotations.iter().zip(&self.followed).map(turn).collect();
+        let turn = |(now, before): (&Rotation, &Rotation)| (wide(*now) * wide(*before).conjugate()).as_quat();
+        let turns: Vec<Quat> = rotations.iter().zip(&self.followed).map(turn).collect();
         self.followed.copy_from_slice(rotations);
         to.par_chunks_mut(CHUNK)
             .zip(from.par_chunks(CHUNK))
@@ -215,19 +215,19 @@ impl Coarse {
                 let turned = to.iter_mut().zip(from).zip(shares);
                 for ((to, from), shares) in turned.filter(|(_, shares)| shares[0].1 > 0.0) {
                     let first = turns[shares[0].0 as usize];
-                    let mut sum = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
+                    let mut sum = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
                     for &(cell, share) in shares {
                         let other = turns[cell as usize];
                         // Both signs are the same turn: the one nearer to the first's is blended.
-                        sum += other * f64::from(share).copysign(other.dot(first));
+                        sum += other * share.copysign(other.dot(first));
                     }
                     // Opposed turns may cancel out.
                     let sum = if sum.length_squared() > 1e-6 {
                         sum
                     } else {
-                        DQuat::IDENTITY
+                        Quat::IDENTITY
                     };
-                    *to = narrow((sum * wide(*from)).normalize());
+                    *to = (sum * Quat::from_array(*from)).normalize().to_array();
                 }
             });
     }

@@ -4,6 +4,7 @@ use glam::DVec3;
 use pulp::{Simd, WithSimd};
 
 use super::cells::{Cells, Quad, minus};
+use super::shape::Rotation;
 use crate::prefetch::Prefetch;
 
 /// Entries between those that are gathered and those that are asked for: some cells'.
@@ -70,19 +71,32 @@ impl Cells {
                 if let Some(turn) = turns.get(end as usize) {
                     prefetch.item(turn);
                 }
+                if let Laplacians::Of(displacements) = laplacians {
+                    prefetch.item(&displacements[end as usize]);
+                }
             }
             let laplacian = match laplacians {
                 Laplacians::Known(laplacians) => laplacians[cell],
                 Laplacians::Of(displacements) => {
                     let mut sum = [0.0; 4];
-                    for (&end, towards) in ends.iter().zip(&self.towards[around.clone()]) {
+                    for (&end, &weight) in ends.iter().zip(&self.weights[around]) {
                         let d = minus(displacements[end as usize], displacements[cell]);
                         for row in 0..4 {
-                            sum[row] += d[row] * towards[3];
+                            sum[row] += d[row] * f64::from(weight);
                         }
                     }
-                    let turned = times_turn(&here.map(|column| column.map(f64::from)), &self.own[cell]);
-                    minus(sum, turned).map(|value| value as f32)
+                    let mut turn = [[0.0; 4]; 3];
+                    for (wide, column) in turn.iter_mut().zip(&here) {
+                        for row in 0..4 {
+                            wide[row] = f64::from(column[row]);
+                        }
+                    }
+                    let turned = times_turn(&turn, &self.own[cell]);
+                    let mut laplacian = [0.0; 4];
+                    for row in 0..4 {
+                        laplacian[row] = (sum[row] - turned[row]) as f32;
+                    }
+                    laplacian
                 }
             };
             for row in 0..3 {
@@ -90,6 +104,20 @@ impl Cells {
             }
         }
     }
+}
+
+/// R − 1: near the identity it keeps its digits.
+#[inline]
+pub(super) fn turn_of([x, y, z, w]: Rotation) -> Turn {
+    let (x2, y2, z2) = (x + x, y + y, z + z);
+    let (xx, yy, zz) = (x * x2, y * y2, z * z2);
+    let (xy, xz, yz) = (x * y2, x * z2, y * z2);
+    let (wx, wy, wz) = (w * x2, w * y2, w * z2);
+    [
+        [-(yy + zz), xy + wz, xz - wy, 0.0],
+        [xy - wz, -(xx + zz), yz + wx, 0.0],
+        [xz + wy, yz - wx, -(xx + yy), 0.0],
+    ]
 }
 
 /// (R − 1) v; the fourth number is nothing.

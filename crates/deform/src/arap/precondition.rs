@@ -141,7 +141,10 @@ impl Preconditioner {
             .with_min_len(CHUNKS_A_TASK)
             .for_each(|((x, field), scale)| {
                 for ((x, value), &scale) in x.iter_mut().zip(field).zip(scale) {
-                    *x = row(value).map(|value| T::of(value * scale));
+                    let row = row(value);
+                    for k in 0..4 {
+                        x[k] = T::of(row[k] * scale);
+                    }
                 }
             });
         solver.solve(x, room);

@@ -4,13 +4,13 @@
 //! at once, and sums the energy; the second gathers the ring's turns into the gradient, which a shape that new targets
 //! leave behind does without (see `fit_pass` and `gradient_pass`).
 
-use glam::{DMat3, DQuat};
+use glam::DQuat;
 use pulp::Arch;
 use rayon::prelude::*;
 
 use super::cells::{Cells, Quad, minus};
 use super::fit_pass::{FitPass, Out, Turning};
-use super::gradient_pass::{GradientPass, Laplacians, Turn};
+use super::gradient_pass::{GradientPass, Laplacians, Turn, turn_of};
 use super::history::Field;
 use crate::operators::CHUNK;
 
@@ -103,10 +103,7 @@ impl Cells {
             .zip(shape.rotations.par_chunks(CHUNK))
             .for_each(|(turns, rotations)| {
                 for (turn, rotation) in turns.iter_mut().zip(rotations) {
-                    let turned = DMat3::from_quat(wide(*rotation)) - DMat3::IDENTITY;
-                    *turn = turned
-                        .to_cols_array_2d()
-                        .map(|[x, y, z]| [x, y, z, 0.0].map(|v| v as f32));
+                    *turn = turn_of(*rotation);
                 }
             });
         let Shape {

@@ -10,6 +10,7 @@ use std::sync::{Mutex, PoisonError};
 
 use pulp::{Arch, Simd, WithSimd};
 
+use crate::prefetch::Prefetch;
 use crate::sparse::forest::Forest;
 use crate::sparse::line::{Line, Shape};
 use crate::sparse::multifrontal::Numbers;
@@ -47,6 +48,9 @@ impl Real for f64 {
         self
     }
 }
+
+/// Numbers between those that are read on the way down and those that are asked for: some blocks of the usual size.
+const AHEAD: usize = 1024;
 
 /// A row of right-hand sides: x, y, z and a zero.
 pub(crate) type Row<T> = [T; 4];
@@ -329,7 +333,9 @@ fn backward_block<T: Real, const B: usize>(numbers: &[T], rest: &mut [Row<T>], b
             sums[c] = plus(sums[c], times(*row, numbers[c]));
         }
     }
+    let prefetch = Prefetch::new();
     for (row, numbers) in below.iter().zip(outside.chunks_exact(B)) {
+        prefetch.below(&numbers[0], AHEAD);
         for c in 0..B {
             sums[c] = plus(sums[c], times(*row, numbers[c]));
         }
