@@ -194,6 +194,7 @@ fn shape(arguments: &RenderArguments, loaded: &Loaded, watch: &Watch) -> Result<
             source,
         })?;
     }
+    let is_bent = edit.is_some();
     let progress = watch.begin("bending");
     let executor = InlineExecutor::new();
     let mut editor = Editor::new(Box::new(executor.clone()));
@@ -207,8 +208,13 @@ fn shape(arguments: &RenderArguments, loaded: &Loaded, watch: &Watch) -> Result<
             return Err(AppError::Interrupted);
         }
         let Some(job) = executor.take(kind) else { break };
-        // Nobody points at a picture.
-        if kind != JobKind::Pick {
+        // Nobody points at a picture, and what nobody bends needs no solver.
+        let is_needed = match kind {
+            JobKind::Pick => false,
+            JobKind::Order => is_bent,
+            _ => true,
+        };
+        if is_needed {
             editor.handle(Event::JobDone(job.run()));
         }
     }
