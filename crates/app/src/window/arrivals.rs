@@ -38,7 +38,10 @@ impl Application {
                 Message::Dressed(drawing, result) => self.wear(&drawing, result),
                 Message::Opened(stamp, result) => match self.session.loaded(stamp, result, &self.workers) {
                     Some(Ok(opened)) => self.adopt(*opened),
-                    Some(Err(sentence)) => self.fail(sentence),
+                    Some(Err(sentence)) => {
+                        self.settings.change(|settings| settings.forget_if_gone(&sentence));
+                        self.fail(sentence);
+                    }
                     None => {}
                 },
                 Message::Written(stamp, result) => self.written(stamp, result),

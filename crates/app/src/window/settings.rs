@@ -164,4 +164,35 @@ impl Settings {
         self.recent.insert(0, path);
         self.recent.truncate(RECENT);
     }
+
+    /// Takes the recent file that a refusal names out of the list, if it is not there any more.
+    pub fn forget_if_gone(&mut self, refusal: &str) {
+        let is_named = |path: &Path| refusal.starts_with(&path.display().to_string());
+        self.recent.retain(|path| !is_named(path) || path.exists());
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::Settings;
+
+    #[test]
+    fn a_recent_file_that_is_gone_is_forgotten_once_it_was_asked_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let files = ["here.ply", "gone.ply", "gone too.ply"].map(|name| folder.path().join(name));
+        std::fs::write(&files[0], "").unwrap();
+        let mut settings = Settings {
+            recent: files.to_vec(),
+            ..Settings::default()
+        };
+        for file in &files[..2] {
+            settings.forget_if_gone(&format!("{} can't be read: for some reason", file.display()));
+        }
+        assert_eq!(
+            settings.recent,
+            [files[0].clone(), files[2].clone()],
+            "nobody asked for the last"
+        );
+    }
 }
