@@ -219,6 +219,11 @@ impl Stored {
         materials::neighbours(&self.materials)
     }
 
+    /// A warning that names what of the materials a file of another kind goes without.
+    pub(crate) fn materials_lost(&self, kind: &str) -> Option<String> {
+        materials::unread_lost(&self.materials, kind)
+    }
+
     /// The file with the moved vertices' numbers changed, and warnings.
     pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
         Ok(patch::patched(self, moved, course)?)

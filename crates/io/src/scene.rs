@@ -201,6 +201,9 @@ impl Scene {
                     Format::Off => off::write_new(&mesh, &course),
                 }?;
                 saved.warnings.extend(self.motion_lost(format));
+                if let Stored::Obj(stored) = &self.stored {
+                    saved.warnings.extend(stored.materials_lost(&format.to_string()));
+                }
                 Ok(saved)
             }
         }

@@ -2,7 +2,7 @@
 //!
 //! Nothing here can stop a file from being opened: what is missing or can't be read becomes a note and is drawn plain.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use crate::appearance::{AlphaMode, Image, Material, Wrap};
 use crate::colour::linear_of_srgb;
@@ -20,8 +20,8 @@ pub(super) struct Materials {
     pub(super) libraries: Vec<(String, Vec<u8>)>,
     /// The path that each image was read at.
     pub(super) image_paths: Vec<String>,
-    /// Whether a library names maps other than the base colour's, which aren't read.
-    pub(super) has_other_maps: bool,
+    /// The libraries' statements that say something and aren't read: maps other than the base colour's, what shines.
+    pub(super) unread: BTreeSet<String>,
 }
 
 /// Looks `names` up in the libraries (the rests of the `mtllib` lines; each may name several files).
@@ -38,7 +38,7 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
         match read_library(source, library) {
             Ok(files) => {
                 for (path, text) in files {
-                    for material in parse(&text, &mut out.has_other_maps) {
+                    for material in parse(&text, &mut out.unread) {
                         let folder = folder_of(&path).to_owned();
                         known.entry(material.name.clone()).or_insert((material, folder));
                     }
@@ -80,6 +80,9 @@ pub(super) fn plain(name: &str) -> Material {
     }
 }
 
+/// Unread statements that are named at most.
+const MOST_UNREAD: usize = 12;
+
 /// More libraries than any file has; beyond this many names, the file only asks for work.
 const MOST_LIBRARIES: usize = 256;
 
@@ -103,7 +106,7 @@ fn read_library(source: &Source<'_>, library: &[u8]) -> Result<Vec<(String, Vec<
 ///
 /// `tobj` gives up (or panics, at a `Kd` with fewer than three numbers) on a line that it doesn't expect, so it gets
 /// only the lines that matter here and that it can read.
-fn parse(text: &[u8], has_other_maps: &mut bool) -> Vec<tobj::Material> {
+fn parse(text: &[u8], unread: &mut BTreeSet<String>) -> Vec<tobj::Material> {
     let text = String::from_utf8_lossy(text);
     let mut kept = String::new();
     let mut is_named = false;
@@ -126,7 +129,9 @@ fn parse(text: &[u8], has_other_maps: &mut bool) -> Vec<tobj::Material> {
             Some("d") => words.next().is_some_and(|word| word.parse::<f32>().is_ok()),
             Some("Tr" | "map_Kd") => words.next().is_some(),
             Some(other) => {
-                *has_other_maps |= is_other_map(other);
+                if (is_other_map(other) || shines(other, words)) && unread.len() < MOST_UNREAD {
+                    unread.insert(excerpt(other.as_bytes()));
+                }
                 false
             }
             None => false,
@@ -144,6 +149,12 @@ fn parse(text: &[u8], has_other_maps: &mut bool) -> Vec<tobj::Material> {
 /// Whether a keyword names an image that isn't drawn.
 fn is_other_map(keyword: &str) -> bool {
     keyword.starts_with("map_") || matches!(keyword, "bump" | "disp" | "decal" | "refl" | "norm")
+}
+
+/// Whether a statement says that a surface shines or glows, in a number above zero.
+fn shines<'a>(keyword: &str, mut numbers: impl Iterator<Item = &'a str>) -> bool {
+    matches!(keyword, "Ks" | "Ke" | "Pr" | "Pm" | "Ps" | "Pc")
+        && numbers.any(|word| word.parse::<f32>().is_ok_and(|number| number > 0.0))
 }
 
 /// Takes over what is drawn of a stored material.
@@ -262,11 +273,22 @@ pub(super) fn neighbours(materials: &Materials) -> (Vec<OutputFile>, Vec<String>
             ));
         }
     }
-    if materials.has_other_maps {
+    if materials.unread.iter().any(|keyword| is_other_map(keyword)) {
         let warning = "Maps other than the base colour's stay in the old folder: copy them by hand.";
         warnings.push(warning.to_owned());
     }
     (files, warnings)
+}
+
+/// A warning that names what of the libraries a file of another kind goes without.
+pub(super) fn unread_lost(materials: &Materials, kind: &str) -> Option<String> {
+    let names: Vec<&str> = materials.unread.iter().map(String::as_str).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{kind} output goes without what the material library says by {}: keep the .obj for it.",
+            names.join(", ")
+        )
+    })
 }
 
 /// Whether a path stays within the folder that it starts from, on every system.
@@ -283,9 +305,9 @@ mod tests {
     #[test]
     fn a_library_with_broken_lines_gives_what_it_can() {
         let text = b"Kd 1 1 1\nnewmtl\nnewmtl a b\r\nKd 1\nKd 0.5 0.25 1\nd x\nmap_Kd\nillum q\nmap_Kd -s 1 1 1 -clamp on my tex.png\nnewmtl c\nTr 0.25\n\xff\xfe";
-        let mut has_other_maps = false;
-        let materials = parse(text, &mut has_other_maps);
-        assert!(!has_other_maps);
+        let mut unread = BTreeSet::new();
+        let materials = parse(text, &mut unread);
+        assert!(unread.is_empty(), "{unread:?}");
         assert_eq!(
             materials
                 .iter()
@@ -299,6 +321,24 @@ mod tests {
         let mut material = plain("c");
         dress(&mut material, &materials[1]);
         assert_eq!(material.base_colour[3], 0.75);
+    }
+
+    #[test]
+    fn what_shines_and_other_maps_are_named_when_another_kind_goes_without() {
+        let unread_of = |text: &[u8]| {
+            let mut materials = Materials::default();
+            parse(text, &mut materials.unread);
+            unread_lost(&materials, "GLB")
+        };
+        let plain = b"newmtl a\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0.0\nKe 0 0 0\nNs 10\nillum 2\nmap_Kd a.png\n";
+        assert_eq!(unread_of(plain), None);
+        let rich = b"newmtl a\nKs 0 0.5 0\nmap_Bump b.png\nnorm n.png\nKe x\nPm 1\nmap_Bump c.png\n";
+        assert_eq!(
+            unread_of(rich).as_deref(),
+            Some(
+                "GLB output goes without what the material library says by Ks, Pm, map_Bump, norm: keep the .obj for it."
+            )
+        );
     }
 
     #[test]
