@@ -103,7 +103,7 @@ fn base_of(in: MaterialFragment) -> vec4f {
     if has(HAS_BASE_COLOUR) {
         base *= textureSample(base_colour_image, base_colour_sampler, in.uvs.xy);
     }
-    return vec4f(mix(base.rgb, in.region.rgb, in.region.a), base.a);
+    return vec4f(under_region(base.rgb, in.region), base.a);
 }
 
 // `n` turned as the normal map says. The frame of u and v comes from how the position changes across the screen

@@ -65,7 +65,7 @@ fn fs_clay(in: SurfaceFragment, @builtin(front_facing) is_front: bool) -> @locat
     let to_eye = direction_to_eye(in.position_view);
     let n = seen_normal(in.normal_view, in.position_view, to_eye, is_front);
     let light = studio_light(n, to_eye);
-    let colour = mix(select(clay.inside.rgb, clay.colour.rgb, is_front), in.region.rgb, in.region.a);
+    let colour = under_region(select(clay.inside.rgb, clay.colour.rgb, is_front), in.region);
     // Lamps that suit a dark clay would bleach a region's colour, and coloured ones change it.
     let diffuse = light.diffuse * mix(vec3f(1.0), clay.on_regions.rgb, in.region.a);
     let gloss = light.gloss * mix(1.0, clay.on_regions.w, in.region.a);
@@ -78,7 +78,7 @@ fn fs_painted(in: SurfaceFragment, @builtin(front_facing) is_front: bool) -> @lo
     let to_eye = direction_to_eye(in.position_view);
     let n = seen_normal(in.normal_view, in.position_view, to_eye, is_front);
     let light = studio_light(n, to_eye).diffuse.g;
-    let colour = mix(clay.colour.rgb, in.region.rgb, in.region.a);
+    let colour = under_region(clay.colour.rgb, in.region);
     return vec4f(colour * (0.52 + 0.48 * min(light, 1.15)), 1.0);
 }
 
@@ -97,7 +97,7 @@ fn fs_zebra(in: SurfaceFragment, @builtin(front_facing) is_front: bool) -> @loca
     let washed = mix(stripe, 0.5, clamp(fwidth(height) - 0.6, 0.0, 1.0));
     let form = 0.80 + 0.20 * max(dot(n, to_eye), 0.0);
     let shade = mix(0.018, 0.80, washed) * form * select(0.45, 1.0, is_front);
-    return vec4f(mix(vec3f(shade), in.region.rgb, in.region.a), 1.0);
+    return vec4f(under_region(vec3f(shade), in.region), 1.0);
 }
 
 // Which way the surface faces in the world: red along x, green along y, blue along z.

@@ -14,9 +14,16 @@ fn position_to_view(position: vec3f) -> vec3f {
     return (frame.view_from_world * vec4f(position, 1.0)).xyz;
 }
 
-// Linear, in alpha how much of the surface's own colour is replaced.
+// Linear, in alpha how much of the surface's own colour is replaced, and times that: between a vertex with a colour and
+// one without, the colour's share falls and nothing else enters.
 fn region_share(region: vec4f) -> vec4f {
-    return vec4f(linear_from_srgb_fast(region.rgb), region.a * frame.region_share);
+    let share = region.a * frame.region_share;
+    return vec4f(linear_from_srgb_fast(region.rgb) * share, share);
+}
+
+// A colour with a region's over it.
+fn under_region(colour: vec3f, region: vec4f) -> vec3f {
+    return colour * (1.0 - region.a) + region.rgb;
 }
 
 // The unit normal on the side that is seen. Where interpolation still turns it away from the eye it is mirrored into
