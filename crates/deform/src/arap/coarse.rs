@@ -128,8 +128,8 @@ impl Coarse {
         self.followed.fill(IDENTITY);
     }
 
-    /// Takes over the fine shape for `motions`, whose gradient in `unit` is known: every centre stands where it does there, and
-    /// loads make the coarse gradient the fine one's.
+    /// Takes over the fine shape for `motions`, whose gradient in `unit` is known: every centre stands where it does
+    /// there, and loads make the coarse gradient the fine one's.
     pub fn learn(&mut self, fine: &Shape, unit: f64, motions: &[Motion]) {
         let solver = &mut *self.solver;
         solver.leave(motions);

@@ -89,7 +89,7 @@ impl History {
         let mut pending = self.pending.take();
         let own = pending.as_mut().map(|pair| self.map_change(pair, before, gradient));
         // A pair without curvature says nothing.
-        let is_enough = |own: &Own| own.curvature > FLAT * (own.steps * own.changes).sqrt();
+        let is_enough = |own: &Products| own.curvature > FLAT * (own.steps * own.changes).sqrt();
         if !own.as_ref().is_some_and(is_enough) {
             self.spare.extend(pending.take());
         }
@@ -147,10 +147,10 @@ impl History {
     }
 
     /// P⁻¹ y of a pending pair, and its products with itself.
-    fn map_change(&self, pair: &mut Pair, before: &Field, gradient: &Field) -> Own {
+    fn map_change(&self, pair: &mut Pair, before: &Field, gradient: &Field) -> Products {
         let length = pair.length;
         pair.mapped.resize(gradient.len(), [0.0; 3]);
-        let partial: Vec<Own> = pair
+        let partial: Vec<Products> = pair
             .mapped
             .par_chunks_mut(CHUNK)
             .zip(pair.direction.par_chunks(CHUNK))
@@ -162,7 +162,7 @@ impl History {
                 let mut room = [[0.0; 3]; CHUNK];
                 let change = &mut room[..new.len()];
                 difference(change, new, old);
-                Own {
+                Products {
                     curvature: -length * dot(direction, change),
                     mapped: dot(mapped, change),
                     steps: length * length * dot(direction, direction),
@@ -170,8 +170,8 @@ impl History {
                 }
             })
             .collect();
-        let sum = |of: fn(&Own) -> f64| partial.iter().map(of).sum();
-        Own {
+        let sum = |of: fn(&Products) -> f64| partial.iter().map(of).sum();
+        Products {
             curvature: sum(|own| own.curvature),
             mapped: sum(|own| own.mapped),
             steps: sum(|own| own.steps),
@@ -258,7 +258,7 @@ pub(crate) struct Factors {
 
 /// A pair's products with itself: s · y, y · P⁻¹ y, s · s and y · y.
 #[derive(Clone, Copy, Debug)]
-struct Own {
+struct Products {
     curvature: f64,
     mapped: f64,
     steps: f64,
