@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::install::prepare_toolchain;
 use crate::process;
-use crate::verdict::Verdict;
+use crate::verdict::{Skips, Verdict};
 
 /// Formatting, clippy and the unit tests of every crate.
 ///
@@ -27,7 +27,7 @@ pub fn check() -> Result<(), String> {
         "--no-fail-fast",
     ];
     verdict.tests("units", &mut process::cargo(&units));
-    verdict.conclude(started)
+    verdict.conclude(started, Skips::Named)
 }
 
 /// Every file stands as rustfmt would write it.

@@ -20,6 +20,23 @@ pub struct Verdict {
     in_successes: bool,
 }
 
+/// What becomes of tests that were skipped for want of a graphics device or a display.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Skips {
+    /// They are named, and nothing else: a person's machine may have neither.
+    Named,
+    /// They count as failures: continuous integration has set up both.
+    Failures,
+}
+
+/// How the lines begin by which tests of pictures and of the window say that they are skipped.
+const NEEDS_GRAPHICS: [&str; 4] = [
+    "skipped: pictures",
+    "skipped: the picture",
+    "skipped: the window",
+    "skipped: the real window",
+];
+
 /// What a line is worth to the person who waits.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Worth {
@@ -131,7 +148,11 @@ impl Verdict {
     ///
     /// # Errors
     /// One sentence when anything failed.
-    pub fn conclude(self, started: Instant) -> Result<(), String> {
+    pub fn conclude(mut self, started: Instant, skips: Skips) -> Result<(), String> {
+        if skips == Skips::Failures {
+            let needed = |line: &&String| NEEDS_GRAPHICS.iter().any(|start| line.starts_with(start));
+            self.failures.extend(self.skipped.iter().filter(needed).cloned());
+        }
         print!("\n{}", self.summary(started.elapsed().as_secs_f64()));
         match self.failures.len() {
             0 => Ok(()),
@@ -207,7 +228,21 @@ mod tests {
         let last =
             "test result: FAILED. 9 passed; 1 failed; 4 ignored; 0 measured; 5 filtered out; finished in 2.00s\n";
         assert!(summary.ends_with(last), "{summary}");
-        assert!(verdict.conclude(Instant::now()).is_err());
+        assert!(verdict.conclude(Instant::now(), Skips::Named).is_err());
+    }
+
+    #[test]
+    fn skipped_pictures_and_windows_fail_where_they_must_run() {
+        for (line, skips, is_failure) in [
+            ("skipped: pictures (no adapter)", Skips::Failures, true),
+            ("skipped: the real window (no Xvfb)", Skips::Failures, true),
+            ("skipped: the real window (no Xvfb)", Skips::Named, false),
+            ("skipped: there is no ../shared/data/scans", Skips::Failures, false),
+        ] {
+            let mut verdict = Verdict::default();
+            verdict.count(line);
+            assert_eq!(verdict.conclude(Instant::now(), skips).is_err(), is_failure, "{line}");
+        }
     }
 
     #[test]
