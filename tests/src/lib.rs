@@ -9,6 +9,7 @@
     reason = "the rig is a part of tests: it fails by panicking, says what it skips, and its names are its words"
 )]
 
+pub mod sources;
 pub mod trials;
 
 use std::ffi::OsString;

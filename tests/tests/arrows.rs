@@ -1,11 +1,12 @@
 //! The arrows between the crates are those of `crates/README.md`, and what its "Invariant:" lines call absent is
-//! absent. Metadata tells what a crate is linked with; a scan of the sources tells what it uses of the standard library.
+//! absent. Metadata tells what a crate is linked with; the sources tell what it uses of the standard library.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand};
+use pliant_tests::sources::{self, Source};
 
 /// Who may name whom; `tests` and `xtask` are exempt.
 const ARROWS: &[(&str, &[&str])] = &[
@@ -41,44 +42,11 @@ const NEVER_NAMED: &[(&str, &[&str])] = &[
     ("pliant-deform", &["log", "tracing"]),
 ];
 
-/// Words that a crate's sources must not hold outside comments and unit tests.
+/// What the sources of a crate must not name outside of unit tests: paths that begin so.
 const NEVER_WRITTEN: &[(&str, &[&str])] = &[
-    (
-        "mesh",
-        &[
-            "std::time",
-            "std::thread",
-            "std::fs",
-            "std::path",
-            "std::env",
-            "std::net",
-            "std::process",
-        ],
-    ),
-    (
-        "deform",
-        &[
-            "std::time",
-            "std::thread",
-            "std::fs",
-            "std::path",
-            "std::env",
-            "std::net",
-            "std::process",
-        ],
-    ),
-    (
-        "io",
-        &[
-            "std::time",
-            "std::thread",
-            "std::fs",
-            "std::path",
-            "std::env",
-            "std::net",
-            "std::process",
-        ],
-    ),
+    ("mesh", OUTSIDE_WORLD),
+    ("deform", OUTSIDE_WORLD),
+    ("io", OUTSIDE_WORLD),
     (
         "render",
         &["std::time::Instant", "std::fs", "std::net", "std::process", "egui"],
@@ -96,8 +64,19 @@ const NEVER_WRITTEN: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Words that would be a global, in the two crates that have none.
-const GLOBALS: &[&str] = &["static ", "pub static ", "pub(crate) static ", "thread_local!"];
+/// The clock, threads, files, and all else that makes a result depend on more than its inputs.
+const OUTSIDE_WORLD: &[&str] = &[
+    "std::time",
+    "std::thread",
+    "std::fs",
+    "std::path",
+    "std::env",
+    "std::net",
+    "std::process",
+];
+
+/// Words that make a global, in the two crates that have none.
+const GLOBALS: &[&str] = &["static", "thread_local"];
 
 fn workspace() -> Metadata {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
@@ -117,13 +96,6 @@ fn workspace() -> Metadata {
         .other_options(["--locked", "--offline", "--filter-platform", host].map(str::to_owned))
         .exec()
         .expect("cargo metadata runs")
-}
-
-fn folder(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../crates")
-        .join(name)
-        .join("src")
 }
 
 /// The crates that `name` asks for by itself, outside its tests.
@@ -181,29 +153,6 @@ fn linked_with(metadata: &Metadata, name: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// Path, line number and text of every line of code under `folder`, without comments and unit tests.
-fn code(folder: &Path) -> Vec<(String, usize, String)> {
-    let mut lines = Vec::new();
-    let mut entries: Vec<_> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
-    entries.sort();
-    for path in entries {
-        if path.is_dir() {
-            lines.extend(code(&path));
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            let text = std::fs::read_to_string(&path).unwrap();
-            let tested = text.split("#[cfg(test)]").next().unwrap_or_default();
-            for (i, line) in tested.lines().enumerate() {
-                let line = line.split("//").next().unwrap_or_default();
-                lines.push((path.display().to_string(), i + 1, line.trim().to_owned()));
-            }
-        }
-    }
-    lines
-}
-
 #[test]
 fn crates_name_each_other_along_the_arrows_and_nowhere_else() {
     let metadata = workspace();
@@ -256,11 +205,14 @@ fn crates_are_not_linked_with_what_they_must_not_know() {
 #[test]
 fn sources_do_not_use_what_their_crate_must_not_know() {
     for (name, words) in NEVER_WRITTEN {
-        let lines = code(&folder(name));
-        assert!(lines.len() > 20, "{name} has sources");
-        for (path, number, line) in lines {
-            let found = words.iter().find(|word| line.contains(**word));
-            assert_eq!(found, None, "{path}:{number}: {line}");
+        let sources = sources::of_crate(name);
+        assert!(sources.len() > 20, "{name} has sources");
+        for Source { file, paths } in sources {
+            for word in *words {
+                let segments: Vec<&str> = word.split("::").collect();
+                let found = paths.iter().find(|path| begins_with(path, &segments));
+                assert_eq!(found, None, "{} names {word}", file.display());
+            }
         }
     }
 }
@@ -268,11 +220,15 @@ fn sources_do_not_use_what_their_crate_must_not_know() {
 #[test]
 fn mesh_and_deform_have_no_globals() {
     for name in ["mesh", "deform"] {
-        for (path, number, line) in code(&folder(name)) {
-            assert!(
-                GLOBALS.iter().all(|word| !line.starts_with(word)),
-                "{path}:{number}: {line}"
-            );
+        for Source { file, paths } in sources::of_crate(name) {
+            for word in GLOBALS {
+                let found = paths.iter().find(|path| begins_with(path, &[word]));
+                assert_eq!(found, None, "{}", file.display());
+            }
         }
     }
+}
+
+fn begins_with(path: &[String], segments: &[&str]) -> bool {
+    path.len() >= segments.len() && path.iter().zip(segments).all(|(a, b)| a == b)
 }

@@ -19,7 +19,7 @@ pub fn renderer() -> Option<MutexGuard<'static, Headless>> {
         Err(error) => {
             #[expect(clippy::print_stderr, reason = "a skipped test says so")]
             {
-                eprintln!("skipped: {error}");
+                eprintln!("skipped: pictures ({error})");
             }
             None
         }
