@@ -14,7 +14,6 @@
 mod bindings;
 mod buffers;
 mod coarse;
-mod deformer;
 mod edges;
 mod environment;
 mod error;
@@ -46,7 +45,6 @@ mod uniforms;
 mod view;
 mod whole_texture;
 
-pub use deformer::{Deformer, DeformerData, StoredNormals};
 pub use error::{NoGpu, RenderError};
 pub use frame::{Background, Borders, Detail, Faces, Frame, Outlines, Shading, Style, Wireframe};
 pub use grid::Grid;

@@ -144,15 +144,15 @@ impl Page {
             })
         };
         let vertex = wgpu::BufferUsages::VERTEX;
-        // Borders look positions up by number, and the compute path writes positions and normals.
-        let moved = vertex | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+        // Borders look positions up by number.
+        let looked_up = vertex | wgpu::BufferUsages::STORAGE;
         let mut page = Self {
-            positions: filled(device, queue, "positions", moved, &positions)?,
+            positions: filled(device, queue, "positions", looked_up, &positions)?,
             normals: filled(
                 device,
                 queue,
                 "normals",
-                moved,
+                vertex,
                 &gathered(&vertices, attributes.normals),
             )?,
             regions: filled(

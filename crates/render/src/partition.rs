@@ -154,12 +154,6 @@ impl Partition {
 }
 
 impl ChunkBounds {
-    /// Nothing is known: always seen.
-    pub(crate) const EVERYWHERE: Self = Self {
-        least: Vec3::NEG_INFINITY,
-        most: Vec3::INFINITY,
-    };
-
     /// Whether any of the box may be seen in a picture of `clip_from_world` (depth reversed). Never wrongly false.
     pub(crate) fn may_be_seen(&self, clip_from_world: &Mat4) -> bool {
         if !self.least.is_finite() || !self.most.is_finite() {

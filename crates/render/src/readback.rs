@@ -119,31 +119,6 @@ impl Renderer {
         self.read_texture(&attachments.colour).map(Some)
     }
 
-    /// The first bytes of a buffer, waiting for them.
-    pub(crate) fn read_buffer(&self, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, RenderError> {
-        if bytes == 0 {
-            return Ok(Vec::new());
-        }
-        let readback = guarded(self.device(), "while reading a buffer back", || {
-            let readback = self.device().create_buffer(&wgpu::BufferDescriptor {
-                label: Some("readback"),
-                size: bytes,
-                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
-            let mut encoder = self.device().create_command_encoder(&Default::default());
-            encoder.copy_buffer_to_buffer(buffer, 0, &readback, 0, bytes);
-            self.queue().submit([encoder.finish()]);
-            readback.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-            Ok(readback)
-        })?;
-        self.device()
-            .poll(wgpu::PollType::wait_indefinitely())
-            .map_err(|_| LOST)?;
-        let view = readback.slice(..).get_mapped_range().map_err(|_| LOST)?;
-        Ok(view.to_vec())
-    }
-
     /// Reads a texture of four bytes a pixel back, waiting for it; it must be one of this device, and allow copying.
     ///
     /// # Errors

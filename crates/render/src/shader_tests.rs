@@ -11,7 +11,7 @@ use crate::pipelines::{
     Look, OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SHAPE_BUFFERS, SURFACE_LINE_BUFFER, material_buffers,
 };
 use crate::uniforms::{
-    ClayUniform, DeformUniform, EnvironmentUniform, FrameUniform, GridUniform, LookVertex, MapUniform, MaterialUniform,
+    ClayUniform, EnvironmentUniform, FrameUniform, GridUniform, LookVertex, MapUniform, MaterialUniform,
     OverlayLineInstance, OverlayVertex, SurfaceLineInstance, SurfaceUniform,
 };
 
@@ -47,12 +47,7 @@ fn every_shader_translates_to_hlsl() {
         naga::back::hlsl::Writer::new(&mut text, &options, &pipeline)
             .write(&module, &info, None)
             .unwrap_or_else(|error| panic!("{}: {error}", shader.file_name()));
-        let kind = if shader == Shader::Deform {
-            "numthreads"
-        } else {
-            "SV_Position"
-        };
-        assert!(text.contains(kind), "{} has {kind}", shader.file_name());
+        assert!(text.contains("SV_Position"), "{}", shader.file_name());
     }
 }
 
@@ -68,12 +63,7 @@ fn every_shader_translates_to_msl() {
         let pipeline = naga::back::msl::PipelineOptions::default();
         let (text, translation) = naga::back::msl::write_string(&module, &info, &options, &pipeline)
             .unwrap_or_else(|error| panic!("{}: {error}", shader.file_name()));
-        let kind = if shader == Shader::Deform {
-            "kernel"
-        } else {
-            "[[position]]"
-        };
-        assert!(text.contains(kind), "{} has {kind}", shader.file_name());
+        assert!(text.contains("[[position]]"), "{}", shader.file_name());
         for name in translation.entry_point_names {
             name.unwrap_or_else(|error| panic!("{}: {error}", shader.file_name()));
         }
@@ -108,7 +98,7 @@ fn uniform_structs_are_laid_out_alike() {
         padding: f32,
         padding_to_16: [f32; 2],
     });
-    let frameless = [Shader::Mipmap, Shader::Environment, Shader::Deform];
+    let frameless = [Shader::Mipmap, Shader::Environment];
     for shader in Shader::ALL.into_iter().filter(|shader| !frameless.contains(shader)) {
         assert_eq!(wgsl_layout(shader, "Frame"), frame, "{}", shader.file_name());
     }
@@ -177,13 +167,6 @@ fn uniform_structs_are_laid_out_alike() {
         padding: [f32; 2],
     });
     assert_eq!(wgsl_layout(Shader::Environment, "Pass"), environment);
-    let deform = layout!(DeformUniform {
-        vertex_count: u32,
-        handle_count: u32,
-        has_stored: u32,
-        padding: u32,
-    });
-    assert_eq!(wgsl_layout(Shader::Deform, "Job"), deform);
 }
 
 #[test]

@@ -17,13 +17,12 @@ pub(crate) enum Shader {
     OverlayTriangle,
     OverlayLine,
     Mipmap,
-    Deform,
 }
 
 impl Shader {
     /// All of them.
     #[cfg(test)]
-    pub(crate) const ALL: [Self; 12] = [
+    pub(crate) const ALL: [Self; 11] = [
         Self::Surface,
         Self::SurfaceId,
         Self::Material,
@@ -35,7 +34,6 @@ impl Shader {
         Self::OverlayTriangle,
         Self::OverlayLine,
         Self::Mipmap,
-        Self::Deform,
     ];
 
     /// The file's name under `shaders/`.
@@ -52,7 +50,6 @@ impl Shader {
             Self::OverlayTriangle => "overlay_triangle.wgsl",
             Self::OverlayLine => "overlay_line.wgsl",
             Self::Mipmap => "mipmap.wgsl",
-            Self::Deform => "deform.wgsl",
         }
     }
 
@@ -74,7 +71,6 @@ impl Shader {
             Self::OverlayTriangle => include_str!("../../../shaders/overlay_triangle.wgsl"),
             Self::OverlayLine => include_str!("../../../shaders/overlay_line.wgsl"),
             Self::Mipmap => include_str!("../../../shaders/mipmap.wgsl"),
-            Self::Deform => include_str!("../../../shaders/deform.wgsl"),
         }
     }
 }

@@ -294,20 +294,6 @@ impl Surface {
         Ok(())
     }
 
-    /// Reads positions and normals back from the device, waiting for them: for comparing what it computed.
-    ///
-    /// # Errors
-    /// Memory, or a device that stopped answering; a surface that is spread over several buffers is none to compare.
-    pub fn read_shape(&self, renderer: &Renderer) -> Result<[Vec<[f32; 3]>; 2], RenderError> {
-        let page = self.whole_page().ok_or(RenderError::Lost {
-            doing: "reading several buffers as one",
-        })?;
-        let read = |buffer| renderer.read_buffer(buffer, 12 * self.vertex_count as u64);
-        let [positions, normals] = [read(&page.positions)?, read(&page.normals)?];
-        let triples = |bytes: Vec<u8>| bytes.chunks_exact(12).map(bytemuck::pod_read_unaligned).collect();
-        Ok([triples(positions), triples(normals)])
-    }
-
     fn update<T: bytemuck::NoUninit>(
         &self,
         renderer: &Renderer,
@@ -323,11 +309,6 @@ impl Surface {
             page.refill(renderer.device(), renderer.queue(), buffer(page), contents)?;
         }
         Ok(())
-    }
-
-    /// Chunks may be anywhere from now on: all are drawn.
-    pub(crate) fn forget_bounds(&mut self) {
-        self.bounds.fill(ChunkBounds::EVERYWHERE);
     }
 
     /// The one page of a mesh that is not spread over several.

@@ -127,16 +127,6 @@ pub(crate) struct GridUniform {
     pub(crate) v_axis_colour: [f32; 4],
 }
 
-/// `Job` in `shaders/deform.wgsl`.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub(crate) struct DeformUniform {
-    pub(crate) vertex_count: u32,
-    pub(crate) handle_count: u32,
-    pub(crate) has_stored: u32,
-    pub(crate) padding: u32,
-}
-
 /// `LookVertex` in `shaders/material.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]

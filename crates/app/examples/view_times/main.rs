@@ -4,7 +4,6 @@
 #![expect(clippy::print_stdout, reason = "its output is the measurement")]
 
 mod brush;
-mod deform;
 mod picks;
 mod ring;
 
@@ -77,15 +76,6 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
         "{{\"triangles\": {triangles}, {}}}",
         picks::row(&model, &moved, &camera)
     );
-    // A device whose buffers are too small for it deforms on the processor.
-    if triangles <= 1_000_000
-        && let Ok([processor_ms, device_ms]) = deform::frame_ms(&model, &drawing, &mut renderer, &mut surface)
-    {
-        println!(
-            "{{\"triangles\": {triangles}, \"deform_on_processor_ms\": {processor_ms:.1}, \
-             \"deform_on_device_ms\": {device_ms:.1}}}"
-        );
-    }
     for row in brush::rows(&model, &drawing, &renderer, &mut surface)? {
         println!("{{\"triangles\": {triangles}, {row}}}");
     }
