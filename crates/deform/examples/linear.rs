@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use common::{median, ms, name, peers_edit, read};
+use common::{median, ms, name, peak_mb, peers_edit, read};
 use glam::DVec3;
 use pliant_deform::stages::Operator;
 use pliant_deform::{Holds, Loose, Method, Ordering, Problem, Role};
@@ -186,13 +186,4 @@ fn bandwidth(watch: &Watch) -> f64 {
     });
     assert_eq!(sum, numbers.len() as f64);
     numbers.len() as f64 * 8e-6 / ms
-}
-
-/// The most memory that this process has held; 0 where the system doesn't say.
-fn peak_mb() -> f64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let kilobytes = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmHWM:")?.split_whitespace().next()?.parse().ok());
-    kilobytes.map_or(0.0, |kb: f64| kb / 1024.0)
 }

@@ -57,6 +57,18 @@ impl Operator {
     }
 }
 
+impl Matrix {
+    /// How many columns it has.
+    pub fn column_count(&self) -> usize {
+        self.0.scale.len()
+    }
+
+    /// Column starts, rows and values on and below the diagonal, in the order of elimination; rows are ascending.
+    pub fn lower_columns(&self) -> (&[u32], &[u32], &[f64]) {
+        (&self.0.lower_offsets, &self.0.lower_rows, &self.0.lower_values)
+    }
+}
+
 impl Factored {
     /// Factors; `None` where the matrix is not positive definite.
     pub fn fill(&mut self, matrix: &Matrix) -> Option<()> {

@@ -5,6 +5,7 @@
 //! [`meshes`]; and [`SECTIONS`] names it. Printing and keeping are done here.
 
 mod arap;
+mod cholesky;
 mod editor;
 mod files;
 mod frames;
@@ -38,6 +39,11 @@ const SECTIONS: &[Section] = &[
         name: "linear",
         title: "The linear shell step by step: milliseconds, medians; megabytes",
         rows: linear::rows,
+    },
+    Section {
+        name: "cholesky",
+        title: "Sparse Cholesky beside faer's, same order and threads: milliseconds, medians; megabytes",
+        rows: cholesky::rows,
     },
     Section {
         name: "frames",
