@@ -57,7 +57,7 @@ pub use partition::{ChunkBounds, Partition};
 pub use pick::{IdTarget, PickRequest, Picked, PickedIds, PixelRect};
 pub use renderer::Renderer;
 pub use studio::Matcap;
-pub use surface::{Outfit, ShapeData, Surface};
+pub use surface::{Materials, ShapeData, Surface};
 pub use surface_data::{ColourSpace, SurfaceData};
 pub use surface_line::{EdgePoint, SurfaceLine};
 pub use target::{Samples, Target};

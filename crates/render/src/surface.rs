@@ -54,16 +54,15 @@ pub struct ShapeData<'a> {
     pub bounds: &'a [ChunkBounds],
 }
 
-/// Materials and their textures on the device, made apart from the surface that will wear them: textures take longer to
-/// decode and upload than all the rest, and can be made on another thread.
-/// Cloning shares them.
+/// Materials and their textures on the device. They are made separately from the surface, possibly on another thread,
+/// because decoding and uploading textures takes longer than everything else. Clones share the textures.
 #[derive(Clone, Debug)]
-pub struct Outfit {
-    /// One a material, and the default one's behind them.
+pub struct Materials {
+    /// One bind group per material, then that of the default material.
     groups: Vec<wgpu::BindGroup>,
 }
 
-impl Outfit {
+impl Materials {
     /// Uploads textures and the materials that use them.
     ///
     /// # Errors
@@ -284,13 +283,13 @@ impl Surface {
     ///
     /// # Errors
     /// [`RenderError::Length`] for another number of materials.
-    pub fn wear(&mut self, outfit: Outfit) -> Result<(), RenderError> {
-        if outfit.groups.len() != self.materials.len() {
-            let [expected, found] = [&self.materials, &outfit.groups].map(|groups| groups.len() - 1);
+    pub fn set_materials(&mut self, materials: Materials) -> Result<(), RenderError> {
+        if materials.groups.len() != self.materials.len() {
+            let [expected, found] = [&self.materials, &materials.groups].map(|groups| groups.len() - 1);
             let what = "materials";
             return Err(RenderError::Length { what, expected, found });
         }
-        self.materials = outfit.groups;
+        self.materials = materials.groups;
         Ok(())
     }
 

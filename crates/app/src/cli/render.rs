@@ -109,8 +109,10 @@ fn pictures(arguments: &RenderArguments, watch: &Watch) -> Result<Vec<Vec<u8>>, 
     surface.update_regions(&renderer, &colours).map_err(refuse)?;
     surface.update_lines(&renderer, &shape.outlines).map_err(refuse)?;
     if look.shading == Shading::Material {
-        let dress = drawing.wardrobe.decode();
-        surface.wear(dress.upload(&renderer).map_err(refuse)?).map_err(refuse)?;
+        let decoded = drawing.materials.decode();
+        surface
+            .set_materials(decoded.upload(&renderer).map_err(refuse)?)
+            .map_err(refuse)?;
     }
     progress.set(0.3);
 

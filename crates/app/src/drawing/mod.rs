@@ -7,11 +7,11 @@
 mod drawn_colours;
 mod field;
 mod ground;
+mod materials;
 mod normals;
 mod outlines;
 mod pose;
 mod stage;
-mod textures;
 
 use std::sync::Arc;
 
@@ -23,10 +23,10 @@ use pliant_render::{ColourSpace, MaterialGroup, Partition, RenderError, Renderer
 pub use drawn_colours::{drawn_colours, recolour};
 pub use field::{Field, Scale, Tick, colour_at, colours};
 pub use ground::ground;
+pub use materials::{DecodedMaterials, EncodedMaterials};
 pub use outlines::outlines;
 pub use pose::Pose;
 pub use stage::{field, overlays, style, view};
-pub use textures::{Dress, Wardrobe};
 
 use normals::NormalGroups;
 
@@ -36,7 +36,7 @@ pub struct Drawing {
     /// The f64 point that GPU positions are relative to: the centre of the file's bounding box.
     pub centre: DVec3,
     /// The file's materials and images.
-    pub wardrobe: Wardrobe,
+    pub materials: EncodedMaterials,
     triangles: Vec<[u32; 3]>,
     twins: Vec<u32>,
     partition: Arc<Partition>,
@@ -48,10 +48,10 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Prepares a file for drawing. Its images are decoded apart: see [`Wardrobe::decode`].
+    /// Prepares a file for drawing. Its images are decoded apart: see [`EncodedMaterials::decode`].
     pub fn new(model: &Model, mut appearance: Appearance) -> Self {
         let centre = bounding_box(&model.surface.positions).map_or(DVec3::ZERO, |bounds| bounds.centre());
-        let wardrobe = Wardrobe::new(&mut appearance);
+        let materials = EncodedMaterials::new(&mut appearance);
         let groups: Vec<MaterialGroup> = appearance
             .groups
             .iter()
@@ -64,10 +64,10 @@ impl Drawing {
         let triangles: Vec<[u32; 3]> = triangles.map(|corners| corners.map(|vertex| vertex.0)).collect();
         let relative = model.rest_positions().into_iter();
         let positions: Vec<[f32; 3]> = relative.map(|position| pose::finite(position - centre)).collect();
-        let partition = Partition::new(&positions, &triangles, &groups, &wardrobe.plain());
+        let partition = Partition::new(&positions, &triangles, &groups, &materials.without_images());
         Self {
             centre,
-            wardrobe,
+            materials,
             twins: twins(model),
             partition: Arc::new(partition),
             normals: NormalGroups::of(model, &triangles, appearance.normals),
@@ -101,7 +101,7 @@ impl Drawing {
                 colour_space: ColourSpace::Linear,
                 regions: None,
                 groups: &self.groups,
-                materials: &self.wardrobe.plain(),
+                materials: &self.materials.without_images(),
                 textures: &[],
                 twins: Some(&self.twins),
                 partition: Some(&self.partition),

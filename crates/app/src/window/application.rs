@@ -66,7 +66,7 @@ pub struct Application {
     pub(super) recovered_from: Option<PathBuf>,
     longest_frame: Duration,
     /// Whether the open file's images were asked for.
-    pub(super) is_dressed: bool,
+    pub(super) has_requested_materials: bool,
     /// Whether a widget had the keys in the last frame.
     pub(super) had_focus: bool,
     pub(super) view_rect: egui::Rect,
@@ -140,7 +140,7 @@ impl Application {
             closing: false,
             recovered_from: None,
             longest_frame: Duration::ZERO,
-            is_dressed: false,
+            has_requested_materials: false,
             had_focus: false,
             view_rect: egui::Rect::ZERO,
             title: String::new(),
@@ -166,7 +166,7 @@ impl Application {
         self.compare = None;
         self.workers.wake(context.egui_ctx.clone());
         self.input = Input::default();
-        self.is_dressed = false;
+        self.has_requested_materials = false;
         self.title.clear();
         if let Some(open) = &self.session.open {
             let (drawing, model) = (Arc::clone(&open.drawing), &open.loaded.model);

@@ -6,7 +6,7 @@ use glam::DVec3;
 use pliant_editor::{Event, Revision, Shading};
 
 use super::application::Application;
-use super::message::{Dressed, Message, Opened, Posed};
+use super::message::{LoadedMaterials, Message, Opened, Posed};
 use super::notes::Notes;
 use super::session::OpenFile;
 use super::workers::Stage;
@@ -35,7 +35,7 @@ impl Application {
                 }
                 // That goes to the second view.
                 Message::Uploaded(..) => {}
-                Message::Dressed(drawing, result) => self.wear(&drawing, result),
+                Message::LoadedMaterials(drawing, result) => self.set_materials(&drawing, result),
                 Message::Opened(stamp, result) => match self.session.loaded(stamp, result, &self.workers) {
                     Some(Ok(opened)) => self.adopt(*opened),
                     Some(Err(sentence)) => {
@@ -88,7 +88,7 @@ impl Application {
             scales: Arc::default(),
         });
         self.poses.cancel();
-        self.is_dressed = false;
+        self.has_requested_materials = false;
         let lowest = loaded.model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
         self.viewport.show(drawing, surface, displacements, lowest);
         self.notes = Notes {
@@ -121,33 +121,35 @@ impl Application {
     /// Has the images decoded and uploaded when materials are first shown.
     pub(super) fn request_images(&mut self) {
         let Some(open) = &self.session.open else { return };
-        if self.is_dressed
+        if self.has_requested_materials
             || self.editor.view().look.shading != Shading::Material
-            || !open.drawing.wardrobe.has_images()
+            || !open.drawing.materials.has_images()
         {
             return;
         }
-        self.is_dressed = true;
+        self.has_requested_materials = true;
         let (drawing, gpu) = (Arc::clone(&open.drawing), self.viewport.gpu());
         let failed = Arc::clone(&drawing);
         self.workers.spawn(
             "images",
             move || {
-                let dress = drawing.wardrobe.decode();
-                let outfit = gpu.upload_images(&dress).map_err(|error| error.to_string());
-                let notes = dress.notes;
-                Message::Dressed(drawing, outfit.map(|outfit| Dressed { outfit, notes }))
+                let decoded = drawing.materials.decode();
+                let materials = gpu.upload_images(&decoded).map_err(|error| error.to_string());
+                let notes = decoded.notes;
+                Message::LoadedMaterials(drawing, materials.map(|materials| LoadedMaterials { materials, notes }))
             },
-            move |sentence| Message::Dressed(Arc::clone(&failed), Err(sentence)),
+            move |sentence| Message::LoadedMaterials(Arc::clone(&failed), Err(sentence)),
         );
     }
 
-    fn wear(&mut self, drawing: &Arc<Drawing>, result: Result<Dressed, String>) {
-        let worn = result.and_then(|Dressed { outfit, notes }| {
+    fn set_materials(&mut self, drawing: &Arc<Drawing>, result: Result<LoadedMaterials, String>) {
+        let result = result.and_then(|LoadedMaterials { materials, notes }| {
             self.notes.about_file.extend(notes);
-            self.viewport.wear(drawing, outfit).map_err(|error| error.to_string())
+            self.viewport
+                .set_materials(drawing, materials)
+                .map_err(|error| error.to_string())
         });
-        if let Err(sentence) = worn {
+        if let Err(sentence) = result {
             self.fail(format!("the materials are shown without their images: {sentence}"));
         }
     }

@@ -74,17 +74,17 @@ impl Compare {
         }
         self.editor.follow(leader, &self.method);
         self.upload(stage);
-        self.wear(first, stage);
+        self.set_materials(first, stage);
         self.request_pose(stage);
     }
 
     /// Shows the same images as the first view.
-    fn wear(&mut self, first: &Viewport, stage: &Stage) {
-        let is_bare = self.viewport.shows(&stage.drawing) && self.viewport.outfit().is_none();
-        let Some(outfit) = first.outfit().filter(|_| is_bare) else {
+    fn set_materials(&mut self, first: &Viewport, stage: &Stage) {
+        let is_bare = self.viewport.shows(&stage.drawing) && self.viewport.materials().is_none();
+        let Some(materials) = first.materials().filter(|_| is_bare) else {
             return;
         };
-        if let Err(error) = self.viewport.wear(&stage.drawing, outfit.clone()) {
+        if let Err(error) = self.viewport.set_materials(&stage.drawing, materials.clone()) {
             self.problem = Some(error.to_string());
         }
     }

@@ -11,7 +11,7 @@ pub struct DrawnKey {
     pub pixels_per_point: f32,
     pub shape: usize,
     pub colours: Colours,
-    pub outfits: u64,
+    pub materials_revision: u64,
     pub rims: u64,
     pub shown: usize,
     pub overlay: u64,

@@ -2,9 +2,9 @@
 
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
-use pliant_render::{Outfit, RenderError, Renderer, Surface};
+use pliant_render::{Materials, RenderError, Renderer, Surface};
 
-use crate::drawing::{Drawing, Dress, Pose};
+use crate::drawing::{DecodedMaterials, Drawing, Pose};
 
 /// The device, shared with the threads that upload files. Drawing needs it alone, and rather skips a frame than wait.
 #[derive(Clone)]
@@ -19,9 +19,9 @@ impl Gpu {
     /// Uploads a file's images.
     ///
     /// # Errors
-    /// As [`Outfit::new`].
-    pub fn upload_images(&self, dress: &Dress) -> Result<Outfit, RenderError> {
-        dress.upload(&self.read())
+    /// As [`Materials::new`].
+    pub fn upload_images(&self, decoded: &DecodedMaterials) -> Result<Materials, RenderError> {
+        decoded.upload(&self.read())
     }
 
     /// Uploads a file's surface.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_editor::{Beginning, JobDone, Revision, SnapshotKey};
-use pliant_render::{Outfit, Surface};
+use pliant_render::{Materials, Surface};
 
 use super::project_file::MeshSource;
 use crate::drawing::{Drawing, Field, Pose, Scale};
@@ -20,7 +20,7 @@ pub enum Message {
     /// A file was uploaded once more, for a second view.
     Uploaded(Arc<Drawing>, Result<Surface, String>),
     /// The images of a file were decoded and uploaded, or why not.
-    Dressed(Arc<Drawing>, Result<Dressed, String>),
+    LoadedMaterials(Arc<Drawing>, Result<LoadedMaterials, String>),
     /// A file was opened, or why it was not.
     Opened(Revision, Result<Box<Opened>, String>),
     /// A file was written, or why it was not.
@@ -52,9 +52,9 @@ pub struct Painted {
 }
 
 /// A file's materials with their images.
-pub struct Dressed {
+pub struct LoadedMaterials {
     /// On the device.
-    pub outfit: Outfit,
+    pub materials: Materials,
     /// Images that can't be shown, a sentence each.
     pub notes: Vec<String>,
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_editor::{Editor, SceneView, UpAxis};
 use pliant_mesh::SurfaceVertex;
-use pliant_render::{Grid, Outfit, RenderError, Surface};
+use pliant_render::{Grid, Materials, RenderError, Surface};
 
 use super::gpu::Gpu;
 use crate::drawing::{self, Drawing, Field, Scale};
@@ -24,9 +24,9 @@ pub struct Shown {
     pub rims: Option<u64>,
     pub scale: Option<Arc<Scale>>,
     /// Its materials with their images, once there are any.
-    pub outfit: Option<Outfit>,
+    pub materials: Option<Materials>,
     /// How often its materials changed.
-    pub outfits: u64,
+    pub materials_revision: u64,
     /// The triangles that are drawn.
     pub shown: Option<Arc<Vec<bool>>>,
 }

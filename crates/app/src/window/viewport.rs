@@ -12,7 +12,9 @@ use eframe::egui::{self, TextureId};
 use eframe::egui_wgpu::RenderState;
 use glam::DVec3;
 use pliant_editor::{Editor, SceneView, Shading};
-use pliant_render::{Background, Detail, Frame, Image, Outfit, RenderError, Renderer, Samples, Style, Surface, Target};
+use pliant_render::{
+    Background, Detail, Frame, Image, Materials, RenderError, Renderer, Samples, Style, Surface, Target,
+};
 
 use super::coarseness::Coarseness;
 use super::drawn_key::DrawnKey;
@@ -133,8 +135,8 @@ impl Viewport {
             drawn_colours: Vec::new(),
             rims: None,
             scale: None,
-            outfit: None,
-            outfits: 0,
+            materials: None,
+            materials_revision: 0,
             shown: None,
         });
     }
@@ -142,21 +144,21 @@ impl Viewport {
     /// Gives the file that is shown its materials with their images, if it is still this one.
     ///
     /// # Errors
-    /// As [`Surface::wear`].
-    pub fn wear(&mut self, drawing: &Arc<Drawing>, outfit: Outfit) -> Result<(), RenderError> {
+    /// As [`Surface::set_materials`].
+    pub fn set_materials(&mut self, drawing: &Arc<Drawing>, materials: Materials) -> Result<(), RenderError> {
         match &mut self.surface {
             Some(shown) if Arc::ptr_eq(&shown.drawing, drawing) => {
-                shown.outfits += 1;
-                shown.outfit = Some(outfit.clone());
-                shown.surface.wear(outfit)
+                shown.materials_revision += 1;
+                shown.materials = Some(materials.clone());
+                shown.surface.set_materials(materials)
             }
             _ => Ok(()),
         }
     }
 
     /// The materials with their images of the file that is shown, once it has them.
-    pub fn outfit(&self) -> Option<&Outfit> {
-        self.surface.as_ref()?.outfit.as_ref()
+    pub fn materials(&self) -> Option<&Materials> {
+        self.surface.as_ref()?.materials.as_ref()
     }
 
     /// The numbers that the surface's colours show.
@@ -278,7 +280,7 @@ impl Viewport {
                 .as_ref()
                 .map_or(0, |shown| Arc::as_ptr(&shown.displacements) as usize),
             colours: self.surface.as_ref().map_or(Colours::None, |shown| shown.colours),
-            outfits: self.surface.as_ref().map_or(0, |shown| shown.outfits),
+            materials_revision: self.surface.as_ref().map_or(0, |shown| shown.materials_revision),
             rims: view.rims_revision,
             shown: self.surface.as_ref().map_or(0, |shown| address(shown.shown.as_ref())),
             overlay: view.overlay_revision,

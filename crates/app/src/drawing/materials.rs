@@ -7,13 +7,13 @@ use std::collections::HashMap;
 
 use pliant_io::{Appearance, Image, Rgba8, decode_image};
 use pliant_render::{
-    AlphaMode, Encoding, Lighting, Map, Material, Outfit, RenderError, Renderer, TextureData, UvSet, Wrap,
+    AlphaMode, Encoding, Lighting, Map, Material, Materials, RenderError, Renderer, TextureData, UvSet, Wrap,
 };
 use rayon::prelude::*;
 
 /// A file's materials and the encoded images that they use.
 #[derive(Debug)]
-pub struct Wardrobe {
+pub struct EncodedMaterials {
     materials: Vec<Material>,
     /// The images to decode: number of the file's image, and what its bytes say.
     wanted: Vec<(usize, Encoding)>,
@@ -22,17 +22,17 @@ pub struct Wardrobe {
 
 /// Materials with their images, decoded.
 #[derive(Debug)]
-pub struct Dress {
+pub struct DecodedMaterials {
     materials: Vec<Material>,
     textures: Vec<(Rgba8, Encoding)>,
     /// What can't be shown, a sentence each.
     pub notes: Vec<String>,
 }
 
-impl Wardrobe {
+impl EncodedMaterials {
     /// The materials of a file.
     pub fn new(appearance: &mut Appearance) -> Self {
-        let mut wardrobe = Self {
+        let mut encoded = Self {
             materials: Vec::new(),
             wanted: Vec::new(),
             images: std::mem::take(&mut appearance.images),
@@ -40,8 +40,8 @@ impl Wardrobe {
         let mut texture_of: HashMap<(usize, Encoding), usize> = HashMap::new();
         let mut texture = |image: usize, encoding: Encoding| {
             *texture_of.entry((image, encoding)).or_insert_with(|| {
-                wardrobe.wanted.push((image, encoding));
-                wardrobe.wanted.len() - 1
+                encoded.wanted.push((image, encoding));
+                encoded.wanted.len() - 1
             })
         };
         for material in &appearance.materials {
@@ -62,7 +62,7 @@ impl Wardrobe {
                 set: pliant_io::UvSet::Base,
                 transform: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
             });
-            wardrobe.materials.push(Material {
+            encoded.materials.push(Material {
                 base_colour: material.base_colour,
                 base_colour_map: map(base, Encoding::Srgb),
                 metallic: material.metallic,
@@ -86,12 +86,15 @@ impl Wardrobe {
                 double_sided: material.double_sided,
             });
         }
-        wardrobe
+        encoded
     }
 
     /// The materials without their images.
-    pub fn plain(&self) -> Vec<Material> {
-        self.materials.iter().map(|material| kept(material, |_| None)).collect()
+    pub fn without_images(&self) -> Vec<Material> {
+        self.materials
+            .iter()
+            .map(|material| with_maps(material, |_| None))
+            .collect()
     }
 
     /// Whether any material has an image.
@@ -100,7 +103,7 @@ impl Wardrobe {
     }
 
     /// Decodes the images, beside each other; what can't be decoded is left out and told in a sentence.
-    pub fn decode(&self) -> Dress {
+    pub fn decode(&self) -> DecodedMaterials {
         let decoded: Vec<Result<Rgba8, String>> = self
             .wanted
             .par_iter()
@@ -131,11 +134,11 @@ impl Wardrobe {
             let texture = numbers.get(map.texture).copied().flatten()?;
             Some(Map { texture, ..map })
         };
-        Dress {
+        DecodedMaterials {
             materials: self
                 .materials
                 .iter()
-                .map(|material| kept(material, with_number))
+                .map(|material| with_maps(material, with_number))
                 .collect(),
             textures,
             notes,
@@ -143,12 +146,12 @@ impl Wardrobe {
     }
 }
 
-impl Dress {
-    /// Uploads the images, for the file's surface to wear.
+impl DecodedMaterials {
+    /// Uploads the images, for the file's surface to set_materials.
     ///
     /// # Errors
-    /// As [`Outfit::new`].
-    pub fn upload(&self, renderer: &Renderer) -> Result<Outfit, RenderError> {
+    /// As [`Materials::new`].
+    pub fn upload(&self, renderer: &Renderer) -> Result<Materials, RenderError> {
         let textures: Vec<TextureData<'_>> = self
             .textures
             .iter()
@@ -159,12 +162,12 @@ impl Dress {
                 encoding: *encoding,
             })
             .collect();
-        Outfit::new(renderer, &self.materials, &textures)
+        Materials::new(renderer, &self.materials, &textures)
     }
 }
 
 /// The material with each of its maps as `map` says.
-fn kept(material: &Material, map: impl Fn(Map) -> Option<Map>) -> Material {
+fn with_maps(material: &Material, map: impl Fn(Map) -> Option<Map>) -> Material {
     Material {
         base_colour_map: material.base_colour_map.and_then(&map),
         metallic_roughness_map: material.metallic_roughness_map.and_then(&map),
