@@ -13,6 +13,7 @@
 
 mod bindings;
 mod buffers;
+mod chunks;
 mod coarse;
 mod edges;
 mod environment;
@@ -26,7 +27,6 @@ mod material;
 mod overlay;
 mod pages;
 mod palette;
-mod partition;
 mod pick;
 mod pipelines;
 mod readback;
@@ -45,6 +45,7 @@ mod uniforms;
 mod view;
 mod whole_texture;
 
+pub use chunks::{ChunkBounds, Chunks};
 pub use error::{NoGpu, RenderError};
 pub use frame::{Background, Borders, Detail, Faces, Frame, Outlines, Shading, Style, Wireframe};
 pub use grid::Grid;
@@ -53,7 +54,6 @@ pub use image::Image;
 pub use material::{AlphaMode, Lighting, Map, Material, MaterialGroup, UvSet, Wrap};
 pub use overlay::{Overlay, OverlayLine, OverlayTriangle};
 pub use palette::{border, region};
-pub use partition::{ChunkBounds, Partition};
 pub use pick::{IdTarget, PickRequest, Picked, PickedIds, PixelRect};
 pub use renderer::Renderer;
 pub use studio::Matcap;

@@ -8,10 +8,10 @@ use bytemuck::NoUninit;
 
 use crate::RenderError;
 use crate::buffers::{filled, refill};
+use crate::chunks::Chunks;
 use crate::coarse::{WORTH_FROM, coarse_triangles};
 use crate::edges::unique_edges;
 use crate::headless::is_software;
-use crate::partition::Partition;
 use crate::uniforms::LookVertex;
 
 /// Buffers of some of a mesh's chunks.
@@ -68,27 +68,27 @@ impl PageLimits {
 }
 
 /// The chunks that go onto each page: as many as fit, in order. A single chunk always fits.
-pub(crate) fn page_chunks(partition: &Partition, vertex_count: usize, limits: PageLimits) -> Vec<Range<usize>> {
-    let chunks = partition.chunks();
-    let triangle_count = chunks.last().map_or(0, |chunk| chunk.triangles.end as usize);
+pub(crate) fn page_chunks(chunks: &Chunks, vertex_count: usize, limits: PageLimits) -> Vec<Range<usize>> {
+    let all = chunks.all();
+    let triangle_count = all.last().map_or(0, |chunk| chunk.triangles.end as usize);
     let mut pages: Vec<Range<usize>> = Vec::new();
     if vertex_count <= limits.vertices && triangle_count <= limits.triangles {
-        pages.push(0..chunks.len());
+        pages.push(0..all.len());
         return pages;
     }
     let mut on_page = vec![u32::MAX; vertex_count];
     let (mut vertices, mut triangles) = (0, 0);
-    for (number, chunk) in chunks.iter().enumerate() {
+    for (number, chunk) in all.iter().enumerate() {
         let page = (pages.len() as u32).wrapping_sub(1);
         let is_new = |vertex: &&u32| on_page[**vertex as usize] != page;
-        let more = partition.chunk_vertices(number).iter().filter(is_new).count();
+        let more = chunks.vertices(number).iter().filter(is_new).count();
         if pages.is_empty() || vertices + more > limits.vertices || triangles + chunk.triangles.len() > limits.triangles
         {
             pages.push(number..number);
             (vertices, triangles) = (0, 0);
         }
         let page = pages.len() as u32 - 1;
-        for &vertex in partition.chunk_vertices(number) {
+        for &vertex in chunks.vertices(number) {
             if on_page[vertex as usize] != page {
                 on_page[vertex as usize] = page;
                 vertices += 1;
@@ -106,25 +106,25 @@ impl Page {
     pub(crate) fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        partition: &Partition,
-        chunks: Range<usize>,
+        chunks: &Chunks,
+        range: Range<usize>,
         triangles: &[[u32; 3]],
         attributes: &Attributes<'_>,
     ) -> Result<Self, RenderError> {
-        let all = partition.chunks();
-        let is_whole = chunks.len() == all.len();
+        let all = chunks.all();
+        let is_whole = range.len() == all.len();
         let place = |chunk: usize| all.get(chunk).map(|chunk| chunk.triangles.clone()).unwrap_or_default();
-        let places = if chunks.is_empty() {
+        let places = if range.is_empty() {
             0..0
         } else {
-            place(chunks.start).start..place(chunks.end - 1).end
+            place(range.start).start..place(range.end - 1).end
         };
         let mut own = places
             .clone()
-            .map(|place| triangles[partition.triangle_at(place) as usize])
+            .map(|place| triangles[chunks.triangle_at(place) as usize])
             .collect::<Vec<_>>();
         let vertices = (!is_whole).then(|| {
-            let lists = chunks.clone().flat_map(|chunk| partition.chunk_vertices(chunk));
+            let lists = range.clone().flat_map(|chunk| chunks.vertices(chunk));
             let mut vertices: Vec<u32> = lists.copied().collect();
             vertices.sort_unstable();
             vertices.dedup();
@@ -194,18 +194,18 @@ impl Page {
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        partition: &Partition,
+        chunks: &Chunks,
         is_shown: &dyn Fn(u32) -> bool,
     ) -> Result<(), RenderError> {
-        let drawn: Vec<[u32; 3]> = self.drawn(partition, is_shown);
+        let drawn: Vec<[u32; 3]> = self.drawn(chunks, is_shown);
         refill(device, queue, &self.indices, &drawn)?;
         self.edges = OnceLock::new();
         Ok(())
     }
 
-    fn drawn(&self, partition: &Partition, is_shown: &dyn Fn(u32) -> bool) -> Vec<[u32; 3]> {
+    fn drawn(&self, chunks: &Chunks, is_shown: &dyn Fn(u32) -> bool) -> Vec<[u32; 3]> {
         let own = self.places.clone().zip(&self.triangles);
-        let shown = own.map(|(place, &corners)| match is_shown(partition.triangle_at(place)) {
+        let shown = own.map(|(place, &corners)| match is_shown(chunks.triangle_at(place)) {
             true => corners,
             false => [0; 3],
         });
@@ -250,7 +250,7 @@ impl Page {
         &self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        partition: &Partition,
+        chunks: &Chunks,
         is_shown: &dyn Fn(u32) -> bool,
     ) -> Result<(), RenderError> {
         if self.edges.get().is_some() {
@@ -262,7 +262,7 @@ impl Page {
             .flatten()
             .max()
             .map_or(0, |&most| most as usize + 1);
-        let mut edges = unique_edges(&self.drawn(partition, is_shown), vertex_count);
+        let mut edges = unique_edges(&self.drawn(chunks, is_shown), vertex_count);
         // Hidden triangles are points.
         edges.retain(|[from, to]| from != to);
         let made = if edges.is_empty() {
@@ -296,16 +296,16 @@ mod tests {
         let count = 300_000_u32;
         let positions: Vec<[f32; 3]> = (0..count + 2).map(|v| [(v / 2) as f32, (v % 2) as f32, 0.0]).collect();
         let triangles: Vec<[u32; 3]> = (0..count).map(|t| [t, t + 1, t + 2]).collect();
-        let partition = Partition::new(&positions, &triangles, &[], &[]);
+        let chunks = Chunks::new(&positions, &triangles, &[], &[]);
         let whole = page_chunks(
-            &partition,
+            &chunks,
             positions.len(),
             PageLimits {
                 vertices: 400_000,
                 triangles: 300_000,
             },
         );
-        assert!(whole.len() == 1 && whole[0] == (0..partition.chunk_count()));
+        assert!(whole.len() == 1 && whole[0] == (0..chunks.count()));
         for limits in [
             PageLimits {
                 vertices: 50_000,
@@ -316,19 +316,19 @@ mod tests {
                 triangles: 70_000,
             },
         ] {
-            let pages = page_chunks(&partition, positions.len(), limits);
+            let pages = page_chunks(&chunks, positions.len(), limits);
             assert!(pages.len() > 3);
             let mut next = 0;
             for page in pages {
                 assert_eq!(page.start, next);
                 next = page.end;
-                let triangles: usize = page.clone().map(|c| partition.chunks()[c].triangles.len()).sum();
-                let mut vertices: Vec<u32> = page.flat_map(|c| partition.chunk_vertices(c).to_vec()).collect();
+                let triangles: usize = page.clone().map(|c| chunks.all()[c].triangles.len()).sum();
+                let mut vertices: Vec<u32> = page.flat_map(|c| chunks.vertices(c).to_vec()).collect();
                 vertices.sort_unstable();
                 vertices.dedup();
                 assert!(triangles <= limits.triangles && vertices.len() <= limits.vertices);
             }
-            assert_eq!(next, partition.chunk_count());
+            assert_eq!(next, chunks.count());
         }
     }
 }

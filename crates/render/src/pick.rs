@@ -11,7 +11,7 @@ use crate::readback::Readback;
 use crate::renderer::WHOLE;
 use crate::runs::Joining;
 use crate::target::fresh_depth;
-use crate::{Frame, Partition, RenderError, Renderer, Samples, Target};
+use crate::{Chunks, Frame, RenderError, Renderer, Samples, Target};
 
 /// The hidden target that triangle numbers are drawn into. Made to measure by [`Renderer::pick`]; keep it.
 #[derive(Debug, Default)]
@@ -65,7 +65,7 @@ pub struct PickRequest {
     /// The triangle number, plus 1, that follows each surface's last one.
     ends: Vec<u32>,
     /// For each surface, which triangle is drawn where.
-    partitions: Vec<Arc<Partition>>,
+    chunks: Vec<Arc<Chunks>>,
     /// None where the rectangle has no pixel.
     readback: Option<Readback>,
 }
@@ -169,7 +169,7 @@ impl Renderer {
     ) -> Result<PickRequest, RenderError> {
         let rect = rect.cut_to(size_px);
         let (mut bases, mut ends) = (Vec::new(), Vec::new());
-        let partitions: Vec<_> = frame.surfaces.iter().map(|surface| surface.partition()).collect();
+        let chunks: Vec<_> = frame.surfaces.iter().map(|surface| surface.chunks()).collect();
         let mut next = 1_u32;
         for surface in frame.surfaces {
             bases.push(next);
@@ -180,7 +180,7 @@ impl Renderer {
             return Ok(PickRequest {
                 rect,
                 ends,
-                partitions,
+                chunks,
                 readback: None,
             });
         }
@@ -225,7 +225,7 @@ impl Renderer {
         Ok(PickRequest {
             rect,
             ends,
-            partitions,
+            chunks,
             readback: Some(readback),
         })
     }
@@ -280,9 +280,9 @@ impl PickRequest {
                 (id > 0 && surface < self.ends.len()).then(|| Picked {
                     surface: surface as u32,
                     triangle: self
-                        .partitions
+                        .chunks
                         .get(surface)
-                        .map_or(id - first, |partition| partition.triangle_at(id - first)),
+                        .map_or(id - first, |chunks| chunks.triangle_at(id - first)),
                 })
             })
             .collect();
@@ -306,7 +306,7 @@ mod tests {
         let request = PickRequest {
             rect,
             ends: vec![4, 4, 6],
-            partitions: Vec::new(),
+            chunks: Vec::new(),
             readback: None,
         };
         let bytes: Vec<u8> = [0_u32, 1, 3, 4, 5, 6].iter().flat_map(|id| id.to_le_bytes()).collect();

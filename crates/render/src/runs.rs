@@ -39,7 +39,7 @@ impl Surface {
     pub(crate) fn runs(&self, view: &View, joining: Joining) -> Vec<Run> {
         let mut runs: Vec<Run> = Vec::new();
         let mut page = 0;
-        for (chunk, bounds) in self.partition.chunks().iter().zip(&self.bounds) {
+        for (chunk, bounds) in self.chunks.all().iter().zip(&self.bounds) {
             while self
                 .pages
                 .get(page)

@@ -4,10 +4,10 @@ use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use crate::buffers::filled;
+use crate::chunks::{ChunkBounds, Chunks};
 use crate::edges::{Odd, odd_edges};
 use crate::guard::guarded;
 use crate::pages::{Attributes, Page, PageLimits, page_chunks};
-use crate::partition::{ChunkBounds, Partition};
 use crate::pipelines::Look;
 use crate::surface_data::{checked, textures_exist};
 use crate::surface_line::LineSet;
@@ -26,7 +26,7 @@ pub struct Surface {
     /// Kept for the borders, which are only looked for when first drawn: 12 bytes a triangle.
     triangles: Vec<[u32; 3]>,
     twins: Option<Vec<u32>>,
-    pub(crate) partition: Arc<Partition>,
+    pub(crate) chunks: Arc<Chunks>,
     pub(crate) bounds: Vec<ChunkBounds>,
     pub(crate) pages: Vec<Page>,
     look: Look,
@@ -50,7 +50,7 @@ pub struct ShapeData<'a> {
     pub positions: &'a [[f32; 3]],
     /// Unit normals, one a vertex.
     pub normals: &'a [[f32; 3]],
-    /// [`Partition::bounds`] of every chunk at these positions.
+    /// [`Chunks::bounds`] of every chunk at these positions.
     pub bounds: &'a [ChunkBounds],
 }
 
@@ -101,14 +101,9 @@ impl Surface {
         checked(data)?;
         let (device, queue) = (renderer.device(), renderer.queue());
         let count = data.positions.len();
-        let partition = match data.partition {
-            Some(partition) => Arc::clone(partition),
-            None => Arc::new(Partition::new(
-                data.positions,
-                data.triangles,
-                data.groups,
-                data.materials,
-            )),
+        let chunks = match data.chunks {
+            Some(chunks) => Arc::clone(chunks),
+            None => Arc::new(Chunks::new(data.positions, data.triangles, data.groups, data.materials)),
         };
         let plain = vec![[0; 4]; if data.regions.is_some() { 0 } else { count }];
         let look = looks(data);
@@ -118,9 +113,9 @@ impl Surface {
             regions: data.regions.unwrap_or(&plain),
             look: look.as_deref(),
         };
-        let pages = page_chunks(&partition, count, limits)
+        let pages = page_chunks(&chunks, count, limits)
             .into_iter()
-            .map(|chunks| Page::new(device, queue, &partition, chunks, data.triangles, &attributes))
+            .map(|range| Page::new(device, queue, &chunks, range, data.triangles, &attributes))
             .collect::<Result<Vec<_>, _>>()?;
         let uniform = SurfaceUniform {
             id_base: 1,
@@ -139,8 +134,8 @@ impl Surface {
             vertex_count: count,
             triangles: data.triangles.to_vec(),
             twins: data.twins.map(<[u32]>::to_vec),
-            bounds: partition.all_bounds(data.positions),
-            partition,
+            bounds: chunks.all_bounds(data.positions),
+            chunks,
             pages,
             look: if look.is_some() { Look::Own } else { Look::Shared },
             shared_look: filled(device, queue, "plain look", wgpu::BufferUsages::VERTEX, &[white])?,
@@ -179,7 +174,7 @@ impl Surface {
     /// [`RenderError::Length`] unless there is one position a vertex; memory.
     pub fn update_positions(&mut self, renderer: &Renderer, positions: &[[f32; 3]]) -> Result<(), RenderError> {
         self.update(renderer, "positions", |page| &page.positions, positions)?;
-        self.bounds = self.partition.all_bounds(positions);
+        self.bounds = self.chunks.all_bounds(positions);
         Ok(())
     }
 
@@ -188,8 +183,8 @@ impl Surface {
     /// # Errors
     /// As [`Surface::update_positions`].
     pub fn update_shape(&mut self, renderer: &Renderer, shape: &ShapeData<'_>) -> Result<(), RenderError> {
-        if shape.bounds.len() != self.partition.chunk_count() {
-            let (expected, found) = (self.partition.chunk_count(), shape.bounds.len());
+        if shape.bounds.len() != self.chunks.count() {
+            let (expected, found) = (self.chunks.count(), shape.bounds.len());
             let what = "chunk bounds";
             return Err(RenderError::Length { what, expected, found });
         }
@@ -268,7 +263,7 @@ impl Surface {
         }
         let is_shown = |triangle: u32| shown.as_ref().is_none_or(|shown| shown[triangle as usize]);
         for page in &mut self.pages {
-            page.show(renderer.device(), renderer.queue(), &self.partition, &is_shown)?;
+            page.show(renderer.device(), renderer.queue(), &self.chunks, &is_shown)?;
         }
         self.borders = OnceLock::new();
         self.shown = shown;
@@ -328,8 +323,8 @@ impl Surface {
     }
 
     /// Which triangle is drawn where.
-    pub(crate) fn partition(&self) -> Arc<Partition> {
-        Arc::clone(&self.partition)
+    pub(crate) fn chunks(&self) -> Arc<Chunks> {
+        Arc::clone(&self.chunks)
     }
 
     /// Binds group 1.
@@ -372,7 +367,7 @@ impl Surface {
         let is_shown = |triangle| self.is_shown(triangle);
         self.pages
             .iter()
-            .try_for_each(|page| page.prepare_edges(device, queue, &self.partition, &is_shown))
+            .try_for_each(|page| page.prepare_edges(device, queue, &self.chunks, &is_shown))
     }
 
     /// Looks for borders unless that was done.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::{Material, MaterialGroup, Partition, RenderError, TextureData};
+use crate::{Chunks, Material, MaterialGroup, RenderError, TextureData};
 
 /// The slices a [`crate::Surface`] is made of. All per-vertex slices have one entry a vertex.
 #[derive(Debug, Clone, Copy, Default)]
@@ -31,7 +31,7 @@ pub struct SurfaceData<'a> {
     /// means that no two vertices are twins.
     pub twins: Option<&'a [u32]>,
     /// How the triangles are cut into chunks; made of the slices above where none is given.
-    pub partition: Option<&'a Arc<Partition>>,
+    pub chunks: Option<&'a Arc<Chunks>>,
     /// The textures that materials name.
     pub textures: &'a [TextureData<'a>],
 }
@@ -99,14 +99,11 @@ pub(crate) fn checked(data: &SurfaceData<'_>) -> Result<(), RenderError> {
         in_range("twin", twin as usize, vertices)?;
     }
     textures_exist(data.materials, data.textures.len())?;
-    if let Some(partition) = data.partition.filter(|partition| !partition.fits(data.triangles.len())) {
+    if let Some(chunks) = data.chunks.filter(|chunks| !chunks.fits(data.triangles.len())) {
         return Err(RenderError::Length {
-            what: "the partition's triangles",
+            what: "the chunks' triangles",
             expected: data.triangles.len(),
-            found: partition
-                .chunks()
-                .last()
-                .map_or(0, |chunk| chunk.triangles.end as usize),
+            found: chunks.all().last().map_or(0, |chunk| chunk.triangles.end as usize),
         });
     }
     Ok(())

@@ -18,7 +18,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_io::Appearance;
 use pliant_mesh::{Model, bounding_box};
-use pliant_render::{ColourSpace, MaterialGroup, Partition, RenderError, Renderer, Surface, SurfaceData};
+use pliant_render::{Chunks, ColourSpace, MaterialGroup, RenderError, Renderer, Surface, SurfaceData};
 
 pub use drawn_colours::{drawn_colours, recolour};
 pub use field::{Field, Scale, Tick, colour_at, colours};
@@ -39,7 +39,7 @@ pub struct Drawing {
     pub materials: EncodedMaterials,
     triangles: Vec<[u32; 3]>,
     twins: Vec<u32>,
-    partition: Arc<Partition>,
+    chunks: Arc<Chunks>,
     normals: NormalGroups,
     uvs: Option<Vec<[f32; 2]>>,
     second_uvs: Option<Vec<[f32; 2]>>,
@@ -64,12 +64,12 @@ impl Drawing {
         let triangles: Vec<[u32; 3]> = triangles.map(|corners| corners.map(|vertex| vertex.0)).collect();
         let relative = model.rest_positions().into_iter();
         let positions: Vec<[f32; 3]> = relative.map(|position| pose::finite(position - centre)).collect();
-        let partition = Partition::new(&positions, &triangles, &groups, &materials.without_images());
+        let chunks = Chunks::new(&positions, &triangles, &groups, &materials.without_images());
         Self {
             centre,
             materials,
             twins: twins(model),
-            partition: Arc::new(partition),
+            chunks: Arc::new(chunks),
             normals: NormalGroups::of(model, &triangles, appearance.normals),
             uvs: appearance.uvs,
             second_uvs: appearance.second_uvs,
@@ -104,7 +104,7 @@ impl Drawing {
                 materials: &self.materials.without_images(),
                 textures: &[],
                 twins: Some(&self.twins),
-                partition: Some(&self.partition),
+                chunks: Some(&self.chunks),
             },
         )
     }

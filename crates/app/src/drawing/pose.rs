@@ -14,20 +14,20 @@ pub struct Pose {
     pub positions: Vec<[f32; 3]>,
     /// Unit normals.
     pub normals: Vec<[f32; 3]>,
-    /// The box of each chunk of the drawing's partition.
+    /// The bounding box of each of the drawing's chunks.
     pub bounds: Vec<ChunkBounds>,
 }
 
 impl Pose {
     pub(super) fn of(model: &Model, displacements: &[DVec3], drawing: &Drawing) -> Self {
-        let (centre, partition) = (drawing.centre, &drawing.partition);
+        let (centre, chunks) = (drawing.centre, &drawing.chunks);
         let mut world = Vec::new();
         model.drawn_positions(displacements, &mut world);
         let normals = drawing.normals.at(&world, &drawing.triangles);
         let positions: Vec<[f32; 3]> = world.par_iter().map(|&position| finite(position - centre)).collect();
-        let bounds = (0..partition.chunk_count())
+        let bounds = (0..chunks.count())
             .into_par_iter()
-            .map(|chunk| partition.bounds(chunk, &positions))
+            .map(|chunk| chunks.bounds(chunk, &positions))
             .collect();
         Self {
             positions,

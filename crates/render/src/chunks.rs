@@ -18,10 +18,10 @@ const UNSORTED: usize = 4 * CHUNK;
 
 /// How a mesh's triangles are cut into chunks; belongs to the triangles and materials it was made of.
 #[derive(Debug)]
-pub struct Partition {
+pub struct Chunks {
     /// The mesh's triangle at each place of the drawing order; `None`: they are drawn in their own.
     order: Option<Vec<u32>>,
-    chunks: Vec<Chunk>,
+    all: Vec<Chunk>,
     /// The vertices of chunk `c`, ascending and each once: `vertices[offsets[c]..offsets[c + 1]]`.
     vertices: Vec<u32>,
     offsets: Vec<usize>,
@@ -43,7 +43,7 @@ pub struct ChunkBounds {
     pub(crate) most: Vec3,
 }
 
-impl Partition {
+impl Chunks {
     /// Cuts a mesh whose triangles `groups` give materials; the other triangles have the default one. Vertex numbers
     /// out of range count as vertex 0: they are refused when the mesh is uploaded.
     pub fn new(
@@ -55,7 +55,7 @@ impl Partition {
         let runs = material_runs(triangles.len() as u32, groups, materials);
         let is_sorted = triangles.len() > UNSORTED;
         let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
-        let mut chunks = Vec::new();
+        let mut all = Vec::new();
         if is_sorted {
             let keys = morton_keys(positions, triangles);
             for run in &runs {
@@ -65,30 +65,30 @@ impl Partition {
                     order[start..end].sort_by_key(|&triangle| keys[triangle as usize]);
                 }
                 let starts = (run.triangles.start..run.triangles.end).step_by(CHUNK);
-                chunks.extend(starts.map(|start| Chunk {
+                all.extend(starts.map(|start| Chunk {
                     triangles: start..(start + CHUNK as u32).min(run.triangles.end),
                     ..run.clone()
                 }));
             }
         } else {
-            chunks = runs;
+            all = runs;
         }
-        let mut partition = Self {
+        let mut chunks = Self {
             order: is_sorted.then_some(order),
-            chunks,
+            all,
             vertices: Vec::new(),
             offsets: vec![0],
         };
-        partition.list_vertices(triangles, positions.len());
-        partition
+        chunks.list_vertices(triangles, positions.len());
+        chunks
     }
 
     /// How many chunks there are.
-    pub fn chunk_count(&self) -> usize {
-        self.chunks.len()
+    pub fn count(&self) -> usize {
+        self.all.len()
     }
 
-    /// The box around a chunk (below [`Partition::chunk_count`]) whose vertices stand at `positions`.
+    /// The box around a chunk (below [`Chunks::count`]) whose vertices stand at `positions`.
     pub fn bounds(&self, chunk: usize, positions: &[[f32; 3]]) -> ChunkBounds {
         let mut bounds = ChunkBounds {
             least: Vec3::INFINITY,
@@ -106,16 +106,14 @@ impl Partition {
     }
 
     pub(crate) fn all_bounds(&self, positions: &[[f32; 3]]) -> Vec<ChunkBounds> {
-        (0..self.chunks.len())
-            .map(|chunk| self.bounds(chunk, positions))
-            .collect()
+        (0..self.all.len()).map(|chunk| self.bounds(chunk, positions)).collect()
     }
 
-    pub(crate) fn chunks(&self) -> &[Chunk] {
-        &self.chunks
+    pub(crate) fn all(&self) -> &[Chunk] {
+        &self.all
     }
 
-    pub(crate) fn chunk_vertices(&self, chunk: usize) -> &[u32] {
+    pub(crate) fn vertices(&self, chunk: usize) -> &[u32] {
         &self.vertices[self.offsets[chunk]..self.offsets[chunk + 1]]
     }
 
@@ -129,12 +127,12 @@ impl Partition {
 
     /// Whether this was made of so many triangles.
     pub(crate) fn fits(&self, triangle_count: usize) -> bool {
-        self.chunks.last().map_or(0, |chunk| chunk.triangles.end) as usize == triangle_count
+        self.all.last().map_or(0, |chunk| chunk.triangles.end) as usize == triangle_count
     }
 
     fn list_vertices(&mut self, triangles: &[[u32; 3]], vertex_count: usize) {
         let mut seen_in = vec![u32::MAX; vertex_count];
-        for (number, chunk) in self.chunks.iter().enumerate() {
+        for (number, chunk) in self.all.iter().enumerate() {
             let start = self.vertices.len();
             for place in chunk.triangles.clone() {
                 for vertex in triangles[self.triangle_at(place) as usize] {
@@ -275,13 +273,13 @@ mod tests {
     #[test]
     fn a_large_mesh_is_cut_into_small_neighbourhoods_and_loses_no_triangle() {
         let (positions, triangles) = strip(100_003);
-        let partition = Partition::new(&positions, &triangles, &[], &[]);
-        assert!(partition.fits(100_003) && partition.chunk_count() == 100_003_usize.div_ceil(CHUNK));
-        let mut drawn: Vec<u32> = (0..100_003).map(|place| partition.triangle_at(place)).collect();
+        let chunks = Chunks::new(&positions, &triangles, &[], &[]);
+        assert!(chunks.fits(100_003) && chunks.count() == 100_003_usize.div_ceil(CHUNK));
+        let mut drawn: Vec<u32> = (0..100_003).map(|place| chunks.triangle_at(place)).collect();
         drawn.sort_unstable();
         assert!(drawn.iter().enumerate().all(|(at, &triangle)| at as u32 == triangle));
-        let longest = (0..partition.chunk_count()).map(|chunk| {
-            let bounds = partition.bounds(chunk, &positions);
+        let longest = (0..chunks.count()).map(|chunk| {
+            let bounds = chunks.bounds(chunk, &positions);
             bounds.most.x - bounds.least.x
         });
         assert!(longest.fold(0.0, f32::max) < 1.05 * CHUNK as f32);
