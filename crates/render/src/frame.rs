@@ -125,7 +125,7 @@ pub enum Detail {
     Full,
     /// A twentieth or fewer of a large surface's: while something moves on a slow device. Materials and wireframes stay
     /// full.
-    Coarse,
+    Reduced,
 }
 
 /// What is behind the surfaces.

@@ -14,7 +14,6 @@
 mod bindings;
 mod buffers;
 mod chunks;
-mod coarse;
 mod edges;
 mod environment;
 mod error;
@@ -23,6 +22,7 @@ mod grid;
 mod guard;
 mod headless;
 mod image;
+mod lod;
 mod material;
 mod overlay;
 mod pages;

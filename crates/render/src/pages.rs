@@ -9,9 +9,9 @@ use bytemuck::NoUninit;
 use crate::RenderError;
 use crate::buffers::{filled, refill};
 use crate::chunks::Chunks;
-use crate::coarse::{WORTH_FROM, coarse_triangles};
 use crate::edges::unique_edges;
 use crate::headless::is_software;
+use crate::lod::{REDUCED_FROM_TRIANGLES, reduced_triangles};
 use crate::uniforms::LookVertex;
 
 /// Buffers of some of a mesh's chunks.
@@ -29,7 +29,7 @@ pub(crate) struct Page {
     pub(crate) look: Option<wgpu::Buffer>,
     pub(crate) indices: wgpu::Buffer,
     /// Fewer triangles, where the mesh is large and the device is the processor.
-    coarse: Option<Indices>,
+    reduced: Option<Indices>,
     edges: OnceLock<Option<Indices>>,
 }
 
@@ -134,13 +134,13 @@ impl Page {
             vertices
         });
         let positions = gathered(&vertices, attributes.positions);
-        let coarse = if triangles.len() < WORTH_FROM || !is_software(device) {
+        let reduced = if triangles.len() < REDUCED_FROM_TRIANGLES || !is_software(device) {
             None
         } else {
-            let coarse = coarse_triangles(&positions, &own);
+            let reduced = reduced_triangles(&positions, &own);
             Some(Indices {
-                buffer: filled(device, queue, "fewer triangles", wgpu::BufferUsages::INDEX, &coarse)?,
-                index_count: 3 * coarse.len() as u32,
+                buffer: filled(device, queue, "fewer triangles", wgpu::BufferUsages::INDEX, &reduced)?,
+                index_count: 3 * reduced.len() as u32,
             })
         };
         let vertex = wgpu::BufferUsages::VERTEX;
@@ -167,7 +167,7 @@ impl Page {
             vertices,
             triangles: own,
             places,
-            coarse,
+            reduced,
             edges: OnceLock::new(),
         };
         if let Some(look) = attributes.look {
@@ -231,14 +231,14 @@ impl Page {
     }
 
     pub(crate) fn bytes(&self) -> u64 {
-        let [edges, coarse] = [self.edges(), self.coarse()].map(|indices| indices.map_or(0, |own| own.buffer.size()));
+        let [edges, reduced] = [self.edges(), self.reduced()].map(|indices| indices.map_or(0, |own| own.buffer.size()));
         let look = self.look.as_ref().map_or(0, wgpu::Buffer::size);
         let others = [&self.positions, &self.normals, &self.regions, &self.indices];
-        others.iter().map(|buffer| buffer.size()).sum::<u64>() + edges + coarse + look
+        others.iter().map(|buffer| buffer.size()).sum::<u64>() + edges + reduced + look
     }
 
-    pub(crate) fn coarse(&self) -> Option<&Indices> {
-        self.coarse.as_ref()
+    pub(crate) fn reduced(&self) -> Option<&Indices> {
+        self.reduced.as_ref()
     }
 
     pub(crate) fn edges(&self) -> Option<&Indices> {

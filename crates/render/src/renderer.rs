@@ -197,10 +197,10 @@ impl Renderer {
             Joining::Any
         };
         let runs = frame.surfaces.iter().map(|&surface| match style.detail {
-            Detail::Coarse if joining == Joining::Any && surface.has_coarse(frame.view) => {
-                (surface, surface.coarse_runs())
+            Detail::Reduced if joining == Joining::Any && surface.has_reduced(frame.view) => {
+                (surface, surface.reduced_runs())
             }
-            Detail::Coarse | Detail::Full => (surface, surface.runs(frame.view, joining)),
+            Detail::Reduced | Detail::Full => (surface, surface.runs(frame.view, joining)),
         });
         let ready = Ready {
             frame,

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::coarse::WORTH_FROM;
+use crate::lod::REDUCED_FROM_TRIANGLES;
 use crate::pages::Page;
 use crate::pipelines::Alpha;
 use crate::{AlphaMode, Detail, Surface, View};
@@ -77,26 +77,26 @@ impl Surface {
         runs
     }
 
-    /// Whether [`Detail::Coarse`] draws fewer triangles in a picture of `view`: there are such, nothing is hidden, and
+    /// Whether [`Detail::Reduced`] draws fewer triangles in a picture of `view`: there are such, nothing is hidden, and
     /// enough of the surface is to be seen that their size does not show.
-    pub fn has_coarse(&self, view: &View) -> bool {
-        let is_made = self.pages.iter().any(|page| page.coarse().is_some());
-        is_made && self.shown.is_none() && self.drawn_triangles(view) >= WORTH_FROM
+    pub fn has_reduced(&self, view: &View) -> bool {
+        let is_made = self.pages.iter().any(|page| page.reduced().is_some());
+        is_made && self.shown.is_none() && self.drawn_triangles(view) >= REDUCED_FROM_TRIANGLES
     }
 
     /// The fewer triangles of each page, where there are such: not for materials.
-    pub(crate) fn coarse_runs(&self) -> Vec<Run> {
-        let coarse = self.pages.iter().enumerate();
-        let run = |(page, coarse): (usize, &Page)| {
+    pub(crate) fn reduced_runs(&self) -> Vec<Run> {
+        let reduced = self.pages.iter().enumerate();
+        let run = |(page, reduced): (usize, &Page)| {
             Some(Run {
                 page,
-                triangles: 0..coarse.coarse()?.index_count / 3,
+                triangles: 0..reduced.reduced()?.index_count / 3,
                 first_place: 0,
                 material: 0,
                 alpha: Alpha::Opaque,
-                detail: Detail::Coarse,
+                detail: Detail::Reduced,
             })
         };
-        coarse.filter_map(run).collect()
+        reduced.filter_map(run).collect()
     }
 }

@@ -338,8 +338,8 @@ impl Surface {
         for (slot, buffer) in [&page.positions, &page.normals, &page.regions].into_iter().enumerate() {
             pass.set_vertex_buffer(slot as u32, buffer.slice(..));
         }
-        let triangles = match (detail, page.coarse()) {
-            (Detail::Coarse, Some(coarse)) => &coarse.buffer,
+        let triangles = match (detail, page.reduced()) {
+            (Detail::Reduced, Some(reduced)) => &reduced.buffer,
             _ => &page.indices,
         };
         pass.set_index_buffer(triangles.slice(..), wgpu::IndexFormat::Uint32);

@@ -191,9 +191,9 @@ fn fewer_triangles_look_nearly_the_same_and_follow_the_shape() {
         return eprintln!("skipped: fewer triangles (the device is none of software)");
     }
     let view = oblique_view();
-    assert!(surface.has_coarse(&view) && !large().upload(renderer).has_coarse(&view));
-    let coarse = Style {
-        detail: Detail::Coarse,
+    assert!(surface.has_reduced(&view) && !large().upload(renderer).has_reduced(&view));
+    let reduced = Style {
+        detail: Detail::Reduced,
         ..Style::default()
     };
     let bent: Vec<[f32; 3]> = shape
@@ -203,7 +203,7 @@ fn fewer_triangles_look_nearly_the_same_and_follow_the_shape() {
         .collect();
     for positions in [shape.positions.clone(), bent] {
         surface.update_positions(renderer, &positions).unwrap();
-        let [full, few] = [Style::default(), coarse].map(|style| draw(renderer, &view, &style, &[&surface], &[]));
+        let [full, few] = [Style::default(), reduced].map(|style| draw(renderer, &view, &style, &[&surface], &[]));
         let pixels = full.rgba.chunks_exact(4).zip(few.rgba.chunks_exact(4));
         let (mut differ, mut off) = (0, 0);
         for (a, b) in pixels {
@@ -214,10 +214,10 @@ fn fewer_triangles_look_nearly_the_same_and_follow_the_shape() {
         assert!(differ > 100, "fewer triangles were drawn: {differ}");
         assert!(off < 300, "{off} of 15000 pixels are off");
     }
-    assert!(!surface.has_coarse(&close_view()), "from near their size would show");
+    assert!(!surface.has_reduced(&close_view()), "from near their size would show");
     // What is hidden stays hidden.
     let half: Vec<bool> = (0..shape.triangles.len()).map(|t| t % 2000 < 1000).collect();
     surface.show(renderer, Some(Arc::new(half))).unwrap();
-    let [full, few] = [Style::default(), coarse].map(|style| draw(renderer, &view, &style, &[&surface], &[]));
+    let [full, few] = [Style::default(), reduced].map(|style| draw(renderer, &view, &style, &[&surface], &[]));
     assert!(full.rgba == few.rgba);
 }

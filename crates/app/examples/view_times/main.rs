@@ -128,7 +128,7 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
             let view = drawing::view(&camera, size_px, drawing.centre);
             let style = Style {
                 detail: if name == "clay, moving" {
-                    Detail::Coarse
+                    Detail::Reduced
                 } else {
                     Detail::Full
                 },

@@ -230,7 +230,7 @@ impl Viewport {
         };
         let drawn_px = size_px.map(|side| side.div_ceil(factor));
         let detail = match smooth {
-            Smoothness::Moving if software && self.may_be_coarse(&view) => Detail::Coarse,
+            Smoothness::Moving if software && self.may_be_reduced(&view) => Detail::Reduced,
             Smoothness::Moving | Smoothness::Resting => Detail::Full,
         };
         let key = DrawnKey {
@@ -254,17 +254,17 @@ impl Viewport {
             let whole = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
             ui.painter().image(texture, rect, whole, egui::Color32::WHITE);
         }
-        let is_less = |drawn: &DrawnKey| drawn.size_px != size_px || drawn.detail == Detail::Coarse;
+        let is_less = |drawn: &DrawnKey| drawn.size_px != size_px || drawn.detail == Detail::Reduced;
         let is_coarse = self.drawn.as_ref().is_some_and(is_less);
         let is_jagged = self.drawn.as_ref().is_some_and(|drawn| drawn.samples == Samples::One);
         Ok(is_coarse || (is_jagged && triangles <= SOFT_SMOOTH_TRIANGLES))
     }
 
     /// Whether the surface can be drawn with fewer triangles: not as materials and not with its edges.
-    fn may_be_coarse(&self, view: &SceneView<'_>) -> bool {
+    fn may_be_reduced(&self, view: &SceneView<'_>) -> bool {
         let Some(shown) = &self.surface else { return false };
         let eye = drawing::view(view.camera, view.viewport_px, shown.drawing.centre);
-        view.look.shading != Shading::Material && !view.look.wireframe && shown.surface.has_coarse(&eye)
+        view.look.shading != Shading::Material && !view.look.wireframe && shown.surface.has_reduced(&eye)
     }
 
     /// How long the device worked on a drawing of late.

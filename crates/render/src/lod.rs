@@ -1,16 +1,16 @@
 //! Fewer triangles over the same vertices, for devices that are slow while something moves.
 //!
 //! Vertices are clustered in the cells of a grid, each cell keeps one of them, and the triangles that still have three
-//! different corners are left (Rossignac and Borrel 1993). No new vertex is made, so the coarse mesh moves, turns and is
+//! different corners are left (Rossignac and Borrel 1993). No new vertex is made, so the reduced mesh moves, turns and is
 //! coloured by the very buffers of the fine one.
 
 /// Fewer triangles in the picture are drawn fast enough as they are.
-pub(crate) const WORTH_FROM: usize = 300_000;
+pub(crate) const REDUCED_FROM_TRIANGLES: usize = 300_000;
 /// Cells along the longest side of the bounding box.
 const CELLS: f32 = 140.0;
 
 /// The triangles that clustering leaves of `triangles`, each once.
-pub(crate) fn coarse_triangles(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
+pub(crate) fn reduced_triangles(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let (mut low, mut high) = (glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY);
     for &corner in triangles.iter().flatten() {
         let position = glam::Vec3::from(positions[corner as usize]);
@@ -29,7 +29,7 @@ pub(crate) fn coarse_triangles(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -
         *kept = if *kept == u32::MAX { vertex } else { *kept };
         *kept
     };
-    let mut coarse: Vec<[u32; 3]> = triangles
+    let mut reduced: Vec<[u32; 3]> = triangles
         .iter()
         .map(|corners| corners.map(&mut kept_of))
         .filter(|[a, b, c]| a != b && b != c && c != a)
@@ -39,9 +39,9 @@ pub(crate) fn coarse_triangles(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -
             _ => [c, a, b],
         })
         .collect();
-    coarse.sort_unstable();
-    coarse.dedup();
-    coarse
+    reduced.sort_unstable();
+    reduced.dedup();
+    reduced
 }
 
 #[cfg(test)]
@@ -75,14 +75,14 @@ mod tests {
     #[test]
     fn a_fine_sphere_becomes_a_coarse_one_that_faces_the_same_way() {
         let (positions, triangles) = sphere(1200);
-        let coarse = coarse_triangles(&positions, &triangles);
+        let reduced = reduced_triangles(&positions, &triangles);
         assert!(
-            coarse.len() > 20_000 && coarse.len() < triangles.len() / 8,
+            reduced.len() > 20_000 && reduced.len() < triangles.len() / 8,
             "{}",
-            coarse.len()
+            reduced.len()
         );
         let (mut area, mut backward) = (0.0, 0.0);
-        for triangle in &coarse {
+        for triangle in &reduced {
             let [a, b, c] = triangle.map(|vertex| Vec3::from(positions[vertex as usize]));
             let doubled = (b - a).cross(c - a);
             area += 0.5 * doubled.length();
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_mesh_without_extent_or_without_triangles_stays_as_it_is() {
-        assert!(coarse_triangles(&[], &[]).is_empty());
-        assert_eq!(coarse_triangles(&[[1.0; 3]; 3], &[[0, 1, 2]]), [[0, 1, 2]]);
+        assert!(reduced_triangles(&[], &[]).is_empty());
+        assert_eq!(reduced_triangles(&[[1.0; 3]; 3], &[[0, 1, 2]]), [[0, 1, 2]]);
     }
 }
