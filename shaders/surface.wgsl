@@ -1,32 +1,31 @@
-// Surfaces whose look is the program's: clay under a studio's lamps, colours to be read against a legend, reflected
-// stripes, and normals.
+// The editor's own shadings of a surface: matcaps, colours that encode numbers, reflection lines, and normals.
 #include "lib/frame.wgsl"
 #include "lib/colour.wgsl"
 #include "lib/surface_vertex.wgsl"
 #include "lib/surface_shape.wgsl"
 #include "lib/tone.wgsl"
 
-// A clay: `ClayUniform` in crates/render/src/uniforms.rs. Its studio is the texture, a sphere seen from the eye: the
-// left half is the light that its colour is multiplied by, halved; the right half is gloss to be added.
-struct Clay {
+// `MatcapUniform` in crates/render/src/frame/uniforms.rs. The matcap texture is a sphere seen from the eye: its left half
+// is half the diffuse light, which the colour is multiplied by; its right half is the specular light, which is added.
+struct Matcap {
     // Linear.
     colour: vec4f,
-    // The inside, where an open surface shows its back.
+    // Colour of back faces, which an open surface shows.
     inside: vec4f,
-    // What the studio's light is multiplied by where it falls on a region's colour, and in w, its gloss.
+    // Factors of the diffuse light on region colours and, in w, of the specular light.
     on_regions: vec4f,
 }
 
-@group(2) @binding(0) var<uniform> clay: Clay;
-@group(2) @binding(1) var studio: texture_2d<f32>;
-@group(2) @binding(2) var studio_sampler: sampler;
+@group(2) @binding(0) var<uniform> matcap: Matcap;
+@group(2) @binding(1) var matcap_texture: texture_2d<f32>;
+@group(2) @binding(2) var matcap_sampler: sampler;
 
 struct SurfaceFragment {
     @builtin(position) @invariant position_clip: vec4f,
     // Not of unit length.
     @location(0) normal_view: vec3f,
     @location(1) position_view: vec3f,
-    // Linear, in alpha how much of the surface's own colour it replaces.
+    // Linear; alpha is how much of the surface's own colour it replaces.
     @location(2) region: vec4f,
 }
 
@@ -40,56 +39,56 @@ fn vs_surface(vertex: SurfaceVertex) -> SurfaceFragment {
     return out;
 }
 
-// Where a normal is on the studio's sphere, which is seen from the eye wherever in the picture it is.
-fn on_sphere(n: vec3f, to_eye: vec3f) -> vec2f {
+// A normal's point on the matcap's sphere. The sphere always faces the eye, wherever the fragment is in the picture.
+fn matcap_uv(n: vec3f, to_eye: vec3f) -> vec2f {
     let right = normalize(cross(vec3f(0.0, 1.0, 0.0), to_eye));
     let up = cross(to_eye, right);
     return 0.49 * vec2f(dot(n, right), -dot(n, up)) + 0.5;
 }
 
-struct Studio {
+struct MatcapLight {
     diffuse: vec3f,
-    gloss: vec3f,
+    specular: vec3f,
 }
 
-fn studio_light(n: vec3f, to_eye: vec3f) -> Studio {
-    let at = on_sphere(n, to_eye);
-    var out: Studio;
-    out.diffuse = 2.0 * textureSampleLevel(studio, studio_sampler, vec2f(0.5 * at.x, at.y), 0.0).rgb;
-    out.gloss = textureSampleLevel(studio, studio_sampler, vec2f(0.5 * at.x + 0.5, at.y), 0.0).rgb;
+fn matcap_light(n: vec3f, to_eye: vec3f) -> MatcapLight {
+    let uv = matcap_uv(n, to_eye);
+    var out: MatcapLight;
+    out.diffuse = 2.0 * textureSampleLevel(matcap_texture, matcap_sampler, vec2f(0.5 * uv.x, uv.y), 0.0).rgb;
+    out.specular = textureSampleLevel(matcap_texture, matcap_sampler, vec2f(0.5 * uv.x + 0.5, uv.y), 0.0).rgb;
     return out;
 }
 
 @fragment
-fn fs_clay(in: SurfaceFragment, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
+fn fs_matcap(in: SurfaceFragment, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
     let to_eye = direction_to_eye(in.position_view);
     let n = seen_normal(in.normal_view, in.position_view, to_eye, is_front);
-    let light = studio_light(n, to_eye);
-    let colour = under_region(select(clay.inside.rgb, clay.colour.rgb, is_front), in.region);
-    // Lamps that suit a dark clay would bleach a region's colour, and coloured ones change it.
-    let diffuse = light.diffuse * mix(vec3f(1.0), clay.on_regions.rgb, in.region.a);
-    let gloss = light.gloss * mix(1.0, clay.on_regions.w, in.region.a);
-    return vec4f(rolled_off(colour * diffuse + gloss), 1.0);
+    let light = matcap_light(n, to_eye);
+    let colour = under_region(select(matcap.inside.rgb, matcap.colour.rgb, is_front), in.region);
+    // Lights made for a dark clay would bleach a region's colour, and coloured lights would change its hue.
+    let diffuse = light.diffuse * mix(vec3f(1.0), matcap.on_regions.rgb, in.region.a);
+    let specular = light.specular * mix(1.0, matcap.on_regions.w, in.region.a);
+    return vec4f(rolled_off(colour * diffuse + specular), 1.0);
 }
 
-// Colours that carry numbers: shaded just enough to show the form, so that they still match their legend.
+// Colours that encode numbers: shaded just enough to show the form, so that they still match their legend.
 @fragment
 fn fs_painted(in: SurfaceFragment, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
     let to_eye = direction_to_eye(in.position_view);
     let n = seen_normal(in.normal_view, in.position_view, to_eye, is_front);
-    let light = studio_light(n, to_eye).diffuse.g;
-    let colour = under_region(clay.colour.rgb, in.region);
+    let light = matcap_light(n, to_eye).diffuse.g;
+    let colour = under_region(matcap.colour.rgb, in.region);
     return vec4f(colour * (0.52 + 0.48 * min(light, 1.15)), 1.0);
 }
 
-// Stripes of a striped room, mirrored: they break where normals jump, and kink where curvature does.
+// Reflection lines of a striped room: they break where normals jump and kink where curvature jumps.
 @fragment
 fn fs_zebra(in: SurfaceFragment, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
     const STRIPES: f32 = 7.0;
     let to_eye = direction_to_eye(in.position_view);
     let n = seen_normal(in.normal_view, in.position_view, to_eye, is_front);
     let mirrored = 2.0 * dot(n, to_eye) * n - to_eye;
-    // Rings about the room's upright axis, evenly spaced by angle.
+    // Rings around the vertical axis, evenly spaced by angle.
     let height = acos(clamp(mirrored.y, -0.9999, 0.9999)) * (STRIPES / 3.14159265);
     let saw = abs(fract(height) - 0.5) * 4.0 - 1.0;
     let sharp = 4.0 * max(fwidth(height), 1e-4);
@@ -100,7 +99,7 @@ fn fs_zebra(in: SurfaceFragment, @builtin(front_facing) is_front: bool) -> @loca
     return vec4f(under_region(vec3f(shade), in.region), 1.0);
 }
 
-// Which way the surface faces in the world: red along x, green along y, blue along z.
+// World-space normals as colours: red is x, green y, blue z.
 @fragment
 fn fs_normals(in: SurfaceFragment, @builtin(front_facing) is_front: bool) -> @location(0) vec4f {
     let to_eye = direction_to_eye(in.position_view);

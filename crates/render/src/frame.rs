@@ -60,7 +60,7 @@ impl Default for Style {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shading {
     /// A clay under its studio's lamps: shape and nothing else.
-    Clay(Matcap),
+    Matcap(Matcap),
     /// The file's own materials.
     Material,
     /// Region colours that carry numbers: shaded so gently that they match a legend.
@@ -73,7 +73,7 @@ pub enum Shading {
 
 impl Default for Shading {
     fn default() -> Self {
-        Self::Clay(Matcap::default())
+        Self::Matcap(Matcap::default())
     }
 }
 

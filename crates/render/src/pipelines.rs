@@ -15,7 +15,7 @@ pub(crate) const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 pub(crate) struct Pipelines {
     pub(crate) frame_layout: wgpu::BindGroupLayout,
     pub(crate) surface_layout: wgpu::BindGroupLayout,
-    pub(crate) clay_layout: wgpu::BindGroupLayout,
+    pub(crate) matcap_layout: wgpu::BindGroupLayout,
     pub(crate) material_layout: wgpu::BindGroupLayout,
     pub(crate) environment_layout: wgpu::BindGroupLayout,
     pub(crate) positions_layout: wgpu::BindGroupLayout,
@@ -26,7 +26,7 @@ pub(crate) struct Pipelines {
 /// A pipeline of a picture, or that of triangle numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Pipeline {
-    Clay,
+    Matcap,
     Painted,
     Zebra,
     Normals,
@@ -150,9 +150,9 @@ impl Pipelines {
         Self {
             frame_layout: layout(device, "frame", &[uniform_entry(0, both)]),
             surface_layout: layout(device, "surface", &[uniform_entry(0, both)]),
-            clay_layout: layout(
+            matcap_layout: layout(
                 device,
-                "clay",
+                "matcap",
                 &[uniform_entry(0, fragment), texture_entry(1, flat), sampler_entry(2)],
             ),
             material_layout: layout(device, "material", &material),
@@ -202,8 +202,8 @@ impl Pipelines {
         });
         let (frame, surface) = (&self.frame_layout, &self.surface_layout);
         let groups = match pipeline {
-            Pipeline::Clay | Pipeline::Painted | Pipeline::Zebra | Pipeline::Normals => {
-                vec![frame, surface, &self.clay_layout]
+            Pipeline::Matcap | Pipeline::Painted | Pipeline::Zebra | Pipeline::Normals => {
+                vec![frame, surface, &self.matcap_layout]
             }
             Pipeline::Material(..) => vec![frame, surface, &self.material_layout, &self.environment_layout],
             Pipeline::Wireframe | Pipeline::Id => vec![frame, surface],
@@ -284,7 +284,7 @@ impl Description {
             wgpu::PrimitiveTopology::TriangleStrip,
         );
         match pipeline {
-            Pipeline::Clay => solid("fs_clay"),
+            Pipeline::Matcap => solid("fs_matcap"),
             Pipeline::Painted => solid("fs_painted"),
             Pipeline::Zebra => solid("fs_zebra"),
             Pipeline::Normals => solid("fs_normals"),

@@ -47,8 +47,8 @@ impl Renderer {
             pass.set_bind_group(3, self.environment.as_ref(), &[]);
             draw_runs(pass, &|run| run.alpha != Alpha::Blend);
         } else {
-            set(pass, clay_pipeline(style.shading));
-            pass.set_bind_group(2, self.clays.get(&matcap(style.shading)), &[]);
+            set(pass, shading_pipeline(style.shading));
+            pass.set_bind_group(2, self.matcaps.get(&matcap_of(style.shading)), &[]);
             draw_runs(pass, &|_| true);
         }
         if matches!(style.background, Background::Gradient { .. }) {
@@ -120,7 +120,7 @@ impl Ready<'_> {
             }
             pipelines.dedup();
         } else {
-            pipelines.push(clay_pipeline(style.shading));
+            pipelines.push(shading_pipeline(style.shading));
         }
         if matches!(style.background, Background::Gradient { .. }) {
             pipelines.push(Pipeline::Background);
@@ -147,19 +147,19 @@ impl Ready<'_> {
 }
 
 /// The pipeline of every shading but the file's materials.
-fn clay_pipeline(shading: Shading) -> Pipeline {
+fn shading_pipeline(shading: Shading) -> Pipeline {
     match shading {
-        Shading::Clay(_) | Shading::Material => Pipeline::Clay,
+        Shading::Matcap(_) | Shading::Material => Pipeline::Matcap,
         Shading::Painted => Pipeline::Painted,
         Shading::Zebra => Pipeline::Zebra,
         Shading::Normals => Pipeline::Normals,
     }
 }
 
-/// The clay whose studio lights a shading.
-pub(crate) fn matcap(shading: Shading) -> Matcap {
+/// The matcap that lights a shading.
+pub(crate) fn matcap_of(shading: Shading) -> Matcap {
     match shading {
-        Shading::Clay(matcap) => matcap,
+        Shading::Matcap(matcap) => matcap,
         _ => Matcap::Plaster,
     }
 }

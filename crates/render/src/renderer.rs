@@ -9,14 +9,14 @@ use crate::guard::guarded;
 use crate::headless::is_software;
 use crate::overlay::OverlayBatch;
 use crate::pipelines::Pipelines;
-use crate::recording::{Ready, begin_picture, matcap};
+use crate::recording::{Ready, begin_picture, matcap_of};
 use crate::runs::Joining;
 use crate::texture::TextureMaker;
 use crate::timer::Timer;
 use crate::uniforms::{FrameUniform, GridUniform};
 use crate::{
     Borders, Detail, Encoding, Frame, Matcap, Material, RenderError, Samples, Shading, Target, TextureData, Wireframe,
-    studio,
+    matcap,
 };
 
 /// The pipelines of one device. Make one a device and keep it.
@@ -31,7 +31,7 @@ pub struct Renderer {
     pub(crate) frame_group: wgpu::BindGroup,
     grid_buffer: wgpu::Buffer,
     pub(crate) grid_group: wgpu::BindGroup,
-    pub(crate) clays: HashMap<Matcap, wgpu::BindGroup>,
+    pub(crate) matcaps: HashMap<Matcap, wgpu::BindGroup>,
     pub(crate) environment: Option<wgpu::BindGroup>,
     pub(crate) overlay_triangles: Streamed,
     pub(crate) overlay_lines: Streamed,
@@ -79,7 +79,7 @@ impl Renderer {
             frame_group,
             grid_buffer,
             grid_group,
-            clays: HashMap::new(),
+            matcaps: HashMap::new(),
             environment: None,
             overlay_triangles: Streamed::new("overlay triangles"),
             overlay_lines: Streamed::new("overlay lines"),
@@ -193,7 +193,7 @@ impl Renderer {
             self.prepare_environment()?;
             Joining::OneMaterial
         } else {
-            self.prepare_clay(matcap(style.shading))?;
+            self.prepare_matcap(matcap_of(style.shading))?;
             Joining::Any
         };
         let runs = frame.surfaces.iter().map(|&surface| match style.detail {
@@ -221,14 +221,14 @@ impl Renderer {
         Ok(())
     }
 
-    fn prepare_clay(&mut self, matcap: Matcap) -> Result<(), RenderError> {
-        if self.clays.contains_key(&matcap) {
+    fn prepare_matcap(&mut self, matcap: Matcap) -> Result<(), RenderError> {
+        if self.matcaps.contains_key(&matcap) {
             return Ok(());
         }
-        let pixels = studio::texture(matcap);
+        let pixels = matcap::texture(matcap);
         let texture = TextureData {
-            width: 2 * studio::SIDE_PX,
-            height: studio::SIDE_PX,
+            width: 2 * matcap::SIDE_PX,
+            height: matcap::SIDE_PX,
             rgba: &pixels,
             encoding: Encoding::Srgb,
         };
@@ -237,9 +237,9 @@ impl Renderer {
         let uniform = filled(
             &self.device,
             &self.queue,
-            "clay uniform",
+            "matcap uniform",
             usage,
-            &[studio::uniform(matcap)],
+            &[matcap::uniform(matcap)],
         )?;
         let group = guarded(&self.device, "while making bind groups", || {
             let sampler = self.textures.sampler([crate::Wrap::Clamp; 2]);
@@ -250,12 +250,12 @@ impl Renderer {
             ];
             Ok(bind_group(
                 &self.device,
-                "clay",
-                &self.pipelines.clay_layout,
+                "matcap",
+                &self.pipelines.matcap_layout,
                 &resources,
             ))
         })?;
-        self.clays.insert(matcap, group);
+        self.matcaps.insert(matcap, group);
         Ok(())
     }
 

@@ -11,7 +11,7 @@ use crate::pipelines::{
     Look, OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SHAPE_BUFFERS, SURFACE_LINE_BUFFER, material_buffers,
 };
 use crate::uniforms::{
-    ClayUniform, EnvironmentUniform, FrameUniform, GridUniform, LookVertex, MapUniform, MaterialUniform,
+    EnvironmentUniform, FrameUniform, GridUniform, LookVertex, MapUniform, MatcapUniform, MaterialUniform,
     OverlayLineInstance, OverlayVertex, SurfaceLineInstance, SurfaceUniform,
 };
 
@@ -117,12 +117,12 @@ fn uniform_structs_are_laid_out_alike() {
     ] {
         assert_eq!(wgsl_layout(shader, "Surface"), surface, "{}", shader.file_name());
     }
-    let clay = layout!(ClayUniform {
+    let matcap = layout!(MatcapUniform {
         colour: [f32; 4],
         inside: [f32; 4],
         on_regions: [f32; 4],
     });
-    assert_eq!(wgsl_layout(Shader::Surface, "Clay"), clay);
+    assert_eq!(wgsl_layout(Shader::Surface, "Matcap"), matcap);
     let material = layout!(MaterialUniform {
         base_colour: [f32; 4],
         emissive: [f32; 4],

@@ -62,10 +62,10 @@ pub(crate) struct SurfaceUniform {
     pub(crate) padding: u32,
 }
 
-/// `Clay` in `shaders/surface.wgsl`.
+/// `Matcap` in `shaders/surface.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub(crate) struct ClayUniform {
+pub(crate) struct MatcapUniform {
     pub(crate) colour: [f32; 4],
     pub(crate) inside: [f32; 4],
     pub(crate) on_regions: [f32; 4],

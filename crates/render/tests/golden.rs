@@ -87,7 +87,7 @@ fn clays() {
     let surface = painted_ring(&headless.renderer);
     for matcap in Matcap::ALL {
         let name = format!("{matcap:?}").to_lowercase();
-        Shot::of(Shading::Clay(matcap)).compare(&mut headless.renderer, &name, &surface);
+        Shot::of(Shading::Matcap(matcap)).compare(&mut headless.renderer, &name, &surface);
     }
 }
 

@@ -27,7 +27,7 @@ fn a_sphere_is_brighter_where_it_faces_the_key_than_at_its_far_contour() {
         let image = draw(
             &mut headless.renderer,
             &view,
-            &style(Shading::Clay(Matcap::Clay)),
+            &style(Shading::Matcap(Matcap::Clay)),
             &[&sphere],
             &[],
         );
@@ -118,7 +118,7 @@ fn region_colours_show_in_regions_only_and_change_in_place() {
     let clay = draw(
         &mut headless.renderer,
         &view,
-        &style(Shading::Clay(Matcap::Clay)),
+        &style(Shading::Matcap(Matcap::Clay)),
         &[&surface],
         &[],
     );
@@ -127,7 +127,7 @@ fn region_colours_show_in_regions_only_and_change_in_place() {
         &view,
         &Style {
             region_share: 1.0,
-            ..style(Shading::Clay(Matcap::Clay))
+            ..style(Shading::Matcap(Matcap::Clay))
         },
         &[&surface],
         &[],
@@ -141,7 +141,7 @@ fn region_colours_show_in_regions_only_and_change_in_place() {
         &view,
         &Style {
             region_share: 1.0,
-            ..style(Shading::Clay(Matcap::Clay))
+            ..style(Shading::Matcap(Matcap::Clay))
         },
         &[&surface],
         &[],
@@ -149,7 +149,7 @@ fn region_colours_show_in_regions_only_and_change_in_place() {
     let still_clay = draw(
         &mut headless.renderer,
         &view,
-        &style(Shading::Clay(Matcap::Clay)),
+        &style(Shading::Matcap(Matcap::Clay)),
         &[&surface],
         &[],
     );
@@ -162,7 +162,7 @@ fn region_colours_show_in_regions_only_and_change_in_place() {
         &view,
         &Style {
             region_share: 1.0,
-            ..style(Shading::Clay(Matcap::Clay))
+            ..style(Shading::Matcap(Matcap::Clay))
         },
         &[&surface],
         &[],
@@ -212,7 +212,7 @@ fn vertices_move_in_place_and_a_wrong_count_is_refused() {
     let moved = draw(
         &mut headless.renderer,
         &view,
-        &style(Shading::Clay(Matcap::Clay)),
+        &style(Shading::Matcap(Matcap::Clay)),
         &[&surface],
         &[],
     );
@@ -220,7 +220,7 @@ fn vertices_move_in_place_and_a_wrong_count_is_refused() {
     let expected = draw(
         &mut headless.renderer,
         &view,
-        &style(Shading::Clay(Matcap::Clay)),
+        &style(Shading::Matcap(Matcap::Clay)),
         &[&made_there],
         &[],
     );
@@ -250,7 +250,7 @@ fn the_back_of_a_single_sided_surface_is_dimmer_and_normals_may_be_missing() {
     let back = Shape::square(0.0, 0.0, 1.0)
         .turned_inside_out()
         .upload(&headless.renderer);
-    for shading in [Shading::Clay(Matcap::Clay), Shading::Material] {
+    for shading in [Shading::Matcap(Matcap::Clay), Shading::Material] {
         let shown = |renderer: &mut _, surface| {
             brightness(pixel_at(
                 &draw(renderer, &view, &style(shading), &[surface], &[]),
@@ -381,7 +381,7 @@ fn mipmaps_keep_the_mean_light() {
 #[test]
 fn four_samples_smooth_borders_and_change_nothing_else() {
     let Some(mut headless) = renderer() else { return };
-    let (view, style) = (front_view(), style(Shading::Clay(Matcap::Clay)));
+    let (view, style) = (front_view(), style(Shading::Matcap(Matcap::Clay)));
     let sphere = Shape::sphere(4).upload(&headless.renderer);
     let frame = Frame {
         view: &view,

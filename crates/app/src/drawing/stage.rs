@@ -37,7 +37,7 @@ pub fn field(shading: Shading) -> Option<Field> {
 /// The renderer's style for how a person wants the surface shown, in a picture of so many pixels a point.
 pub fn style(look: &Look, pixels_per_point: f32) -> Style {
     let (shading, region_share) = match look.shading {
-        Shading::Clay => (pliant_render::Shading::Clay(matcap(look.clay)), 1.0),
+        Shading::Clay => (pliant_render::Shading::Matcap(matcap(look.clay)), 1.0),
         // The file's colours stay to be seen under the paint.
         Shading::Material => (pliant_render::Shading::Material, 0.45),
         Shading::Zebra => (pliant_render::Shading::Zebra, 0.0),
