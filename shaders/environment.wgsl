@@ -1,8 +1,8 @@
-// The studio that materials mirror, fixed to the eye: soft lamps before a grey room, drawn once into the faces of two
-// cubes, one blurred by roughness from level to level, the other by the cosine of a matt surface.
+// The environment light of materials, fixed to the eye: area lights in a grey room. It is drawn once into two cube maps: a
+// prefiltered environment map, whose levels are blurred for rising roughness [Kar13], and a diffuse irradiance map.
 
-// `EnvironmentUniform` in crates/render/src/uniforms.rs.
-struct Pass {
+// `EnvironmentUniform` in crates/render/src/frame/uniforms.rs.
+struct Face {
     // The face's right, down and forward axes.
     right: vec4f,
     down: vec4f,
@@ -13,7 +13,7 @@ struct Pass {
     padding: vec2f,
 }
 
-@group(0) @binding(0) var<uniform> job: Pass;
+@group(0) @binding(0) var<uniform> face: Face;
 
 struct EnvironmentFragment {
     @builtin(position) position_clip: vec4f,
@@ -30,8 +30,8 @@ fn vs_environment(@builtin(vertex_index) vertex: u32) -> EnvironmentFragment {
     return out;
 }
 
-// A rectangular lamp in the direction `towards`, `half_size` the tangents of its half angles, upright.
-fn lamp(direction: vec3f, towards: vec3f, half_size: vec2f, softness: f32, colour: vec3f) -> vec3f {
+// An upright rectangular light in the direction `towards`; `half_size` holds the tangents of its half angles.
+fn area_light(direction: vec3f, towards: vec3f, half_size: vec2f, softness: f32, colour: vec3f) -> vec3f {
     let before = dot(direction, towards);
     let right = normalize(cross(vec3f(0.0, 1.0, 0.0), towards));
     let up = cross(towards, right);
@@ -40,72 +40,74 @@ fn lamp(direction: vec3f, towards: vec3f, half_size: vec2f, softness: f32, colou
     return select(vec3f(0.0), colour * inside.x * inside.y, before > 0.02);
 }
 
-// Light that arrives from a direction of view space (x right, y up, z towards the eye).
-fn studio(direction: vec3f) -> vec3f {
+// Radiance from a direction in view space (x right, y up, z towards the eye).
+fn environment(direction: vec3f) -> vec3f {
     let height = direction.y;
     let wall = mix(vec3f(0.30, 0.31, 0.33), vec3f(0.52, 0.55, 0.60), smoothstep(-0.05, 0.75, height));
     let floor = mix(vec3f(0.30, 0.31, 0.33), vec3f(0.115, 0.108, 0.100), smoothstep(0.02, -0.45, height));
     var light = select(floor, wall, height > 0.0);
-    // A large soft key to the upper left, a strip to the right, a soft ceiling, and a rim from behind on either side.
-    light += lamp(direction, normalize(vec3f(-0.62, 0.62, 0.50)), vec2f(0.42, 0.34), 0.10, vec3f(5.6, 5.3, 4.9));
-    light += lamp(direction, normalize(vec3f(0.93, 0.10, 0.35)), vec2f(0.13, 0.75), 0.05, vec3f(2.3, 2.5, 2.8));
-    light += lamp(direction, normalize(vec3f(0.10, 0.98, 0.12)), vec2f(0.9, 0.5), 0.25, vec3f(1.25, 1.3, 1.35));
-    light += lamp(direction, normalize(vec3f(0.60, 0.30, -0.74)), vec2f(0.22, 0.60), 0.08, vec3f(3.2, 3.4, 3.8));
-    light += lamp(direction, normalize(vec3f(-0.70, 0.15, -0.70)), vec2f(0.16, 0.55), 0.08, vec3f(2.0, 1.9, 1.8));
+    // A large soft key light at the upper left, a strip light at the right, a soft ceiling light, and two rim lights from
+    // behind.
+    light += area_light(direction, normalize(vec3f(-0.62, 0.62, 0.50)), vec2f(0.42, 0.34), 0.10, vec3f(5.6, 5.3, 4.9));
+    light += area_light(direction, normalize(vec3f(0.93, 0.10, 0.35)), vec2f(0.13, 0.75), 0.05, vec3f(2.3, 2.5, 2.8));
+    light += area_light(direction, normalize(vec3f(0.10, 0.98, 0.12)), vec2f(0.9, 0.5), 0.25, vec3f(1.25, 1.3, 1.35));
+    light += area_light(direction, normalize(vec3f(0.60, 0.30, -0.74)), vec2f(0.22, 0.60), 0.08, vec3f(3.2, 3.4, 3.8));
+    light += area_light(direction, normalize(vec3f(-0.70, 0.15, -0.70)), vec2f(0.16, 0.55), 0.08, vec3f(2.0, 1.9, 1.8));
     return light;
 }
 
-// The k-th of n points that fill a square evenly (Hammersley).
-fn spread(k: u32, n: u32) -> vec2f {
+// The k-th of n points of the Hammersley sequence in the unit square.
+fn hammersley(k: u32, n: u32) -> vec2f {
     return vec2f((f32(k) + 0.5) / f32(n), f32(reverseBits(k)) * 2.3283064365386963e-10);
 }
 
-fn upright(normal: vec3f, local: vec3f) -> vec3f {
+// A tangent-space vector (z along the normal) in the space of `normal`.
+fn from_tangent_space(normal: vec3f, local: vec3f) -> vec3f {
     let helper = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 0.0, 1.0), abs(normal.z) < 0.9);
     let tangent = normalize(cross(helper, normal));
     return tangent * local.x + cross(normal, tangent) * local.y + normal * local.z;
 }
 
 fn direction_of(in: EnvironmentFragment) -> vec3f {
-    return normalize(job.forward.xyz + in.at.x * job.right.xyz + in.at.y * job.down.xyz);
+    return normalize(face.forward.xyz + in.at.x * face.right.xyz + in.at.y * face.down.xyz);
 }
 
-// Light blurred as a mirror of this roughness does that is looked at head-on (Karis 2013).
+// The environment prefiltered for one roughness, with normal and view direction along the reflection [Kar13].
 @fragment
-fn fs_mirrored(in: EnvironmentFragment) -> @location(0) vec4f {
+fn fs_prefiltered(in: EnvironmentFragment) -> @location(0) vec4f {
     let normal = direction_of(in);
-    if job.roughness < 0.01 {
-        return vec4f(studio(normal), 1.0);
+    if face.roughness < 0.01 {
+        return vec4f(environment(normal), 1.0);
     }
-    let a = job.roughness * job.roughness;
+    let a = face.roughness * face.roughness;
     var sum = vec3f(0.0);
     var weights = 0.0;
-    for (var k = 0u; k < job.samples; k++) {
-        let at = spread(k, job.samples);
+    for (var k = 0u; k < face.samples; k++) {
+        let at = hammersley(k, face.samples);
         let cosine = sqrt((1.0 - at.y) / (1.0 + (a * a - 1.0) * at.y));
         let sine = sqrt(max(1.0 - cosine * cosine, 0.0));
-        let turn = 6.28318530718 * at.x;
-        let half_way = upright(normal, vec3f(sine * cos(turn), sine * sin(turn), cosine));
-        let towards = 2.0 * dot(normal, half_way) * half_way - normal;
+        let angle = 6.28318530718 * at.x;
+        let half_vector = from_tangent_space(normal, vec3f(sine * cos(angle), sine * sin(angle), cosine));
+        let towards = 2.0 * dot(normal, half_vector) * half_vector - normal;
         let weight = dot(normal, towards);
         if weight > 0.0 {
-            sum += studio(towards) * weight;
+            sum += environment(towards) * weight;
             weights += weight;
         }
     }
     return vec4f(sum / max(weights, 1e-4), 1.0);
 }
 
-// The mean light over a matt surface's hemisphere, weighted by the cosine: what its albedo is multiplied by.
+// Cosine-weighted mean radiance over the hemisphere: the irradiance that a diffuse albedo is multiplied by, divided by π.
 @fragment
-fn fs_matt(in: EnvironmentFragment) -> @location(0) vec4f {
+fn fs_irradiance(in: EnvironmentFragment) -> @location(0) vec4f {
     let normal = direction_of(in);
     var sum = vec3f(0.0);
-    for (var k = 0u; k < job.samples; k++) {
-        let at = spread(k, job.samples);
+    for (var k = 0u; k < face.samples; k++) {
+        let at = hammersley(k, face.samples);
         let sine = sqrt(at.y);
-        let turn = 6.28318530718 * at.x;
-        sum += studio(upright(normal, vec3f(sine * cos(turn), sine * sin(turn), sqrt(1.0 - at.y))));
+        let angle = 6.28318530718 * at.x;
+        sum += environment(from_tangent_space(normal, vec3f(sine * cos(angle), sine * sin(angle), sqrt(1.0 - at.y))));
     }
-    return vec4f(sum / f32(job.samples), 1.0);
+    return vec4f(sum / f32(face.samples), 1.0);
 }

@@ -1,4 +1,4 @@
-// The file's materials: glTF's metallic-roughness model under the studio's light and a key lamp.
+// The file's materials: glTF's metallic-roughness model under image-based light and a key light.
 #include "lib/frame.wgsl"
 #include "lib/colour.wgsl"
 #include "lib/surface_vertex.wgsl"
@@ -6,25 +6,25 @@
 #include "lib/tone.wgsl"
 #include "lib/reflectance.wgsl"
 
-// How an image is laid on the surface: rows that multiply (u, v, 1); `u.w` is 0 for the first set of texture
-// coordinates, 1 for the second.
+// A texture transform: two rows that multiply (u, v, 1). `u.w` is 0 for the first set of texture coordinates, 1 for the
+// second.
 struct Map {
     u: vec4f,
     v: vec4f,
 }
 
-// `MaterialUniform` in crates/render/src/uniforms.rs.
+// `MaterialUniform` in crates/render/src/frame/uniforms.rs.
 struct Material {
     base_colour: vec4f,
-    // In alpha: fragments of less alpha are not drawn.
+    // Alpha is the cutoff: fragments with less alpha are discarded.
     emissive: vec4f,
     metallic: f32,
     roughness: f32,
     normal_scale: f32,
     occlusion_strength: f32,
-    // What the light of a back face is multiplied by; 0 leaves out the backs of what is seen through.
+    // Factor of the light on back faces; 0 hides the back faces of blended materials.
     back_share: f32,
-    // Which images there are, and whether it is lit: the bits below.
+    // Which textures there are, and whether the material is lit: the bits below.
     flags: u32,
     padding: vec2f,
     metallic_roughness: Map,
@@ -40,7 +40,7 @@ const HAS_OCCLUSION: u32 = 8u;
 const HAS_EMISSION: u32 = 16u;
 const IS_UNLIT: u32 = 32u;
 
-// A white surface that faces the eye is then as bright as its base colour says.
+// Makes a white surface that faces the eye as bright as its base colour.
 const EXPOSURE: f32 = 0.86;
 
 @group(2) @binding(0) var<uniform> material: Material;
@@ -55,12 +55,12 @@ const EXPOSURE: f32 = 0.86;
 @group(2) @binding(9) var emission_image: texture_2d<f32>;
 @group(2) @binding(10) var emission_sampler: sampler;
 
-@group(3) @binding(0) var mirrored_studio: texture_cube<f32>;
-@group(3) @binding(1) var matt_studio: texture_cube<f32>;
-@group(3) @binding(2) var studio_sampler: sampler;
+@group(3) @binding(0) var prefiltered_environment: texture_cube<f32>;
+@group(3) @binding(1) var irradiance_map: texture_cube<f32>;
+@group(3) @binding(2) var environment_sampler: sampler;
 
-// What only materials read of a vertex; one entry for all vertices where a file has neither.
-struct LookVertex {
+// The vertex attributes that only materials read; one entry for all vertices if a file has neither.
+struct MaterialVertex {
     // Two sets of texture coordinates.
     @location(3) uvs: vec4f,
     @location(4) colour: vec4f,
@@ -77,15 +77,15 @@ struct MaterialFragment {
 }
 
 @vertex
-fn vs_material(vertex: SurfaceVertex, look: LookVertex) -> MaterialFragment {
+fn vs_material(vertex: SurfaceVertex, attributes: MaterialVertex) -> MaterialFragment {
     var out: MaterialFragment;
     out.position_clip = clip_from_vertex(vertex.position);
     out.normal_view = normal_to_view(vertex.normal);
     out.position_view = position_to_view(vertex.position);
     out.region = region_share(vertex.region);
-    out.uvs = look.uvs;
-    let decoded = linear_from_srgb_fast(look.colour.rgb);
-    out.colour = vec4f(select(decoded, look.colour.rgb, surface.colours_are_linear == 1u), look.colour.a);
+    out.uvs = attributes.uvs;
+    let decoded = linear_from_srgb_fast(attributes.colour.rgb);
+    out.colour = vec4f(select(decoded, attributes.colour.rgb, surface.colours_are_linear == 1u), attributes.colour.a);
     return out;
 }
 
@@ -93,7 +93,7 @@ fn has(flag: u32) -> bool {
     return (material.flags & flag) != 0u;
 }
 
-fn laid(map: Map, uvs: vec4f) -> vec2f {
+fn transformed(map: Map, uvs: vec4f) -> vec2f {
     let uv = vec3f(mix(uvs.xy, uvs.zw, map.u.w), 1.0);
     return vec2f(dot(map.u.xyz, uv), dot(map.v.xyz, uv));
 }
@@ -106,10 +106,10 @@ fn base_of(in: MaterialFragment) -> vec4f {
     return vec4f(under_region(base.rgb, in.region), base.a);
 }
 
-// `n` turned as the normal map says. The frame of u and v comes from how the position changes across the screen
-// (Schüler 2013), so that it follows a bending surface and no file needs tangents.
+// The normal map applied to `n`. The cotangent frame comes from screen-space derivatives [Sch13], so it follows a bending
+// surface and no file needs tangents.
 fn mapped_normal(in: MaterialFragment, n: vec3f) -> vec3f {
-    let uv = laid(material.normal, in.uvs);
+    let uv = transformed(material.normal, in.uvs);
     let sampled = textureSample(normal_image, normal_sampler, uv).xyz * 2.0 - 1.0;
     let along_x = dpdx(in.position_view);
     let along_y = dpdy(in.position_view);
@@ -117,10 +117,10 @@ fn mapped_normal(in: MaterialFragment, n: vec3f) -> vec3f {
     let uv_y = dpdy(uv);
     let across_y = cross(along_y, n);
     let across_x = cross(n, along_x);
-    // The picture's y runs down, so that a face seen from outside has a negative determinant.
+    // Screen y points down, so a front face has a negative determinant.
     let side = select(-1.0, 1.0, dot(along_x, across_y) > 0.0);
     let tangent = (across_y * uv_x.x + across_x * uv_y.x) * side;
-    // Against v: images are stored from the top, and the map's y points up.
+    // Against v: images are stored from the top, but the normal map's y points up.
     let bitangent = -(across_y * uv_x.y + across_x * uv_y.y) * side;
     let longest = max(dot(tangent, tangent), dot(bitangent, bitangent));
     if longest < 1e-30 {
@@ -140,7 +140,7 @@ fn lit(in: MaterialFragment, is_front: bool, base: vec3f) -> vec3f {
     var ambient_share = 1.0;
     var emission = material.emissive.rgb;
     if has(HAS_METALLIC_ROUGHNESS) {
-        let uv = laid(material.metallic_roughness, in.uvs);
+        let uv = transformed(material.metallic_roughness, in.uvs);
         let sampled = textureSample(metallic_roughness_image, metallic_roughness_sampler, uv);
         metallic *= sampled.b;
         roughness *= sampled.g;
@@ -149,27 +149,26 @@ fn lit(in: MaterialFragment, is_front: bool, base: vec3f) -> vec3f {
         n = mapped_normal(in, n);
     }
     if has(HAS_OCCLUSION) {
-        let uv = laid(material.occlusion, in.uvs);
+        let uv = transformed(material.occlusion, in.uvs);
         let sampled = textureSample(occlusion_image, occlusion_sampler, uv).r;
         ambient_share = 1.0 + material.occlusion_strength * (sampled - 1.0);
     }
     if has(HAS_EMISSION) {
-        emission *= textureSample(emission_image, emission_sampler, laid(material.emission, in.uvs)).rgb;
+        emission *= textureSample(emission_image, emission_sampler, transformed(material.emission, in.uvs)).rgb;
     }
     let paint = in.region.a;
-    // Paint over a region is matt and no metal, so that its colour reads.
-    let side = side_of(base, metallic * (1.0 - paint), mix(roughness, 0.75, paint), n, to_eye);
-    let mirrored = side.mirrored_towards;
-    let level = side.roughness * f32(textureNumLevels(mirrored_studio) - 1u);
-    let mirror = textureSampleLevel(mirrored_studio, studio_sampler, mirrored, level).rgb;
-    let matt = textureSampleLevel(matt_studio, studio_sampler, n, 0.0).rgb;
-    let ambient = ambient_light(side, mirror, matt, ambient_share);
-    let light = EXPOSURE * (ambient + lamp_light(side, n, to_eye)) + emission;
-    return filmed(light) * select(material.back_share, 1.0, is_front);
+    // Region colours are rough and not metallic, so that they stay recognisable.
+    let point = shading_point(base, metallic * (1.0 - paint), mix(roughness, 0.75, paint), n, to_eye);
+    let level = point.roughness * f32(textureNumLevels(prefiltered_environment) - 1u);
+    let prefiltered = textureSampleLevel(prefiltered_environment, environment_sampler, point.reflected, level).rgb;
+    let irradiance = textureSampleLevel(irradiance_map, environment_sampler, n, 0.0).rgb;
+    let ambient = environment_light(point, prefiltered, irradiance, ambient_share);
+    let light = EXPOSURE * (ambient + key_light(point, n, to_eye)) + emission;
+    return neutral_tone_mapped(light) * select(material.back_share, 1.0, is_front);
 }
 
 fn shown(in: MaterialFragment, is_front: bool, base: vec3f) -> vec3f {
-    // Every image is looked up on every path, as derivatives across the screen want it.
+    // Sample every texture on every path: derivatives need uniform control flow.
     let light = lit(in, is_front, base);
     return select(light, base, has(IS_UNLIT));
 }

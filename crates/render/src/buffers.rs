@@ -53,12 +53,12 @@ pub(crate) fn refill<T: NoUninit>(
 
 /// A buffer that is filled anew for each drawing and grows when it must.
 #[derive(Debug)]
-pub(crate) struct Streamed {
+pub(crate) struct DynamicBuffer {
     what: &'static str,
     buffer: Option<wgpu::Buffer>,
 }
 
-impl Streamed {
+impl DynamicBuffer {
     /// An empty one.
     pub(crate) fn new(what: &'static str) -> Self {
         Self { what, buffer: None }

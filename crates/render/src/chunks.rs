@@ -39,8 +39,8 @@ pub(crate) struct Chunk {
 /// The box around a chunk's vertices, relative to the caller's centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChunkBounds {
-    pub(crate) least: Vec3,
-    pub(crate) most: Vec3,
+    pub(crate) min: Vec3,
+    pub(crate) max: Vec3,
 }
 
 impl Chunks {
@@ -91,16 +91,16 @@ impl Chunks {
     /// The box around a chunk (below [`Chunks::count`]) whose vertices stand at `positions`.
     pub fn bounds(&self, chunk: usize, positions: &[[f32; 3]]) -> ChunkBounds {
         let mut bounds = ChunkBounds {
-            least: Vec3::INFINITY,
-            most: Vec3::NEG_INFINITY,
+            min: Vec3::INFINITY,
+            max: Vec3::NEG_INFINITY,
         };
         for &vertex in &self.vertices[self.offsets[chunk]..self.offsets[chunk + 1]] {
             let Some(&position) = positions.get(vertex as usize) else {
                 continue;
             };
             // `min` and `max` pass over NaN: such a vertex is nowhere.
-            bounds.least = bounds.least.min(position.into());
-            bounds.most = bounds.most.max(position.into());
+            bounds.min = bounds.min.min(position.into());
+            bounds.max = bounds.max.max(position.into());
         }
         bounds
     }
@@ -153,16 +153,16 @@ impl Chunks {
 
 impl ChunkBounds {
     /// Whether any of the box may be seen in a picture of `clip_from_world` (depth reversed). Never wrongly false.
-    pub(crate) fn may_be_seen(&self, clip_from_world: &Mat4) -> bool {
-        if !self.least.is_finite() || !self.most.is_finite() {
+    pub(crate) fn intersects_frustum(&self, clip_from_world: &Mat4) -> bool {
+        if !self.min.is_finite() || !self.max.is_finite() {
             // No vertex at all, or one that is infinitely far.
-            return self.least.x <= self.most.x;
+            return self.min.x <= self.max.x;
         }
         let [x, y, z, w] = [0, 1, 2, 3].map(|row| clip_from_world.row(row));
         // Outside is where a plane's value is negative at the box's corner that lies farthest along it.
         let is_inside = |plane: Vec4| {
             let towards = plane.truncate();
-            let corner = Vec3::select(towards.cmpge(Vec3::ZERO), self.most, self.least);
+            let corner = Vec3::select(towards.cmpge(Vec3::ZERO), self.max, self.min);
             let reach = towards.abs().dot(corner.abs()) + plane.w.abs();
             towards.dot(corner) + plane.w >= -1e-5 * reach
         };
@@ -208,16 +208,16 @@ fn material_runs(count: u32, groups: &[MaterialGroup], materials: &[Material]) -
 /// 30-bit Morton codes of the triangles' middles within the mesh's box.
 fn morton_keys(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<u32> {
     let finite = positions.iter().map(|&p| Vec3::from(p)).filter(|p| p.is_finite());
-    let (least, most) = finite.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(least, most), p| {
-        (least.min(p), most.max(p))
+    let (min, max) = finite.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| {
+        (min.min(p), max.max(p))
     });
-    let extent = (most - least).max_element();
+    let extent = (max - min).max_element();
     let scale = if extent > 0.0 { 1023.0 / extent } else { 0.0 };
     let at = |vertex: u32| positions.get(vertex as usize).map_or(Vec3::ZERO, |&p| Vec3::from(p));
     triangles
         .iter()
         .map(|&[a, b, c]| {
-            let middle = ((at(a) + at(b) + at(c)) / 3.0 - least) * scale;
+            let middle = ((at(a) + at(b) + at(c)) / 3.0 - min) * scale;
             // NaN becomes 0.
             let [x, y, z] = middle.to_array().map(|t| spread(t.clamp(0.0, 1023.0) as u32));
             x | y << 1 | z << 2
@@ -280,7 +280,7 @@ mod tests {
         assert!(drawn.iter().enumerate().all(|(at, &triangle)| at as u32 == triangle));
         let longest = (0..chunks.count()).map(|chunk| {
             let bounds = chunks.bounds(chunk, &positions);
-            bounds.most.x - bounds.least.x
+            bounds.max.x - bounds.min.x
         });
         assert!(longest.fold(0.0, f32::max) < 1.05 * CHUNK as f32);
     }
@@ -295,10 +295,10 @@ mod tests {
         for view in views {
             let seen = |middle: Vec3, half: f32| {
                 let bounds = ChunkBounds {
-                    least: middle - half,
-                    most: middle + half,
+                    min: middle - half,
+                    max: middle + half,
                 };
-                bounds.may_be_seen(&view.clip_from_world)
+                bounds.intersects_frustum(&view.clip_from_world)
             };
             assert!(seen(Vec3::ZERO, 0.1) && seen(Vec3::ZERO, 100.0));
             assert!(seen(Vec3::new(2.05, 0.0, 0.0), 0.1), "a corner reaches in");

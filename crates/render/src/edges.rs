@@ -44,18 +44,22 @@ fn for_each_edge(triangles: &[[u32; 3]], mut visit: impl FnMut(u32, u32)) {
 
 /// An edge that a closed, well-behaved surface does not have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Odd {
+pub(crate) enum IrregularEdge {
     /// One triangle has it: the surface ends there.
-    Border([u32; 2]),
+    Boundary([u32; 2]),
     /// More than two triangles have it.
-    Branching([u32; 2]),
+    NonManifold([u32; 2]),
 }
 
-/// The edges that one triangle has, or more than two, in the order of [`unique_edges`]. `twins` gives each vertex the
+/// The edges that one triangle has, or more than two, in the order of [`unique_edges`]. `welded` gives each vertex the
 /// lowest vertex at the same place, so that a seam of texture coordinates is no border; without it every vertex is its
 /// own.
-pub(crate) fn odd_edges(triangles: &[[u32; 3]], vertex_count: usize, twins: Option<&[u32]>) -> Vec<Odd> {
-    let joined = |vertex: u32| twins.map_or(vertex, |twins| twins[vertex as usize]);
+pub(crate) fn irregular_edges(
+    triangles: &[[u32; 3]],
+    vertex_count: usize,
+    welded: Option<&[u32]>,
+) -> Vec<IrregularEdge> {
+    let joined = |vertex: u32| welded.map_or(vertex, |welded| welded[vertex as usize]);
     let mut edges = Vec::with_capacity(3 * triangles.len());
     for &triangle in triangles {
         let corners = triangle.map(joined);
@@ -69,9 +73,9 @@ pub(crate) fn odd_edges(triangles: &[[u32; 3]], vertex_count: usize, twins: Opti
     edges
         .chunk_by(|a, b| a == b)
         .filter_map(|same| match same.len() {
-            1 => Some(Odd::Border(same[0])),
+            1 => Some(IrregularEdge::Boundary(same[0])),
             2 => None,
-            _ => Some(Odd::Branching(same[0])),
+            _ => Some(IrregularEdge::NonManifold(same[0])),
         })
         .collect()
 }
@@ -97,17 +101,17 @@ mod tests {
     #[test]
     fn borders_and_branches_are_found_across_seams() {
         let square = [[0, 1, 2], [1, 3, 2]];
-        let border = |low, high| Odd::Border([low, high]);
+        let border = |low, high| IrregularEdge::Boundary([low, high]);
         let around = [border(0, 1), border(0, 2), border(1, 3), border(2, 3)];
-        assert_eq!(odd_edges(&square, 4, None), around);
+        assert_eq!(irregular_edges(&square, 4, None), around);
         // The same square with its diagonal split by a seam.
         let split = [[0, 1, 2], [4, 3, 5]];
-        assert_eq!(odd_edges(&split, 6, Some(&[0, 1, 2, 3, 1, 2])), around);
-        assert_eq!(odd_edges(&split, 6, None).len(), 6);
+        assert_eq!(irregular_edges(&split, 6, Some(&[0, 1, 2, 3, 1, 2])), around);
+        assert_eq!(irregular_edges(&split, 6, None).len(), 6);
         let fan = [[0, 1, 2], [0, 1, 3], [1, 0, 4]];
-        assert!(odd_edges(&fan, 5, None).contains(&Odd::Branching([0, 1])));
+        assert!(irregular_edges(&fan, 5, None).contains(&IrregularEdge::NonManifold([0, 1])));
         let tetrahedron = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
-        assert!(odd_edges(&tetrahedron, 4, None).is_empty());
-        assert!(odd_edges(&[[0, 0, 1]], 2, None).is_empty());
+        assert!(irregular_edges(&tetrahedron, 4, None).is_empty());
+        assert!(irregular_edges(&[[0, 0, 1]], 2, None).is_empty());
     }
 }

@@ -1,22 +1,23 @@
-//! The studio that materials mirror: drawn into two cubes when a material is first shown.
+//! The environment light of materials: two cube maps, drawn when a material is first shown.
 
 use crate::bindings::bind_group;
 use crate::buffers::filled;
 use crate::guard::guarded;
 use crate::shaders::Shader;
 use crate::uniforms::EnvironmentUniform;
-use crate::{RenderError, Renderer, whole_texture};
+use crate::{RenderError, Renderer, fullscreen};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// The mirrored cube: 64 pixels a side blur to 4 at roughness 1, as `material.wgsl` looks it up.
-const MIRRORED_PX: u32 = 64;
-const MIRRORED_LEVELS: u32 = 5;
-const MIRRORED_SAMPLES: u32 = 96;
-/// The matt cube changes slowly.
-const MATT_PX: u32 = 8;
-const MATT_SAMPLES: u32 = 512;
+/// The prefiltered environment map: 64 pixels a side at roughness 0, down to 4 at roughness 1, as `material.wgsl` samples
+/// it.
+const PREFILTERED_PX: u32 = 64;
+const PREFILTERED_LEVELS: u32 = 5;
+const PREFILTERED_SAMPLES: u32 = 96;
+/// Irradiance changes slowly, so its map is small.
+const IRRADIANCE_PX: u32 = 8;
+const IRRADIANCE_SAMPLES: u32 = 512;
 
-/// Right, down and forward of each face, in the order of a cube's layers.
+/// Right, down and forward of each face, in the order of a cube map's layers.
 const FACES: [[[f32; 3]; 3]; 6] = [
     [[0.0, 0.0, -1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]],
     [[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [-1.0, 0.0, 0.0]],
@@ -26,18 +27,18 @@ const FACES: [[[f32; 3]; 3]; 6] = [
     [[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]],
 ];
 
-/// The bind group of the studio's cubes.
+/// The bind group of the two cube maps.
 pub(crate) fn environment(renderer: &Renderer) -> Result<wgpu::BindGroup, RenderError> {
     let device = renderer.device();
-    guarded(device, "while lighting the studio", || {
+    guarded(device, "while drawing the environment maps", || {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(Shader::Environment.file_name()),
             source: wgpu::ShaderSource::Wgsl(Shader::Environment.composed().into()),
         });
-        let mirrored = cube(device, "mirrored studio", MIRRORED_PX, MIRRORED_LEVELS);
-        let matt = cube(device, "matt studio", MATT_PX, 1);
-        fill(renderer, &module, "fs_mirrored", &mirrored, MIRRORED_SAMPLES)?;
-        fill(renderer, &module, "fs_matt", &matt, MATT_SAMPLES)?;
+        let prefiltered = cube(device, "prefiltered environment", PREFILTERED_PX, PREFILTERED_LEVELS);
+        let irradiance = cube(device, "irradiance map", IRRADIANCE_PX, 1);
+        fill(renderer, &module, "fs_prefiltered", &prefiltered, PREFILTERED_SAMPLES)?;
+        fill(renderer, &module, "fs_irradiance", &irradiance, IRRADIANCE_SAMPLES)?;
         let view = |texture: &wgpu::Texture| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::Cube),
@@ -45,19 +46,19 @@ pub(crate) fn environment(renderer: &Renderer) -> Result<wgpu::BindGroup, Render
             })
         };
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("studio"),
+            label: Some("environment"),
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             mipmap_filter: wgpu::MipmapFilterMode::Linear,
             ..Default::default()
         });
         let resources = [
-            wgpu::BindingResource::TextureView(&view(&mirrored)),
-            wgpu::BindingResource::TextureView(&view(&matt)),
+            wgpu::BindingResource::TextureView(&view(&prefiltered)),
+            wgpu::BindingResource::TextureView(&view(&irradiance)),
             wgpu::BindingResource::Sampler(&sampler),
         ];
         let layout = &renderer.pipelines.environment_layout;
-        Ok(bind_group(device, "studio", layout, &resources))
+        Ok(bind_group(device, "environment", layout, &resources))
     })
 }
 
@@ -78,7 +79,7 @@ fn cube(device: &wgpu::Device, label: &str, side_px: u32, levels: u32) -> wgpu::
     })
 }
 
-/// Draws every face of every level, the roughness rising evenly from 0 to 1 with the level.
+/// Draws every face of every mip level; roughness rises evenly from 0 to 1 with the level.
 fn fill(
     renderer: &Renderer,
     module: &wgpu::ShaderModule,
@@ -87,7 +88,7 @@ fn fill(
     samples: u32,
 ) -> Result<(), RenderError> {
     let (device, queue) = (renderer.device(), renderer.queue());
-    let pipeline = whole_texture::pipeline(device, module, ["vs_environment", entry], FORMAT);
+    let pipeline = fullscreen::pipeline(device, module, ["vs_environment", entry], FORMAT);
     let layout = pipeline.get_bind_group_layout(0);
     let levels = texture.mip_level_count();
     let mut encoder = device.create_command_encoder(&Default::default());
@@ -102,8 +103,14 @@ fn fill(
                 samples,
                 padding: [0.0; 2],
             };
-            let buffer = filled(device, queue, "studio uniform", wgpu::BufferUsages::UNIFORM, &[uniform])?;
-            let group = bind_group(device, "studio uniform", &layout, &[buffer.as_entire_binding()]);
+            let buffer = filled(
+                device,
+                queue,
+                "environment uniform",
+                wgpu::BufferUsages::UNIFORM,
+                &[uniform],
+            )?;
+            let group = bind_group(device, "environment uniform", &layout, &[buffer.as_entire_binding()]);
             let view = texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2),
                 base_mip_level: level,
@@ -112,7 +119,7 @@ fn fill(
                 array_layer_count: Some(1),
                 ..Default::default()
             });
-            whole_texture::draw(&mut encoder, &pipeline, &group, &view);
+            fullscreen::draw(&mut encoder, &pipeline, &group, &view);
         }
     }
     queue.submit([encoder.finish()]);

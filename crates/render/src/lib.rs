@@ -14,10 +14,12 @@
 mod bindings;
 mod buffers;
 mod chunks;
+mod draw_calls;
 mod edges;
 mod environment;
 mod error;
 mod frame;
+mod fullscreen;
 mod grid;
 mod guard;
 mod headless;
@@ -33,7 +35,6 @@ mod pipelines;
 mod readback;
 mod recording;
 mod renderer;
-mod runs;
 mod shaders;
 mod surface;
 mod surface_data;
@@ -43,7 +44,6 @@ mod texture;
 mod timer;
 mod uniforms;
 mod view;
-mod whole_texture;
 
 pub use chunks::{ChunkBounds, Chunks};
 pub use error::{NoGpu, RenderError};

@@ -12,7 +12,7 @@ use crate::chunks::Chunks;
 use crate::edges::unique_edges;
 use crate::headless::is_software;
 use crate::lod::{REDUCED_FROM_TRIANGLES, reduced_triangles};
-use crate::uniforms::LookVertex;
+use crate::uniforms::MaterialVertex;
 
 /// Buffers of some of a mesh's chunks.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub(crate) struct Page {
     pub(crate) positions: wgpu::Buffer,
     pub(crate) normals: wgpu::Buffer,
     pub(crate) regions: wgpu::Buffer,
-    pub(crate) look: Option<wgpu::Buffer>,
+    pub(crate) material: Option<wgpu::Buffer>,
     pub(crate) indices: wgpu::Buffer,
     /// Fewer triangles, where the mesh is large and the device is the processor.
     reduced: Option<Indices>,
@@ -45,7 +45,7 @@ pub(crate) struct Attributes<'a> {
     pub(crate) positions: &'a [[f32; 3]],
     pub(crate) normals: &'a [[f32; 3]],
     pub(crate) regions: &'a [[u8; 4]],
-    pub(crate) look: Option<&'a [LookVertex]>,
+    pub(crate) material: Option<&'a [MaterialVertex]>,
 }
 
 /// How many vertices and triangles a page may have.
@@ -60,8 +60,8 @@ impl PageLimits {
     pub(crate) fn of(device: &wgpu::Device) -> Self {
         let bytes = usize::try_from(device.limits().max_buffer_size).unwrap_or(usize::MAX);
         Self {
-            // The widest of a vertex's buffers is its look.
-            vertices: bytes / size_of::<LookVertex>(),
+            // The widest vertex buffer is that of the materials.
+            vertices: bytes / size_of::<MaterialVertex>(),
             triangles: bytes / size_of::<[u32; 3]>(),
         }
     }
@@ -162,7 +162,7 @@ impl Page {
                 vertex,
                 &gathered(&vertices, attributes.regions),
             )?,
-            look: None,
+            material: None,
             indices: filled(device, queue, "triangles", wgpu::BufferUsages::INDEX, &own)?,
             vertices,
             triangles: own,
@@ -170,9 +170,15 @@ impl Page {
             reduced,
             edges: OnceLock::new(),
         };
-        if let Some(look) = attributes.look {
-            let look = gathered(&page.vertices, look);
-            page.look = Some(filled(device, queue, "texture coordinates and colours", vertex, &look)?);
+        if let Some(material) = attributes.material {
+            let material = gathered(&page.vertices, material);
+            page.material = Some(filled(
+                device,
+                queue,
+                "texture coordinates and colours",
+                vertex,
+                &material,
+            )?);
         }
         Ok(page)
     }
@@ -232,9 +238,9 @@ impl Page {
 
     pub(crate) fn bytes(&self) -> u64 {
         let [edges, reduced] = [self.edges(), self.reduced()].map(|indices| indices.map_or(0, |own| own.buffer.size()));
-        let look = self.look.as_ref().map_or(0, wgpu::Buffer::size);
+        let material = self.material.as_ref().map_or(0, wgpu::Buffer::size);
         let others = [&self.positions, &self.normals, &self.regions, &self.indices];
-        others.iter().map(|buffer| buffer.size()).sum::<u64>() + edges + reduced + look
+        others.iter().map(|buffer| buffer.size()).sum::<u64>() + edges + reduced + material
     }
 
     pub(crate) fn reduced(&self) -> Option<&Indices> {

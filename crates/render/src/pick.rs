@@ -5,12 +5,12 @@
 
 use std::sync::Arc;
 
+use crate::draw_calls::Batching;
 use crate::guard::guarded;
 use crate::pipelines::{ID_FORMAT, Pipeline};
 use crate::readback::Readback;
-use crate::renderer::WHOLE;
-use crate::runs::Joining;
-use crate::target::fresh_depth;
+use crate::renderer::WHOLE_BACKGROUND;
+use crate::target::cleared_depth;
 use crate::{Chunks, Frame, RenderError, Renderer, Samples, Target};
 
 /// The hidden target that triangle numbers are drawn into. Made to measure by [`Renderer::pick`]; keep it.
@@ -189,7 +189,7 @@ impl Renderer {
             let [width, height] = size_px;
             return Err(RenderError::PictureTooLarge { width, height });
         }
-        self.write_frame(frame, size_px, WHOLE)?;
+        self.write_frame(frame, size_px, WHOLE_BACKGROUND)?;
         let device = self.device().clone();
         self.pipelines.prepare(&device, Pipeline::Id, Samples::One)?;
         let readback = guarded(&device, "while picking", || {
@@ -206,10 +206,10 @@ impl Renderer {
             pass.set_bind_group(0, self.frame_group(), &[]);
             for surface in frame.surfaces {
                 surface.bind(&mut pass);
-                for run in surface.runs(frame.view, Joining::Any) {
-                    surface.bind_shape(&mut pass, run.page, run.detail);
-                    let first = run.first_place;
-                    pass.draw_indexed(3 * run.triangles.start..3 * run.triangles.end, 0, first..first + 1);
+                for call in surface.draw_calls(frame.view, Batching::Any) {
+                    surface.bind_shape(&mut pass, call.page, call.detail);
+                    let first = call.first_triangle;
+                    pass.draw_indexed(3 * call.triangles.start..3 * call.triangles.end, 0, first..first + 1);
                 }
             }
             drop(pass);
@@ -243,7 +243,7 @@ fn begin_ids<'a>(encoder: &'a mut wgpu::CommandEncoder, attachments: &IdAttachme
                 store: wgpu::StoreOp::Store,
             },
         })],
-        depth_stencil_attachment: Some(fresh_depth(&attachments.depth)),
+        depth_stencil_attachment: Some(cleared_depth(&attachments.depth)),
         ..Default::default()
     })
 }

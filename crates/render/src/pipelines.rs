@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::guard::guarded;
 use crate::shaders::Shader;
-use crate::uniforms::{LookVertex, OverlayLineInstance, OverlayVertex, SurfaceLineInstance};
+use crate::uniforms::{MaterialVertex, OverlayLineInstance, OverlayVertex, SurfaceLineInstance};
 use crate::{RenderError, Samples, Target};
 
 /// The format of triangle numbers.
@@ -30,13 +30,13 @@ pub(crate) enum Pipeline {
     Painted,
     Zebra,
     Normals,
-    Material(Alpha, Look),
+    Material(Alpha, MaterialAttributes),
     Wireframe,
-    SurfaceLines(Part),
+    SurfaceLines(Visibility),
     Background,
     Grid,
-    OverlayTriangles(Part),
-    OverlayLines(Part),
+    OverlayTriangles(Visibility),
+    OverlayLines(Visibility),
     Id,
 }
 
@@ -50,19 +50,19 @@ pub(crate) enum Alpha {
 
 /// Whether each vertex has texture coordinates and a colour of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Look {
-    Own,
+pub(crate) enum MaterialAttributes {
+    PerVertex,
     Shared,
 }
 
 /// Marks are drawn where they are seen and, fainter, where a surface hides them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Part {
+pub(crate) enum Visibility {
     Hidden,
     Visible,
 }
 
-impl Part {
+impl Visibility {
     /// In the order of drawing.
     pub(crate) const BOTH: [Self; 2] = [Self::Hidden, Self::Visible];
 }
@@ -70,7 +70,7 @@ impl Part {
 const POSITION: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x3];
 const NORMAL: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![1 => Float32x3];
 const REGION: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![2 => Unorm8x4];
-const LOOK: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![3 => Float32x4, 4 => Unorm8x4];
+const MATERIAL: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![3 => Float32x4, 4 => Unorm8x4];
 
 /// The vertex buffers of a surface's shape: positions, normals, regions.
 pub(crate) const SHAPE_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 3] = [
@@ -80,16 +80,16 @@ pub(crate) const SHAPE_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 3] =
 ];
 
 /// The same, and what only materials read; a stride of 0 gives every vertex the one entry.
-pub(crate) const fn material_buffers(look: Look) -> [Option<wgpu::VertexBufferLayout<'static>>; 4] {
-    let stride = match look {
-        Look::Own => size_of::<LookVertex>() as u64,
-        Look::Shared => 0,
+pub(crate) const fn material_buffers(attributes: MaterialAttributes) -> [Option<wgpu::VertexBufferLayout<'static>>; 4] {
+    let stride = match attributes {
+        MaterialAttributes::PerVertex => size_of::<MaterialVertex>() as u64,
+        MaterialAttributes::Shared => 0,
     };
     [
         Some(per_vertex(12, &POSITION)),
         Some(per_vertex(12, &NORMAL)),
         Some(per_vertex(4, &REGION)),
-        Some(per_vertex(stride, &LOOK)),
+        Some(per_vertex(stride, &MATERIAL)),
     ]
 }
 
@@ -158,7 +158,7 @@ impl Pipelines {
             material_layout: layout(device, "material", &material),
             environment_layout: layout(
                 device,
-                "studio",
+                "environment",
                 &[texture_entry(0, cube), texture_entry(1, cube), sampler_entry(2)],
             ),
             positions_layout: layout(device, "positions", &[storage_entry(0)]),
@@ -193,7 +193,7 @@ impl Pipelines {
     }
 
     fn make(&mut self, device: &wgpu::Device, pipeline: Pipeline, samples: Samples) -> wgpu::RenderPipeline {
-        let description = Description::of(pipeline);
+        let description = PipelineDescription::of(pipeline);
         let module = self.modules.entry(description.shader).or_insert_with(|| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(description.shader.file_name()),
@@ -223,7 +223,7 @@ impl Pipelines {
 }
 
 /// What pipelines differ in.
-struct Description {
+struct PipelineDescription {
     shader: Shader,
     vertex_entry: &'static str,
     fragment_entry: &'static str,
@@ -245,7 +245,7 @@ const BLENDED: wgpu::ColorTargetState = wgpu::ColorTargetState {
     ..OPAQUE
 };
 
-impl Description {
+impl PipelineDescription {
     fn of(pipeline: Pipeline) -> Self {
         let solid = |fragment_entry| Self {
             shader: Shader::Surface,
@@ -267,10 +267,10 @@ impl Description {
             colour: BLENDED,
             ..solid(fragment_entry)
         };
-        let mark = |shader, vertex_entry, buffer, topology, part| {
-            let (fragment_entry, depth_compare) = match part {
-                Part::Visible => ("fs_visible", wgpu::CompareFunction::GreaterEqual),
-                Part::Hidden => ("fs_hidden", wgpu::CompareFunction::Less),
+        let mark = |shader, vertex_entry, buffer, topology, visibility| {
+            let (fragment_entry, depth_compare) = match visibility {
+                Visibility::Visible => ("fs_visible", wgpu::CompareFunction::GreaterEqual),
+                Visibility::Hidden => ("fs_hidden", wgpu::CompareFunction::Less),
             };
             Self {
                 buffers: vec![Some(buffer)],
@@ -288,7 +288,7 @@ impl Description {
             Pipeline::Painted => solid("fs_painted"),
             Pipeline::Zebra => solid("fs_zebra"),
             Pipeline::Normals => solid("fs_normals"),
-            Pipeline::Material(alpha, look) => {
+            Pipeline::Material(alpha, attributes) => {
                 let fragment_entry = match alpha {
                     Alpha::Opaque => "fs_material_opaque",
                     Alpha::Mask => "fs_material_mask",
@@ -298,7 +298,7 @@ impl Description {
                 Self {
                     shader: Shader::Material,
                     vertex_entry: "vs_material",
-                    buffers: material_buffers(look).to_vec(),
+                    buffers: material_buffers(attributes).to_vec(),
                     writes_depth: !is_glass,
                     colour: if is_glass { BLENDED } else { OPAQUE },
                     ..solid(fragment_entry)
@@ -309,9 +309,13 @@ impl Description {
                 topology: wgpu::PrimitiveTopology::LineList,
                 ..light(Shader::Wireframe, "vs_wireframe", "fs_wireframe")
             },
-            Pipeline::SurfaceLines(part) => {
-                mark(Shader::SurfaceLine, "vs_surface_line", SURFACE_LINE_BUFFER, strip, part)
-            }
+            Pipeline::SurfaceLines(visibility) => mark(
+                Shader::SurfaceLine,
+                "vs_surface_line",
+                SURFACE_LINE_BUFFER,
+                strip,
+                visibility,
+            ),
             Pipeline::Background => Self {
                 colour: OPAQUE,
                 ..light(Shader::Background, "vs_background", "fs_background")
@@ -320,16 +324,20 @@ impl Description {
                 topology: strip,
                 ..light(Shader::Grid, "vs_grid", "fs_grid")
             },
-            Pipeline::OverlayTriangles(part) => mark(
+            Pipeline::OverlayTriangles(visibility) => mark(
                 Shader::OverlayTriangle,
                 "vs_overlay_triangle",
                 OVERLAY_TRIANGLE_BUFFER,
                 triangles,
-                part,
+                visibility,
             ),
-            Pipeline::OverlayLines(part) => {
-                mark(Shader::OverlayLine, "vs_overlay_line", OVERLAY_LINE_BUFFER, strip, part)
-            }
+            Pipeline::OverlayLines(visibility) => mark(
+                Shader::OverlayLine,
+                "vs_overlay_line",
+                OVERLAY_LINE_BUFFER,
+                strip,
+                visibility,
+            ),
             Pipeline::Id => Self {
                 shader: Shader::SurfaceId,
                 vertex_entry: "vs_id",

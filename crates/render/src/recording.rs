@@ -1,69 +1,69 @@
 //! A frame as commands: what is drawn in which order, and by which pipelines.
 
+use crate::draw_calls::DrawCall;
 use crate::overlay::OverlayBatch;
-use crate::pipelines::{Alpha, Part, Pipeline};
-use crate::runs::Run;
+use crate::pipelines::{Alpha, Pipeline, Visibility};
 use crate::surface_line::LineSet;
-use crate::target::{Attachments, fresh_depth};
+use crate::target::{Attachments, cleared_depth};
 use crate::{Background, Borders, Frame, Matcap, Outlines, Renderer, Samples, Shading, Surface, Wireframe};
 
-/// What a picture is drawn from, ready on the device.
-pub(crate) struct Ready<'a> {
+/// What a picture is drawn from, prepared on the device.
+pub(crate) struct PreparedFrame<'a> {
     pub(crate) frame: &'a Frame<'a>,
     pub(crate) overlays: OverlayBatch,
     /// Runs of every surface.
-    pub(crate) runs: Vec<(&'a Surface, Vec<Run>)>,
+    pub(crate) draw_calls: Vec<(&'a Surface, Vec<DrawCall>)>,
 }
 
 impl Renderer {
     /// Opaque triangles, then the background where nothing is, the ground, what is seen through, edges and marks.
-    pub(crate) fn record(&self, pass: &mut wgpu::RenderPass<'_>, ready: &Ready<'_>, samples: Samples) {
-        let style = ready.frame.style;
+    pub(crate) fn record(&self, pass: &mut wgpu::RenderPass<'_>, prepared: &PreparedFrame<'_>, samples: Samples) {
+        let style = prepared.frame.style;
         let set = |pass: &mut wgpu::RenderPass<'_>, pipeline| match self.pipelines.get(pipeline, samples) {
             Some(pipeline) => pass.set_pipeline(pipeline),
             None => debug_assert!(false, "{pipeline:?} was not prepared"),
         };
         pass.set_bind_group(0, &self.frame_group, &[]);
         let is_material = style.shading == Shading::Material;
-        let draw_runs = |pass: &mut wgpu::RenderPass<'_>, is_wanted: &dyn Fn(&Run) -> bool| {
-            for (surface, runs) in &ready.runs {
+        let draw_surfaces = |pass: &mut wgpu::RenderPass<'_>, is_wanted: &dyn Fn(&DrawCall) -> bool| {
+            for (surface, draw_calls) in &prepared.draw_calls {
                 surface.bind(pass);
                 let mut page = usize::MAX;
-                for run in runs.iter().filter(|run| is_wanted(run)) {
-                    if run.page != page {
-                        page = run.page;
-                        surface.bind_shape(pass, page, run.detail);
-                        surface.bind_look(pass, page);
+                for call in draw_calls.iter().filter(|call| is_wanted(call)) {
+                    if call.page != page {
+                        page = call.page;
+                        surface.bind_shape(pass, page, call.detail);
+                        surface.bind_material_attributes(pass, page);
                     }
                     if is_material {
-                        set(pass, Pipeline::Material(run.alpha, surface.look()));
-                        pass.set_bind_group(2, surface.material(run.material), &[]);
+                        set(pass, Pipeline::Material(call.alpha, surface.material_attributes()));
+                        pass.set_bind_group(2, surface.material(call.material), &[]);
                     }
-                    pass.draw_indexed(3 * run.triangles.start..3 * run.triangles.end, 0, 0..1);
+                    pass.draw_indexed(3 * call.triangles.start..3 * call.triangles.end, 0, 0..1);
                 }
             }
         };
         if is_material {
             pass.set_bind_group(3, self.environment.as_ref(), &[]);
-            draw_runs(pass, &|run| run.alpha != Alpha::Blend);
+            draw_surfaces(pass, &|call| call.alpha != Alpha::Blend);
         } else {
             set(pass, shading_pipeline(style.shading));
             pass.set_bind_group(2, self.matcaps.get(&matcap_of(style.shading)), &[]);
-            draw_runs(pass, &|_| true);
+            draw_surfaces(pass, &|_| true);
         }
         if matches!(style.background, Background::Gradient { .. }) {
             set(pass, Pipeline::Background);
             pass.draw(0..3, 0..1);
         }
-        if ready.frame.grid.is_some() {
+        if prepared.frame.grid.is_some() {
             set(pass, Pipeline::Grid);
             pass.set_bind_group(1, &self.grid_group, &[]);
             pass.draw(0..4, 0..1);
         }
         if is_material {
-            draw_runs(pass, &|run| run.alpha == Alpha::Blend);
+            draw_surfaces(pass, &|call| call.alpha == Alpha::Blend);
         }
-        for (surface, _) in &ready.runs {
+        for (surface, _) in &prepared.draw_calls {
             surface.bind(pass);
             if style.wireframe == Wireframe::On {
                 set(pass, Pipeline::Wireframe);
@@ -74,34 +74,36 @@ impl Renderer {
                     pass.draw_indexed(0..edges.index_count, 0, 0..1);
                 }
             }
-            let draw_lines = |pass: &mut wgpu::RenderPass<'_>, lines: &LineSet, part| {
-                set(pass, Pipeline::SurfaceLines(part));
+            let draw_lines = |pass: &mut wgpu::RenderPass<'_>, lines: &LineSet, visibility| {
+                set(pass, Pipeline::SurfaceLines(visibility));
                 pass.set_bind_group(2, &lines.positions, &[]);
                 pass.set_vertex_buffer(0, lines.lines.slice(..));
                 pass.draw(0..4, 0..lines.count);
             };
             if style.outlines == Outlines::On {
                 let outlines = surface.outlines().iter().flatten();
-                outlines.for_each(|lines| draw_lines(pass, lines, Part::Visible));
+                outlines.for_each(|lines| draw_lines(pass, lines, Visibility::Visible));
             }
             if style.borders == Borders::On {
                 for lines in surface.borders().iter().flatten() {
-                    Part::BOTH.into_iter().for_each(|part| draw_lines(pass, lines, part));
+                    Visibility::BOTH
+                        .into_iter()
+                        .for_each(|visibility| draw_lines(pass, lines, visibility));
                 }
             }
         }
-        for layer in &ready.overlays.layers {
+        for layer in &prepared.overlays.layers {
             if let (Some(buffer), false) = (self.overlay_triangles.buffer(), layer.vertices.is_empty()) {
                 pass.set_vertex_buffer(0, buffer.slice(..));
-                for part in Part::BOTH {
-                    set(pass, Pipeline::OverlayTriangles(part));
+                for visibility in Visibility::BOTH {
+                    set(pass, Pipeline::OverlayTriangles(visibility));
                     pass.draw(layer.vertices.clone(), 0..1);
                 }
             }
             if let (Some(buffer), false) = (self.overlay_lines.buffer(), layer.lines.is_empty()) {
                 pass.set_vertex_buffer(0, buffer.slice(..));
-                for part in Part::BOTH {
-                    set(pass, Pipeline::OverlayLines(part));
+                for visibility in Visibility::BOTH {
+                    set(pass, Pipeline::OverlayLines(visibility));
                     pass.draw(0..4, layer.lines.clone());
                 }
             }
@@ -109,14 +111,18 @@ impl Renderer {
     }
 }
 
-impl Ready<'_> {
+impl PreparedFrame<'_> {
     /// The pipelines that the drawing sets.
     pub(crate) fn pipelines(&self) -> Vec<Pipeline> {
         let style = self.frame.style;
         let mut pipelines = Vec::new();
         if style.shading == Shading::Material {
-            for (surface, runs) in &self.runs {
-                pipelines.extend(runs.iter().map(|run| Pipeline::Material(run.alpha, surface.look())));
+            for (surface, draw_calls) in &self.draw_calls {
+                pipelines.extend(
+                    draw_calls
+                        .iter()
+                        .map(|call| Pipeline::Material(call.alpha, surface.material_attributes())),
+                );
             }
             pipelines.dedup();
         } else {
@@ -131,15 +137,15 @@ impl Ready<'_> {
         if style.wireframe == Wireframe::On {
             pipelines.push(Pipeline::Wireframe);
         }
-        for part in Part::BOTH {
+        for visibility in Visibility::BOTH {
             if style.borders == Borders::On || style.outlines == Outlines::On {
-                pipelines.push(Pipeline::SurfaceLines(part));
+                pipelines.push(Pipeline::SurfaceLines(visibility));
             }
             if !self.overlays.vertices.is_empty() {
-                pipelines.push(Pipeline::OverlayTriangles(part));
+                pipelines.push(Pipeline::OverlayTriangles(visibility));
             }
             if !self.overlays.lines.is_empty() {
-                pipelines.push(Pipeline::OverlayLines(part));
+                pipelines.push(Pipeline::OverlayLines(visibility));
             }
         }
         pipelines
@@ -186,7 +192,7 @@ pub(crate) fn begin_picture<'a>(
                 store,
             },
         })],
-        depth_stencil_attachment: Some(fresh_depth(&attachments.depth)),
+        depth_stencil_attachment: Some(cleared_depth(&attachments.depth)),
         timestamp_writes,
         ..Default::default()
     })

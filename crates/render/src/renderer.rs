@@ -3,15 +3,15 @@
 use std::collections::HashMap;
 
 use crate::bindings::bind_group;
-use crate::buffers::{Streamed, filled, refill};
+use crate::buffers::{DynamicBuffer, filled, refill};
+use crate::draw_calls::Batching;
 use crate::environment::environment;
 use crate::guard::guarded;
 use crate::headless::is_software;
 use crate::overlay::OverlayBatch;
 use crate::pipelines::Pipelines;
-use crate::recording::{Ready, begin_picture, matcap_of};
-use crate::runs::Joining;
-use crate::texture::TextureMaker;
+use crate::recording::{PreparedFrame, begin_picture, matcap_of};
+use crate::texture::TextureUploader;
 use crate::timer::Timer;
 use crate::uniforms::{FrameUniform, GridUniform};
 use crate::{
@@ -25,7 +25,7 @@ pub struct Renderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
     pub(crate) pipelines: Pipelines,
-    textures: TextureMaker,
+    textures: TextureUploader,
     white: wgpu::TextureView,
     frame_buffer: wgpu::Buffer,
     pub(crate) frame_group: wgpu::BindGroup,
@@ -33,13 +33,13 @@ pub struct Renderer {
     pub(crate) grid_group: wgpu::BindGroup,
     pub(crate) matcaps: HashMap<Matcap, wgpu::BindGroup>,
     pub(crate) environment: Option<wgpu::BindGroup>,
-    pub(crate) overlay_triangles: Streamed,
-    pub(crate) overlay_lines: Streamed,
+    pub(crate) overlay_triangles: DynamicBuffer,
+    pub(crate) overlay_lines: DynamicBuffer,
     timer: Option<Timer>,
 }
 
 /// Where a tile of a picture stands in it: the share of the background below it, and its own share.
-pub(crate) const WHOLE: [f32; 2] = [0.0, 1.0];
+pub(crate) const WHOLE_BACKGROUND: [f32; 2] = [0.0, 1.0];
 
 impl Renderer {
     /// A renderer on a device (best asked for with [`crate::device_descriptor`]).
@@ -49,7 +49,7 @@ impl Renderer {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, RenderError> {
         let pipelines = guarded(device, "while starting to draw", || Ok(Pipelines::new(device)))?;
         let textures = guarded(device, "while starting to draw", || {
-            Ok(TextureMaker::new(device, queue))
+            Ok(TextureUploader::new(device, queue))
         })?;
         let white = TextureData {
             width: 1,
@@ -81,8 +81,8 @@ impl Renderer {
             grid_group,
             matcaps: HashMap::new(),
             environment: None,
-            overlay_triangles: Streamed::new("overlay triangles"),
-            overlay_lines: Streamed::new("overlay lines"),
+            overlay_triangles: DynamicBuffer::new("overlay triangles"),
+            overlay_lines: DynamicBuffer::new("overlay lines"),
             timer: Timer::new(device, queue),
         })
     }
@@ -134,7 +134,7 @@ impl Renderer {
     /// # Errors
     /// Memory, or a device that refuses; the target then shows what it showed before or part of the frame.
     pub fn draw(&mut self, target: &Target, frame: &Frame<'_>) -> Result<(), RenderError> {
-        self.draw_part(target, frame, WHOLE)
+        self.draw_part(target, frame, WHOLE_BACKGROUND)
     }
 
     pub(crate) fn draw_part(
@@ -147,14 +147,14 @@ impl Renderer {
             return Ok(());
         };
         self.write_frame(frame, attachments.size_px, background_span)?;
-        let ready = self.prepare(frame, attachments.samples)?;
+        let prepared = self.prepare(frame, attachments.samples)?;
         let device = self.device.clone();
         guarded(&device, "while drawing", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
             let writes = self.timer.as_mut().and_then(|timer| timer.writes(&device));
             let is_timed = writes.is_some();
             let mut pass = begin_picture(&mut encoder, attachments, writes);
-            self.record(&mut pass, &ready, attachments.samples);
+            self.record(&mut pass, &prepared, attachments.samples);
             drop(pass);
             if let (true, Some(timer)) = (is_timed, &self.timer) {
                 timer.resolve(&mut encoder);
@@ -168,7 +168,7 @@ impl Renderer {
     }
 
     /// Makes and uploads whatever the frame needs.
-    fn prepare<'a>(&mut self, frame: &'a Frame<'a>, samples: Samples) -> Result<Ready<'a>, RenderError> {
+    fn prepare<'a>(&mut self, frame: &'a Frame<'a>, samples: Samples) -> Result<PreparedFrame<'a>, RenderError> {
         let overlays = OverlayBatch::of(frame.overlays);
         self.overlay_triangles
             .fill(&self.device, &self.queue, &overlays.vertices)?;
@@ -189,29 +189,29 @@ impl Renderer {
                 .iter()
                 .try_for_each(|surface| surface.prepare_borders(self))?;
         }
-        let joining = if style.shading == Shading::Material {
+        let batching = if style.shading == Shading::Material {
             self.prepare_environment()?;
-            Joining::OneMaterial
+            Batching::PerMaterial
         } else {
             self.prepare_matcap(matcap_of(style.shading))?;
-            Joining::Any
+            Batching::Any
         };
-        let runs = frame.surfaces.iter().map(|&surface| match style.detail {
-            Detail::Reduced if joining == Joining::Any && surface.has_reduced(frame.view) => {
-                (surface, surface.reduced_runs())
+        let draw_calls = frame.surfaces.iter().map(|&surface| match style.detail {
+            Detail::Reduced if batching == Batching::Any && surface.has_reduced(frame.view) => {
+                (surface, surface.reduced_draw_calls())
             }
-            Detail::Reduced | Detail::Full => (surface, surface.runs(frame.view, joining)),
+            Detail::Reduced | Detail::Full => (surface, surface.draw_calls(frame.view, batching)),
         });
-        let ready = Ready {
+        let prepared = PreparedFrame {
             frame,
             overlays,
-            runs: runs.collect(),
+            draw_calls: draw_calls.collect(),
         };
         let device = self.device.clone();
-        for pipeline in ready.pipelines() {
+        for pipeline in prepared.pipelines() {
             self.pipelines.prepare(&device, pipeline, samples)?;
         }
-        Ok(ready)
+        Ok(prepared)
     }
 
     fn prepare_environment(&mut self) -> Result<(), RenderError> {

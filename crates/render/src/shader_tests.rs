@@ -8,10 +8,11 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
 use super::Shader;
 use crate::pipelines::{
-    Look, OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SHAPE_BUFFERS, SURFACE_LINE_BUFFER, material_buffers,
+    MaterialAttributes, OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SHAPE_BUFFERS, SURFACE_LINE_BUFFER,
+    material_buffers,
 };
 use crate::uniforms::{
-    EnvironmentUniform, FrameUniform, GridUniform, LookVertex, MapUniform, MatcapUniform, MaterialUniform,
+    EnvironmentUniform, FrameUniform, GridUniform, MapUniform, MatcapUniform, MaterialUniform, MaterialVertex,
     OverlayLineInstance, OverlayVertex, SurfaceLineInstance, SurfaceUniform,
 };
 
@@ -166,7 +167,7 @@ fn uniform_structs_are_laid_out_alike() {
         samples: u32,
         padding: [f32; 2],
     });
-    assert_eq!(wgsl_layout(Shader::Environment, "Pass"), environment);
+    assert_eq!(wgsl_layout(Shader::Environment, "Face"), environment);
 }
 
 #[test]
@@ -174,10 +175,10 @@ fn vertex_buffers_have_what_shaders_read() {
     let shape: Vec<_> = SHAPE_BUFFERS.iter().flatten().cloned().collect();
     assert_attributes(Shader::Surface, "SurfaceVertex", &shape);
     assert_attributes(Shader::Material, "SurfaceVertex", &shape);
-    for look in [Look::Own, Look::Shared] {
-        let buffers = material_buffers(look);
+    for attributes in [MaterialAttributes::PerVertex, MaterialAttributes::Shared] {
+        let buffers = material_buffers(attributes);
         let own: Vec<_> = buffers[3].iter().cloned().collect();
-        assert_attributes(Shader::Material, "LookVertex", &own);
+        assert_attributes(Shader::Material, "MaterialVertex", &own);
     }
     assert_attributes(Shader::SurfaceLine, "SurfaceLine", &[SURFACE_LINE_BUFFER]);
     assert_attributes(Shader::OverlayTriangle, "OverlayVertex", &[OVERLAY_TRIANGLE_BUFFER]);
@@ -207,9 +208,9 @@ fn vertex_structs_have_their_members_where_their_buffers_say() {
     for buffer in SHAPE_BUFFERS.iter().flatten() {
         assert_eq!(buffer.array_stride, buffer.attributes[0].format.size());
     }
-    let look = [offset_of!(LookVertex, uvs), offset_of!(LookVertex, colour)];
-    for buffer in material_buffers(Look::Own)[3].iter() {
-        assert_eq!(offsets(buffer), look.map(|offset| offset as u64));
+    let expected = [offset_of!(MaterialVertex, uvs), offset_of!(MaterialVertex, colour)];
+    for buffer in material_buffers(MaterialAttributes::PerVertex)[3].iter() {
+        assert_eq!(offsets(buffer), expected.map(|offset| offset as u64));
     }
     let line = [
         offset_of!(SurfaceLineInstance, start),

@@ -5,13 +5,13 @@ use std::sync::{Arc, OnceLock};
 
 use crate::buffers::filled;
 use crate::chunks::{ChunkBounds, Chunks};
-use crate::edges::{Odd, odd_edges};
+use crate::edges::{IrregularEdge, irregular_edges};
 use crate::guard::guarded;
 use crate::pages::{Attributes, Page, PageLimits, page_chunks};
-use crate::pipelines::Look;
+use crate::pipelines::MaterialAttributes;
 use crate::surface_data::{checked, textures_exist};
 use crate::surface_line::LineSet;
-use crate::uniforms::{LookVertex, SurfaceUniform};
+use crate::uniforms::{MaterialVertex, SurfaceUniform};
 use crate::{
     ColourSpace, Detail, EdgePoint, Material, RenderError, Renderer, SurfaceData, SurfaceLine, TextureData, border,
 };
@@ -25,13 +25,13 @@ pub struct Surface {
     vertex_count: usize,
     /// Kept for the borders, which are only looked for when first drawn: 12 bytes a triangle.
     triangles: Vec<[u32; 3]>,
-    twins: Option<Vec<u32>>,
+    welded: Option<Vec<u32>>,
     pub(crate) chunks: Arc<Chunks>,
     pub(crate) bounds: Vec<ChunkBounds>,
     pub(crate) pages: Vec<Page>,
-    look: Look,
+    material_attributes: MaterialAttributes,
     /// The one entry of surfaces whose vertices have neither texture coordinates nor colours.
-    shared_look: wgpu::Buffer,
+    shared_material_vertex: wgpu::Buffer,
     uniform_buffer: wgpu::Buffer,
     group: wgpu::BindGroup,
     materials: Vec<wgpu::BindGroup>,
@@ -106,12 +106,12 @@ impl Surface {
             None => Arc::new(Chunks::new(data.positions, data.triangles, data.groups, data.materials)),
         };
         let plain = vec![[0; 4]; if data.regions.is_some() { 0 } else { count }];
-        let look = looks(data);
+        let material_vertices = material_vertices(data);
         let attributes = Attributes {
             positions: data.positions,
             normals: data.normals,
             regions: data.regions.unwrap_or(&plain),
-            look: look.as_deref(),
+            material: material_vertices.as_deref(),
         };
         let pages = page_chunks(&chunks, count, limits)
             .into_iter()
@@ -126,19 +126,29 @@ impl Surface {
         let uniforms = wgpu::BufferUsages::UNIFORM;
         let uniform_buffer = filled(device, queue, "surface uniform", uniforms, &[uniform])?;
         let group = renderer.uniform_group(&renderer.pipelines.surface_layout, &uniform_buffer)?;
-        let white = LookVertex {
+        let white = MaterialVertex {
             uvs: [0.0; 4],
             colour: [255; 4],
         };
         Ok(Self {
             vertex_count: count,
             triangles: data.triangles.to_vec(),
-            twins: data.twins.map(<[u32]>::to_vec),
+            welded: data.welded.map(<[u32]>::to_vec),
             bounds: chunks.all_bounds(data.positions),
             chunks,
             pages,
-            look: if look.is_some() { Look::Own } else { Look::Shared },
-            shared_look: filled(device, queue, "plain look", wgpu::BufferUsages::VERTEX, &[white])?,
+            material_attributes: if material_vertices.is_some() {
+                MaterialAttributes::PerVertex
+            } else {
+                MaterialAttributes::Shared
+            },
+            shared_material_vertex: filled(
+                device,
+                queue,
+                "shared material vertex",
+                wgpu::BufferUsages::VERTEX,
+                &[white],
+            )?,
             uniform_buffer,
             group,
             materials: renderer.material_groups(data.materials, data.textures)?,
@@ -314,8 +324,8 @@ impl Surface {
         &self.pages
     }
 
-    pub(crate) fn look(&self) -> Look {
-        self.look
+    pub(crate) fn material_attributes(&self) -> MaterialAttributes {
+        self.material_attributes
     }
 
     pub(crate) fn material(&self, number: usize) -> Option<&wgpu::BindGroup> {
@@ -346,9 +356,9 @@ impl Surface {
     }
 
     /// Binds a page's texture coordinates and colours.
-    pub(crate) fn bind_look(&self, pass: &mut wgpu::RenderPass<'_>, page: usize) {
-        let own = self.pages.get(page).and_then(|page| page.look.as_ref());
-        pass.set_vertex_buffer(3, own.unwrap_or(&self.shared_look).slice(..));
+    pub(crate) fn bind_material_attributes(&self, pass: &mut wgpu::RenderPass<'_>, page: usize) {
+        let own = self.pages.get(page).and_then(|page| page.material.as_ref());
+        pass.set_vertex_buffer(3, own.unwrap_or(&self.shared_material_vertex).slice(..));
     }
 
     /// The pages' borders, where there are any.
@@ -375,7 +385,7 @@ impl Surface {
         if self.borders.get().is_some() {
             return Ok(());
         }
-        let mut odd = odd_edges(&self.triangles, self.vertex_count, self.twins.as_deref());
+        let mut edges = irregular_edges(&self.triangles, self.vertex_count, self.welded.as_deref());
         if self.shown.is_some() {
             // What hangs together stays so: a hidden neighbour makes no border, and takes its own along.
             let mut of_shown = vec![false; self.vertex_count];
@@ -385,12 +395,12 @@ impl Surface {
             for &corner in shown.flat_map(|(_, corners)| corners) {
                 of_shown[corner as usize] = true;
             }
-            odd.retain(|odd| {
-                let (Odd::Border(ends) | Odd::Branching(ends)) = odd;
+            edges.retain(|edge| {
+                let (IrregularEdge::Boundary(ends) | IrregularEdge::NonManifold(ends)) = edge;
                 ends.iter().all(|&end| of_shown[end as usize])
             });
         }
-        let made = (self.pages.iter()).map(|page| LineSet::new(renderer, page, border_lines(&odd), HIDDEN_BORDERS));
+        let made = (self.pages.iter()).map(|page| LineSet::new(renderer, page, border_lines(&edges), HIDDEN_BORDERS));
         let _ = self.borders.set(made.collect::<Result<Vec<_>, _>>()?);
         Ok(())
     }
@@ -402,13 +412,13 @@ impl Surface {
     }
 }
 
-/// The odd edges as lines; one whose ends are on several pages is drawn as often.
-fn border_lines(odd: &[Odd]) -> impl Iterator<Item = SurfaceLine> {
+/// The irregular edges as lines. An edge whose ends are on several pages is drawn once on each.
+fn border_lines(edges: &[IrregularEdge]) -> impl Iterator<Item = SurfaceLine> {
     const WIDTH_POINTS: f32 = 2.6;
-    odd.iter().map(|odd| {
-        let (ends, colour) = match odd {
-            Odd::Border(ends) => (ends, border::OPEN),
-            Odd::Branching(ends) => (ends, border::BRANCHING),
+    edges.iter().map(|edge| {
+        let (ends, colour) = match edge {
+            IrregularEdge::Boundary(ends) => (ends, border::OPEN),
+            IrregularEdge::NonManifold(ends) => (ends, border::BRANCHING),
         };
         SurfaceLine {
             ends: ends.map(EdgePoint::at),
@@ -419,19 +429,19 @@ fn border_lines(odd: &[Odd]) -> impl Iterator<Item = SurfaceLine> {
 }
 
 /// Texture coordinates and colours side by side, where the data has any.
-fn looks(data: &SurfaceData<'_>) -> Option<Vec<LookVertex>> {
+fn material_vertices(data: &SurfaceData<'_>) -> Option<Vec<MaterialVertex>> {
     if data.uvs.is_none() && data.second_uvs.is_none() && data.colours.is_none() {
         return None;
     }
-    let look = |vertex: usize| {
+    let material_vertex = |vertex: usize| {
         let [u, v] = data.uvs.map_or([0.0; 2], |uvs| uvs[vertex]);
         let [s, t] = data.second_uvs.map_or([0.0; 2], |uvs| uvs[vertex]);
-        LookVertex {
+        MaterialVertex {
             uvs: [u, v, s, t],
             colour: data.colours.map_or([255; 4], |colours| colours[vertex]),
         }
     };
-    Some((0..data.positions.len()).map(look).collect())
+    Some((0..data.positions.len()).map(material_vertex).collect())
 }
 
 /// The mean length of an edge, from at most ten thousand triangles evenly spread: it only sets how faint a wireframe

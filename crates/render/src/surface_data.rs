@@ -27,9 +27,9 @@ pub struct SurfaceData<'a> {
     pub groups: &'a [MaterialGroup],
     /// The materials that groups name.
     pub materials: &'a [Material],
-    /// For each vertex the lowest vertex at the same place: what lies between such twins is a seam, no border. None
-    /// means that no two vertices are twins.
-    pub twins: Option<&'a [u32]>,
+    /// For each vertex the lowest vertex at the same place: what lies between such welded is a seam, no border. None
+    /// means that no two vertices are welded.
+    pub welded: Option<&'a [u32]>,
     /// How the triangles are cut into chunks; made of the slices above where none is given.
     pub chunks: Option<&'a Arc<Chunks>>,
     /// The textures that materials name.
@@ -53,7 +53,7 @@ pub(crate) fn checked(data: &SurfaceData<'_>) -> Result<(), RenderError> {
         ("normals", Some(data.normals.len())),
         ("texture coordinates", data.uvs.map(<[_]>::len)),
         ("second texture coordinates", data.second_uvs.map(<[_]>::len)),
-        ("twins", data.twins.map(<[_]>::len)),
+        ("welded", data.welded.map(<[_]>::len)),
         ("vertex colours", data.colours.map(<[_]>::len)),
         ("region colours", data.regions.map(<[_]>::len)),
     ] {
@@ -90,13 +90,13 @@ pub(crate) fn checked(data: &SurfaceData<'_>) -> Result<(), RenderError> {
         }
         in_range("material", group.material, data.materials.len())?;
     }
-    if let Some(&twin) = data
-        .twins
+    if let Some(&vertex) = data
+        .welded
         .unwrap_or_default()
         .iter()
-        .find(|&&twin| twin as usize >= vertices)
+        .find(|&&vertex| vertex as usize >= vertices)
     {
-        in_range("twin", twin as usize, vertices)?;
+        in_range("welded vertex", vertex as usize, vertices)?;
     }
     textures_exist(data.materials, data.textures.len())?;
     if let Some(chunks) = data.chunks.filter(|chunks| !chunks.fits(data.triangles.len())) {

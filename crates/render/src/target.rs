@@ -142,7 +142,7 @@ impl Attachments {
 }
 
 /// A depth buffer that a picture begins with and nobody reads afterwards. Reversed: 0 is infinitely far away.
-pub(crate) fn fresh_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+pub(crate) fn cleared_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     wgpu::RenderPassDepthStencilAttachment {
         view,
         depth_ops: Some(wgpu::Operations {

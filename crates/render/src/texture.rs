@@ -6,7 +6,7 @@ use crate::bindings::bind_group;
 use crate::guard::guarded;
 use crate::headless::is_software;
 use crate::shaders::Shader;
-use crate::{RenderError, Wrap, whole_texture};
+use crate::{RenderError, Wrap, fullscreen};
 
 /// An image of four bytes a pixel (alpha straight), rows from the top.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +33,7 @@ pub enum Encoding {
 
 /// Makes textures: holds what mipmaps are made with.
 #[derive(Debug)]
-pub(crate) struct TextureMaker {
+pub(crate) struct TextureUploader {
     device: wgpu::Device,
     queue: wgpu::Queue,
     /// For sRGB and for linear images.
@@ -45,13 +45,13 @@ pub(crate) struct TextureMaker {
 /// The formats of sRGB and of linear images.
 const FORMATS: [wgpu::TextureFormat; 2] = [wgpu::TextureFormat::Rgba8UnormSrgb, wgpu::TextureFormat::Rgba8Unorm];
 
-impl TextureMaker {
+impl TextureUploader {
     pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(Shader::Mipmap.file_name()),
             source: wgpu::ShaderSource::Wgsl(Shader::Mipmap.composed().into()),
         });
-        let pipeline = |format| whole_texture::pipeline(device, &module, ["vs_mipmap", "fs_mipmap"], format);
+        let pipeline = |format| fullscreen::pipeline(device, &module, ["vs_mipmap", "fs_mipmap"], format);
         let mipmap_sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("mipmap"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -147,7 +147,7 @@ impl TextureMaker {
                 wgpu::BindingResource::Sampler(&self.mipmap_sampler),
             ];
             let group = bind_group(&self.device, "mipmap", &layout, &resources);
-            whole_texture::draw(&mut encoder, pipeline, &group, &view_of(level));
+            fullscreen::draw(&mut encoder, pipeline, &group, &view_of(level));
         }
         self.queue.submit([encoder.finish()]);
     }

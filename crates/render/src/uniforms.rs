@@ -98,7 +98,7 @@ pub(crate) struct MaterialUniform {
     pub(crate) emission: MapUniform,
 }
 
-/// `Pass` in `shaders/environment.wgsl`.
+/// `Face` in `shaders/environment.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub(crate) struct EnvironmentUniform {
@@ -127,10 +127,10 @@ pub(crate) struct GridUniform {
     pub(crate) v_axis_colour: [f32; 4],
 }
 
-/// `LookVertex` in `shaders/material.wgsl`.
+/// `MaterialVertex` in `shaders/material.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub(crate) struct LookVertex {
+pub(crate) struct MaterialVertex {
     pub(crate) uvs: [f32; 4],
     pub(crate) colour: [u8; 4],
 }

@@ -264,9 +264,9 @@ fn odd_edges() {
             .triangles
             .extend(square.map(|triangle| triangle.map(|corner| first + corner)));
     }
-    let twins: Vec<u32> = (0..12).map(|v| if v == 7 || v == 10 { v - 6 } else { v }).collect();
+    let welded: Vec<u32> = (0..12).map(|v| if v == 7 || v == 10 { v - 6 } else { v }).collect();
     let data = SurfaceData {
-        twins: Some(&twins),
+        welded: Some(&welded),
         ..cross.data()
     };
     let surface = Surface::new(&headless.renderer, &data).unwrap();

@@ -38,7 +38,7 @@ pub struct Drawing {
     /// The file's materials and images.
     pub materials: EncodedMaterials,
     triangles: Vec<[u32; 3]>,
-    twins: Vec<u32>,
+    welded: Vec<u32>,
     chunks: Arc<Chunks>,
     normals: NormalGroups,
     uvs: Option<Vec<[f32; 2]>>,
@@ -68,7 +68,7 @@ impl Drawing {
         Self {
             centre,
             materials,
-            twins: twins(model),
+            welded: welded(model),
             chunks: Arc::new(chunks),
             normals: NormalGroups::of(model, &triangles, appearance.normals),
             uvs: appearance.uvs,
@@ -103,7 +103,7 @@ impl Drawing {
                 groups: &self.groups,
                 materials: &self.materials.without_images(),
                 textures: &[],
-                twins: Some(&self.twins),
+                welded: Some(&self.welded),
                 chunks: Some(&self.chunks),
             },
         )
@@ -111,7 +111,7 @@ impl Drawing {
 }
 
 /// For each drawn vertex the first one that is welded with it.
-fn twins(model: &Model) -> Vec<u32> {
+fn welded(model: &Model) -> Vec<u32> {
     let mut first = vec![u32::MAX; model.surface.positions.len()];
     let of_drawn = model.drawn.surface_vertices().enumerate();
     of_drawn

@@ -9,11 +9,11 @@ use crate::{AlphaMode, Detail, Surface, View};
 
 /// Triangles of one page that are drawn by one call: page, places within the page, what they are made of.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Run {
+pub(crate) struct DrawCall {
     pub(crate) page: usize,
     pub(crate) triangles: Range<u32>,
     /// The place in the surface's drawing order of the first one.
-    pub(crate) first_place: u32,
+    pub(crate) first_triangle: u32,
     pub(crate) material: usize,
     pub(crate) alpha: Alpha,
     pub(crate) detail: Detail,
@@ -21,23 +21,23 @@ pub(crate) struct Run {
 
 /// Which neighbouring chunks may be drawn by one call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Joining {
+pub(crate) enum Batching {
     /// All.
     Any,
     /// Those of one material.
-    OneMaterial,
+    PerMaterial,
 }
 
 impl Surface {
     /// How many of the triangles a picture of `view` draws; the others lie in chunks that can't be seen.
     pub fn drawn_triangles(&self, view: &View) -> usize {
-        let runs = self.runs(view, Joining::Any);
-        runs.iter().map(|run| run.triangles.len()).sum()
+        let draw_calls = self.draw_calls(view, Batching::Any);
+        draw_calls.iter().map(|call| call.triangles.len()).sum()
     }
 
     /// Ways of drawing what may be seen, each chunk once.
-    pub(crate) fn runs(&self, view: &View, joining: Joining) -> Vec<Run> {
-        let mut runs: Vec<Run> = Vec::new();
+    pub(crate) fn draw_calls(&self, view: &View, batching: Batching) -> Vec<DrawCall> {
+        let mut draw_calls: Vec<DrawCall> = Vec::new();
         let mut page = 0;
         for (chunk, bounds) in self.chunks.all().iter().zip(&self.bounds) {
             while self
@@ -47,23 +47,23 @@ impl Surface {
             {
                 page += 1;
             }
-            if !bounds.may_be_seen(&view.clip_from_world) {
+            if !bounds.intersects_frustum(&view.clip_from_world) {
                 continue;
             }
             let start = self.pages.get(page).map_or(0, |page| page.places().start);
             let (from, to) = (chunk.triangles.start - start, chunk.triangles.end - start);
-            match runs.last_mut() {
+            match draw_calls.last_mut() {
                 Some(last)
                     if last.page == page
                         && last.triangles.end == from
-                        && (joining == Joining::Any || last.material == chunk.material) =>
+                        && (batching == Batching::Any || last.material == chunk.material) =>
                 {
                     last.triangles.end = to;
                 }
-                _ => runs.push(Run {
+                _ => draw_calls.push(DrawCall {
                     page,
                     triangles: from..to,
-                    first_place: chunk.triangles.start,
+                    first_triangle: chunk.triangles.start,
                     material: chunk.material,
                     alpha: match chunk.alpha {
                         AlphaMode::Opaque => Alpha::Opaque,
@@ -74,7 +74,7 @@ impl Surface {
                 }),
             }
         }
-        runs
+        draw_calls
     }
 
     /// Whether [`Detail::Reduced`] draws fewer triangles in a picture of `view`: there are such, nothing is hidden, and
@@ -85,18 +85,18 @@ impl Surface {
     }
 
     /// The fewer triangles of each page, where there are such: not for materials.
-    pub(crate) fn reduced_runs(&self) -> Vec<Run> {
+    pub(crate) fn reduced_draw_calls(&self) -> Vec<DrawCall> {
         let reduced = self.pages.iter().enumerate();
-        let run = |(page, reduced): (usize, &Page)| {
-            Some(Run {
+        let call = |(page, reduced): (usize, &Page)| {
+            Some(DrawCall {
                 page,
                 triangles: 0..reduced.reduced()?.index_count / 3,
-                first_place: 0,
+                first_triangle: 0,
                 material: 0,
                 alpha: Alpha::Opaque,
                 detail: Detail::Reduced,
             })
         };
-        reduced.filter_map(run).collect()
+        reduced.filter_map(call).collect()
     }
 }
