@@ -3,7 +3,7 @@
 #include "lib/frame.wgsl"
 #include "lib/colour.wgsl"
 
-// `GridUniform` in crates/render/src/uniforms.rs.
+// `GridUniform` in crates/render/src/frame/uniforms.rs.
 struct Grid {
     // A crossing of strong lines near what is looked at, relative to the centre.
     middle: vec3f,

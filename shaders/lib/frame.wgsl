@@ -1,4 +1,4 @@
-// What all of a frame's shaders know: `FrameUniform` in crates/render/src/uniforms.rs.
+// What all of a frame's shaders know: `FrameUniform` in crates/render/src/frame/uniforms.rs.
 struct Frame {
     clip_from_world: mat4x4f,
     view_from_world: mat4x4f,

@@ -5,12 +5,12 @@
 
 use std::sync::Arc;
 
-use crate::draw_calls::Batching;
-use crate::guard::guarded;
+use crate::device::guard::guarded;
+use crate::device::readback::Readback;
+use crate::frame::target::cleared_depth;
 use crate::pipelines::{ID_FORMAT, Pipeline};
-use crate::readback::Readback;
 use crate::renderer::WHOLE_BACKGROUND;
-use crate::target::cleared_depth;
+use crate::surface::draw_calls::Batching;
 use crate::{Chunks, Frame, RenderError, Renderer, Samples, Target};
 
 /// The hidden target that triangle numbers are drawn into. Made to measure by [`Renderer::pick`]; keep it.

@@ -2,21 +2,21 @@
 
 use std::collections::HashMap;
 
-use crate::bindings::bind_group;
-use crate::buffers::{DynamicBuffer, filled, refill};
-use crate::draw_calls::Batching;
-use crate::environment::environment;
-use crate::guard::guarded;
-use crate::headless::is_software;
-use crate::overlay::OverlayBatch;
+use crate::device::bindings::bind_group;
+use crate::device::buffers::{DynamicBuffer, filled, refill};
+use crate::device::guard::guarded;
+use crate::device::headless::is_software;
+use crate::device::timer::Timer;
+use crate::frame::overlay::OverlayBatch;
+use crate::frame::recording::{PreparedFrame, begin_picture, matcap_of};
+use crate::frame::uniforms::{FrameUniform, GridUniform};
+use crate::materials::environment::environment;
+use crate::materials::matcap;
+use crate::materials::texture::TextureUploader;
 use crate::pipelines::Pipelines;
-use crate::recording::{PreparedFrame, begin_picture, matcap_of};
-use crate::texture::TextureUploader;
-use crate::timer::Timer;
-use crate::uniforms::{FrameUniform, GridUniform};
+use crate::surface::draw_calls::Batching;
 use crate::{
     Borders, Detail, Encoding, Frame, Matcap, Material, RenderError, Samples, Shading, Target, TextureData, Wireframe,
-    matcap,
 };
 
 /// The pipelines of one device. Make one a device and keep it.

@@ -2,11 +2,12 @@
 
 use std::borrow::Cow;
 
-use crate::bindings::bind_group;
-use crate::guard::guarded;
-use crate::headless::is_software;
-use crate::shaders::Shader;
-use crate::{RenderError, Wrap, fullscreen};
+use crate::device::bindings::bind_group;
+use crate::device::guard::guarded;
+use crate::device::headless::is_software;
+use crate::materials::fullscreen;
+use crate::pipelines::shaders::Shader;
+use crate::{RenderError, Wrap};
 
 /// An image of four bytes a pixel (alpha straight), rows from the top.
 #[derive(Debug, Clone, Copy, PartialEq)]

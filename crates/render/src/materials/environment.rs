@@ -1,11 +1,12 @@
 //! The environment light of materials: two cube maps, drawn when a material is first shown.
 
-use crate::bindings::bind_group;
-use crate::buffers::filled;
-use crate::guard::guarded;
-use crate::shaders::Shader;
-use crate::uniforms::EnvironmentUniform;
-use crate::{RenderError, Renderer, fullscreen};
+use crate::device::bindings::bind_group;
+use crate::device::buffers::filled;
+use crate::device::guard::guarded;
+use crate::frame::uniforms::EnvironmentUniform;
+use crate::materials::fullscreen;
+use crate::pipelines::shaders::Shader;
+use crate::{RenderError, Renderer};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// The prefiltered environment map: 64 pixels a side at roughness 0, down to 4 at roughness 1, as `material.wgsl` samples

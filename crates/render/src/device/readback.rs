@@ -2,7 +2,7 @@
 
 use std::sync::mpsc;
 
-use crate::guard::guarded;
+use crate::device::guard::guarded;
 use crate::{Frame, Image, RenderError, Renderer, Samples, Target};
 
 /// Pixels on their way from the device: rows padded to what the device wants.

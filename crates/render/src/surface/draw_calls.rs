@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use crate::lod::REDUCED_FROM_TRIANGLES;
-use crate::pages::Page;
 use crate::pipelines::Alpha;
+use crate::surface::lod::REDUCED_FROM_TRIANGLES;
+use crate::surface::pages::Page;
 use crate::{AlphaMode, Detail, Surface, View};
 
 /// Triangles of one page that are drawn by one call: page, places within the page, what they are made of.

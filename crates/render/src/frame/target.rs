@@ -1,6 +1,6 @@
 //! The texture a frame is drawn into, with its own depth and samples.
 
-use crate::guard::guarded;
+use crate::device::guard::guarded;
 use crate::{RenderError, Renderer};
 
 /// Samples a pixel.

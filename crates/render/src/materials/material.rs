@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::uniforms::{MapUniform, MaterialUniform};
+use crate::frame::uniforms::{MapUniform, MaterialUniform};
 
 /// A material of glTF's metallic-roughness model. New members may come: fill with `..Material::default()`.
 #[derive(Debug, Clone, Copy, PartialEq)]

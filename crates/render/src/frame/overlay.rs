@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::uniforms::{OverlayLineInstance, OverlayVertex};
+use crate::frame::uniforms::{OverlayLineInstance, OverlayVertex};
 
 /// A layer of marks, drawn after the surfaces: triangles first, then lines, each in order. What a surface hides is
 /// drawn too, fainter, so that a gizmo inside a body can be grasped.

@@ -1,6 +1,6 @@
 //! The ground.
 
-use crate::uniforms::GridUniform;
+use crate::frame::uniforms::GridUniform;
 
 /// Lines on the ground, one `step` apart, each tenth stronger; the two of the world's axes that lie in it in colour.
 /// It fades towards `reach` and is drawn from both sides.

@@ -7,12 +7,12 @@ use std::sync::OnceLock;
 use bytemuck::NoUninit;
 
 use crate::RenderError;
-use crate::buffers::{filled, refill};
-use crate::chunks::Chunks;
-use crate::edges::unique_edges;
-use crate::headless::is_software;
-use crate::lod::{REDUCED_FROM_TRIANGLES, reduced_triangles};
-use crate::uniforms::MaterialVertex;
+use crate::device::buffers::{filled, refill};
+use crate::device::headless::is_software;
+use crate::frame::uniforms::MaterialVertex;
+use crate::surface::chunks::Chunks;
+use crate::surface::edges::unique_edges;
+use crate::surface::lod::{REDUCED_FROM_TRIANGLES, reduced_triangles};
 
 /// Buffers of some of a mesh's chunks.
 #[derive(Debug)]

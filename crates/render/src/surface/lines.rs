@@ -1,10 +1,10 @@
 //! Lines on the surface: their ends stand on edges of its triangles and follow it wherever it goes.
 
-use crate::bindings::bind_group;
-use crate::buffers::filled;
-use crate::guard::guarded;
-use crate::pages::Page;
-use crate::uniforms::SurfaceLineInstance;
+use crate::device::bindings::bind_group;
+use crate::device::buffers::filled;
+use crate::device::guard::guarded;
+use crate::frame::uniforms::SurfaceLineInstance;
+use crate::surface::pages::Page;
 use crate::{RenderError, Renderer};
 
 /// A straight piece within one triangle, or along an edge.

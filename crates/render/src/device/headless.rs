@@ -1,6 +1,6 @@
 //! A device without a window.
 
-use crate::guard::one_line;
+use crate::device::guard::one_line;
 use crate::{NoGpu, Renderer};
 
 /// A renderer of its own, on the best device there is, a software one included.

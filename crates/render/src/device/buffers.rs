@@ -3,7 +3,7 @@
 use bytemuck::NoUninit;
 
 use crate::RenderError;
-use crate::guard::guarded;
+use crate::device::guard::guarded;
 
 /// A buffer with `contents`; never of size zero, since no device binds that.
 pub(crate) fn filled<T: NoUninit>(

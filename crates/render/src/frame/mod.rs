@@ -1,4 +1,13 @@
-//! What one picture shows: a view, a style, surfaces, and marks above them.
+//! What one frame shows: a view, a style, surfaces, and overlays.
+
+pub(crate) mod grid;
+pub(crate) mod image;
+pub(crate) mod overlay;
+pub(crate) mod palette;
+pub(crate) mod recording;
+pub(crate) mod target;
+pub(crate) mod uniforms;
+pub(crate) mod view;
 
 use crate::{Grid, Matcap, Overlay, Surface, View};
 

@@ -1,10 +1,10 @@
 //! A frame as commands: what is drawn in which order, and by which pipelines.
 
-use crate::draw_calls::DrawCall;
-use crate::overlay::OverlayBatch;
+use crate::frame::overlay::OverlayBatch;
+use crate::frame::target::{Attachments, cleared_depth};
 use crate::pipelines::{Alpha, Pipeline, Visibility};
-use crate::surface_line::LineSet;
-use crate::target::{Attachments, cleared_depth};
+use crate::surface::draw_calls::DrawCall;
+use crate::surface::lines::LineSet;
 use crate::{Background, Borders, Frame, Matcap, Outlines, Renderer, Samples, Shading, Surface, Wireframe};
 
 /// What a picture is drawn from, prepared on the device.

@@ -1,0 +1,251 @@
+//! A triangle mesh in GPU buffers.
+
+mod borders;
+pub(crate) mod chunks;
+pub(crate) mod data;
+pub(crate) mod draw_calls;
+mod edges;
+pub(crate) mod lines;
+mod lod;
+mod pages;
+pub(crate) mod update;
+
+use std::sync::{Arc, OnceLock};
+
+use self::chunks::{ChunkBounds, Chunks};
+use self::data::checked;
+use self::lines::LineSet;
+use self::pages::{Attributes, Page, PageLimits, page_chunks};
+use crate::device::buffers::filled;
+use crate::frame::uniforms::{MaterialVertex, SurfaceUniform};
+use crate::pipelines::MaterialAttributes;
+use crate::{ColourSpace, Detail, RenderError, Renderer, SurfaceData};
+
+/// A triangle mesh in GPU buffers; its topology is fixed, its vertices may move and change colour.
+#[derive(Debug)]
+pub struct Surface {
+    vertex_count: usize,
+    /// Kept for the borders, which are only looked for when first drawn: 12 bytes a triangle.
+    triangles: Vec<[u32; 3]>,
+    welded: Option<Vec<u32>>,
+    pub(crate) chunks: Arc<Chunks>,
+    pub(crate) bounds: Vec<ChunkBounds>,
+    pub(crate) pages: Vec<Page>,
+    material_attributes: MaterialAttributes,
+    /// The one entry of surfaces whose vertices have neither texture coordinates nor colours.
+    shared_material_vertex: wgpu::Buffer,
+    uniform_buffer: wgpu::Buffer,
+    group: wgpu::BindGroup,
+    materials: Vec<wgpu::BindGroup>,
+    /// Of each triangle, whether it is drawn; `None` is all of them.
+    pub(crate) shown: Option<Arc<Vec<bool>>>,
+    /// For each page.
+    borders: OnceLock<Vec<Option<LineSet>>>,
+    /// For each page.
+    outlines: Vec<Option<LineSet>>,
+}
+
+impl Surface {
+    /// Uploads a mesh. No triangles or no vertices is fine: it draws nothing.
+    ///
+    /// # Errors
+    /// Slices that contradict each other, numbers out of range, textures of the wrong length, memory.
+    pub fn new(renderer: &Renderer, data: &SurfaceData<'_>) -> Result<Self, RenderError> {
+        Self::paged(renderer, data, PageLimits::of(renderer.device()))
+    }
+
+    /// The same on a device that holds no more than `vertices` and `triangles` in a buffer, for trying out how a mesh
+    /// is spread over several.
+    ///
+    /// # Errors
+    /// As [`Surface::new`].
+    pub fn spread(
+        renderer: &Renderer,
+        data: &SurfaceData<'_>,
+        vertices: usize,
+        triangles: usize,
+    ) -> Result<Self, RenderError> {
+        Self::paged(renderer, data, PageLimits { vertices, triangles })
+    }
+
+    fn paged(renderer: &Renderer, data: &SurfaceData<'_>, limits: PageLimits) -> Result<Self, RenderError> {
+        checked(data)?;
+        let (device, queue) = (renderer.device(), renderer.queue());
+        let count = data.positions.len();
+        let chunks = match data.chunks {
+            Some(chunks) => Arc::clone(chunks),
+            None => Arc::new(Chunks::new(data.positions, data.triangles, data.groups, data.materials)),
+        };
+        let plain = vec![[0; 4]; if data.regions.is_some() { 0 } else { count }];
+        let material_vertices = material_vertices(data);
+        let attributes = Attributes {
+            positions: data.positions,
+            normals: data.normals,
+            regions: data.regions.unwrap_or(&plain),
+            material: material_vertices.as_deref(),
+        };
+        let pages = page_chunks(&chunks, count, limits)
+            .into_iter()
+            .map(|range| Page::new(device, queue, &chunks, range, data.triangles, &attributes))
+            .collect::<Result<Vec<_>, _>>()?;
+        let uniform = SurfaceUniform {
+            id_base: 1,
+            colours_are_linear: u32::from(data.colour_space == ColourSpace::Linear),
+            mean_edge: mean_edge(data),
+            padding: 0,
+        };
+        let uniforms = wgpu::BufferUsages::UNIFORM;
+        let uniform_buffer = filled(device, queue, "surface uniform", uniforms, &[uniform])?;
+        let group = renderer.uniform_group(&renderer.pipelines.surface_layout, &uniform_buffer)?;
+        let white = MaterialVertex {
+            uvs: [0.0; 4],
+            colour: [255; 4],
+        };
+        Ok(Self {
+            vertex_count: count,
+            triangles: data.triangles.to_vec(),
+            welded: data.welded.map(<[u32]>::to_vec),
+            bounds: chunks.all_bounds(data.positions),
+            chunks,
+            pages,
+            material_attributes: if material_vertices.is_some() {
+                MaterialAttributes::PerVertex
+            } else {
+                MaterialAttributes::Shared
+            },
+            shared_material_vertex: filled(
+                device,
+                queue,
+                "shared material vertex",
+                wgpu::BufferUsages::VERTEX,
+                &[white],
+            )?,
+            uniform_buffer,
+            group,
+            materials: renderer.material_groups(data.materials, data.textures)?,
+            shown: None,
+            borders: OnceLock::new(),
+            outlines: Vec::new(),
+        })
+    }
+
+    /// The number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.vertex_count
+    }
+
+    /// The number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Bytes that the mesh's buffers hold on the device (textures not counted).
+    pub fn gpu_bytes(&self) -> u64 {
+        self.pages.iter().map(Page::bytes).sum()
+    }
+
+    /// Over how many sets of buffers the mesh is spread.
+    pub fn page_count(&self) -> usize {
+        self.pages.len()
+    }
+
+    /// The one page of a mesh that is not spread over several.
+    pub(crate) fn whole_page(&self) -> Option<&Page> {
+        self.pages.first().filter(|page| page.is_whole())
+    }
+
+    pub(crate) fn pages(&self) -> &[Page] {
+        &self.pages
+    }
+
+    pub(crate) fn material_attributes(&self) -> MaterialAttributes {
+        self.material_attributes
+    }
+
+    pub(crate) fn material(&self, number: usize) -> Option<&wgpu::BindGroup> {
+        self.materials.get(number)
+    }
+
+    /// Which triangle is drawn where.
+    pub(crate) fn chunks(&self) -> Arc<Chunks> {
+        Arc::clone(&self.chunks)
+    }
+
+    /// Binds group 1.
+    pub(crate) fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_bind_group(1, &self.group, &[]);
+    }
+
+    /// Binds a page's shape and triangles.
+    pub(crate) fn bind_shape(&self, pass: &mut wgpu::RenderPass<'_>, page: usize, detail: Detail) {
+        let Some(page) = self.pages.get(page) else { return };
+        for (slot, buffer) in [&page.positions, &page.normals, &page.regions].into_iter().enumerate() {
+            pass.set_vertex_buffer(slot as u32, buffer.slice(..));
+        }
+        let triangles = match (detail, page.reduced()) {
+            (Detail::Reduced, Some(reduced)) => &reduced.buffer,
+            _ => &page.indices,
+        };
+        pass.set_index_buffer(triangles.slice(..), wgpu::IndexFormat::Uint32);
+    }
+
+    /// Binds a page's texture coordinates and colours.
+    pub(crate) fn bind_material_attributes(&self, pass: &mut wgpu::RenderPass<'_>, page: usize) {
+        let own = self.pages.get(page).and_then(|page| page.material.as_ref());
+        pass.set_vertex_buffer(3, own.unwrap_or(&self.shared_material_vertex).slice(..));
+    }
+
+    /// The pages' outlines, where there are any.
+    pub(crate) fn outlines(&self) -> &[Option<LineSet>] {
+        &self.outlines
+    }
+
+    /// Makes the edges unless they are there.
+    pub(crate) fn prepare_edges(&self, renderer: &Renderer) -> Result<(), RenderError> {
+        let (device, queue) = (renderer.device(), renderer.queue());
+        let is_shown = |triangle| self.is_shown(triangle);
+        self.pages
+            .iter()
+            .try_for_each(|page| page.prepare_edges(device, queue, &self.chunks, &is_shown))
+    }
+
+    /// Says which number the first triangle has in the next drawing of triangle numbers.
+    pub(crate) fn set_id_base(&self, queue: &wgpu::Queue, id_base: u32) {
+        let offset = std::mem::offset_of!(SurfaceUniform, id_base) as u64;
+        queue.write_buffer(&self.uniform_buffer, offset, bytemuck::bytes_of(&id_base));
+    }
+}
+
+/// Texture coordinates and colours side by side, where the data has any.
+fn material_vertices(data: &SurfaceData<'_>) -> Option<Vec<MaterialVertex>> {
+    if data.uvs.is_none() && data.second_uvs.is_none() && data.colours.is_none() {
+        return None;
+    }
+    let material_vertex = |vertex: usize| {
+        let [u, v] = data.uvs.map_or([0.0; 2], |uvs| uvs[vertex]);
+        let [s, t] = data.second_uvs.map_or([0.0; 2], |uvs| uvs[vertex]);
+        MaterialVertex {
+            uvs: [u, v, s, t],
+            colour: data.colours.map_or([255; 4], |colours| colours[vertex]),
+        }
+    };
+    Some((0..data.positions.len()).map(material_vertex).collect())
+}
+
+/// The mean length of an edge, from at most ten thousand triangles evenly spread: it only sets how faint a wireframe
+/// is.
+fn mean_edge(data: &SurfaceData<'_>) -> f32 {
+    let step = (data.triangles.len() / 10_000).max(1);
+    let mut sum = 0.0;
+    let mut count = 0;
+    for triangle in data.triangles.iter().step_by(step) {
+        let [a, b, c] = triangle.map(|vertex| glam::Vec3::from(data.positions[vertex as usize]));
+        for length in [a.distance(b), b.distance(c), c.distance(a)] {
+            if length.is_finite() {
+                sum += length;
+                count += 1;
+            }
+        }
+    }
+    sum / count.max(1) as f32
+}

@@ -1,0 +1,161 @@
+//! Changes to a surface in place: its shape, its colours and lines, its materials, and which triangles are shown.
+
+use std::ops::Range;
+use std::sync::{Arc, OnceLock};
+
+use super::Surface;
+use super::chunks::ChunkBounds;
+use super::lines::LineSet;
+use super::pages::Page;
+use crate::device::guard::guarded;
+use crate::{Materials, RenderError, Renderer, SurfaceLine};
+
+/// A new shape for a [`Surface`], with what can be computed beforehand on another thread.
+#[derive(Debug, Clone, Copy)]
+pub struct ShapeData<'a> {
+    /// Positions relative to the caller's centre, one a vertex.
+    pub positions: &'a [[f32; 3]],
+    /// Unit normals, one a vertex.
+    pub normals: &'a [[f32; 3]],
+    /// [`Chunks::bounds`] of every chunk at these positions.
+    pub bounds: &'a [ChunkBounds],
+}
+
+impl Surface {
+    /// Moves the vertices; seen in the next drawing.
+    ///
+    /// # Errors
+    /// [`RenderError::Length`] unless there is one position a vertex; memory.
+    pub fn update_positions(&mut self, renderer: &Renderer, positions: &[[f32; 3]]) -> Result<(), RenderError> {
+        self.update(renderer, "positions", |page| &page.positions, positions)?;
+        self.bounds = self.chunks.all_bounds(positions);
+        Ok(())
+    }
+
+    /// Moves the vertices, turns their normals and moves the chunks' boxes along.
+    ///
+    /// # Errors
+    /// As [`Surface::update_positions`].
+    pub fn update_shape(&mut self, renderer: &Renderer, shape: &ShapeData<'_>) -> Result<(), RenderError> {
+        if shape.bounds.len() != self.chunks.count() {
+            let (expected, found) = (self.chunks.count(), shape.bounds.len());
+            let what = "chunk bounds";
+            return Err(RenderError::Length { what, expected, found });
+        }
+        self.update(renderer, "positions", |page| &page.positions, shape.positions)?;
+        self.bounds.copy_from_slice(shape.bounds);
+        self.update_normals(renderer, shape.normals)
+    }
+
+    /// Turns the normals (unit vectors); seen in the next drawing.
+    ///
+    /// # Errors
+    /// As [`Surface::update_positions`].
+    pub fn update_normals(&self, renderer: &Renderer, normals: &[[f32; 3]]) -> Result<(), RenderError> {
+        self.update(renderer, "normals", |page| &page.normals, normals)
+    }
+
+    /// Sets the region colours that [`crate::Style::region_share`] shows: sRGB, and in the fourth byte how much of
+    /// the clay they replace (0 none, 255 all).
+    ///
+    /// # Errors
+    /// As [`Surface::update_positions`].
+    pub fn update_regions(&self, renderer: &Renderer, regions: &[[u8; 4]]) -> Result<(), RenderError> {
+        self.update(renderer, "region colours", |page| &page.regions, regions)
+    }
+
+    /// Sets the region colours of some ranges of vertices, taken from `regions`, which has one a vertex.
+    ///
+    /// # Errors
+    /// As [`Surface::update_positions`].
+    pub fn update_some_regions(
+        &self,
+        renderer: &Renderer,
+        regions: &[[u8; 4]],
+        ranges: &[Range<usize>],
+    ) -> Result<(), RenderError> {
+        let Some(page) = self.whole_page().filter(|_| regions.len() == self.vertex_count) else {
+            return self.update_regions(renderer, regions);
+        };
+        guarded(renderer.device(), "while uploading", || {
+            for range in ranges {
+                if let Some(some) = regions.get(range.clone()) {
+                    let start = size_of_val(&regions[..range.start]) as u64;
+                    renderer
+                        .queue()
+                        .write_buffer(&page.regions, start, bytemuck::cast_slice(some));
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Replaces the lines that [`crate::Outlines::On`] draws, later ones over earlier ones.
+    ///
+    /// # Errors
+    /// [`RenderError::NoSuch`] for a vertex that does not exist; memory.
+    pub fn update_lines(&mut self, renderer: &Renderer, lines: &[SurfaceLine]) -> Result<(), RenderError> {
+        let mut vertices = lines.iter().flat_map(|line| line.ends).flat_map(|end| end.vertices);
+        let count = self.vertex_count;
+        if let Some(vertex) = vertices.find(|&vertex| vertex as usize >= count) {
+            let (what, number) = ("vertex", vertex as usize);
+            return Err(RenderError::NoSuch { what, number, count });
+        }
+        let sets = (self.pages.iter()).map(|page| LineSet::new(renderer, page, lines.iter().copied(), 0.0));
+        self.outlines = sets.collect::<Result<_, _>>()?;
+        Ok(())
+    }
+
+    /// Draws only some of the triangles, a flag each; `None` draws them all. What is not drawn is not picked either.
+    ///
+    /// # Errors
+    /// [`RenderError::Length`] unless there is one flag a triangle; memory.
+    pub fn show(&mut self, renderer: &Renderer, shown: Option<Arc<Vec<bool>>>) -> Result<(), RenderError> {
+        if let Some(flags) = shown.as_ref().filter(|flags| flags.len() != self.triangles.len()) {
+            let (what, expected, found) = ("shown triangles", self.triangles.len(), flags.len());
+            return Err(RenderError::Length { what, expected, found });
+        }
+        let is_shown = |triangle: u32| shown.as_ref().is_none_or(|shown| shown[triangle as usize]);
+        for page in &mut self.pages {
+            page.show(renderer.device(), renderer.queue(), &self.chunks, &is_shown)?;
+        }
+        self.borders = OnceLock::new();
+        self.shown = shown;
+        Ok(())
+    }
+
+    pub(super) fn is_shown(&self, triangle: u32) -> bool {
+        self.shown.as_ref().is_none_or(|shown| shown[triangle as usize])
+    }
+
+    /// Gives the surface other materials: as many as it was made with, with the same alpha.
+    ///
+    /// # Errors
+    /// [`RenderError::Length`] for another number of materials.
+    pub fn set_materials(&mut self, materials: Materials) -> Result<(), RenderError> {
+        if materials.groups.len() != self.materials.len() {
+            let [expected, found] = [&self.materials, &materials.groups].map(|groups| groups.len() - 1);
+            let what = "materials";
+            return Err(RenderError::Length { what, expected, found });
+        }
+        self.materials = materials.groups;
+        Ok(())
+    }
+
+    fn update<T: bytemuck::NoUninit>(
+        &self,
+        renderer: &Renderer,
+        what: &'static str,
+        buffer: impl Fn(&Page) -> &wgpu::Buffer,
+        contents: &[T],
+    ) -> Result<(), RenderError> {
+        if contents.len() != self.vertex_count {
+            let (expected, found) = (self.vertex_count, contents.len());
+            return Err(RenderError::Length { what, expected, found });
+        }
+        for page in &self.pages {
+            page.refill(renderer.device(), renderer.queue(), buffer(page), contents)?;
+        }
+        Ok(())
+    }
+}
