@@ -1,15 +1,15 @@
-//! Drawing with wgpu: slices of numbers in, a texture or picked triangle numbers out.
+//! Rendering with wgpu: slices of numbers go in, a texture or picked triangle ids come out.
 //!
-//! A [`Renderer`] owns the pipelines of one device. A [`Surface`] is a triangle mesh in GPU buffers, made from a
-//! [`SurfaceData`] of slices and updated in place while it moves. A [`Frame`] says what to draw and how it is seen;
-//! [`Renderer::draw`] draws it into a [`Target`], a texture of our own that a window shows as an image, and
-//! [`Renderer::draw_to_image`] draws the very same frame into bytes. [`Renderer::pick`] answers which triangles lie
-//! under a rectangle of pixels. [`Headless`] is a renderer that needs no window.
+//! A [`Renderer`] owns the pipelines of one device. A [`Surface`] is a triangle mesh in GPU buffers, made from the slices
+//! of a [`SurfaceData`] and updated in place while it moves. A [`Frame`] says what to draw and from where.
+//! [`Renderer::draw`] draws it into a [`Target`], an offscreen texture that a window shows as an image;
+//! [`Renderer::draw_to_image`] draws the same frame into memory. [`Renderer::pick`] finds the triangles in a rectangle of
+//! pixels. [`Headless`] is a renderer without a window.
 //!
-//! "World" here is *relative to a centre that the caller subtracts in f64*: scans stand at geographic coordinates
-//! where f32 has no digits left. Depth is reversed: 1 at the near plane, 0 far away.
+//! World space here is *relative to a centre that the caller subtracts in f64*, because scans can have geographic
+//! coordinates, for which f32 is too coarse. Depth is reversed: 1 at the near plane, 0 at infinity.
 //!
-//! Invariant: no mesh type, no solver, no egui, no camera, no files.
+//! Invariant: this crate knows no mesh type, no solver, no egui, no camera and no files.
 
 mod device;
 mod frame;

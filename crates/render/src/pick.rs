@@ -1,7 +1,7 @@
-//! Which triangles lie under the pointer: the frame's surfaces drawn once more, with triangle numbers for colours.
+//! Picking: the frame's surfaces are drawn into an id buffer, with triangle ids in place of colours.
 //!
-//! A ray against a tree on the processor is faster for a single point; this answers for rectangles (what a lasso may
-//! take is what is *seen*), and with exactly what the picture shows, since both share their vertex shader.
+//! For a single point, a ray against a bounding volume hierarchy on the CPU is faster. This answers for rectangles (a
+//! lasso selects only what is *visible*), and agrees exactly with the picture because both share their vertex shader.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::renderer::WHOLE_BACKGROUND;
 use crate::surface::draw_calls::Batching;
 use crate::{Chunks, Frame, RenderError, Renderer, Samples, Target};
 
-/// The hidden target that triangle numbers are drawn into. Made to measure by [`Renderer::pick`]; keep it.
+/// The id buffer. [`Renderer::pick`] resizes it as needed; keep it between picks.
 #[derive(Debug, Default)]
 pub struct IdTarget {
     attachments: Option<IdAttachments>,
@@ -30,9 +30,9 @@ struct IdAttachments {
 /// A rectangle of pixels, from the upper left corner of the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct PixelRect {
-    /// Left border, in pixels.
+    /// Left edge, in pixels.
     pub x: u32,
-    /// Upper border, in pixels.
+    /// Top edge, in pixels.
     pub y: u32,
     /// Width in pixels.
     pub width: u32,
@@ -40,38 +40,38 @@ pub struct PixelRect {
     pub height: u32,
 }
 
-/// The triangle seen in a pixel.
+/// The triangle that is visible in a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Picked {
-    /// Number of the surface among those of the frame.
+    /// Index of the surface in the frame.
     pub surface: u32,
-    /// Number of its triangle.
+    /// Index of the triangle in the surface.
     pub triangle: u32,
 }
 
-/// What a pick found: one entry a pixel, rows from the top.
+/// The result of a pick: one entry per pixel, rows from the top.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PickedIds {
-    /// The rectangle, cut to the picture.
+    /// The rectangle, clipped to the picture.
     pub rect: PixelRect,
-    /// `width · height` entries; `None` where no surface is seen.
+    /// `width · height` entries; `None` where no surface is visible.
     pub ids: Vec<Option<Picked>>,
 }
 
-/// A pick whose answer is on its way.
+/// A pick whose result is being read back.
 #[derive(Debug)]
 pub struct PickRequest {
     rect: PixelRect,
-    /// The triangle number, plus 1, that follows each surface's last one.
+    /// For each surface, one past its last id. Ids start at 1; 0 means no triangle.
     ends: Vec<u32>,
-    /// For each surface, which triangle is drawn where.
+    /// For each surface, its draw order.
     chunks: Vec<Arc<Chunks>>,
-    /// None where the rectangle has no pixel.
+    /// `None` if the rectangle is empty.
     readback: Option<Readback>,
 }
 
 impl IdTarget {
-    /// An empty one.
+    /// An empty target.
     pub fn new() -> Self {
         Self::default()
     }
@@ -121,7 +121,7 @@ impl IdAttachments {
 }
 
 impl PixelRect {
-    /// All of a picture of this width and height.
+    /// The whole of a picture of this width and height.
     pub const fn whole([width, height]: [u32; 2]) -> Self {
         Self {
             x: 0,
@@ -131,7 +131,7 @@ impl PixelRect {
         }
     }
 
-    /// One pixel.
+    /// A single pixel.
     pub fn pixel(x: u32, y: u32) -> Self {
         Self {
             x,
@@ -141,8 +141,8 @@ impl PixelRect {
         }
     }
 
-    /// The part inside a picture of `size_px`.
-    fn cut_to(self, size_px: [u32; 2]) -> Self {
+    /// The rectangle clipped to a picture of `size_px`.
+    fn clipped_to(self, size_px: [u32; 2]) -> Self {
         let (x, y) = (self.x.min(size_px[0]), self.y.min(size_px[1]));
         Self {
             x,
@@ -154,11 +154,11 @@ impl PixelRect {
 }
 
 impl Renderer {
-    /// Asks which triangles a frame of `size_px` shows in `rect` (cut to the picture), without waiting. Overlays do
-    /// not count, and neither do holes that a material's alpha cuts.
+    /// Starts finding the triangles that a frame of `size_px` shows in `rect` (clipped to the picture), without waiting.
+    /// Overlays and alpha masks are ignored.
     ///
     /// # Errors
-    /// [`RenderError::NoTriangleNumbers`] on a device that lacks them, [`RenderError::PictureTooLarge`], and as
+    /// [`RenderError::NoTriangleNumbers`] on a device without the primitive index, [`RenderError::PictureTooLarge`], and as
     /// [`Renderer::draw`].
     pub fn pick(
         &mut self,
@@ -167,7 +167,7 @@ impl Renderer {
         rect: PixelRect,
         frame: &Frame<'_>,
     ) -> Result<PickRequest, RenderError> {
-        let rect = rect.cut_to(size_px);
+        let rect = rect.clipped_to(size_px);
         let (mut bases, mut ends) = (Vec::new(), Vec::new());
         let chunks: Vec<_> = frame.surfaces.iter().map(|surface| surface.chunks()).collect();
         let mut next = 1_u32;
@@ -249,7 +249,7 @@ fn begin_ids<'a>(encoder: &'a mut wgpu::CommandEncoder, attachments: &IdAttachme
 }
 
 impl PickRequest {
-    /// The answer if it has arrived, without waiting. Answers once.
+    /// The result if it has arrived; does not wait. Returns it only once.
     pub fn poll(&mut self, renderer: &Renderer) -> Option<Result<PickedIds, RenderError>> {
         let bytes = match &self.readback {
             Some(readback) => readback.poll(renderer)?,
@@ -258,10 +258,10 @@ impl PickRequest {
         Some(bytes.map(|bytes| self.decoded(&bytes)))
     }
 
-    /// The answer, waiting for it.
+    /// Waits for the result.
     ///
     /// # Errors
-    /// [`RenderError::Lost`] when the device does not answer.
+    /// [`RenderError::Lost`] if the device does not respond.
     pub fn wait(self, renderer: &Renderer) -> Result<PickedIds, RenderError> {
         let bytes = match &self.readback {
             Some(readback) => readback.wait(renderer)?,
@@ -317,7 +317,7 @@ mod tests {
 
     #[test]
     fn a_rectangle_is_cut_to_the_picture() {
-        let cut = |x, y, width, height| PixelRect { x, y, width, height }.cut_to([10, 8]);
+        let cut = |x, y, width, height| PixelRect { x, y, width, height }.clipped_to([10, 8]);
         assert_eq!(
             cut(2, 3, 4, 4),
             PixelRect {

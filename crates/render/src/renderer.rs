@@ -1,4 +1,4 @@
-//! The renderer: what one device needs to draw, made when it is first needed, and the drawing of a frame.
+//! The renderer: the resources of one device, created on first use, and drawing a frame.
 
 use std::collections::HashMap;
 
@@ -19,7 +19,7 @@ use crate::{
     Borders, Detail, Encoding, Frame, Matcap, Material, RenderError, Samples, Shading, Target, TextureData, Wireframe,
 };
 
-/// The pipelines of one device. Make one a device and keep it.
+/// The pipelines and shared resources of one device. Create one per device and keep it.
 #[derive(Debug)]
 pub struct Renderer {
     device: wgpu::Device,
@@ -38,14 +38,14 @@ pub struct Renderer {
     timer: Option<Timer>,
 }
 
-/// Where a tile of a picture stands in it: the share of the background below it, and its own share.
+/// The background span of a whole picture. A tile's span is the fraction of the background below it and its own fraction.
 pub(crate) const WHOLE_BACKGROUND: [f32; 2] = [0.0, 1.0];
 
 impl Renderer {
-    /// A renderer on a device (best asked for with [`crate::device_descriptor`]).
+    /// A renderer on a device, ideally one opened with [`crate::device_descriptor`].
     ///
     /// # Errors
-    /// [`RenderError::Refused`] or [`RenderError::OutOfMemory`] when the device does not take our shaders or buffers.
+    /// [`RenderError::Refused`] or [`RenderError::OutOfMemory`] if the device rejects a shader or a buffer.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, RenderError> {
         let pipelines = guarded(device, "while starting to draw", || Ok(Pipelines::new(device)))?;
         let textures = guarded(device, "while starting to draw", || {
@@ -97,27 +97,27 @@ impl Renderer {
         &self.queue
     }
 
-    /// The device's name, for a person.
+    /// The device's name, to be shown to the user.
     pub fn device_name(&self) -> String {
         self.device.adapter_info().name
     }
 
-    /// Whether the device is the processor itself, so that drawing is slow: take [`crate::Samples::One`] while
-    /// something moves.
+    /// Whether the device is a software renderer on the CPU. Drawing is slow there, so use [`crate::Samples::One`] during
+    /// interaction.
     pub fn is_software(&self) -> bool {
         is_software(&self.device)
     }
 
-    /// How long the device worked on a drawing of late, in milliseconds by its own clock; `None` before the first
-    /// answer and where it has no clock.
+    /// GPU time of a recent frame in milliseconds; `None` before the first measurement and on devices without timestamp
+    /// queries.
     pub fn device_ms(&self) -> Option<f64> {
         self.timer.as_ref()?.last_ms()
     }
 
-    /// Waits until everything that was submitted is done.
+    /// Waits until all submitted work is done.
     ///
     /// # Errors
-    /// [`RenderError::Lost`] when the device does not answer.
+    /// [`RenderError::Lost`] if the device does not respond.
     pub fn finish(&mut self) -> Result<(), RenderError> {
         let lost = RenderError::Lost { doing: "drawing" };
         self.device
@@ -129,10 +129,10 @@ impl Renderer {
         Ok(())
     }
 
-    /// Draws a frame into a target and submits it, without waiting; an empty target draws nothing.
+    /// Draws a frame into a target without waiting. Does nothing if the target is empty.
     ///
     /// # Errors
-    /// Memory, or a device that refuses; the target then shows what it showed before or part of the frame.
+    /// Out of memory, or the device rejects a command; the target then shows its old contents or part of the frame.
     pub fn draw(&mut self, target: &Target, frame: &Frame<'_>) -> Result<(), RenderError> {
         self.draw_part(target, frame, WHOLE_BACKGROUND)
     }
@@ -167,7 +167,7 @@ impl Renderer {
         })
     }
 
-    /// Makes and uploads whatever the frame needs.
+    /// Creates and uploads what the frame needs.
     fn prepare<'a>(&mut self, frame: &'a Frame<'a>, samples: Samples) -> Result<PreparedFrame<'a>, RenderError> {
         let overlays = OverlayBatch::of(frame.overlays);
         self.overlay_triangles
@@ -273,7 +273,7 @@ impl Renderer {
         &self.frame_group
     }
 
-    /// A bind group of one uniform buffer.
+    /// A bind group with one uniform buffer.
     pub(crate) fn uniform_group(
         &self,
         layout: &wgpu::BindGroupLayout,
@@ -284,7 +284,7 @@ impl Renderer {
         })
     }
 
-    /// A bind group for each of the given materials, and for the default one after them.
+    /// One bind group per material, then that of the default material.
     pub(crate) fn material_groups(
         &self,
         materials: &[Material],
@@ -300,7 +300,7 @@ impl Renderer {
         groups.map(|material| self.material_group(material, &views)).collect()
     }
 
-    /// A bind group of a material and its images (white ones in place of those that it lacks).
+    /// The bind group of a material; a white texture stands in for each missing map.
     fn material_group(&self, material: &Material, views: &[wgpu::TextureView]) -> Result<wgpu::BindGroup, RenderError> {
         let usage = wgpu::BufferUsages::UNIFORM;
         let uniform = filled(

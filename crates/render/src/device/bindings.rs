@@ -1,6 +1,6 @@
-//! Bind groups whose bindings are numbered from 0.
+//! Bind groups whose bindings are numbered consecutively from 0.
 
-/// A bind group of `resources` in order.
+/// A bind group of `resources`, in binding order.
 pub(crate) fn bind_group(
     device: &wgpu::Device,
     label: &str,

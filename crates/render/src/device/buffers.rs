@@ -1,11 +1,11 @@
-//! Buffers with contents, or a refusal that names size and limit.
+//! Filled GPU buffers; a buffer over the device's limit is an error that names both sizes.
 
 use bytemuck::NoUninit;
 
 use crate::RenderError;
 use crate::device::guard::guarded;
 
-/// A buffer with `contents`; never of size zero, since no device binds that.
+/// A buffer filled with `contents`; at least 16 bytes, because empty buffers can't be bound.
 pub(crate) fn filled<T: NoUninit>(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -22,7 +22,7 @@ pub(crate) fn filled<T: NoUninit>(
             limit,
         });
     }
-    // Making and filling are two steps, so that a buffer for which there is no memory is never written to.
+    // Create and fill in two steps, so that a buffer whose allocation failed is never written to.
     let buffer = guarded(device, "while making buffers", || {
         Ok(device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(what),
@@ -35,7 +35,7 @@ pub(crate) fn filled<T: NoUninit>(
     Ok(buffer)
 }
 
-/// Replaces the start of a buffer by `contents`, which must fit.
+/// Writes `contents`, which must fit, to the start of a buffer.
 pub(crate) fn refill<T: NoUninit>(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -51,7 +51,7 @@ pub(crate) fn refill<T: NoUninit>(
     })
 }
 
-/// A buffer that is filled anew for each drawing and grows when it must.
+/// A vertex buffer that is refilled for each frame and grows when it must.
 #[derive(Debug)]
 pub(crate) struct DynamicBuffer {
     what: &'static str,
@@ -59,12 +59,11 @@ pub(crate) struct DynamicBuffer {
 }
 
 impl DynamicBuffer {
-    /// An empty one.
     pub(crate) fn new(what: &'static str) -> Self {
         Self { what, buffer: None }
     }
 
-    /// Its new contents; the buffer is there unless they are empty.
+    /// Replaces the contents.
     pub(crate) fn fill<T: NoUninit>(
         &mut self,
         device: &wgpu::Device,

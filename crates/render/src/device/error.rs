@@ -1,6 +1,6 @@
-//! What can go wrong, each in one sentence that names the culprit and the remedy.
+//! Errors. Each message is one sentence that names the cause and the remedy.
 
-/// No device to draw with.
+/// Why there is no device to draw with.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoGpu {
     /// No adapter of any backend, not even a software one.
@@ -11,10 +11,10 @@ pub enum NoGpu {
     Refused {
         /// The adapter's name.
         name: String,
-        /// What it said, in one line.
+        /// The driver's message, in one line.
         reason: String,
     },
-    /// The device was opened, but our pipelines could not be made on it.
+    /// The device was opened, but creating the renderer on it failed.
     #[error("drawing can't start on the graphics device {name}: {reason}")]
     Unusable {
         /// The adapter's name.
@@ -24,10 +24,10 @@ pub enum NoGpu {
     },
 }
 
-/// A drawing or an upload that failed; what was drawn before still stands.
+/// Why drawing or uploading failed; what was drawn before is still there.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum RenderError {
-    /// A slice whose length contradicts the number of vertices.
+    /// A slice whose length differs from the number of vertices.
     #[error("{what}: {found} entries for {expected} vertices; give one entry a vertex")]
     Length {
         /// Which slice.
@@ -37,30 +37,30 @@ pub enum RenderError {
         /// The slice's length.
         found: usize,
     },
-    /// A triangle that names a vertex which does not exist.
+    /// A triangle with a vertex index out of range.
     #[error("triangle {triangle} names vertex {vertex}, but there are only {vertices} vertices")]
     NoSuchVertex {
         /// The triangle's number.
         triangle: usize,
-        /// The vertex it names.
+        /// The vertex index.
         vertex: u32,
         /// The number of vertices.
         vertices: usize,
     },
-    /// A group, material or texture number out of range.
+    /// A group, material or texture index out of range.
     #[error("{what} {number} does not exist, there are {count}")]
     NoSuch {
-        /// What is numbered.
+        /// What is indexed.
         what: &'static str,
-        /// The number given.
+        /// The index.
         number: usize,
         /// How many there are.
         count: usize,
     },
-    /// An image whose bytes contradict its size.
+    /// An image whose number of bytes does not match its size.
     #[error("texture {texture} of {width} by {height} pixels has {found} bytes; four a pixel are needed")]
     TextureBytes {
-        /// The texture's number.
+        /// The texture's index.
         texture: usize,
         /// Its width in pixels.
         width: u32,
@@ -74,48 +74,48 @@ pub enum RenderError {
     TooLarge {
         /// What the buffer holds.
         what: &'static str,
-        /// Bytes needed.
+        /// The buffer's size in bytes.
         bytes: u64,
         /// The device's limit in bytes.
         limit: u64,
     },
-    /// A picture larger than memory, or a view larger than the device can draw.
+    /// A picture that does not fit in memory, or a view beyond the device's texture limit.
     #[error("a picture of {width} by {height} pixels is too large for this device; ask for a smaller one")]
     PictureTooLarge {
-        /// Width asked for, in pixels.
+        /// Requested width in pixels.
         width: u32,
-        /// Height asked for, in pixels.
+        /// Requested height in pixels.
         height: u32,
     },
     /// A picture without pixels.
     #[error("a picture needs at least one pixel a side, not {width} by {height}")]
     EmptyPicture {
-        /// Width asked for, in pixels.
+        /// Requested width in pixels.
         width: u32,
-        /// Height asked for, in pixels.
+        /// Requested height in pixels.
         height: u32,
     },
-    /// The device can't number triangles, so nothing can be picked through it.
+    /// The device lacks the primitive index in shaders, which picking needs.
     #[error("this graphics device can't number triangles; pick with a ray instead")]
     NoTriangleNumbers,
-    /// Out of memory on the device.
+    /// The device is out of memory.
     #[error("the graphics device ran out of memory {doing}; close other programs or open a smaller mesh")]
     OutOfMemory {
-        /// What we were doing.
+        /// What the renderer was doing.
         doing: &'static str,
     },
-    /// The device was lost or could not answer.
+    /// The device was lost or does not respond.
     #[error("the graphics device stopped answering while {doing}; reopen the view")]
     Lost {
-        /// What we were doing.
+        /// What the renderer was doing.
         doing: &'static str,
     },
-    /// The device refused a command: a fault of ours.
+    /// The device rejected a command, which is a bug in this crate.
     #[error("the graphics device refused a command {doing}: {reason}")]
     Refused {
-        /// What we were doing.
+        /// What the renderer was doing.
         doing: &'static str,
-        /// The device's words.
+        /// The device's message.
         reason: String,
     },
 }

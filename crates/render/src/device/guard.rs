@@ -1,9 +1,9 @@
-//! Device errors as results: everything that asks something of the device runs inside error scopes.
+//! Device errors as results: every use of the device runs inside error scopes.
 
 use crate::RenderError;
 
-/// Runs `work` inside error scopes of `device`; whatever the device refuses in it becomes an error that says what
-/// we were `doing` ("while drawing").
+/// Runs `work` inside error scopes of `device`. A device error becomes a [`RenderError`] whose message says what the
+/// renderer was `doing` ("while drawing").
 pub(crate) fn guarded<T>(
     device: &wgpu::Device,
     doing: &'static str,
@@ -13,7 +13,7 @@ pub(crate) fn guarded<T>(
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let result = work();
-    // Scopes are popped in the reverse order; on native systems their futures are ready at once.
+    // Scopes are popped in reverse order. On native platforms the futures are ready at once.
     let refused = pollster::block_on(validation.pop()).or(pollster::block_on(internal.pop()));
     let out_of_memory = pollster::block_on(memory.pop());
     if out_of_memory.is_some() {
@@ -28,7 +28,7 @@ pub(crate) fn guarded<T>(
     result
 }
 
-/// A device's multi-line report as one line.
+/// A multi-line message as one line.
 pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -3,7 +3,7 @@
 use crate::device::guard::one_line;
 use crate::{NoGpu, Renderer};
 
-/// A renderer of its own, on the best device there is, a software one included.
+/// A renderer on the best available device, which may be a software one.
 #[derive(Debug)]
 pub struct Headless {
     /// The renderer; draw with [`Renderer::draw_to_image`].
@@ -14,7 +14,7 @@ impl Headless {
     /// Opens a device of any backend (`WGPU_BACKEND` and `WGPU_ADAPTER_NAME` choose one).
     ///
     /// # Errors
-    /// [`NoGpu`], in one sentence, when there is none or it can't be used.
+    /// [`NoGpu`] when there is no device or it can't be used.
     pub fn new() -> Result<Self, NoGpu> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let adapter = pollster::block_on(adapter(&instance)).ok_or(NoGpu::NoAdapter)?;
@@ -51,8 +51,8 @@ async fn adapter(instance: &wgpu::Instance) -> Option<wgpu::Adapter> {
     None
 }
 
-/// What to ask of an adapter so that everything here works: its own limits (the defaults cap buffers at 256 MiB),
-/// and those of its features that we can use. A window's device should be asked for with this, too.
+/// The device descriptor for an adapter: the adapter's own limits (the defaults cap buffers at 256 MiB) and those optional
+/// features that the renderer can use. A window should request its device with this descriptor, too.
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let useful = wgpu::Features::PRIMITIVE_INDEX | wgpu::Features::TIMESTAMP_QUERY;
     wgpu::DeviceDescriptor {
@@ -63,7 +63,7 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
     }
 }
 
-/// Whether a device is the processor itself.
+/// Whether the device is a software renderer on the CPU.
 pub(crate) fn is_software(device: &wgpu::Device) -> bool {
     device.adapter_info().device_type == wgpu::DeviceType::Cpu
 }

@@ -1,11 +1,11 @@
-//! Textures read back into memory.
+//! Reading textures back into memory.
 
 use std::sync::mpsc;
 
 use crate::device::guard::guarded;
 use crate::{Frame, Image, RenderError, Renderer, Samples, Target};
 
-/// Pixels on their way from the device: rows padded to what the device wants.
+/// Pixels on their way from the device; rows are padded to wgpu's copy alignment.
 #[derive(Debug)]
 pub(crate) struct Readback {
     buffer: wgpu::Buffer,
@@ -14,11 +14,11 @@ pub(crate) struct Readback {
     mapped: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
 }
 
-/// Both of our formats have four bytes a pixel.
+/// Bytes per pixel of both the colour and the id format.
 const PIXEL_BYTES: u32 = 4;
 
 impl Readback {
-    /// Adds a copy of part of a texture to `encoder` and submits it; `origin` and `size_px` lie inside the texture.
+    /// Encodes a copy of part of a texture and submits `encoder`; the part must lie inside the texture.
     pub(crate) fn submit(
         renderer: &Renderer,
         mut encoder: wgpu::CommandEncoder,
@@ -59,7 +59,7 @@ impl Readback {
         renderer.queue().submit([encoder.finish()]);
         let (sender, mapped) = mpsc::channel();
         buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-            // Nobody listens any more when the request was dropped: that is fine.
+            // The receiver is gone when the request was dropped, which is fine.
             let _ = sender.send(result);
         });
         Self {
@@ -70,9 +70,9 @@ impl Readback {
         }
     }
 
-    /// The pixels' bytes if they have arrived.
+    /// The pixels if they have arrived; does not wait.
     pub(crate) fn poll(&self, renderer: &Renderer) -> Option<Result<Vec<u8>, RenderError>> {
-        // An error means that the device is lost; then the channel says so below.
+        // An error means that the device is lost, which the channel reports below.
         let _ = renderer.device().poll(wgpu::PollType::Poll);
         match self.mapped.try_recv() {
             Ok(result) => Some(self.bytes(result)),
@@ -81,7 +81,7 @@ impl Readback {
         }
     }
 
-    /// The pixels' bytes, waiting for them.
+    /// Waits for the pixels.
     pub(crate) fn wait(&self, renderer: &Renderer) -> Result<Vec<u8>, RenderError> {
         renderer
             .device()
@@ -108,10 +108,10 @@ const LOST: RenderError = RenderError::Lost {
 };
 
 impl Renderer {
-    /// Reads a target back, waiting for it; `None` while it is empty.
+    /// Reads a target back and waits for it; `None` while the target is empty.
     ///
     /// # Errors
-    /// Memory, or a device that stopped answering.
+    /// Out of memory, or the device does not respond.
     pub fn read(&self, target: &Target) -> Result<Option<Image>, RenderError> {
         let Some(attachments) = target.attachments() else {
             return Ok(None);
@@ -119,10 +119,10 @@ impl Renderer {
         self.read_texture(&attachments.colour).map(Some)
     }
 
-    /// Reads a texture of four bytes a pixel back, waiting for it; it must be one of this device, and allow copying.
+    /// Reads back a texture of this device with four bytes per pixel and usage `COPY_SRC`, and waits for it.
     ///
     /// # Errors
-    /// Memory, or a device that stopped answering or does not take the texture.
+    /// Out of memory, or the device does not respond or rejects the texture.
     pub fn read_texture(&self, texture: &wgpu::Texture) -> Result<Image, RenderError> {
         let (width, height) = (texture.width(), texture.height());
         let readback = guarded(self.device(), "while reading a picture back", || {
@@ -133,8 +133,8 @@ impl Renderer {
         Ok(Image { width, height, rgba })
     }
 
-    /// Draws a frame into memory, waiting for it. A picture larger than 2048 pixels a side is drawn in tiles, so that
-    /// neither the device's largest texture nor its memory bounds it.
+    /// Draws a frame into memory and waits for it. Pictures larger than 2048 pixels a side are drawn in tiles, so neither
+    /// the device's texture limit nor its memory limits their size.
     ///
     /// # Errors
     /// [`RenderError::EmptyPicture`], [`RenderError::OutOfMemory`] and as [`Renderer::draw`].
@@ -147,7 +147,7 @@ impl Renderer {
         self.draw_tiled(size_px, samples, frame, TILE_PX)
     }
 
-    /// The same with tiles of another size, for trying out that they join.
+    /// [`Renderer::draw_to_image`] with another tile size, to test that tiles join without a seam.
     ///
     /// # Errors
     /// As [`Renderer::draw_to_image`].
@@ -175,7 +175,7 @@ impl Renderer {
                 let part_px = [side.min(width - x), side.min(height - y)];
                 target.resize(self, part_px, samples)?;
                 let view = frame.view.tile(size_px, [x, y], part_px);
-                // The background rises from the picture's lower border.
+                // The background gradient runs upwards from the picture's lower edge.
                 let below = f64::from(height - y - part_px[1]) / f64::from(height);
                 let span = [below as f32, (f64::from(part_px[1]) / f64::from(height)) as f32];
                 self.draw_part(&target, &Frame { view: &view, ..*frame }, span)?;
@@ -191,5 +191,5 @@ impl Renderer {
     }
 }
 
-/// The largest side of a picture that is drawn at once: four samples of it need 130 MB.
+/// The largest side of a tile in pixels; four samples per pixel of it need 130 MB.
 const TILE_PX: u32 = 2048;

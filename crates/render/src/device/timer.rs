@@ -1,24 +1,24 @@
-//! How long the device works on a drawing, by its own clock, without waiting for it.
+//! GPU time of a frame, measured by timestamp queries without waiting.
 
 use std::sync::{Arc, OnceLock};
 
-/// Two time stamps around a pass, read back when they arrive.
+/// Timestamps at the beginning and end of a pass, read back asynchronously.
 #[derive(Debug)]
 pub(crate) struct Timer {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
     readback: wgpu::Buffer,
-    /// Set when the stamps have arrived: whether they can be read.
+    /// Set once the readback buffer is mapped: whether mapping succeeded.
     pending: Option<Arc<OnceLock<bool>>>,
     ms_per_tick: f64,
     last_ms: Option<f64>,
 }
 
-/// Two stamps of eight bytes.
+/// Size of two timestamps.
 const BYTES: u64 = 16;
 
 impl Timer {
-    /// A timer, where the device has a clock.
+    /// A timer, if the device supports timestamp queries.
     pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Option<Self> {
         if !device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             return None;
@@ -45,7 +45,7 @@ impl Timer {
         })
     }
 
-    /// What a pass writes, unless the last stamps are still on their way.
+    /// The timestamp writes of a pass; `None` while the previous timestamps are still being read back.
     pub(crate) fn writes(&mut self, device: &wgpu::Device) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
         self.collect(device, wgpu::PollType::Poll);
         self.pending.is_none().then_some(wgpu::RenderPassTimestampWrites {
@@ -55,31 +55,31 @@ impl Timer {
         })
     }
 
-    /// Adds the read-back behind a pass that wrote stamps.
+    /// Encodes the readback after a pass that wrote timestamps.
     pub(crate) fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.resolve_query_set(&self.queries, 0..2, &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readback, 0, BYTES);
     }
 
-    /// The commands with the stamps were submitted.
+    /// Starts mapping, once the commands with the timestamps were submitted.
     pub(crate) fn submitted(&mut self) {
         let arrived = Arc::new(OnceLock::new());
         let arriving = Arc::clone(&arrived);
         self.readback.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-            // Nobody else sets it.
+            // Only this callback sets it.
             let _ = arriving.set(result.is_ok());
         });
         self.pending = Some(arrived);
     }
 
-    /// Milliseconds of the last drawing whose stamps have arrived.
+    /// GPU time in milliseconds of the last frame whose timestamps have arrived.
     pub(crate) fn last_ms(&self) -> Option<f64> {
         self.last_ms
     }
 
     pub(crate) fn collect(&mut self, device: &wgpu::Device, poll: wgpu::PollType) {
         let Some(pending) = &self.pending else { return };
-        // An error means that the device is lost: drawing says so.
+        // An error means that the device is lost, which drawing reports.
         let _ = device.poll(poll);
         let Some(&is_readable) = pending.get() else { return };
         self.pending = None;

@@ -1,24 +1,24 @@
-//! The ground.
+//! The ground grid.
 
 use crate::frame::uniforms::GridUniform;
 
-/// Lines on the ground, one `step` apart, each tenth stronger; the two of the world's axes that lie in it in colour.
-/// It fades towards `reach` and is drawn from both sides.
+/// A ground grid with lines `step` apart, every tenth stronger, and the two world axes in colour. It fades out towards
+/// `reach` and is drawn from both sides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
-    /// A crossing of strong lines near what is looked at (relative to the centre).
+    /// A crossing of strong lines near the camera's target (relative to the centre).
     pub middle: [f32; 3],
-    /// Directions of the lines, unit vectors at right angles.
+    /// Directions of the lines: orthogonal unit vectors.
     pub along: [[f32; 3]; 2],
     /// World units between lines.
     pub step: f32,
-    /// World units from the middle to where nothing is left of it.
+    /// Distance from the middle, in world units, at which the grid has faded out.
     pub reach: f32,
-    /// How strong the lines between the tenths are, 0 to 1: let it fall before the step becomes ten times as wide.
+    /// Strength of the lines between the tenths, 0 to 1. Fade it out before `step` grows tenfold.
     pub fine_share: f32,
     /// Where the world's axes cross, in steps from the middle along each direction.
     pub axes: [f32; 2],
-    /// Colour of the lines, sRGB with straight alpha.
+    /// Line colour, sRGB with straight alpha.
     pub colour: [u8; 4],
     /// Colours of the axes along each direction.
     pub axis_colours: [[u8; 4]; 2],

@@ -1,6 +1,6 @@
-//! A picture in memory.
+//! An image in memory.
 
-/// A picture of four sRGB bytes a pixel, rows from the top.
+/// An image with four sRGB bytes per pixel, rows from the top.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
     /// Width in pixels.
@@ -12,7 +12,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// The four bytes of the pixel at (x from the left, y from the top), or `None` outside.
+    /// The pixel at `x` from the left and `y` from the top; `None` outside.
     pub fn pixel(&self, x: u32, y: u32) -> Option<[u8; 4]> {
         if x >= self.width || y >= self.height {
             return None;

@@ -11,41 +11,41 @@ pub(crate) mod view;
 
 use crate::{Grid, Matcap, Overlay, Surface, View};
 
-/// Everything one picture shows. Cheap to make anew each time.
+/// Everything that one frame shows. Cheap to build for every frame.
 #[derive(Debug, Clone, Copy)]
 pub struct Frame<'a> {
-    /// How the world is seen.
+    /// The point of view.
     pub view: &'a View,
     /// How surfaces look.
     pub style: &'a Style,
-    /// What is drawn; order does not matter (transparent materials aside, which are drawn last, in this order).
+    /// The surfaces, in any order. Transparent materials are drawn last, in this order.
     pub surfaces: &'a [&'a Surface],
-    /// The ground, if it is to be seen.
+    /// The ground grid, if it is shown.
     pub grid: Option<&'a Grid>,
-    /// Marks above the surfaces (gizmos, the brush's ring), later ones over earlier ones.
+    /// Overlays above the surfaces (gizmos, the brush ring), later ones over earlier ones.
     pub overlays: &'a [Overlay],
 }
 
 /// How surfaces look.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Style {
-    /// What the surface is made of.
+    /// How surfaces are shaded.
     pub shading: Shading,
-    /// How much of it the surface's region colours replace (see [`Surface::update_regions`]): 0 none, 1 all.
+    /// How much of the shading's colour the region colours replace (see [`Surface::update_regions`]): 0 none, 1 all.
     pub region_share: f32,
-    /// Which way faces seem to face.
+    /// Smooth or flat shading.
     pub faces: Faces,
-    /// Whether edges are drawn over it.
+    /// Whether the edges of triangles are drawn.
     pub wireframe: Wireframe,
-    /// Whether edges that a closed surface lacks are marked.
+    /// Whether boundary and non-manifold edges are marked.
     pub borders: Borders,
-    /// Whether the surface's own lines are drawn.
+    /// Whether the lines on the surface are drawn.
     pub outlines: Outlines,
-    /// How many of its triangles are drawn.
+    /// The level of detail.
     pub detail: Detail,
-    /// How many of the picture's pixels borders and outlines take for a point.
+    /// Pixels per point, which scales the widths of borders and outlines.
     pub pixels_per_point: f32,
-    /// What is behind it.
+    /// What is behind the surfaces.
     pub background: Background,
 }
 
@@ -65,18 +65,18 @@ impl Default for Style {
     }
 }
 
-/// What a surface seems to be made of.
+/// How a surface is shaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shading {
-    /// A clay under its studio's lamps: shape and nothing else.
+    /// A clay matcap: shape and nothing else.
     Matcap(Matcap),
     /// The file's own materials.
     Material,
-    /// Region colours that carry numbers: shaded so gently that they match a legend.
+    /// Region colours that encode numbers, shaded so weakly that they match a legend.
     Painted,
-    /// Stripes that the surface mirrors: they break where it has creases and kink where its curvature jumps.
+    /// Reflection lines: they break at creases and kink where the curvature jumps.
     Zebra,
-    /// The direction in which the surface faces, as a colour.
+    /// World-space normals as colours.
     Normals,
 }
 
@@ -86,73 +86,73 @@ impl Default for Shading {
     }
 }
 
-/// Which way faces seem to face.
+/// Smooth or flat shading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Faces {
-    /// As the vertices' normals say, interpolated.
+    /// Vertex normals, interpolated.
     #[default]
     Smooth,
-    /// As the triangles lie.
+    /// Face normals.
     Flat,
 }
 
-/// Edges over the surface.
+/// Whether the edges of triangles are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Wireframe {
     /// None.
     #[default]
     Off,
-    /// Thin dark lines, fainter where they lie closer than a few pixels.
+    /// Thin dark lines, fainter where edges are shorter than a few pixels.
     On,
 }
 
-/// Marks on edges that a closed surface lacks.
+/// Whether boundary and non-manifold edges are marked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Borders {
     /// None.
     #[default]
     Off,
-    /// Edges of one triangle in one colour, those of more than two in another ([`crate::border`]).
+    /// Marked, each kind in its colour ([`crate::border`]).
     On,
 }
 
-/// Lines that were given to a surface ([`crate::Surface::update_lines`]).
+/// Whether the lines on a surface ([`crate::Surface::update_lines`]) are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Outlines {
     /// None.
     #[default]
     Off,
-    /// Drawn where no surface hides them.
+    /// Drawn where they are visible.
     On,
 }
 
-/// How many of a surface's triangles are drawn.
+/// The level of detail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Detail {
-    /// All.
+    /// All triangles.
     #[default]
     Full,
-    /// A twentieth or fewer of a large surface's: while something moves on a slow device. Materials and wireframes stay
-    /// full.
+    /// At most a twentieth of a large surface's triangles, for interaction on slow devices. Materials and wireframes keep
+    /// full detail.
     Reduced,
 }
 
 /// What is behind the surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Background {
-    /// From the top of the picture to its bottom, sRGB 0 to 255.
+    /// A vertical gradient, sRGB 0 to 255.
     Gradient {
-        /// Colour at the upper border.
+        /// Colour at the top.
         top: [u8; 3],
-        /// Colour at the lower border.
+        /// Colour at the bottom.
         bottom: [u8; 3],
     },
-    /// Nothing: alpha 0 where no surface is (colours are premultiplied by alpha).
+    /// Alpha 0 where there is no surface (colours are premultiplied).
     Transparent,
 }
 
 impl Default for Background {
-    /// A dim neutral slate, darker below, that lets a warm clay stand out.
+    /// A dim neutral grey, darker at the bottom, against which warm clay stands out.
     fn default() -> Self {
         Self::Gradient {
             top: [72, 76, 82],

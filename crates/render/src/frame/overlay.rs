@@ -1,25 +1,25 @@
-//! Marks above the surfaces: lines of a width in pixels and flat triangles, in the world's coordinates.
+//! Overlays above the surfaces: lines with a width in pixels and flat triangles, in world space.
 
 use std::ops::Range;
 
 use crate::frame::uniforms::{OverlayLineInstance, OverlayVertex};
 
-/// A layer of marks, drawn after the surfaces: triangles first, then lines, each in order. What a surface hides is
-/// drawn too, fainter, so that a gizmo inside a body can be grasped.
+/// An overlay, drawn after the surfaces: triangles first, then lines, each in order. Parts behind a surface are drawn
+/// fainter, so that a gizmo inside a body can still be grabbed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overlay {
-    /// Flat triangles, seen from both sides.
+    /// Flat, double-sided triangles.
     pub triangles: Vec<OverlayTriangle>,
-    /// Lines with round-looking, antialiased borders.
+    /// Antialiased lines.
     pub lines: Vec<OverlayLine>,
-    /// Alpha of the parts that surfaces hide, as a share of the visible parts' alpha: 0 hides them, 1 draws on top.
+    /// Factor of alpha for parts behind a surface: 0 hides them, 1 draws them on top.
     pub hidden_share: f32,
 }
 
 /// A flat triangle; colours are sRGB with straight alpha.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OverlayTriangle {
-    /// Corners in the world (relative to the centre).
+    /// Corners in world space (relative to the centre).
     pub corners: [[f32; 3]; 3],
     /// Colour of each corner.
     pub colours: [[u8; 4]; 3],
@@ -28,15 +28,15 @@ pub struct OverlayTriangle {
 /// A straight line; colours are sRGB with straight alpha.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OverlayLine {
-    /// Both ends in the world (relative to the centre).
+    /// Both ends in world space (relative to the centre).
     pub ends: [[f32; 3]; 2],
     /// Colour of each end.
     pub colours: [[u8; 4]; 2],
-    /// Width in pixels of the picture, more than zero.
+    /// Width in pixels, more than zero.
     pub width_px: f32,
 }
 
-/// All layers of a frame, ready to upload, and each layer's range in them.
+/// All overlays of a frame, ready to upload, with the range of each.
 #[derive(Debug, Default)]
 pub(crate) struct OverlayBatch {
     pub(crate) vertices: Vec<OverlayVertex>,
@@ -44,7 +44,7 @@ pub(crate) struct OverlayBatch {
     pub(crate) layers: Vec<LayerRanges>,
 }
 
-/// Where a layer's marks are in an [`OverlayBatch`].
+/// An overlay's ranges in an [`OverlayBatch`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct LayerRanges {
     pub(crate) vertices: Range<u32>,

@@ -1,20 +1,20 @@
-//! Colours that mean something.
+//! Colours with a meaning.
 
-/// Region colours for [`crate::Surface::update_regions`], as in the survey's figures: grey is held, blue is free,
-/// gold is the handle.
+/// Region colours for [`crate::Surface::update_regions`], as in the figures of [BS08]: grey is fixed, blue is free, gold
+/// is the handle.
 pub mod region {
-    /// Held where it is.
+    /// Fixed vertices.
     pub const FIXED: [u8; 4] = [156, 154, 151, 255];
-    /// Follows.
+    /// Free vertices.
     pub const FREE: [u8; 4] = [120, 153, 204, 255];
-    /// Is moved by hand.
+    /// Handle vertices.
     pub const HANDLE: [u8; 4] = [232, 184, 84, 255];
 }
 
 /// Colours of [`crate::Borders::On`].
 pub mod border {
-    /// An edge that one triangle has.
+    /// A boundary edge: it belongs to one triangle.
     pub const OPEN: [u8; 4] = [64, 208, 232, 255];
-    /// An edge that more than two triangles have.
+    /// A non-manifold edge: it belongs to more than two triangles.
     pub const BRANCHING: [u8; 4] = [240, 84, 160, 255];
 }

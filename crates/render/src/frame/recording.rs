@@ -1,4 +1,4 @@
-//! A frame as commands: what is drawn in which order, and by which pipelines.
+//! A frame as GPU commands: what is drawn, in which order, and by which pipelines.
 
 use crate::frame::overlay::OverlayBatch;
 use crate::frame::target::{Attachments, cleared_depth};
@@ -7,16 +7,17 @@ use crate::surface::draw_calls::DrawCall;
 use crate::surface::lines::LineSet;
 use crate::{Background, Borders, Frame, Matcap, Outlines, Renderer, Samples, Shading, Surface, Wireframe};
 
-/// What a picture is drawn from, prepared on the device.
+/// A frame whose buffers and pipelines are prepared on the device.
 pub(crate) struct PreparedFrame<'a> {
     pub(crate) frame: &'a Frame<'a>,
     pub(crate) overlays: OverlayBatch,
-    /// Runs of every surface.
+    /// The draw calls of every surface.
     pub(crate) draw_calls: Vec<(&'a Surface, Vec<DrawCall>)>,
 }
 
 impl Renderer {
-    /// Opaque triangles, then the background where nothing is, the ground, what is seen through, edges and marks.
+    /// Records opaque triangles, the background, the ground, transparent triangles, lines on surfaces, and overlays, in
+    /// that order.
     pub(crate) fn record(&self, pass: &mut wgpu::RenderPass<'_>, prepared: &PreparedFrame<'_>, samples: Samples) {
         let style = prepared.frame.style;
         let set = |pass: &mut wgpu::RenderPass<'_>, pipeline| match self.pipelines.get(pipeline, samples) {
@@ -112,7 +113,7 @@ impl Renderer {
 }
 
 impl PreparedFrame<'_> {
-    /// The pipelines that the drawing sets.
+    /// The pipelines that recording the frame needs.
     pub(crate) fn pipelines(&self) -> Vec<Pipeline> {
         let style = self.frame.style;
         let mut pipelines = Vec::new();
@@ -152,7 +153,7 @@ impl PreparedFrame<'_> {
     }
 }
 
-/// The pipeline of every shading but the file's materials.
+/// The pipeline of a shading other than the file's materials.
 fn shading_pipeline(shading: Shading) -> Pipeline {
     match shading {
         Shading::Matcap(_) | Shading::Material => Pipeline::Matcap,
@@ -170,7 +171,7 @@ pub(crate) fn matcap_of(shading: Shading) -> Matcap {
     }
 }
 
-/// Begins to draw into a target, from nothing.
+/// Begins the render pass of a frame on cleared attachments.
 pub(crate) fn begin_picture<'a>(
     encoder: &'a mut wgpu::CommandEncoder,
     attachments: &Attachments,

@@ -1,14 +1,14 @@
-//! The texture a frame is drawn into, with its own depth and samples.
+//! The offscreen texture that a frame is drawn into, with its depth and multisample attachments.
 
 use crate::device::guard::guarded;
 use crate::{RenderError, Renderer};
 
-/// Samples a pixel.
+/// Samples per pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Samples {
-    /// One: fast, with jagged borders. For software devices and while something moves there.
+    /// One: fast but aliased. For interaction on software devices.
     One,
-    /// Four: smooth borders.
+    /// Four: antialiased.
     #[default]
     Four,
 }
@@ -23,14 +23,14 @@ impl Samples {
     }
 }
 
-/// The texture a frame is drawn into. Empty until its first [`Target::resize`]; drawing into an empty one does
-/// nothing, so a window of no size needs no special care.
+/// The offscreen texture that a frame is drawn into. Empty until its first [`Target::resize`]. Drawing into an empty target
+/// does nothing, so a window of size zero needs no special case.
 #[derive(Debug, Default)]
 pub struct Target {
     attachments: Option<Attachments>,
 }
 
-/// What exists once a target has a size.
+/// The textures of a target that has a size.
 #[derive(Debug)]
 pub(crate) struct Attachments {
     pub(crate) size_px: [u32; 2],
@@ -43,9 +43,9 @@ pub(crate) struct Attachments {
 }
 
 impl Target {
-    /// The colour format: sRGB, so that blending and multisampling happen in linear light.
+    /// The colour format: sRGB, so that blending and multisampling are done in linear light.
     pub const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-    /// The format of [`Target::texture_view`]: the same bytes unconverted, as egui samples user textures.
+    /// The format of [`Target::texture_view`]: the same bytes without conversion, which is what egui expects.
     pub const VIEW_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
     /// The depth format (reversed: cleared to 0, nearer is greater).
     pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -55,8 +55,8 @@ impl Target {
         Self::default()
     }
 
-    /// Makes the target this large, in pixels. Does nothing when it already is; a side of zero empties it. Returns
-    /// whether the texture is a new one (its view must then be shown anew, and the frame drawn again).
+    /// Resizes the target, in pixels. Does nothing if size and samples are unchanged; a side of zero empties it. Returns
+    /// whether the texture was replaced: then its view must be registered and the frame drawn again.
     ///
     /// # Errors
     /// [`RenderError::PictureTooLarge`] beyond the device's limit and [`RenderError::OutOfMemory`]; the target is
@@ -89,7 +89,7 @@ impl Target {
         self.attachments.as_ref().map_or([0, 0], |a| a.size_px)
     }
 
-    /// The picture as a view of gamma bytes (see [`Target::VIEW_FORMAT`]), or `None` while empty.
+    /// The picture as sRGB-encoded bytes (see [`Target::VIEW_FORMAT`]); `None` while empty.
     pub fn texture_view(&self) -> Option<&wgpu::TextureView> {
         self.attachments.as_ref().map(|a| &a.gamma_view)
     }
@@ -141,7 +141,7 @@ impl Attachments {
     }
 }
 
-/// A depth buffer that a picture begins with and nobody reads afterwards. Reversed: 0 is infinitely far away.
+/// A depth attachment that is cleared to infinity (0, as depth is reversed) and discarded afterwards.
 pub(crate) fn cleared_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     wgpu::RenderPassDepthStencilAttachment {
         view,

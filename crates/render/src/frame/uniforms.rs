@@ -1,4 +1,4 @@
-//! The structs that shaders read, laid out as WGSL lays them out. A test compares each with its namesake there.
+//! Uniform and vertex structs in WGSL's memory layout. A test compares each with its namesake in the shaders.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -24,7 +24,7 @@ pub(crate) struct FrameUniform {
 }
 
 impl FrameUniform {
-    /// Of a picture of some size, or of a tile whose share of the background this is.
+    /// The uniform of a frame of `size_px`; `background_span` is a tile's part of the background.
     pub(crate) fn of(frame: &Frame<'_>, size_px: [u32; 2], background_span: [f32; 2]) -> Self {
         let view = frame.view;
         let colour = |[r, g, b]: [u8; 3]| [r, g, b, 255].map(|byte| f32::from(byte) / 255.0);

@@ -1,24 +1,23 @@
-//! How the world is seen: two matrices and the eye, whatever camera they come from.
+//! The point of view: two matrices and the eye, from whatever camera.
 
 use glam::{Mat4, Vec3, Vec4, Vec4Swizzles};
 
-/// A point of view. "World" is relative to the caller's f64 centre; matrices act on columns, right to left.
+/// A point of view. World space is relative to the caller's f64 centre; matrices multiply column vectors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
     /// Clip space (x right, y up, depth reversed: z/w is 1 at the near plane and 0 far away) from world.
     pub clip_from_world: Mat4,
     /// View space (x right, y up, the eye looks down −z; rigid, no scale) from world.
     pub view_from_world: Mat4,
-    /// Where the eye is in the world: (position, 1) in perspective, (direction towards the eye, 0) in an
-    /// orthographic view.
+    /// The eye in world space: (position, 1) in perspective, (direction towards the eye, 0) in an orthographic view.
     pub eye: Vec4,
 }
 
 impl View {
-    /// A view of a projection and a camera; says by itself whether the projection is a perspective.
+    /// A view from a projection and a camera. Detects whether the projection is a perspective one.
     ///
-    /// `clip_from_view` must map depth in reverse (see [`View::clip_from_world`]), as
-    /// [`View::perspective`] and [`View::orthographic`] do.
+    /// `clip_from_view` must reverse depth (see [`View::clip_from_world`]), as [`View::perspective`] and
+    /// [`View::orthographic`] do.
     pub fn new(clip_from_view: Mat4, view_from_world: Mat4) -> Self {
         let world_from_view = view_from_world.inverse();
         let is_perspective = clip_from_view.row(3).xyz() != Vec3::ZERO;
@@ -34,8 +33,8 @@ impl View {
         }
     }
 
-    /// A perspective without a far plane. `fov_y_rad` is the full vertical angle, `aspect` width over height,
-    /// `near` the distance of the near plane (more than zero; choose about a thousandth of the scene).
+    /// A perspective view without a far plane. `fov_y_rad` is the full vertical field of view, `aspect` is width over
+    /// height, and `near` is the distance of the near plane (more than zero; about a thousandth of the scene's size).
     pub fn perspective(fov_y_rad: f32, aspect: f32, near: f32, view_from_world: Mat4) -> Self {
         let y_scale = 1.0 / (0.5 * fov_y_rad).tan();
         let clip_from_view = Mat4::from_cols(
@@ -47,8 +46,8 @@ impl View {
         Self::new(clip_from_view, view_from_world)
     }
 
-    /// A parallel view of `half_height` world units above and below the middle; depth is seen from `near` to `far`
-    /// in front of the eye (`near` may be negative, and `far` must be more).
+    /// An orthographic view that shows `half_height` world units above and below the centre, from `near` to `far` in front
+    /// of the eye (`near` may be negative; `far` must be larger).
     pub fn orthographic(half_height: f32, aspect: f32, near: f32, far: f32, view_from_world: Mat4) -> Self {
         let depth_scale = 1.0 / (far - near);
         let clip_from_view = Mat4::from_cols(
@@ -60,8 +59,8 @@ impl View {
         Self::new(clip_from_view, view_from_world)
     }
 
-    /// View space from world for an eye at `eye` that looks at `target` with `up` (not parallel to the gaze)
-    /// upwards in the picture.
+    /// View space from world for an eye at `eye` that looks at `target`, with `up` (not parallel to the view direction)
+    /// pointing up in the picture.
     pub fn look_at(eye: Vec3, target: Vec3, up: Vec3) -> Mat4 {
         let back = (eye - target).normalize();
         let right = up.cross(back).normalize();
@@ -70,13 +69,13 @@ impl View {
         world_from_view.inverse()
     }
 
-    /// Whether the eye is somewhere, rather than infinitely far in a direction.
+    /// Whether the view is a perspective one.
     pub fn is_perspective(&self) -> bool {
         self.eye.w != 0.0
     }
 
-    /// The part of a picture of `size_px` that begins at `origin_px` from its upper left corner, as a view of its own
-    /// for a picture of `tile_px`.
+    /// The view of one tile: the part of size `tile_px` at `origin_px` from the upper left corner of a picture of
+    /// `size_px`.
     pub fn tile(&self, size_px: [u32; 2], origin_px: [u32; 2], tile_px: [u32; 2]) -> Self {
         let share = |axis: usize| size_px[axis] as f32 / tile_px[axis] as f32;
         let middle = |axis: usize| (2.0 * origin_px[axis] as f32 + tile_px[axis] as f32) / size_px[axis] as f32 - 1.0;
@@ -93,8 +92,8 @@ impl View {
         }
     }
 
-    /// Where a point of the world falls in a picture of `size_px`, in pixels from its upper left corner, with its
-    /// depth (1 near, 0 far); `None` behind the eye.
+    /// Projects a point in world space: pixels from the upper left corner of a picture of `size_px`, and depth (1 near, 0
+    /// far). `None` behind the eye.
     pub fn pixel_from_world(&self, position: Vec3, size_px: [u32; 2]) -> Option<Vec3> {
         let clip = self.clip_from_world * position.extend(1.0);
         if clip.w <= 0.0 {

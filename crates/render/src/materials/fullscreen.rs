@@ -1,6 +1,6 @@
-//! Drawing over whole textures without a mesh: one triangle that covers every pixel, once.
+//! Fullscreen passes: one triangle that covers every pixel of a texture.
 
-/// A pipeline for textures of `format`; its bind groups follow from the shader.
+/// A pipeline for textures of `format`. Its bind group layouts come from the shader.
 pub(crate) fn pipeline(
     device: &wgpu::Device,
     module: &wgpu::ShaderModule,
@@ -30,7 +30,7 @@ pub(crate) fn pipeline(
     })
 }
 
-/// Draws over the whole of `view`.
+/// Records a fullscreen pass into `view`.
 pub(crate) fn draw(
     encoder: &mut wgpu::CommandEncoder,
     pipeline: &wgpu::RenderPipeline,

@@ -1,45 +1,45 @@
-//! What a file says about how its triangles look.
+//! Materials as files define them.
 
 use std::ops::Range;
 
 use crate::frame::uniforms::{MapUniform, MaterialUniform};
 
-/// A material of glTF's metallic-roughness model. New members may come: fill with `..Material::default()`.
+/// A material of glTF's metallic-roughness model. Construct it with `..Material::default()`, as members may be added.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// Red, green, blue, alpha; *linear*, 0 to 1 (a glTF `baseColorFactor`).
     pub base_colour: [f32; 4],
-    /// Multiplies the base colour. Always looked up at the first set of texture coordinates, untransformed.
+    /// Multiplies the base colour. Always sampled at the first set of texture coordinates, without a transform.
     pub base_colour_map: Option<Map>,
     /// 0 (dielectric) to 1 (metal).
     pub metallic: f32,
     /// 0 (mirror) to 1 (matt).
     pub roughness: f32,
-    /// Green multiplies the roughness, blue the metallic share.
+    /// Green multiplies the roughness, blue the metalness.
     pub metallic_roughness_map: Option<Map>,
-    /// Normals in tangent space, x along u and y against v.
+    /// Tangent-space normals, x along u and y against v.
     pub normal_map: Option<Map>,
-    /// What its x and y are multiplied by.
+    /// Scale of the normal map's x and y.
     pub normal_scale: f32,
-    /// Red is the share of ambient light that arrives.
+    /// Ambient occlusion, in red.
     pub occlusion_map: Option<Map>,
-    /// How much of its darkening is used, 0 to 1.
+    /// Strength of the occlusion map, 0 to 1.
     pub occlusion_strength: f32,
-    /// Light of its own, linear.
+    /// Emitted light, linear.
     pub emissive: [f32; 3],
-    /// Multiplies it.
+    /// Multiplies the emitted light.
     pub emissive_map: Option<Map>,
-    /// Whether light plays a part.
+    /// Whether the material is lit.
     pub lighting: Lighting,
-    /// What alpha means.
+    /// How alpha is used.
     pub alpha: AlphaMode,
-    /// Whether the back is as good as the front. Backs are always drawn (an editor must show the inside of an open
-    /// scan, and picking must agree with the picture), but those of single-sided materials are dimmed.
+    /// Whether back faces are lit like front faces. Back faces are always drawn, because an editor must show the inside of
+    /// an open scan and picking must agree with the picture, but single-sided materials dim them.
     pub double_sided: bool,
 }
 
 impl Default for Material {
-    /// Opaque white, half matt, no metal, single-sided, without images.
+    /// Opaque white, roughness 0.6, not metallic, single-sided, without textures.
     fn default() -> Self {
         Self {
             base_colour: [1.0; 4],
@@ -60,21 +60,21 @@ impl Default for Material {
     }
 }
 
-/// An image of a material and how it is laid on the surface.
+/// A texture of a material, and how it is mapped to the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Map {
-    /// Number of the texture in [`crate::SurfaceData::textures`].
+    /// Index of the texture in [`crate::SurfaceData::textures`].
     pub texture: usize,
-    /// What lies beyond the image's borders, along u and v.
+    /// Wrap modes along u and v.
     pub wrap: [Wrap; 2],
-    /// Which texture coordinates are taken.
+    /// The set of texture coordinates.
     pub set: UvSet,
-    /// Rows that multiply (u, v, 1).
+    /// Texture transform: two rows that multiply (u, v, 1).
     pub transform: [[f32; 3]; 2],
 }
 
 impl Map {
-    /// A texture looked up at the first set of texture coordinates, repeated.
+    /// A repeated texture at the first set of texture coordinates.
     pub fn of(texture: usize) -> Self {
         Self {
             texture,
@@ -95,57 +95,57 @@ pub enum UvSet {
     Second,
 }
 
-/// What lies beyond an image's border.
+/// A wrap mode: how a texture continues beyond its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Wrap {
-    /// The image again.
+    /// Repeated.
     #[default]
     Repeat,
-    /// The image mirrored, and again.
+    /// Repeated, every other time mirrored.
     Mirror,
-    /// Its border pixels.
+    /// Clamped to the edge.
     Clamp,
 }
 
-/// Whether light plays a part in how a material looks.
+/// Whether a material is lit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Lighting {
-    /// It does.
+    /// Lit.
     #[default]
     Lit,
-    /// The base colour is shown as it is.
+    /// The base colour is shown without lighting.
     Unlit,
 }
 
-/// What a material's alpha means.
+/// How a material's alpha is used.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum AlphaMode {
-    /// Nothing.
+    /// Alpha is ignored.
     #[default]
     Opaque,
-    /// Drawn where alpha is at least the cutoff, 0 to 1.
+    /// Drawn where alpha is at least the cutoff.
     Mask {
-        /// The least alpha that is drawn.
+        /// The least alpha that is drawn, 0 to 1.
         cutoff: f32,
     },
-    /// Mixed with what is behind; triangles are not sorted.
+    /// Blended with what is behind; triangles are not sorted.
     Blend,
 }
 
-/// A run of triangles of one material.
+/// A range of triangles with one material.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MaterialGroup {
-    /// Triangle numbers.
+    /// Triangle indices.
     pub triangles: Range<u32>,
-    /// Number of the material in [`crate::SurfaceData::materials`].
+    /// Index of the material in [`crate::SurfaceData::materials`].
     pub material: usize,
 }
 
-/// What the light of the back of a single-sided material is multiplied by.
+/// Factor of the light on back faces of single-sided materials.
 const BACK_SHARE: f32 = 0.45;
 
 impl Material {
-    /// The images in the order of the shader's bindings.
+    /// The maps in the order of the shader's bindings.
     pub(crate) fn maps(&self) -> [Option<Map>; 5] {
         [
             self.base_colour_map,

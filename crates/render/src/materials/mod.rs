@@ -21,7 +21,7 @@ impl Materials {
     /// Uploads textures and the materials that use them.
     ///
     /// # Errors
-    /// Numbers out of range, textures of the wrong length, memory.
+    /// Indices out of range, textures of the wrong size, or out of memory.
     pub fn new(renderer: &Renderer, materials: &[Material], textures: &[TextureData<'_>]) -> Result<Self, RenderError> {
         textures_exist(materials, textures.len())?;
         let groups = renderer.material_groups(materials, textures)?;

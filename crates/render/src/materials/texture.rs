@@ -1,4 +1,4 @@
-//! Images on surfaces: bytes in, a texture with mipmaps on the device.
+//! Textures of materials, uploaded with mipmaps.
 
 use std::borrow::Cow;
 
@@ -9,7 +9,7 @@ use crate::materials::fullscreen;
 use crate::pipelines::shaders::Shader;
 use crate::{RenderError, Wrap};
 
-/// An image of four bytes a pixel (alpha straight), rows from the top.
+/// An image with four bytes per pixel (straight alpha), rows from the top.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextureData<'a> {
     /// Width in pixels, at least 1.
@@ -18,32 +18,32 @@ pub struct TextureData<'a> {
     pub height: u32,
     /// `4 · width · height` bytes.
     pub rgba: &'a [u8],
-    /// What its bytes say.
+    /// How the bytes are encoded.
     pub encoding: Encoding,
 }
 
-/// What an image's bytes say.
+/// How an image's bytes are encoded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Encoding {
-    /// Colours as screens show them.
+    /// Colours in sRGB.
     #[default]
     Srgb,
-    /// Numbers: normals, roughness, occlusion.
+    /// Linear data: normals, roughness, occlusion.
     Linear,
 }
 
-/// Makes textures: holds what mipmaps are made with.
+/// Uploads textures and generates their mipmaps.
 #[derive(Debug)]
 pub(crate) struct TextureUploader {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    /// For sRGB and for linear images.
+    /// Pipelines for sRGB and for linear textures.
     mipmaps: [wgpu::RenderPipeline; 2],
     mipmap_sampler: wgpu::Sampler,
     anisotropy: u16,
 }
 
-/// The formats of sRGB and of linear images.
+/// The formats of sRGB and of linear textures.
 const FORMATS: [wgpu::TextureFormat; 2] = [wgpu::TextureFormat::Rgba8UnormSrgb, wgpu::TextureFormat::Rgba8Unorm];
 
 impl TextureUploader {
@@ -59,17 +59,17 @@ impl TextureUploader {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        // Software devices pay dearly for each of the samples.
         Self {
             device: device.clone(),
             queue: queue.clone(),
             mipmaps: FORMATS.map(pipeline),
             mipmap_sampler,
+            // Anisotropic filtering is too slow on software devices.
             anisotropy: if is_software(device) { 1 } else { 8 },
         }
     }
 
-    /// The texture `number` of a surface, scaled down until the device takes it, with all its mipmaps.
+    /// Uploads the texture `number` of a surface with all its mipmaps, scaled down to the device's size limit.
     pub(crate) fn texture(&self, number: usize, data: &TextureData<'_>) -> Result<wgpu::TextureView, RenderError> {
         let (width, height) = (data.width, data.height);
         let needed = 4 * width as usize * height as usize;
@@ -113,7 +113,7 @@ impl TextureUploader {
         })
     }
 
-    /// A sampler for a texture's borders.
+    /// A sampler with these wrap modes.
     pub(crate) fn sampler(&self, wrap: [Wrap; 2]) -> wgpu::Sampler {
         let mode = |wrap| match wrap {
             Wrap::Repeat => wgpu::AddressMode::Repeat,
@@ -154,9 +154,9 @@ impl TextureUploader {
     }
 }
 
-/// An image halved until neither side exceeds `limit`, each pixel the mean of the bytes of the four it covers (a
-/// border pixel of an odd side is dropped). Means of sRGB bytes are a little dark; only images beyond any device's
-/// limit pay that.
+/// An image halved until neither side exceeds `limit`. Each pixel is the mean of the bytes of the four that it covers; the
+/// last row or column of an odd side is dropped. Means of sRGB bytes are slightly dark, which only affects images beyond
+/// the device's limit.
 fn scaled_to_fit<'a>(data: &TextureData<'a>, limit: u32) -> (u32, u32, Cow<'a, [u8]>) {
     let (mut width, mut height) = (data.width as usize, data.height as usize);
     let mut rgba = Cow::Borrowed(data.rgba);

@@ -25,7 +25,7 @@ pub(super) fn uniform_entry(binding: u32, visibility: wgpu::ShaderStages) -> wgp
     }
 }
 
-/// A buffer that vertex shaders look numbers up in.
+/// A read-only storage buffer for the vertex stage.
 pub(super) fn storage_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
     let ty = wgpu::BindingType::Buffer {
         ty: wgpu::BufferBindingType::Storage { read_only: true },

@@ -7,7 +7,7 @@ use super::vertex_layouts::{
 use super::{Alpha, ID_FORMAT, Pipeline, Visibility};
 use crate::{Samples, Target};
 
-/// What pipelines differ in.
+/// The state in which pipelines differ.
 pub(super) struct PipelineDescription {
     pub(super) shader: Shader,
     vertex_entry: &'static str,
@@ -42,7 +42,7 @@ impl PipelineDescription {
             writes_depth: true,
             colour: OPAQUE,
         };
-        // What lies over or behind surfaces and hides nothing.
+        // Drawn over or behind surfaces, without writing depth.
         let light = |shader, vertex_entry, fragment_entry| Self {
             shader,
             vertex_entry,

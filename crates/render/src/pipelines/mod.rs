@@ -1,4 +1,4 @@
-//! Layouts, made once a device, and pipelines, each when it is first needed.
+//! Bind group layouts, created once per device, and render pipelines, each created on first use.
 
 mod bind_group_layouts;
 mod description;
@@ -13,10 +13,10 @@ use self::shaders::Shader;
 use crate::device::guard::guarded;
 use crate::{RenderError, Samples};
 
-/// The format of triangle numbers.
+/// The format of the id buffer.
 pub(crate) const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
-/// Layouts shared by all pipelines, and the pipelines made so far.
+/// The bind group layouts, and the pipelines created so far.
 #[derive(Debug)]
 pub(crate) struct Pipelines {
     pub(crate) frame_layout: wgpu::BindGroupLayout,
@@ -29,7 +29,7 @@ pub(crate) struct Pipelines {
     made: HashMap<(Pipeline, Samples), wgpu::RenderPipeline>,
 }
 
-/// A pipeline of a picture, or that of triangle numbers.
+/// A render pipeline: one of a picture, or that of the id buffer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Pipeline {
     Matcap,
@@ -46,7 +46,7 @@ pub(crate) enum Pipeline {
     Id,
 }
 
-/// How a material's alpha is drawn.
+/// How a material's alpha is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Alpha {
     Opaque,
@@ -54,14 +54,14 @@ pub(crate) enum Alpha {
     Blend,
 }
 
-/// Whether each vertex has texture coordinates and a colour of its own.
+/// Whether texture coordinates and colours differ per vertex or are the same for all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum MaterialAttributes {
     PerVertex,
     Shared,
 }
 
-/// Marks are drawn where they are seen and, fainter, where a surface hides them.
+/// Lines and overlays are drawn twice: fainter where a surface hides them, and where they are visible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Visibility {
     Hidden,
@@ -69,12 +69,12 @@ pub(crate) enum Visibility {
 }
 
 impl Visibility {
-    /// In the order of drawing.
+    /// Both, in draw order.
     pub(crate) const BOTH: [Self; 2] = [Self::Hidden, Self::Visible];
 }
 
 impl Pipelines {
-    /// The layouts; pipelines follow on demand.
+    /// Creates the layouts; pipelines follow on demand.
     pub(crate) fn new(device: &wgpu::Device) -> Self {
         let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let fragment = wgpu::ShaderStages::FRAGMENT;
@@ -105,7 +105,7 @@ impl Pipelines {
         }
     }
 
-    /// Makes a pipeline for pictures of `samples` unless it is there.
+    /// Creates a pipeline for `samples` if it does not exist yet.
     pub(crate) fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -125,7 +125,7 @@ impl Pipelines {
         Ok(())
     }
 
-    /// A pipeline that was prepared.
+    /// A pipeline that was prepared before.
     pub(crate) fn get(&self, pipeline: Pipeline, samples: Samples) -> Option<&wgpu::RenderPipeline> {
         self.made.get(&(pipeline, samples))
     }
@@ -146,7 +146,7 @@ impl Pipelines {
             Pipeline::Material(..) => vec![frame, surface, &self.material_layout, &self.environment_layout],
             Pipeline::Wireframe | Pipeline::Id => vec![frame, surface],
             Pipeline::SurfaceLines(_) => vec![frame, surface, &self.positions_layout],
-            // The grid's uniform stands in the surface's place and has its form.
+            // The grid's uniform buffer takes the surface's bind group, whose layout is the same.
             Pipeline::Grid => vec![frame, surface],
             Pipeline::Background | Pipeline::OverlayTriangles(_) | Pipeline::OverlayLines(_) => vec![frame],
         };

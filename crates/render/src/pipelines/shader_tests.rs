@@ -1,5 +1,5 @@
-//! Laws of the shaders that need no device: they are valid, they translate to the languages of the other systems, and
-//! their structs are laid out as the program fills them.
+//! Laws of the shaders that need no device: they are valid, they translate to HLSL and MSL, and the layouts of their
+//! structs match the Rust structs.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may fail by panicking")]
 
 use std::mem::offset_of;
@@ -71,7 +71,7 @@ fn every_shader_translates_to_msl() {
     }
 }
 
-/// The members of `$rust` with their offsets and sizes, for comparison with a WGSL struct.
+/// Size of `$rust`, and offsets and sizes of its members, to compare with a WGSL struct.
 macro_rules! layout {
     ($rust:ident { $($member:ident: $ty:ty),+ $(,)? }) => {
         (size_of::<$rust>() as u32, vec![$((
@@ -227,7 +227,7 @@ fn validated(shader: Shader) -> (naga::Module, ModuleInfo) {
     let text = shader.composed();
     let module = naga::front::wgsl::parse_str(&text)
         .unwrap_or_else(|error| panic!("{}", error.emit_to_string_with_path(&text, shader.file_name())));
-    // Nothing beyond the plain language but triangle numbers, where they are asked for.
+    // Only core WGSL, except for the primitive index in the shader that needs it.
     let capabilities = match shader {
         Shader::SurfaceId => Capabilities::PRIMITIVE_INDEX,
         _ => Capabilities::empty(),
@@ -259,7 +259,7 @@ fn wgsl_struct<'a>(module: &'a naga::Module, shader: Shader, name: &str) -> (&'a
     found.unwrap_or_else(|| panic!("{} has a struct {name}", shader.file_name()))
 }
 
-/// Every `@location` of a WGSL struct is given by just one attribute, with as many floating-point components.
+/// Every `@location` of a WGSL struct has exactly one vertex attribute, with the same number of components.
 fn assert_attributes(shader: Shader, name: &str, buffers: &[wgpu::VertexBufferLayout<'_>]) {
     let (module, _) = validated(shader);
     let (members, _) = wgsl_struct(&module, shader, name);

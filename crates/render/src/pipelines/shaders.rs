@@ -1,9 +1,9 @@
-//! The shaders' text, embedded: each file of `shaders/` with its includes put in place.
+//! The embedded source of the shaders: each file of `shaders/` with its includes expanded.
 //!
-//! The alternative, a preprocessor crate, lost because a line `#include "lib/NAME.wgsl"` replaced by a file's text is
-//! all that a handful of shaders needs; naga sees plain WGSL, so do its messages' line numbers after composing.
+//! There is no preprocessor crate, because a handful of shaders needs nothing but a line `#include "lib/NAME.wgsl"` that is
+//! replaced by a file. The line numbers in naga's messages refer to the expanded source.
 
-/// A shader file of `shaders/`, one a primitive.
+/// A shader file in `shaders/`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Shader {
     Surface,
@@ -53,7 +53,7 @@ impl Shader {
         }
     }
 
-    /// The file's text with its includes in place.
+    /// The file's source with its includes expanded.
     pub(crate) fn composed(self) -> String {
         compose(self.text())
     }
@@ -75,7 +75,7 @@ impl Shader {
     }
 }
 
-/// The shared files that an include may name.
+/// The files that can be included.
 const LIBRARY: [(&str, &str); 7] = [
     ("lib/frame.wgsl", include_str!("../../../../shaders/lib/frame.wgsl")),
     ("lib/colour.wgsl", include_str!("../../../../shaders/lib/colour.wgsl")),
@@ -95,7 +95,7 @@ const LIBRARY: [(&str, &str); 7] = [
     ("lib/line.wgsl", include_str!("../../../../shaders/lib/line.wgsl")),
 ];
 
-/// `text` with each include line replaced; one that names no shared file stays, so that the compiler points at it.
+/// `text` with its includes expanded. An include of an unknown file stays, so that the compiler reports it.
 fn compose(text: &str) -> String {
     let mut composed = String::with_capacity(4 * text.len());
     for line in text.lines() {

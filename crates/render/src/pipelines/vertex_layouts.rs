@@ -8,14 +8,14 @@ const NORMAL: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![1 => Float32
 const REGION: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![2 => Unorm8x4];
 const MATERIAL: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![3 => Float32x4, 4 => Unorm8x4];
 
-/// The vertex buffers of a surface's shape: positions, normals, regions.
+/// The vertex buffers of a surface's shape: positions, normals, region colours.
 pub(crate) const SHAPE_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 3] = [
     Some(per_vertex(12, &POSITION)),
     Some(per_vertex(12, &NORMAL)),
     Some(per_vertex(4, &REGION)),
 ];
 
-/// The same, and what only materials read; a stride of 0 gives every vertex the one entry.
+/// [`SHAPE_BUFFERS`] and the attributes that only materials read; with stride 0, all vertices read the one shared entry.
 pub(crate) const fn material_buffers(attributes: MaterialAttributes) -> [Option<wgpu::VertexBufferLayout<'static>>; 4] {
     let stride = match attributes {
         MaterialAttributes::PerVertex => size_of::<MaterialVertex>() as u64,
@@ -41,14 +41,14 @@ pub(crate) const SURFACE_LINE_BUFFER: wgpu::VertexBufferLayout<'static> = {
     }
 };
 
-/// The one vertex buffer of overlay triangles.
+/// The vertex buffer of overlay triangles.
 pub(crate) const OVERLAY_TRIANGLE_BUFFER: wgpu::VertexBufferLayout<'static> = {
     const ATTRIBUTES: [wgpu::VertexAttribute; 3] =
         wgpu::vertex_attr_array![0 => Float32x3, 1 => Unorm8x4, 2 => Float32];
     per_vertex(size_of::<OverlayVertex>() as u64, &ATTRIBUTES)
 };
 
-/// The one instance buffer of overlay lines.
+/// The instance buffer of overlay lines.
 pub(crate) const OVERLAY_LINE_BUFFER: wgpu::VertexBufferLayout<'static> = {
     const ATTRIBUTES: [wgpu::VertexAttribute; 6] = wgpu::vertex_attr_array![
         0 => Float32x3, 1 => Float32, 2 => Float32x3, 3 => Float32, 4 => Unorm8x4, 5 => Unorm8x4

@@ -1,27 +1,27 @@
-//! Borders and non-manifold edges as lines on the surface.
+//! Boundary and non-manifold edges as lines on the surface.
 
 use super::Surface;
 use super::edges::{IrregularEdge, irregular_edges};
 use super::lines::LineSet;
 use crate::{EdgePoint, RenderError, Renderer, SurfaceLine, border};
 
-/// Alpha of the parts of borders that surfaces hide, as a share of the visible parts'.
+/// Factor of alpha for the parts of borders that are behind a surface.
 const HIDDEN_BORDERS: f32 = 0.22;
 
 impl Surface {
-    /// The pages' borders, where there are any.
+    /// The borders of each page; empty until they are prepared.
     pub(crate) fn borders(&self) -> &[Option<LineSet>] {
         self.borders.get().map_or(&[], Vec::as_slice)
     }
 
-    /// Looks for borders unless that was done.
+    /// Finds the borders if that was not done yet.
     pub(crate) fn prepare_borders(&self, renderer: &Renderer) -> Result<(), RenderError> {
         if self.borders.get().is_some() {
             return Ok(());
         }
         let mut edges = irregular_edges(&self.triangles, self.vertex_count, self.welded.as_deref());
         if self.shown.is_some() {
-            // What hangs together stays so: a hidden neighbour makes no border, and takes its own along.
+            // Hiding triangles creates no borders, and a border of which both ends are hidden disappears with them.
             let mut of_shown = vec![false; self.vertex_count];
             let shown = (0..)
                 .zip(&self.triangles)

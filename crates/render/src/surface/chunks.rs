@@ -1,9 +1,9 @@
-//! A mesh cut into chunks of neighbouring triangles, so that only those that can be seen are drawn, and so that a mesh
-//! larger than a device's buffers can be spread over several.
+//! A mesh split into chunks of neighbouring triangles, for frustum culling, and so that a mesh larger than the device's
+//! buffers can be distributed over several pages.
 //!
-//! Triangles are sorted along a Morton curve by their middle at rest and cut every [`CHUNK`] of them; a chunk has one
-//! material. Small meshes keep their order: there is nothing to be won. The lists of each chunk's vertices make its
-//! bounds after a deformation a walk over about as many positions as there are vertices.
+//! Triangles are sorted by the Morton code of their centroid at rest and split every [`CHUNK`] triangles; a chunk has one
+//! material. Small meshes keep their order, because there is nothing to gain. Each chunk lists its vertices, so updating
+//! all bounds after a deformation reads about as many positions as there are vertices.
 
 use std::ops::Range;
 
@@ -11,32 +11,33 @@ use glam::{Mat4, Vec3, Vec4};
 
 use crate::{AlphaMode, Material, MaterialGroup};
 
-/// Triangles in a chunk: at five millions, 305 drawings at most and a twentieth of the triangles beyond what is seen.
+/// Triangles per chunk: five million triangles take at most 305 draw calls, and about a twentieth of those drawn are not
+/// visible.
 const CHUNK: usize = 16_384;
-/// Up to this many triangles all are always drawn, in the file's order.
+/// Meshes of up to this many triangles are neither sorted nor split.
 const UNSORTED: usize = 4 * CHUNK;
 
-/// How a mesh's triangles are cut into chunks; belongs to the triangles and materials it was made of.
+/// How a mesh's triangles are split into chunks. Valid only for the triangles and materials it was built from.
 #[derive(Debug)]
 pub struct Chunks {
-    /// The mesh's triangle at each place of the drawing order; `None`: they are drawn in their own.
+    /// The mesh's triangle at each position of the draw order; `None` if that is the mesh's order.
     order: Option<Vec<u32>>,
     all: Vec<Chunk>,
-    /// The vertices of chunk `c`, ascending and each once: `vertices[offsets[c]..offsets[c + 1]]`.
+    /// The vertices of chunk `c`, ascending and without duplicates: `vertices[offsets[c]..offsets[c + 1]]`.
     vertices: Vec<u32>,
     offsets: Vec<usize>,
 }
 
-/// Triangles that are drawn together.
+/// Triangles that are drawn or culled together.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Chunk {
-    /// Places in the drawing order.
+    /// Range in the draw order.
     pub(crate) triangles: Range<u32>,
     pub(crate) material: usize,
     pub(crate) alpha: AlphaMode,
 }
 
-/// The box around a chunk's vertices, relative to the caller's centre.
+/// The bounding box of a chunk, relative to the caller's centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChunkBounds {
     pub(crate) min: Vec3,
@@ -44,8 +45,8 @@ pub struct ChunkBounds {
 }
 
 impl Chunks {
-    /// Cuts a mesh whose triangles `groups` give materials; the other triangles have the default one. Vertex numbers
-    /// out of range count as vertex 0: they are refused when the mesh is uploaded.
+    /// Splits a mesh whose triangles get their materials from `groups`; other triangles have the default material. Vertex
+    /// indices out of range count as the origin here; uploading the mesh rejects them.
     pub fn new(
         positions: &[[f32; 3]],
         triangles: &[[u32; 3]],
@@ -59,7 +60,7 @@ impl Chunks {
         if is_sorted {
             let keys = morton_keys(positions, triangles);
             for run in &runs {
-                // What is seen through keeps the order in which it was given.
+                // Blended triangles keep their order.
                 if run.alpha != AlphaMode::Blend {
                     let (start, end) = (run.triangles.start as usize, run.triangles.end as usize);
                     order[start..end].sort_by_key(|&triangle| keys[triangle as usize]);
@@ -83,12 +84,12 @@ impl Chunks {
         chunks
     }
 
-    /// How many chunks there are.
+    /// The number of chunks.
     pub fn count(&self) -> usize {
         self.all.len()
     }
 
-    /// The box around a chunk (below [`Chunks::count`]) whose vertices stand at `positions`.
+    /// The bounding box of a chunk (below [`Chunks::count`]) for these vertex positions.
     pub fn bounds(&self, chunk: usize, positions: &[[f32; 3]]) -> ChunkBounds {
         let mut bounds = ChunkBounds {
             min: Vec3::INFINITY,
@@ -98,7 +99,7 @@ impl Chunks {
             let Some(&position) = positions.get(vertex as usize) else {
                 continue;
             };
-            // `min` and `max` pass over NaN: such a vertex is nowhere.
+            // `min` and `max` skip NaN.
             bounds.min = bounds.min.min(position.into());
             bounds.max = bounds.max.max(position.into());
         }
@@ -117,15 +118,15 @@ impl Chunks {
         &self.vertices[self.offsets[chunk]..self.offsets[chunk + 1]]
     }
 
-    /// The mesh's triangle at a place of the drawing order.
-    pub(crate) fn triangle_at(&self, place: u32) -> u32 {
+    /// The mesh's triangle at a position of the draw order.
+    pub(crate) fn triangle_at(&self, position: u32) -> u32 {
         match &self.order {
-            Some(order) => order.get(place as usize).copied().unwrap_or(place),
-            None => place,
+            Some(order) => order.get(position as usize).copied().unwrap_or(position),
+            None => position,
         }
     }
 
-    /// Whether this was made of so many triangles.
+    /// Whether the chunks were built from this many triangles.
     pub(crate) fn fits(&self, triangle_count: usize) -> bool {
         self.all.last().map_or(0, |chunk| chunk.triangles.end) as usize == triangle_count
     }
@@ -134,8 +135,8 @@ impl Chunks {
         let mut seen_in = vec![u32::MAX; vertex_count];
         for (number, chunk) in self.all.iter().enumerate() {
             let start = self.vertices.len();
-            for place in chunk.triangles.clone() {
-                for vertex in triangles[self.triangle_at(place) as usize] {
+            for position in chunk.triangles.clone() {
+                for vertex in triangles[self.triangle_at(position) as usize] {
                     if let Some(seen) = seen_in.get_mut(vertex as usize)
                         && *seen != number as u32
                     {
@@ -144,7 +145,7 @@ impl Chunks {
                     }
                 }
             }
-            // Ascending: positions are then read from front to back.
+            // Ascending, so that positions are read in memory order.
             self.vertices[start..].sort_unstable();
             self.offsets.push(self.vertices.len());
         }
@@ -152,14 +153,15 @@ impl Chunks {
 }
 
 impl ChunkBounds {
-    /// Whether any of the box may be seen in a picture of `clip_from_world` (depth reversed). Never wrongly false.
+    /// Whether the box may intersect the view frustum of `clip_from_world` (reversed depth). Conservative: never wrongly
+    /// false.
     pub(crate) fn intersects_frustum(&self, clip_from_world: &Mat4) -> bool {
         if !self.min.is_finite() || !self.max.is_finite() {
-            // No vertex at all, or one that is infinitely far.
+            // No vertex, or one at infinity.
             return self.min.x <= self.max.x;
         }
         let [x, y, z, w] = [0, 1, 2, 3].map(|row| clip_from_world.row(row));
-        // Outside is where a plane's value is negative at the box's corner that lies farthest along it.
+        // The box is outside if its corner farthest along a plane's normal is.
         let is_inside = |plane: Vec4| {
             let towards = plane.truncate();
             let corner = Vec3::select(towards.cmpge(Vec3::ZERO), self.max, self.min);
@@ -170,7 +172,7 @@ impl ChunkBounds {
     }
 }
 
-/// The materials' runs in the order of triangles, gaps filled with the default material.
+/// Runs of triangles with one material, in order; gaps have the default material.
 fn material_runs(count: u32, groups: &[MaterialGroup], materials: &[Material]) -> Vec<Chunk> {
     let default_material = materials.len();
     let mut groups: Vec<_> = groups.iter().filter(|group| !group.triangles.is_empty()).collect();
@@ -205,7 +207,7 @@ fn material_runs(count: u32, groups: &[MaterialGroup], materials: &[Material]) -
     runs
 }
 
-/// 30-bit Morton codes of the triangles' middles within the mesh's box.
+/// 30-bit Morton codes of the triangles' centroids in the mesh's bounding box.
 fn morton_keys(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<u32> {
     let finite = positions.iter().map(|&p| Vec3::from(p)).filter(|p| p.is_finite());
     let (min, max) = finite.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), p| {
@@ -225,7 +227,7 @@ fn morton_keys(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<u32> {
         .collect()
 }
 
-/// Ten bits, two zeros between each.
+/// Spreads ten bits, with two zeros between neighbours.
 fn spread(bits: u32) -> u32 {
     let bits = (bits | bits << 16) & 0x0300_00ff;
     let bits = (bits | bits << 8) & 0x0300_f00f;
@@ -260,7 +262,7 @@ mod tests {
         assert_eq!(material_runs(10, &groups, &[Material::default(), glass]), expected);
     }
 
-    /// A strip of separate triangles along x, given in an order that jumps about.
+    /// A strip of separate triangles along x, in shuffled order.
     fn strip(count: u32) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
         let place = |triangle: u32| (triangle * 7919 % count) as f32;
         let positions = (0..count).flat_map(|t| [0.0, 0.5, 1.0].map(|x| [place(t) + x, x, 0.0]));
@@ -275,7 +277,7 @@ mod tests {
         let (positions, triangles) = strip(100_003);
         let chunks = Chunks::new(&positions, &triangles, &[], &[]);
         assert!(chunks.fits(100_003) && chunks.count() == 100_003_usize.div_ceil(CHUNK));
-        let mut drawn: Vec<u32> = (0..100_003).map(|place| chunks.triangle_at(place)).collect();
+        let mut drawn: Vec<u32> = (0..100_003).map(|position| chunks.triangle_at(position)).collect();
         drawn.sort_unstable();
         assert!(drawn.iter().enumerate().all(|(at, &triangle)| at as u32 == triangle));
         let longest = (0..chunks.count()).map(|chunk| {

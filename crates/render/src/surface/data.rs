@@ -1,59 +1,59 @@
-//! What a surface is made of: slices, checked before anything is uploaded.
+//! The slices that a surface is made from, validated before anything is uploaded.
 
 use std::sync::Arc;
 
 use crate::{Chunks, Material, MaterialGroup, RenderError, TextureData};
 
-/// The slices a [`crate::Surface`] is made of. All per-vertex slices have one entry a vertex.
+/// The slices that a [`crate::Surface`] is made from. All per-vertex slices have one entry per vertex.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SurfaceData<'a> {
     /// Positions relative to the caller's centre.
     pub positions: &'a [[f32; 3]],
-    /// Unit normals (zero where there is none: such a vertex seems to face the eye).
+    /// Unit normals. A zero normal means none; such a vertex is shaded as if it faced the eye.
     pub normals: &'a [[f32; 3]],
-    /// Vertex numbers, counterclockwise seen from outside.
+    /// Vertex indices, counterclockwise seen from outside.
     pub triangles: &'a [[u32; 3]],
     /// Texture coordinates, v downwards as in glTF.
     pub uvs: Option<&'a [[f32; 2]]>,
-    /// A second set of them, for maps that ask for it.
+    /// A second set of texture coordinates, for maps that use it.
     pub second_uvs: Option<&'a [[f32; 2]]>,
     /// The file's vertex colours (red, green, blue, alpha).
     pub colours: Option<&'a [[u8; 4]]>,
     /// How the vertex colours are encoded.
     pub colour_space: ColourSpace,
-    /// Region colours, as for [`crate::Surface::update_regions`]; none shows clay everywhere.
+    /// Region colours, as for [`crate::Surface::update_regions`]; without them, none is shown.
     pub regions: Option<&'a [[u8; 4]]>,
-    /// Which triangles have which material, without overlap; the others have the default one.
+    /// The materials of ranges of triangles, without overlap; other triangles have the default material.
     pub groups: &'a [MaterialGroup],
-    /// The materials that groups name.
+    /// The materials that `groups` refers to.
     pub materials: &'a [Material],
-    /// For each vertex the lowest vertex at the same place: what lies between such welded is a seam, no border. None
-    /// means that no two vertices are welded.
+    /// For each vertex, the lowest vertex at the same position: an edge between welded vertices is a seam, not a border.
+    /// `None` if no vertices are welded.
     pub welded: Option<&'a [u32]>,
-    /// How the triangles are cut into chunks; made of the slices above where none is given.
+    /// The chunks of the mesh; built from the slices above if not given.
     pub chunks: Option<&'a Arc<Chunks>>,
-    /// The textures that materials name.
+    /// The textures that `materials` refers to.
     pub textures: &'a [TextureData<'a>],
 }
 
 /// How a file encodes its vertex colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum ColourSpace {
-    /// As screens do (PLY and OBJ files).
+    /// sRGB (PLY and OBJ files).
     #[default]
     Srgb,
-    /// In proportion to light (glTF's `COLOR_0`).
+    /// Linear light (glTF's `COLOR_0`).
     Linear,
 }
 
-/// Refuses slices that contradict each other and numbers out of range.
+/// Rejects slices of different lengths and indices out of range.
 pub(crate) fn checked(data: &SurfaceData<'_>) -> Result<(), RenderError> {
     let vertices = data.positions.len();
     for (what, length) in [
         ("normals", Some(data.normals.len())),
         ("texture coordinates", data.uvs.map(<[_]>::len)),
         ("second texture coordinates", data.second_uvs.map(<[_]>::len)),
-        ("welded", data.welded.map(<[_]>::len)),
+        ("welded vertices", data.welded.map(<[_]>::len)),
         ("vertex colours", data.colours.map(<[_]>::len)),
         ("region colours", data.regions.map(<[_]>::len)),
     ] {
@@ -65,7 +65,7 @@ pub(crate) fn checked(data: &SurfaceData<'_>) -> Result<(), RenderError> {
             });
         }
     }
-    // Drawings count indices in 32 bits.
+    // Draw calls count indices in 32 bits.
     const MOST_TRIANGLES: usize = u32::MAX as usize / 3;
     if data.triangles.len() > MOST_TRIANGLES {
         let (bytes, limit) = (12 * data.triangles.len() as u64, 12 * MOST_TRIANGLES as u64);
@@ -109,7 +109,7 @@ pub(crate) fn checked(data: &SurfaceData<'_>) -> Result<(), RenderError> {
     Ok(())
 }
 
-/// Refuses materials that name a texture which does not exist.
+/// Rejects materials with a texture index out of range.
 pub(crate) fn textures_exist(materials: &[Material], texture_count: usize) -> Result<(), RenderError> {
     for map in materials.iter().flat_map(|material| material.maps()).flatten() {
         in_range("texture", map.texture, texture_count)?;

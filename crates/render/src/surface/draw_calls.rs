@@ -1,4 +1,4 @@
-//! Which of a surface's triangles a picture draws, in as few calls as may be.
+//! The draw calls of a surface after frustum culling, batched into as few as possible.
 
 use std::ops::Range;
 
@@ -7,35 +7,35 @@ use crate::surface::lod::REDUCED_FROM_TRIANGLES;
 use crate::surface::pages::Page;
 use crate::{AlphaMode, Detail, Surface, View};
 
-/// Triangles of one page that are drawn by one call: page, places within the page, what they are made of.
+/// Triangles of one page and material that are drawn by one call.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct DrawCall {
     pub(crate) page: usize,
     pub(crate) triangles: Range<u32>,
-    /// The place in the surface's drawing order of the first one.
+    /// Position of the first triangle in the surface's draw order.
     pub(crate) first_triangle: u32,
     pub(crate) material: usize,
     pub(crate) alpha: Alpha,
     pub(crate) detail: Detail,
 }
 
-/// Which neighbouring chunks may be drawn by one call.
+/// Which neighbouring chunks may share a draw call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Batching {
-    /// All.
+    /// All of them.
     Any,
-    /// Those of one material.
+    /// Chunks of the same material.
     PerMaterial,
 }
 
 impl Surface {
-    /// How many of the triangles a picture of `view` draws; the others lie in chunks that can't be seen.
+    /// The number of triangles that remain after frustum culling.
     pub fn drawn_triangles(&self, view: &View) -> usize {
         let draw_calls = self.draw_calls(view, Batching::Any);
         draw_calls.iter().map(|call| call.triangles.len()).sum()
     }
 
-    /// Ways of drawing what may be seen, each chunk once.
+    /// The draw calls for the chunks that may be visible.
     pub(crate) fn draw_calls(&self, view: &View, batching: Batching) -> Vec<DrawCall> {
         let mut draw_calls: Vec<DrawCall> = Vec::new();
         let mut page = 0;
@@ -43,14 +43,14 @@ impl Surface {
             while self
                 .pages
                 .get(page)
-                .is_some_and(|page| page.places().end <= chunk.triangles.start)
+                .is_some_and(|page| page.draw_range().end <= chunk.triangles.start)
             {
                 page += 1;
             }
             if !bounds.intersects_frustum(&view.clip_from_world) {
                 continue;
             }
-            let start = self.pages.get(page).map_or(0, |page| page.places().start);
+            let start = self.pages.get(page).map_or(0, |page| page.draw_range().start);
             let (from, to) = (chunk.triangles.start - start, chunk.triangles.end - start);
             match draw_calls.last_mut() {
                 Some(last)
@@ -77,14 +77,14 @@ impl Surface {
         draw_calls
     }
 
-    /// Whether [`Detail::Reduced`] draws fewer triangles in a picture of `view`: there are such, nothing is hidden, and
-    /// enough of the surface is to be seen that their size does not show.
+    /// Whether [`Detail::Reduced`] draws fewer triangles in `view`: the reduced level exists, no triangle is hidden, and so
+    /// much of the surface is visible that the larger triangles do not show.
     pub fn has_reduced(&self, view: &View) -> bool {
         let is_made = self.pages.iter().any(|page| page.reduced().is_some());
         is_made && self.shown.is_none() && self.drawn_triangles(view) >= REDUCED_FROM_TRIANGLES
     }
 
-    /// The fewer triangles of each page, where there are such: not for materials.
+    /// The draw calls of the reduced level of detail. It has no materials.
     pub(crate) fn reduced_draw_calls(&self) -> Vec<DrawCall> {
         let reduced = self.pages.iter().enumerate();
         let call = |(page, reduced): (usize, &Page)| {

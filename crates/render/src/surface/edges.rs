@@ -1,11 +1,10 @@
-//! A mesh's edges, each once.
+//! The edges of a triangle mesh.
 
-/// Every edge of `triangles` once, its lower vertex number first, in the order of lower and then higher number.
-/// Edges of collapsed triangles that join a vertex to itself are left out.
+/// The edges of `triangles` without duplicates, lower vertex index first, in ascending order. Degenerate edges from a
+/// vertex to itself are left out.
 ///
-/// Edges are bucketed by their lower vertex (a counting sort, linear in the triangles) and the small buckets sorted.
-/// Drawing them beats drawing triangles as outlines: each line is drawn once, so its alpha is right, and no optional
-/// feature of the device is needed.
+/// A counting sort by the lower vertex, linear in the triangles, then a sort of each small bucket. Drawing edges rather
+/// than triangles in line mode draws every line once, so that its alpha is right, and needs no optional device feature.
 pub(crate) fn unique_edges(triangles: &[[u32; 3]], vertex_count: usize) -> Vec<[u32; 2]> {
     let mut starts = vec![0_u32; vertex_count + 1];
     for_each_edge(triangles, |low, _| starts[low as usize + 1] += 1);
@@ -42,18 +41,17 @@ fn for_each_edge(triangles: &[[u32; 3]], mut visit: impl FnMut(u32, u32)) {
     }
 }
 
-/// An edge that a closed, well-behaved surface does not have.
+/// An edge that a closed manifold does not have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum IrregularEdge {
-    /// One triangle has it: the surface ends there.
+    /// It belongs to one triangle.
     Boundary([u32; 2]),
-    /// More than two triangles have it.
+    /// It belongs to more than two triangles.
     NonManifold([u32; 2]),
 }
 
-/// The edges that one triangle has, or more than two, in the order of [`unique_edges`]. `welded` gives each vertex the
-/// lowest vertex at the same place, so that a seam of texture coordinates is no border; without it every vertex is its
-/// own.
+/// The edges that belong to one triangle, or to more than two, in the order of [`unique_edges`]. `welded` maps each vertex
+/// to the lowest vertex at the same position, so that texture seams are not borders; without it, no vertices are welded.
 pub(crate) fn irregular_edges(
     triangles: &[[u32; 3]],
     vertex_count: usize,
@@ -63,7 +61,7 @@ pub(crate) fn irregular_edges(
     let mut edges = Vec::with_capacity(3 * triangles.len());
     for &triangle in triangles {
         let corners = triangle.map(joined);
-        // A collapsed triangle has no edges of its own.
+        // Degenerate triangles have no edges.
         if corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0] {
             for_each_edge(&[corners], |low, high| edges.push([low, high]));
         }

@@ -1,4 +1,4 @@
-//! Lines on the surface: their ends stand on edges of its triangles and follow it wherever it goes.
+//! Lines on the surface. Their ends lie on edges of triangles, so the lines follow the surface when it moves.
 
 use crate::device::bindings::bind_group;
 use crate::device::buffers::filled;
@@ -7,28 +7,28 @@ use crate::frame::uniforms::SurfaceLineInstance;
 use crate::surface::pages::Page;
 use crate::{RenderError, Renderer};
 
-/// A straight piece within one triangle, or along an edge.
+/// A line segment inside one triangle or along an edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceLine {
-    /// Where it starts and ends.
+    /// Start and end.
     pub ends: [EdgePoint; 2],
-    /// Its colour, sRGB with straight alpha.
+    /// Colour, sRGB with straight alpha.
     pub colour: [u8; 4],
-    /// Its width in points ([`crate::Style::pixels_per_point`]), more than zero.
+    /// Width in points ([`crate::Style::pixels_per_point`]), more than zero.
     pub width_points: f32,
 }
 
-/// A point between two of a surface's vertices.
+/// A point on the edge between two vertices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EdgePoint {
-    /// The vertices' numbers.
+    /// Indices of the two vertices.
     pub vertices: [u32; 2],
-    /// How far it is from the first to the second, from 0 to 1.
+    /// Position between the first (0) and the second (1).
     pub share: f32,
 }
 
 impl EdgePoint {
-    /// The point of a vertex.
+    /// The point at a vertex.
     pub(crate) fn at(vertex: u32) -> Self {
         Self {
             vertices: [vertex; 2],
@@ -37,7 +37,7 @@ impl EdgePoint {
     }
 }
 
-/// Lines on one page of a surface.
+/// Lines on one page of a surface, on the device.
 #[derive(Debug)]
 pub(crate) struct LineSet {
     pub(crate) lines: wgpu::Buffer,
@@ -46,8 +46,8 @@ pub(crate) struct LineSet {
 }
 
 impl LineSet {
-    /// Those of `lines` whose vertices are all on the page; `None` if there are none. What the surface hides of them
-    /// keeps `hidden_share` of its alpha.
+    /// Uploads those of `lines` whose vertices are all on the page; `None` if there are none. `hidden_share` is the factor
+    /// of alpha for parts behind a surface.
     pub(crate) fn new(
         renderer: &Renderer,
         page: &Page,

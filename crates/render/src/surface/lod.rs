@@ -1,15 +1,14 @@
-//! Fewer triangles over the same vertices, for devices that are slow while something moves.
+//! A reduced level of detail over the same vertices, for interaction on slow devices.
 //!
-//! Vertices are clustered in the cells of a grid, each cell keeps one of them, and the triangles that still have three
-//! different corners are left (Rossignac and Borrel 1993). No new vertex is made, so the reduced mesh moves, turns and is
-//! coloured by the very buffers of the fine one.
+//! Vertex clustering [RB93]: each cell of a grid keeps one of its vertices, and the triangles that still have three
+//! different corners remain. No vertex is added, so the reduced mesh shares the vertex buffers of the full one.
 
-/// Fewer triangles in the picture are drawn fast enough as they are.
+/// Fewer visible triangles are drawn fast enough at full detail.
 pub(crate) const REDUCED_FROM_TRIANGLES: usize = 300_000;
 /// Cells along the longest side of the bounding box.
 const CELLS: f32 = 140.0;
 
-/// The triangles that clustering leaves of `triangles`, each once.
+/// The triangles that remain after clustering, without duplicates.
 pub(crate) fn reduced_triangles(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let (mut low, mut high) = (glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY);
     for &corner in triangles.iter().flatten() {
@@ -49,7 +48,7 @@ mod tests {
     use super::*;
     use glam::Vec3;
 
-    /// A unit sphere of longitudes and latitudes.
+    /// A UV sphere of radius 1.
     fn sphere(around: u32) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
         let across = around / 2;
         let mut positions = Vec::new();

@@ -1,4 +1,4 @@
-//! A triangle mesh in GPU buffers.
+//! Triangle meshes in GPU buffers.
 
 mod borders;
 pub(crate) mod chunks;
@@ -21,41 +21,41 @@ use crate::frame::uniforms::{MaterialVertex, SurfaceUniform};
 use crate::pipelines::MaterialAttributes;
 use crate::{ColourSpace, Detail, RenderError, Renderer, SurfaceData};
 
-/// A triangle mesh in GPU buffers; its topology is fixed, its vertices may move and change colour.
+/// A triangle mesh in GPU buffers. Its topology is fixed; its vertices can move and change colour.
 #[derive(Debug)]
 pub struct Surface {
     vertex_count: usize,
-    /// Kept for the borders, which are only looked for when first drawn: 12 bytes a triangle.
+    /// Kept for the borders, which are found when first drawn. Costs 12 bytes per triangle.
     triangles: Vec<[u32; 3]>,
     welded: Option<Vec<u32>>,
     pub(crate) chunks: Arc<Chunks>,
     pub(crate) bounds: Vec<ChunkBounds>,
     pub(crate) pages: Vec<Page>,
     material_attributes: MaterialAttributes,
-    /// The one entry of surfaces whose vertices have neither texture coordinates nor colours.
+    /// The single entry for surfaces without texture coordinates and vertex colours.
     shared_material_vertex: wgpu::Buffer,
     uniform_buffer: wgpu::Buffer,
     group: wgpu::BindGroup,
     materials: Vec<wgpu::BindGroup>,
-    /// Of each triangle, whether it is drawn; `None` is all of them.
+    /// For each triangle, whether it is drawn; `None` draws all.
     pub(crate) shown: Option<Arc<Vec<bool>>>,
-    /// For each page.
+    /// One entry per page.
     borders: OnceLock<Vec<Option<LineSet>>>,
-    /// For each page.
+    /// One entry per page.
     outlines: Vec<Option<LineSet>>,
 }
 
 impl Surface {
-    /// Uploads a mesh. No triangles or no vertices is fine: it draws nothing.
+    /// Uploads a mesh. It may be empty: then it draws nothing.
     ///
     /// # Errors
-    /// Slices that contradict each other, numbers out of range, textures of the wrong length, memory.
+    /// Slices of different lengths, indices out of range, textures of the wrong size, or out of memory.
     pub fn new(renderer: &Renderer, data: &SurfaceData<'_>) -> Result<Self, RenderError> {
         Self::paged(renderer, data, PageLimits::of(renderer.device()))
     }
 
-    /// The same on a device that holds no more than `vertices` and `triangles` in a buffer, for trying out how a mesh
-    /// is spread over several.
+    /// [`Surface::new`] as if the device's buffers held at most `vertices` and `triangles`, to test meshes that need
+    /// several pages.
     ///
     /// # Errors
     /// As [`Surface::new`].
@@ -139,17 +139,17 @@ impl Surface {
         self.triangles.len()
     }
 
-    /// Bytes that the mesh's buffers hold on the device (textures not counted).
+    /// GPU memory of the mesh in bytes, without textures.
     pub fn gpu_bytes(&self) -> u64 {
         self.pages.iter().map(Page::bytes).sum()
     }
 
-    /// Over how many sets of buffers the mesh is spread.
+    /// The number of pages: sets of buffers that the mesh is distributed over.
     pub fn page_count(&self) -> usize {
         self.pages.len()
     }
 
-    /// The one page of a mesh that is not spread over several.
+    /// The page of a mesh that has only one.
     pub(crate) fn whole_page(&self) -> Option<&Page> {
         self.pages.first().filter(|page| page.is_whole())
     }
@@ -166,17 +166,17 @@ impl Surface {
         self.materials.get(number)
     }
 
-    /// Which triangle is drawn where.
+    /// The chunks, which define the draw order.
     pub(crate) fn chunks(&self) -> Arc<Chunks> {
         Arc::clone(&self.chunks)
     }
 
-    /// Binds group 1.
+    /// Binds the surface's uniform as group 1.
     pub(crate) fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_bind_group(1, &self.group, &[]);
     }
 
-    /// Binds a page's shape and triangles.
+    /// Binds a page's shape and indices.
     pub(crate) fn bind_shape(&self, pass: &mut wgpu::RenderPass<'_>, page: usize, detail: Detail) {
         let Some(page) = self.pages.get(page) else { return };
         for (slot, buffer) in [&page.positions, &page.normals, &page.regions].into_iter().enumerate() {
@@ -189,18 +189,18 @@ impl Surface {
         pass.set_index_buffer(triangles.slice(..), wgpu::IndexFormat::Uint32);
     }
 
-    /// Binds a page's texture coordinates and colours.
+    /// Binds a page's material attributes.
     pub(crate) fn bind_material_attributes(&self, pass: &mut wgpu::RenderPass<'_>, page: usize) {
         let own = self.pages.get(page).and_then(|page| page.material.as_ref());
         pass.set_vertex_buffer(3, own.unwrap_or(&self.shared_material_vertex).slice(..));
     }
 
-    /// The pages' outlines, where there are any.
+    /// The outlines of each page; empty if there are none.
     pub(crate) fn outlines(&self) -> &[Option<LineSet>] {
         &self.outlines
     }
 
-    /// Makes the edges unless they are there.
+    /// Creates the edges of all pages if they do not exist yet.
     pub(crate) fn prepare_edges(&self, renderer: &Renderer) -> Result<(), RenderError> {
         let (device, queue) = (renderer.device(), renderer.queue());
         let is_shown = |triangle| self.is_shown(triangle);
@@ -209,14 +209,14 @@ impl Surface {
             .try_for_each(|page| page.prepare_edges(device, queue, &self.chunks, &is_shown))
     }
 
-    /// Says which number the first triangle has in the next drawing of triangle numbers.
+    /// Sets the id of the first triangle for the next pick.
     pub(crate) fn set_id_base(&self, queue: &wgpu::Queue, id_base: u32) {
         let offset = std::mem::offset_of!(SurfaceUniform, id_base) as u64;
         queue.write_buffer(&self.uniform_buffer, offset, bytemuck::bytes_of(&id_base));
     }
 }
 
-/// Texture coordinates and colours side by side, where the data has any.
+/// Interleaved texture coordinates and colours, if the data has either.
 fn material_vertices(data: &SurfaceData<'_>) -> Option<Vec<MaterialVertex>> {
     if data.uvs.is_none() && data.second_uvs.is_none() && data.colours.is_none() {
         return None;
@@ -232,8 +232,7 @@ fn material_vertices(data: &SurfaceData<'_>) -> Option<Vec<MaterialVertex>> {
     Some((0..data.positions.len()).map(material_vertex).collect())
 }
 
-/// The mean length of an edge, from at most ten thousand triangles evenly spread: it only sets how faint a wireframe
-/// is.
+/// The mean edge length, sampled from at most ten thousand triangles: it only sets how faint the wireframe is.
 fn mean_edge(data: &SurfaceData<'_>) -> f32 {
     let step = (data.triangles.len() / 10_000).max(1);
     let mut sum = 0.0;

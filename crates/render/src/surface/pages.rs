@@ -1,5 +1,5 @@
-//! A mesh's vertex and index buffers: one page where the device takes the mesh whole, else as many as it needs, each
-//! with the vertices of its own triangles.
+//! A mesh's vertex and index buffers: a single page if the mesh fits in the device's buffers, otherwise as many as
+//! needed, each with the vertices of its own triangles.
 
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -14,33 +14,33 @@ use crate::surface::chunks::Chunks;
 use crate::surface::edges::unique_edges;
 use crate::surface::lod::{REDUCED_FROM_TRIANGLES, reduced_triangles};
 
-/// Buffers of some of a mesh's chunks.
+/// The buffers of some of a mesh's chunks.
 #[derive(Debug)]
 pub(crate) struct Page {
-    /// The mesh's number of each of the page's vertices; `None`: they are all there, in order.
+    /// The mesh's index of each vertex of the page; `None` if the page has all vertices, in order.
     vertices: Option<Vec<u32>>,
-    /// Triangles of the page's own vertices, in drawing order. Kept for the edges, which are made when first drawn.
+    /// Triangles in the page's vertex indices, in draw order. Kept for the edges, which are built when first drawn.
     triangles: Vec<[u32; 3]>,
-    /// Which places of the drawing order these are.
-    places: Range<u32>,
+    /// The page's range in the draw order.
+    draw_range: Range<u32>,
     pub(crate) positions: wgpu::Buffer,
     pub(crate) normals: wgpu::Buffer,
     pub(crate) regions: wgpu::Buffer,
     pub(crate) material: Option<wgpu::Buffer>,
     pub(crate) indices: wgpu::Buffer,
-    /// Fewer triangles, where the mesh is large and the device is the processor.
+    /// The reduced level of detail, for large meshes on software devices.
     reduced: Option<Indices>,
     edges: OnceLock<Option<Indices>>,
 }
 
-/// What joins a page's vertices in another way: its edges, or fewer triangles.
+/// Another index buffer over a page's vertices: its edges, or its reduced level of detail.
 #[derive(Debug)]
 pub(crate) struct Indices {
     pub(crate) buffer: wgpu::Buffer,
     pub(crate) index_count: u32,
 }
 
-/// What fills a page's vertex buffers, one entry a vertex of the mesh.
+/// The contents of vertex buffers, one entry per vertex of the mesh.
 pub(crate) struct Attributes<'a> {
     pub(crate) positions: &'a [[f32; 3]],
     pub(crate) normals: &'a [[f32; 3]],
@@ -48,7 +48,7 @@ pub(crate) struct Attributes<'a> {
     pub(crate) material: Option<&'a [MaterialVertex]>,
 }
 
-/// How many vertices and triangles a page may have.
+/// The most vertices and triangles that a page may have.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PageLimits {
     pub(crate) vertices: usize,
@@ -56,18 +56,18 @@ pub(crate) struct PageLimits {
 }
 
 impl PageLimits {
-    /// What the device's buffers hold.
+    /// The limits that follow from the device's maximum buffer size.
     pub(crate) fn of(device: &wgpu::Device) -> Self {
         let bytes = usize::try_from(device.limits().max_buffer_size).unwrap_or(usize::MAX);
         Self {
-            // The widest vertex buffer is that of the materials.
+            // The vertex buffer with the largest stride is that of the material attributes.
             vertices: bytes / size_of::<MaterialVertex>(),
             triangles: bytes / size_of::<[u32; 3]>(),
         }
     }
 }
 
-/// The chunks that go onto each page: as many as fit, in order. A single chunk always fits.
+/// The chunks of each page: as many as fit, in order. A single chunk always fits.
 pub(crate) fn page_chunks(chunks: &Chunks, vertex_count: usize, limits: PageLimits) -> Vec<Range<usize>> {
     let all = chunks.all();
     let triangle_count = all.last().map_or(0, |chunk| chunk.triangles.end as usize);
@@ -113,15 +113,15 @@ impl Page {
     ) -> Result<Self, RenderError> {
         let all = chunks.all();
         let is_whole = range.len() == all.len();
-        let place = |chunk: usize| all.get(chunk).map(|chunk| chunk.triangles.clone()).unwrap_or_default();
-        let places = if range.is_empty() {
+        let triangles_of = |chunk: usize| all.get(chunk).map(|chunk| chunk.triangles.clone()).unwrap_or_default();
+        let draw_range = if range.is_empty() {
             0..0
         } else {
-            place(range.start).start..place(range.end - 1).end
+            triangles_of(range.start).start..triangles_of(range.end - 1).end
         };
-        let mut own = places
+        let mut own = draw_range
             .clone()
-            .map(|place| triangles[chunks.triangle_at(place) as usize])
+            .map(|position| triangles[chunks.triangle_at(position) as usize])
             .collect::<Vec<_>>();
         let vertices = (!is_whole).then(|| {
             let lists = range.clone().flat_map(|chunk| chunks.vertices(chunk));
@@ -144,7 +144,7 @@ impl Page {
             })
         };
         let vertex = wgpu::BufferUsages::VERTEX;
-        // Borders look positions up by number.
+        // Lines on the surface read positions by index.
         let looked_up = vertex | wgpu::BufferUsages::STORAGE;
         let mut page = Self {
             positions: filled(device, queue, "positions", looked_up, &positions)?,
@@ -166,7 +166,7 @@ impl Page {
             indices: filled(device, queue, "triangles", wgpu::BufferUsages::INDEX, &own)?,
             vertices,
             triangles: own,
-            places,
+            draw_range,
             reduced,
             edges: OnceLock::new(),
         };
@@ -183,7 +183,7 @@ impl Page {
         Ok(page)
     }
 
-    /// Replaces one of the buffers' contents, given one entry a vertex of the mesh.
+    /// Refills a vertex buffer from one entry per vertex of the mesh.
     pub(crate) fn refill<T: NoUninit>(
         &self,
         device: &wgpu::Device,
@@ -194,8 +194,8 @@ impl Page {
         refill(device, queue, buffer, &gathered(&self.vertices, contents))
     }
 
-    /// Draws only the triangles that `is_shown` is true of, by their number in the mesh. The others become points, so
-    /// that numbers and places stay what they are.
+    /// Shows only the triangles for which `is_shown` is true, by their index in the mesh. Hidden ones become degenerate, so
+    /// that indices and draw order stay the same.
     pub(crate) fn show(
         &mut self,
         device: &wgpu::Device,
@@ -210,20 +210,20 @@ impl Page {
     }
 
     fn drawn(&self, chunks: &Chunks, is_shown: &dyn Fn(u32) -> bool) -> Vec<[u32; 3]> {
-        let own = self.places.clone().zip(&self.triangles);
-        let shown = own.map(|(place, &corners)| match is_shown(chunks.triangle_at(place)) {
+        let own = self.draw_range.clone().zip(&self.triangles);
+        let shown = own.map(|(position, &corners)| match is_shown(chunks.triangle_at(position)) {
             true => corners,
             false => [0; 3],
         });
         shown.collect()
     }
 
-    /// Places of the drawing order that are on this page.
-    pub(crate) fn places(&self) -> &Range<u32> {
-        &self.places
+    /// The page's range in the draw order.
+    pub(crate) fn draw_range(&self) -> &Range<u32> {
+        &self.draw_range
     }
 
-    /// The page's number of a vertex of the mesh, if it is there.
+    /// The page's index of a vertex of the mesh, if the page has it.
     pub(crate) fn vertex(&self, of_mesh: u32) -> Option<u32> {
         match &self.vertices {
             None => Some(of_mesh),
@@ -251,7 +251,7 @@ impl Page {
         self.edges.get().and_then(Option::as_ref)
     }
 
-    /// Makes the edges unless they are there.
+    /// Creates the edges if they do not exist yet.
     pub(crate) fn prepare_edges(
         &self,
         device: &wgpu::Device,
@@ -269,7 +269,7 @@ impl Page {
             .max()
             .map_or(0, |&most| most as usize + 1);
         let mut edges = unique_edges(&self.drawn(chunks, is_shown), vertex_count);
-        // Hidden triangles are points.
+        // Hidden triangles are degenerate.
         edges.retain(|[from, to]| from != to);
         let made = if edges.is_empty() {
             None
@@ -285,7 +285,7 @@ impl Page {
     }
 }
 
-/// The entries of a page's vertices.
+/// The entries for a page's vertices.
 fn gathered<'a, T: Copy>(vertices: &Option<Vec<u32>>, contents: &'a [T]) -> std::borrow::Cow<'a, [T]> {
     match vertices {
         None => contents.into(),

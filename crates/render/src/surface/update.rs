@@ -10,29 +10,29 @@ use super::pages::Page;
 use crate::device::guard::guarded;
 use crate::{Materials, RenderError, Renderer, SurfaceLine};
 
-/// A new shape for a [`Surface`], with what can be computed beforehand on another thread.
+/// A new shape for a [`Surface`]. All of it can be computed beforehand on another thread.
 #[derive(Debug, Clone, Copy)]
 pub struct ShapeData<'a> {
-    /// Positions relative to the caller's centre, one a vertex.
+    /// Positions relative to the caller's centre, one per vertex.
     pub positions: &'a [[f32; 3]],
-    /// Unit normals, one a vertex.
+    /// Unit normals, one per vertex.
     pub normals: &'a [[f32; 3]],
-    /// [`Chunks::bounds`] of every chunk at these positions.
+    /// [`Chunks::bounds`](super::chunks::Chunks::bounds) of every chunk at these positions.
     pub bounds: &'a [ChunkBounds],
 }
 
 impl Surface {
-    /// Moves the vertices; seen in the next drawing.
+    /// Updates the positions.
     ///
     /// # Errors
-    /// [`RenderError::Length`] unless there is one position a vertex; memory.
+    /// [`RenderError::Length`] unless there is one entry per vertex; out of memory.
     pub fn update_positions(&mut self, renderer: &Renderer, positions: &[[f32; 3]]) -> Result<(), RenderError> {
         self.update(renderer, "positions", |page| &page.positions, positions)?;
         self.bounds = self.chunks.all_bounds(positions);
         Ok(())
     }
 
-    /// Moves the vertices, turns their normals and moves the chunks' boxes along.
+    /// Updates positions, normals and the chunks' bounds.
     ///
     /// # Errors
     /// As [`Surface::update_positions`].
@@ -47,7 +47,7 @@ impl Surface {
         self.update_normals(renderer, shape.normals)
     }
 
-    /// Turns the normals (unit vectors); seen in the next drawing.
+    /// Updates the normals (unit vectors).
     ///
     /// # Errors
     /// As [`Surface::update_positions`].
@@ -55,8 +55,8 @@ impl Surface {
         self.update(renderer, "normals", |page| &page.normals, normals)
     }
 
-    /// Sets the region colours that [`crate::Style::region_share`] shows: sRGB, and in the fourth byte how much of
-    /// the clay they replace (0 none, 255 all).
+    /// Updates the region colours that [`crate::Style::region_share`] shows: sRGB, and in the fourth byte how much of the
+    /// shading's colour they replace (0 none, 255 all).
     ///
     /// # Errors
     /// As [`Surface::update_positions`].
@@ -64,7 +64,7 @@ impl Surface {
         self.update(renderer, "region colours", |page| &page.regions, regions)
     }
 
-    /// Sets the region colours of some ranges of vertices, taken from `regions`, which has one a vertex.
+    /// Updates the region colours of some ranges of vertices; `regions` has one entry for every vertex.
     ///
     /// # Errors
     /// As [`Surface::update_positions`].
@@ -90,10 +90,10 @@ impl Surface {
         })
     }
 
-    /// Replaces the lines that [`crate::Outlines::On`] draws, later ones over earlier ones.
+    /// Replaces the lines that [`crate::Outlines::On`] draws; later lines cover earlier ones.
     ///
     /// # Errors
-    /// [`RenderError::NoSuch`] for a vertex that does not exist; memory.
+    /// [`RenderError::NoSuch`] for a vertex out of range; out of memory.
     pub fn update_lines(&mut self, renderer: &Renderer, lines: &[SurfaceLine]) -> Result<(), RenderError> {
         let mut vertices = lines.iter().flat_map(|line| line.ends).flat_map(|end| end.vertices);
         let count = self.vertex_count;
@@ -106,10 +106,10 @@ impl Surface {
         Ok(())
     }
 
-    /// Draws only some of the triangles, a flag each; `None` draws them all. What is not drawn is not picked either.
+    /// Shows only the triangles whose flag is set; `None` shows all. Hidden triangles can't be picked either.
     ///
     /// # Errors
-    /// [`RenderError::Length`] unless there is one flag a triangle; memory.
+    /// [`RenderError::Length`] unless there is one flag per triangle; out of memory.
     pub fn show(&mut self, renderer: &Renderer, shown: Option<Arc<Vec<bool>>>) -> Result<(), RenderError> {
         if let Some(flags) = shown.as_ref().filter(|flags| flags.len() != self.triangles.len()) {
             let (what, expected, found) = ("shown triangles", self.triangles.len(), flags.len());
@@ -128,10 +128,10 @@ impl Surface {
         self.shown.as_ref().is_none_or(|shown| shown[triangle as usize])
     }
 
-    /// Gives the surface other materials: as many as it was made with, with the same alpha.
+    /// Replaces the materials by the same number of others, with the same alpha modes.
     ///
     /// # Errors
-    /// [`RenderError::Length`] for another number of materials.
+    /// [`RenderError::Length`] if the number of materials differs.
     pub fn set_materials(&mut self, materials: Materials) -> Result<(), RenderError> {
         if materials.groups.len() != self.materials.len() {
             let [expected, found] = [&self.materials, &materials.groups].map(|groups| groups.len() - 1);
