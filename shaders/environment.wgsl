@@ -1,5 +1,6 @@
-// The environment light of materials, fixed to the eye: area lights in a grey room. It is drawn once into two cube maps: a
-// prefiltered environment map, whose levels are blurred for rising roughness [Kar13], and a diffuse irradiance map.
+// The environment light of materials, fixed to the eye: area lights in a grey room. It is drawn once into two cube
+// maps: a prefiltered environment map, whose levels are blurred for rising roughness [Kar13], and a diffuse irradiance
+// map.
 
 // `EnvironmentUniform` in crates/render/src/frame/uniforms.rs.
 struct Face {
@@ -46,8 +47,8 @@ fn environment(direction: vec3f) -> vec3f {
     let wall = mix(vec3f(0.30, 0.31, 0.33), vec3f(0.52, 0.55, 0.60), smoothstep(-0.05, 0.75, height));
     let floor = mix(vec3f(0.30, 0.31, 0.33), vec3f(0.115, 0.108, 0.100), smoothstep(0.02, -0.45, height));
     var light = select(floor, wall, height > 0.0);
-    // A large soft key light at the upper left, a strip light at the right, a soft ceiling light, and two rim lights from
-    // behind.
+    // A large soft key light at the upper left, a strip light at the right, a soft ceiling light, and two rim lights
+    // from behind.
     light += area_light(direction, normalize(vec3f(-0.62, 0.62, 0.50)), vec2f(0.42, 0.34), 0.10, vec3f(5.6, 5.3, 4.9));
     light += area_light(direction, normalize(vec3f(0.93, 0.10, 0.35)), vec2f(0.13, 0.75), 0.05, vec3f(2.3, 2.5, 2.8));
     light += area_light(direction, normalize(vec3f(0.10, 0.98, 0.12)), vec2f(0.9, 0.5), 0.25, vec3f(1.25, 1.3, 1.35));
@@ -98,7 +99,8 @@ fn fs_prefiltered(in: EnvironmentFragment) -> @location(0) vec4f {
     return vec4f(sum / max(weights, 1e-4), 1.0);
 }
 
-// Cosine-weighted mean radiance over the hemisphere: the irradiance that a diffuse albedo is multiplied by, divided by π.
+// Cosine-weighted mean radiance over the hemisphere: the irradiance that a diffuse albedo is multiplied by, divided by
+// π.
 @fragment
 fn fs_irradiance(in: EnvironmentFragment) -> @location(0) vec4f {
     let normal = direction_of(in);

@@ -1,22 +1,22 @@
-// The ground: lines one step apart, each tenth stronger, the world's axes in their colours, all fading with distance
-// and where the ground is seen from its edge.
+// The ground grid: lines one step apart, every tenth stronger, and the world axes in their colours. It fades with
+// distance and at grazing angles.
 #include "lib/frame.wgsl"
 #include "lib/colour.wgsl"
 
 // `GridUniform` in crates/render/src/frame/uniforms.rs.
 struct Grid {
-    // A crossing of strong lines near what is looked at, relative to the centre.
+    // A crossing of strong lines near the camera's target, relative to the centre.
     middle: vec3f,
     // World units between lines.
     step: f32,
     // Unit vectors.
     along_u: vec3f,
-    // World units from the middle to where the last line has faded.
+    // Distance from the middle, in world units, at which the grid has faded out.
     reach: f32,
     along_v: vec3f,
-    // How strong the lines between the tenths are, 0 to 1.
+    // Strength of the lines between the tenths, 0 to 1.
     fine_share: f32,
-    // Where the world's axes cross, in steps from the middle.
+    // Where the world axes cross, in steps from the middle.
     axes: vec2f,
     padding: vec2f,
     // sRGB with straight alpha.
@@ -46,7 +46,7 @@ fn vs_grid(@builtin(vertex_index) vertex: u32) -> GridFragment {
     return out;
 }
 
-// How much of a pixel lines at whole numbers cover; lines closer than two pixels become their mean.
+// Pixel coverage of lines at integers. Lines less than two pixels apart turn into their mean coverage.
 fn lines(at: vec2f, width_px: f32) -> f32 {
     let pixel = max(fwidth(at), vec2f(1e-6));
     let distance_px = abs(fract(at - 0.5) - 0.5) / pixel;

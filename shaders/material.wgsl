@@ -106,8 +106,8 @@ fn base_of(in: MaterialFragment) -> vec4f {
     return vec4f(under_region(base.rgb, in.region), base.a);
 }
 
-// The normal map applied to `n`. The cotangent frame comes from screen-space derivatives [Sch13], so it follows a bending
-// surface and no file needs tangents.
+// The normal map applied to `n`. The cotangent frame comes from screen-space derivatives [Sch13], so it follows a
+// bending surface and no file needs tangents.
 fn mapped_normal(in: MaterialFragment, n: vec3f) -> vec3f {
     let uv = transformed(material.normal, in.uvs);
     let sampled = textureSample(normal_image, normal_sampler, uv).xyz * 2.0 - 1.0;

@@ -1,4 +1,5 @@
-// One level of a texture from the next finer one. Both are seen as sRGB, so the mean is one of light.
+// One mip level from the next finer one. Views of sRGB textures decode and encode, so the mean is taken in linear
+// light.
 @group(0) @binding(0) var finer: texture_2d<f32>;
 @group(0) @binding(1) var finer_sampler: sampler;
 

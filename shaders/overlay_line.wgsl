@@ -1,4 +1,4 @@
-// Lines above the surfaces, one instance a line. Drawn twice, as triangles of the overlay are.
+// Overlay lines, one instance per line. Drawn twice, like overlay triangles.
 #include "lib/frame.wgsl"
 #include "lib/colour.wgsl"
 #include "lib/line.wgsl"

@@ -1,4 +1,4 @@
-// Flat triangles above the surfaces: drawn once where they are seen and once, fainter, where a surface hides them.
+// Overlay triangles: drawn once where they are visible and once, fainter, where a surface hides them.
 #include "lib/frame.wgsl"
 #include "lib/colour.wgsl"
 

@@ -5,8 +5,9 @@
 #include "lib/surface_shape.wgsl"
 #include "lib/tone.wgsl"
 
-// `MatcapUniform` in crates/render/src/frame/uniforms.rs. The matcap texture is a sphere seen from the eye: its left half
-// is half the diffuse light, which the colour is multiplied by; its right half is the specular light, which is added.
+// `MatcapUniform` in crates/render/src/frame/uniforms.rs. The matcap texture is a sphere seen from the eye: its left
+// half is half the diffuse light, which the colour is multiplied by; its right half is the specular light, which is
+// added.
 struct Matcap {
     // Linear.
     colour: vec4f,

@@ -1,4 +1,4 @@
-// Triangle numbers instead of colours: 0 is no triangle.
+// The id buffer: triangle ids in place of colours; 0 is no triangle.
 enable primitive_index;
 #include "lib/frame.wgsl"
 #include "lib/surface_vertex.wgsl"
@@ -8,7 +8,7 @@ struct IdFragment {
     @location(0) @interpolate(flat) first_triangle: u32,
 }
 
-// Each drawing numbers its triangles from 0, so the instance says which one the first is.
+// The primitive index starts at 0 in each draw call, so the instance index carries the first triangle's.
 @vertex
 fn vs_id(@location(0) position: vec3f, @builtin(instance_index) first_triangle: u32) -> IdFragment {
     var out: IdFragment;

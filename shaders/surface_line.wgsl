@@ -1,5 +1,5 @@
-// Lines on the surface as marks of a width in points: one instance a line, whose ends lie on edges of triangles and are
-// looked up among the surface's positions, so that they follow it without an upload of their own.
+// Lines on the surface with a width in points, one instance per line. Their ends lie on edges of triangles and are
+// computed from the surface's positions, so they follow the surface without an upload.
 #include "lib/frame.wgsl"
 #include "lib/colour.wgsl"
 #include "lib/surface_vertex.wgsl"
@@ -8,10 +8,10 @@
 @group(2) @binding(0) var<storage, read> positions: array<f32>;
 
 struct SurfaceLine {
-    // Each end stands between two vertices, ...
+    // Each end lies on the edge between two vertices, ...
     @location(0) start: vec2u,
     @location(1) end: vec2u,
-    // ... this far from the first to the second.
+    // ... at this fraction from the first to the second.
     @location(2) shares: vec2f,
     @location(3) width_points: f32,
     @location(4) hidden_share: f32,
@@ -36,13 +36,13 @@ fn vs_surface_line(@builtin(vertex_index) corner: u32, line: SurfaceLine) -> Lin
     return widened(corner, start, end, width_px, 0.5 * width_px, colour, colour, line.hidden_share);
 }
 
-// Round ends close the gaps where lines bend.
+// Round caps close the gaps where lines bend.
 @fragment
 fn fs_visible(in: LineFragment) -> @location(0) vec4f {
     return in.colour * coverage(in);
 }
 
-// Where lines are seen through, ends that overlap would be darker than the rest.
+// Without caps: overlapping caps of transparent lines would be darker than the rest.
 @fragment
 fn fs_hidden(in: LineFragment) -> @location(0) vec4f {
     return in.colour * (coverage(in) * in.hidden_share * f32(beyond_px(in) <= 0.0));

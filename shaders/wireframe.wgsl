@@ -1,4 +1,4 @@
-// A surface's edges as thin lines just before it.
+// The edges of a surface as thin lines, slightly in front of it.
 #include "lib/frame.wgsl"
 #include "lib/surface_vertex.wgsl"
 
@@ -11,9 +11,9 @@ struct WireFragment {
 fn vs_wireframe(@location(0) position: vec3f) -> WireFragment {
     var out: WireFragment;
     out.position_clip = clip_from_vertex(position);
-    // Depth grows towards the eye: a factor lifts the line off its own faces at any distance.
+    // Depth grows towards the eye, so a factor lifts lines off their faces at any distance.
     out.position_clip.z *= 1.0006;
-    // Edges of less than a few pixels would blacken the surface, so they fade.
+    // Edges shorter than a few pixels would blacken the surface, so they fade.
     let edge_px = surface.mean_edge * frame.scale_px / max(out.position_clip.w, 1e-6);
     out.alpha = clamp((edge_px - 0.5) / 10.0, 0.06, 0.62);
     return out;

@@ -1,18 +1,19 @@
-// A line of a width in pixels: widened on the screen to a strip of two triangles, with borders that fade over one pixel.
+// A line of a width in pixels: widened on the screen to a strip of two triangles, with borders that fade over one
+// pixel.
 struct LineFragment {
     @builtin(position) position_clip: vec4f,
     @location(0) colour: vec4f,
-    // Distance from the line's middle, interpolated on the screen.
+    // Distance from the line's centre, interpolated in screen space.
     @location(1) @interpolate(linear) across_px: f32,
-    // Distance from its start, along it.
+    // Distance along the line from its start.
     @location(2) @interpolate(linear) along_px: f32,
     @location(3) length_px: f32,
     @location(4) half_width_px: f32,
     @location(5) hidden_share: f32,
 }
 
-// `a`, or where it lies before the near plane (z > w), the point on the way to `b` that does not.
-fn before_the_eye(a: vec4f, b: vec4f) -> vec4f {
+// Clips `a` to the near plane: if it lies in front of it (z > w), the intersection on the way to `b`.
+fn clipped_to_near(a: vec4f, b: vec4f) -> vec4f {
     let inside_a = a.w - a.z;
     let inside_b = b.w - b.z;
     if inside_a >= 0.0 || inside_b <= 0.0 {
@@ -21,8 +22,8 @@ fn before_the_eye(a: vec4f, b: vec4f) -> vec4f {
     return mix(a, b, inside_a / (inside_a - inside_b));
 }
 
-// The depth of a point `px` of its own distance's pixels nearer to the eye: a strip that faces the eye is else half
-// swallowed by a surface that leans.
+// The depth of a point moved towards the eye by the size of `px` pixels at its distance. Otherwise, half of a strip
+// that faces the eye would disappear in a tilted surface.
 fn depth_nearer_by(position_clip: vec4f, px: f32) -> f32 {
     let from_view = transpose(frame.view_from_world);
     let distance = mix(1.0, position_clip.w, frame.perspective);
@@ -31,7 +32,7 @@ fn depth_nearer_by(position_clip: vec4f, px: f32) -> f32 {
     return min(nearer.z / max(nearer.w, 1e-9), 1.0);
 }
 
-// The strip's corner 0 to 3, reaching beyond the line's ends by `cap_px`. Colours are linear and premultiplied.
+// Corner 0 to 3 of the strip, which extends beyond the line's ends by `cap_px`. Colours are linear and premultiplied.
 fn widened(
     corner: u32,
     start: vec3f,
@@ -44,8 +45,8 @@ fn widened(
 ) -> LineFragment {
     let start_whole = frame.clip_from_world * vec4f(start, 1.0);
     let end_whole = frame.clip_from_world * vec4f(end, 1.0);
-    let start_clip = before_the_eye(start_whole, end_whole);
-    let end_clip = before_the_eye(end_whole, start_whole);
+    let start_clip = clipped_to_near(start_whole, end_whole);
+    let end_clip = clipped_to_near(end_whole, start_whole);
     let half_size_px = 0.5 * frame.size_px;
     let start_px = start_clip.xy / max(start_clip.w, 1e-9) * half_size_px;
     let end_px = end_clip.xy / max(end_clip.w, 1e-9) * half_size_px;
@@ -54,7 +55,7 @@ fn widened(
     let direction = select(vec2f(1.0, 0.0), along / length_px, length_px > 1e-6);
     let at_end = (corner & 1u) == 1u;
     let side = select(-1.0, 1.0, (corner & 2u) == 2u);
-    // A pixel more on each side for the fading border.
+    // One more pixel on each side for antialiasing.
     let half_width_px = 0.5 * width_px;
     let reach_px = half_width_px + 1.0;
     let cap_reach_px = select(0.0, cap_px + 1.0, cap_px > 0.0) * select(-1.0, 1.0, at_end);
@@ -74,7 +75,7 @@ fn widened(
     return out;
 }
 
-// How far beyond the nearer end; less than 0 between both.
+// Distance beyond the nearer end; negative between the ends.
 fn beyond_px(in: LineFragment) -> f32 {
     return max(-in.along_px, in.along_px - in.length_px);
 }

@@ -1,8 +1,8 @@
-// A surface's shape: where it is, which way it faces, and its region's colour.
+// A surface's vertices: position, normal and region colour.
 struct SurfaceVertex {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
-    // sRGB, in alpha how much of the surface's own colour it replaces.
+    // sRGB; alpha is how much of the surface's own colour it replaces.
     @location(2) region: vec4f,
 }
 
@@ -14,20 +14,20 @@ fn position_to_view(position: vec3f) -> vec3f {
     return (frame.view_from_world * vec4f(position, 1.0)).xyz;
 }
 
-// Linear, in alpha how much of the surface's own colour is replaced, and times that: between a vertex with a colour and
-// one without, the colour's share falls and nothing else enters.
+// The region colour, linear and premultiplied, so that between a vertex with a colour and one without only the colour's
+// weight falls and no other colour is mixed in.
 fn region_share(region: vec4f) -> vec4f {
     let share = region.a * frame.region_share;
     return vec4f(linear_from_srgb_fast(region.rgb) * share, share);
 }
 
-// A colour with a region's over it.
+// A region colour composited over a colour.
 fn under_region(colour: vec3f, region: vec4f) -> vec3f {
     return colour * (1.0 - region.a) + region.rgb;
 }
 
-// The unit normal on the side that is seen. Where interpolation still turns it away from the eye it is mirrored into
-// the visible half, which is continuous at the contour where a sign flip is not.
+// The unit normal of the visible side. Where interpolation turns it away from the eye, it is reflected into the visible
+// hemisphere, which is continuous at the silhouette, unlike a change of sign.
 fn seen_normal(normal_view: vec3f, position_view: vec3f, to_eye: vec3f, is_front: bool) -> vec3f {
     let length_squared = dot(normal_view, normal_view);
     var n = select(to_eye, normal_view * inverseSqrt(length_squared), length_squared > 1e-20);

@@ -1,11 +1,11 @@
-// What every drawing of a surface shares: its uniform, and the one place where its vertices come to the screen, so that
-// picture, edges and triangle numbers can't disagree.
+// What all shaders of a surface share: its uniform, and the one function that projects its vertices, so that picture,
+// edges and ids agree exactly.
 struct Surface {
-    // Triangle number of the surface's first triangle among all of the frame's, plus 1.
+    // The id of the surface's first triangle in the frame; ids start at 1.
     id_base: u32,
     // 1 when vertex colours are linear light, 0 when they are sRGB.
     colours_are_linear: u32,
-    // Mean length of an edge, in world units.
+    // Mean edge length in world units.
     mean_edge: f32,
     padding: u32,
 }

@@ -1,7 +1,7 @@
 // Tone mapping.
 
-// Highlight roll-off: bright light bends towards white instead of clipping; below the knee nothing changes. For matcaps,
-// whose light is made to fit.
+// Highlight roll-off: bright light bends towards white instead of clipping; below the knee nothing changes. For
+// matcaps, whose light is made to fit.
 fn rolled_off(light: vec3f) -> vec3f {
     const KNEE: f32 = 0.50;
     let over = max(light - KNEE, vec3f(0.0)) / (1.0 - KNEE);

@@ -1,10 +1,10 @@
 //! Rendering with wgpu: slices of numbers go in, a texture or picked triangle ids come out.
 //!
-//! A [`Renderer`] owns the pipelines of one device. A [`Surface`] is a triangle mesh in GPU buffers, made from the slices
-//! of a [`SurfaceData`] and updated in place while it moves. A [`Frame`] says what to draw and from where.
+//! A [`Renderer`] owns the pipelines of one device. A [`Surface`] is a triangle mesh in GPU buffers, made from the
+//! slices of a [`SurfaceData`] and updated in place while it moves. A [`Frame`] says what to draw and from where.
 //! [`Renderer::draw`] draws it into a [`Target`], an offscreen texture that a window shows as an image;
-//! [`Renderer::draw_to_image`] draws the same frame into memory. [`Renderer::pick`] finds the triangles in a rectangle of
-//! pixels. [`Headless`] is a renderer without a window.
+//! [`Renderer::draw_to_image`] draws the same frame into memory. [`Renderer::pick`] finds the triangles in a rectangle
+//! of pixels. [`Headless`] is a renderer without a window.
 //!
 //! World space here is *relative to a centre that the caller subtracts in f64*, because scans can have geographic
 //! coordinates, for which f32 is too coarse. Depth is reversed: 1 at the near plane, 0 at infinity.

@@ -154,12 +154,12 @@ impl PixelRect {
 }
 
 impl Renderer {
-    /// Starts finding the triangles that a frame of `size_px` shows in `rect` (clipped to the picture), without waiting.
-    /// Overlays and alpha masks are ignored.
+    /// Starts finding the triangles that a frame of `size_px` shows in `rect` (clipped to the picture), without
+    /// waiting. Overlays and alpha masks are ignored.
     ///
     /// # Errors
-    /// [`RenderError::NoTriangleNumbers`] on a device without the primitive index, [`RenderError::PictureTooLarge`], and as
-    /// [`Renderer::draw`].
+    /// [`RenderError::NoTriangleNumbers`] on a device without the primitive index, [`RenderError::PictureTooLarge`],
+    /// and as [`Renderer::draw`].
     pub fn pick(
         &mut self,
         target: &mut IdTarget,

@@ -38,7 +38,8 @@ pub struct Renderer {
     timer: Option<Timer>,
 }
 
-/// The background span of a whole picture. A tile's span is the fraction of the background below it and its own fraction.
+/// The background span of a whole picture. A tile's span is the fraction of the background below it and its own
+/// fraction.
 pub(crate) const WHOLE_BACKGROUND: [f32; 2] = [0.0, 1.0];
 
 impl Renderer {
@@ -102,8 +103,8 @@ impl Renderer {
         self.device.adapter_info().name
     }
 
-    /// Whether the device is a software renderer on the CPU. Drawing is slow there, so use [`crate::Samples::One`] during
-    /// interaction.
+    /// Whether the device is a software renderer on the CPU. Drawing is slow there, so use [`crate::Samples::One`]
+    /// during interaction.
     pub fn is_software(&self) -> bool {
         is_software(&self.device)
     }

@@ -30,8 +30,8 @@ struct RestNormals {
 }
 
 impl NormalGroups {
-    /// Groups the model's drawn vertices, which `triangles` are over; `stored` has one unit normal a drawn vertex, in world
-    /// space.
+    /// Groups the model's drawn vertices, which `triangles` are over; `stored` has one unit normal a drawn vertex, in
+    /// world space.
     pub fn of(model: &Model, triangles: &[[u32; 3]], stored: Option<Vec<[f32; 3]>>) -> Self {
         let (group_of_drawn, stored_of_group) = group_vertices(model, stored.as_deref());
         let group_count = stored_of_group.len();
@@ -69,8 +69,8 @@ impl NormalGroups {
         groups
     }
 
-    /// One unit normal a drawn vertex, of the shape in which the drawn vertices stand at `positions`; `triangles` are those
-    /// that were grouped.
+    /// One unit normal a drawn vertex, of the shape in which the drawn vertices stand at `positions`; `triangles` are
+    /// those that were grouped.
     pub fn at(&self, positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<[f32; 3]> {
         let mut normals = self.geometric(positions, triangles);
         if let Some(rest) = &self.rest {

@@ -51,8 +51,8 @@ async fn adapter(instance: &wgpu::Instance) -> Option<wgpu::Adapter> {
     None
 }
 
-/// The device descriptor for an adapter: the adapter's own limits (the defaults cap buffers at 256 MiB) and those optional
-/// features that the renderer can use. A window should request its device with this descriptor, too.
+/// The device descriptor for an adapter: the adapter's own limits (the defaults cap buffers at 256 MiB) and those
+/// optional features that the renderer can use. A window should request its device with this descriptor, too.
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let useful = wgpu::Features::PRIMITIVE_INDEX | wgpu::Features::TIMESTAMP_QUERY;
     wgpu::DeviceDescriptor {

@@ -133,8 +133,8 @@ impl Renderer {
         Ok(Image { width, height, rgba })
     }
 
-    /// Draws a frame into memory and waits for it. Pictures larger than 2048 pixels a side are drawn in tiles, so neither
-    /// the device's texture limit nor its memory limits their size.
+    /// Draws a frame into memory and waits for it. Pictures larger than 2048 pixels a side are drawn in tiles, so
+    /// neither the device's texture limit nor its memory limits their size.
     ///
     /// # Errors
     /// [`RenderError::EmptyPicture`], [`RenderError::OutOfMemory`] and as [`Renderer::draw`].

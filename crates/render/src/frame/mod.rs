@@ -132,8 +132,8 @@ pub enum Detail {
     /// All triangles.
     #[default]
     Full,
-    /// At most a twentieth of a large surface's triangles, for interaction on slow devices. Materials and wireframes keep
-    /// full detail.
+    /// At most a twentieth of a large surface's triangles, for interaction on slow devices. Materials and wireframes
+    /// keep full detail.
     Reduced,
 }
 

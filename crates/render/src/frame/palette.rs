@@ -1,7 +1,7 @@
 //! Colours with a meaning.
 
-/// Region colours for [`crate::Surface::update_regions`], as in the figures of [BS08]: grey is fixed, blue is free, gold
-/// is the handle.
+/// Region colours for [`crate::Surface::update_regions`], as in the figures of [BS08]: grey is fixed, blue is free,
+/// gold is the handle.
 pub mod region {
     /// Fixed vertices.
     pub const FIXED: [u8; 4] = [156, 154, 151, 255];

@@ -23,8 +23,8 @@ impl Samples {
     }
 }
 
-/// The offscreen texture that a frame is drawn into. Empty until its first [`Target::resize`]. Drawing into an empty target
-/// does nothing, so a window of size zero needs no special case.
+/// The offscreen texture that a frame is drawn into. Empty until its first [`Target::resize`]. Drawing into an empty
+/// target does nothing, so a window of size zero needs no special case.
 #[derive(Debug, Default)]
 pub struct Target {
     attachments: Option<Attachments>,
@@ -55,8 +55,8 @@ impl Target {
         Self::default()
     }
 
-    /// Resizes the target, in pixels. Does nothing if size and samples are unchanged; a side of zero empties it. Returns
-    /// whether the texture was replaced: then its view must be registered and the frame drawn again.
+    /// Resizes the target, in pixels. Does nothing if size and samples are unchanged; a side of zero empties it.
+    /// Returns whether the texture was replaced: then its view must be registered and the frame drawn again.
     ///
     /// # Errors
     /// [`RenderError::PictureTooLarge`] beyond the device's limit and [`RenderError::OutOfMemory`]; the target is

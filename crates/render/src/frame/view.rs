@@ -46,8 +46,8 @@ impl View {
         Self::new(clip_from_view, view_from_world)
     }
 
-    /// An orthographic view that shows `half_height` world units above and below the centre, from `near` to `far` in front
-    /// of the eye (`near` may be negative; `far` must be larger).
+    /// An orthographic view that shows `half_height` world units above and below the centre, from `near` to `far` in
+    /// front of the eye (`near` may be negative; `far` must be larger).
     pub fn orthographic(half_height: f32, aspect: f32, near: f32, far: f32, view_from_world: Mat4) -> Self {
         let depth_scale = 1.0 / (far - near);
         let clip_from_view = Mat4::from_cols(
@@ -92,8 +92,8 @@ impl View {
         }
     }
 
-    /// Projects a point in world space: pixels from the upper left corner of a picture of `size_px`, and depth (1 near, 0
-    /// far). `None` behind the eye.
+    /// Projects a point in world space: pixels from the upper left corner of a picture of `size_px`, and depth (1 near,
+    /// 0 far). `None` behind the eye.
     pub fn pixel_from_world(&self, position: Vec3, size_px: [u32; 2]) -> Option<Vec3> {
         let clip = self.clip_from_world * position.extend(1.0);
         if clip.w <= 0.0 {

@@ -9,8 +9,8 @@ use crate::pipelines::shaders::Shader;
 use crate::{RenderError, Renderer};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// The prefiltered environment map: 64 pixels a side at roughness 0, down to 4 at roughness 1, as `material.wgsl` samples
-/// it.
+/// The prefiltered environment map: 64 pixels a side at roughness 0, down to 4 at roughness 1, as `material.wgsl`
+/// samples it.
 const PREFILTERED_PX: u32 = 64;
 const PREFILTERED_LEVELS: u32 = 5;
 const PREFILTERED_SAMPLES: u32 = 96;

@@ -1,10 +1,10 @@
 //! Matcaps: a sphere in each of the editor's clays, shaded on the processor from a few lights and stored as a small
 //! texture that the shader looks up by normal.
 //!
-//! A texture, because then any number of lights costs one look-up per pixel, which matters on software devices. Computed,
-//! not painted, because a dozen numbers are easy to read and change. Diffuse and specular light are stored separately so
-//! that a region's colour can replace the clay's under the same, evened-out light: regions must be recognisable by their
-//! colour on every clay.
+//! A texture, because then any number of lights costs one look-up per pixel, which matters on software devices.
+//! Computed, not painted, because a dozen numbers are easy to read and change. Diffuse and specular light are stored
+//! separately so that a region's colour can replace the clay's under the same, evened-out light: regions must be
+//! recognisable by their colour on every clay.
 
 use glam::{Vec3, Vec4};
 
@@ -277,8 +277,8 @@ fn srgb_byte(linear: f32) -> u8 {
 mod tests {
     use super::*;
 
-    /// Blue, gold, red and grey (linear) as the shader shows them on a sphere of each clay: as saturated as on plain clay
-    /// (grey stays grey), and with enough contrast to show the form.
+    /// Blue, gold, red and grey (linear) as the shader shows them on a sphere of each clay: as saturated as on plain
+    /// clay (grey stays grey), and with enough contrast to show the form.
     #[test]
     fn a_regions_colour_is_as_deep_on_every_clay_and_shows_the_form() {
         let colours = [

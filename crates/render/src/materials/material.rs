@@ -33,8 +33,8 @@ pub struct Material {
     pub lighting: Lighting,
     /// How alpha is used.
     pub alpha: AlphaMode,
-    /// Whether back faces are lit like front faces. Back faces are always drawn, because an editor must show the inside of
-    /// an open scan and picking must agree with the picture, but single-sided materials dim them.
+    /// Whether back faces are lit like front faces. Back faces are always drawn, because an editor must show the inside
+    /// of an open scan and picking must agree with the picture, but single-sided materials dim them.
     pub double_sided: bool,
 }
 

@@ -154,9 +154,9 @@ impl TextureUploader {
     }
 }
 
-/// An image halved until neither side exceeds `limit`. Each pixel is the mean of the bytes of the four that it covers; the
-/// last row or column of an odd side is dropped. Means of sRGB bytes are slightly dark, which only affects images beyond
-/// the device's limit.
+/// An image halved until neither side exceeds `limit`. Each pixel is the mean of the bytes of the four that it covers;
+/// the last row or column of an odd side is dropped. Means of sRGB bytes are slightly dark, which only affects images
+/// beyond the device's limit.
 fn scaled_to_fit<'a>(data: &TextureData<'a>, limit: u32) -> (u32, u32, Cow<'a, [u8]>) {
     let (mut width, mut height) = (data.width as usize, data.height as usize);
     let mut rgba = Cow::Borrowed(data.rgba);

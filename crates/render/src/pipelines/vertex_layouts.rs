@@ -15,7 +15,8 @@ pub(crate) const SHAPE_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 3] =
     Some(per_vertex(4, &REGION)),
 ];
 
-/// [`SHAPE_BUFFERS`] and the attributes that only materials read; with stride 0, all vertices read the one shared entry.
+/// [`SHAPE_BUFFERS`] and the attributes that only materials read; with stride 0, all vertices read the one shared
+/// entry.
 pub(crate) const fn material_buffers(attributes: MaterialAttributes) -> [Option<wgpu::VertexBufferLayout<'static>>; 4] {
     let stride = match attributes {
         MaterialAttributes::PerVertex => size_of::<MaterialVertex>() as u64,

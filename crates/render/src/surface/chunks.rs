@@ -1,9 +1,9 @@
 //! A mesh split into chunks of neighbouring triangles, for frustum culling, and so that a mesh larger than the device's
 //! buffers can be distributed over several pages.
 //!
-//! Triangles are sorted by the Morton code of their centroid at rest and split every [`CHUNK`] triangles; a chunk has one
-//! material. Small meshes keep their order, because there is nothing to gain. Each chunk lists its vertices, so updating
-//! all bounds after a deformation reads about as many positions as there are vertices.
+//! Triangles are sorted by the Morton code of their centroid at rest and split every [`CHUNK`] triangles; a chunk has
+//! one material. Small meshes keep their order, because there is nothing to gain. Each chunk lists its vertices, so
+//! updating all bounds after a deformation reads about as many positions as there are vertices.
 
 use std::ops::Range;
 
@@ -11,8 +11,8 @@ use glam::{Mat4, Vec3, Vec4};
 
 use crate::{AlphaMode, Material, MaterialGroup};
 
-/// Triangles per chunk: five million triangles take at most 305 draw calls, and about a twentieth of those drawn are not
-/// visible.
+/// Triangles per chunk: five million triangles take at most 305 draw calls, and about a twentieth of those drawn are
+/// not visible.
 const CHUNK: usize = 16_384;
 /// Meshes of up to this many triangles are neither sorted nor split.
 const UNSORTED: usize = 4 * CHUNK;
@@ -45,8 +45,8 @@ pub struct ChunkBounds {
 }
 
 impl Chunks {
-    /// Splits a mesh whose triangles get their materials from `groups`; other triangles have the default material. Vertex
-    /// indices out of range count as the origin here; uploading the mesh rejects them.
+    /// Splits a mesh whose triangles get their materials from `groups`; other triangles have the default material.
+    /// Vertex indices out of range count as the origin here; uploading the mesh rejects them.
     pub fn new(
         positions: &[[f32; 3]],
         triangles: &[[u32; 3]],
@@ -153,8 +153,8 @@ impl Chunks {
 }
 
 impl ChunkBounds {
-    /// Whether the box may intersect the view frustum of `clip_from_world` (reversed depth). Conservative: never wrongly
-    /// false.
+    /// Whether the box may intersect the view frustum of `clip_from_world` (reversed depth). Conservative: never
+    /// wrongly false.
     pub(crate) fn intersects_frustum(&self, clip_from_world: &Mat4) -> bool {
         if !self.min.is_finite() || !self.max.is_finite() {
             // No vertex, or one at infinity.

@@ -27,8 +27,8 @@ pub struct SurfaceData<'a> {
     pub groups: &'a [MaterialGroup],
     /// The materials that `groups` refers to.
     pub materials: &'a [Material],
-    /// For each vertex, the lowest vertex at the same position: an edge between welded vertices is a seam, not a border.
-    /// `None` if no vertices are welded.
+    /// For each vertex, the lowest vertex at the same position: an edge between welded vertices is a seam, not a
+    /// border. `None` if no vertices are welded.
     pub welded: Option<&'a [u32]>,
     /// The chunks of the mesh; built from the slices above if not given.
     pub chunks: Option<&'a Arc<Chunks>>,

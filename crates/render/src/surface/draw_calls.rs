@@ -77,8 +77,8 @@ impl Surface {
         draw_calls
     }
 
-    /// Whether [`Detail::Reduced`] draws fewer triangles in `view`: the reduced level exists, no triangle is hidden, and so
-    /// much of the surface is visible that the larger triangles do not show.
+    /// Whether [`Detail::Reduced`] draws fewer triangles in `view`: the reduced level exists, no triangle is hidden,
+    /// and so much of the surface is visible that the larger triangles do not show.
     pub fn has_reduced(&self, view: &View) -> bool {
         let is_made = self.pages.iter().any(|page| page.reduced().is_some());
         is_made && self.shown.is_none() && self.drawn_triangles(view) >= REDUCED_FROM_TRIANGLES

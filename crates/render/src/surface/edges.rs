@@ -50,8 +50,9 @@ pub(crate) enum IrregularEdge {
     NonManifold([u32; 2]),
 }
 
-/// The edges that belong to one triangle, or to more than two, in the order of [`unique_edges`]. `welded` maps each vertex
-/// to the lowest vertex at the same position, so that texture seams are not borders; without it, no vertices are welded.
+/// The edges that belong to one triangle, or to more than two, in the order of [`unique_edges`]. `welded` maps each
+/// vertex to the lowest vertex at the same position, so that texture seams are not borders; without it, no vertices are
+/// welded.
 pub(crate) fn irregular_edges(
     triangles: &[[u32; 3]],
     vertex_count: usize,

@@ -46,8 +46,8 @@ pub(crate) struct LineSet {
 }
 
 impl LineSet {
-    /// Uploads those of `lines` whose vertices are all on the page; `None` if there are none. `hidden_share` is the factor
-    /// of alpha for parts behind a surface.
+    /// Uploads those of `lines` whose vertices are all on the page; `None` if there are none. `hidden_share` is the
+    /// factor of alpha for parts behind a surface.
     pub(crate) fn new(
         renderer: &Renderer,
         page: &Page,

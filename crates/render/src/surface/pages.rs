@@ -194,8 +194,8 @@ impl Page {
         refill(device, queue, buffer, &gathered(&self.vertices, contents))
     }
 
-    /// Shows only the triangles for which `is_shown` is true, by their index in the mesh. Hidden ones become degenerate, so
-    /// that indices and draw order stay the same.
+    /// Shows only the triangles for which `is_shown` is true, by their index in the mesh. Hidden ones become
+    /// degenerate, so that indices and draw order stay the same.
     pub(crate) fn show(
         &mut self,
         device: &wgpu::Device,

@@ -55,8 +55,8 @@ impl Surface {
         self.update(renderer, "normals", |page| &page.normals, normals)
     }
 
-    /// Updates the region colours that [`crate::Style::region_share`] shows: sRGB, and in the fourth byte how much of the
-    /// shading's colour they replace (0 none, 255 all).
+    /// Updates the region colours that [`crate::Style::region_share`] shows: sRGB, and in the fourth byte how much of
+    /// the shading's colour they replace (0 none, 255 all).
     ///
     /// # Errors
     /// As [`Surface::update_positions`].
