@@ -1,5 +1,4 @@
-// A line of a width in pixels: widened on the screen to a strip of two triangles, with borders that fade over one
-// pixel.
+// Antialiased lines with a width in pixels, expanded in screen space to a strip of two triangles.
 struct LineFragment {
     @builtin(position) position_clip: vec4f,
     @location(0) colour: vec4f,

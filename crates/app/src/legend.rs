@@ -1,5 +1,4 @@
-//! The legend of a coloured surface: a bar with numbers. The window paints it over the view; a picture gets the same one,
-//! painted by the same function.
+//! The legend of a colour scale: a bar with numbers. The window and `pliant render` paint it with the same function.
 
 use eframe::egui::{self, Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Stroke, StrokeKind, pos2, vec2};
 use pliant_render::{Image, RenderError, Renderer};
@@ -64,10 +63,10 @@ pub fn paint(painter: &Painter, corner: Pos2, scale: &Scale) {
     }
 }
 
-/// The legend as a picture with a transparent ground, `pixels_per_point` as large.
+/// The legend as an image with a transparent background, at `pixels_per_point`.
 ///
 /// # Errors
-/// Memory, or a device that stopped answering.
+/// Out of memory, or the device does not respond.
 pub fn picture(renderer: &Renderer, scale: &Scale, pixels_per_point: f32) -> Result<Image, RenderError> {
     let context = egui::Context::default();
     context.set_pixels_per_point(pixels_per_point);
@@ -75,7 +74,7 @@ pub fn picture(renderer: &Renderer, scale: &Scale, pixels_per_point: f32) -> Res
         screen_rect: Some(Rect::from_min_size(Pos2::ZERO, SIZE)),
         ..egui::RawInput::default()
     };
-    // The first pass learns the scale.
+    // The first pass makes egui apply `pixels_per_point`.
     let mut fonts = context.run_ui(input(), |_| {}).textures_delta;
     let output = context.run_ui(input(), |ui| paint(ui.painter(), Pos2::ZERO, scale));
     fonts.append(output.textures_delta);
@@ -132,8 +131,8 @@ pub fn picture(renderer: &Renderer, scale: &Scale, pixels_per_point: f32) -> Res
     renderer.read_texture(&texture)
 }
 
-/// Lays a picture with premultiplied alpha over another, its upper left corner `margin_px` from that one's.
-pub fn lay_over(under: &mut Image, over: &Image, margin_px: u32) {
+/// Composites an image with premultiplied alpha over another, `margin_px` from its upper left corner.
+pub fn composite(under: &mut Image, over: &Image, margin_px: u32) {
     for y in 0..over.height.min(under.height) {
         for x in 0..over.width.min(under.width) {
             let (to_x, to_y) = (margin_px + x, margin_px + y);

@@ -167,7 +167,7 @@ fn pictures(arguments: &RenderArguments, watch: &Watch) -> Result<Vec<Vec<u8>>, 
             .draw_to_image([width, height], Samples::Four, &frame)
             .map_err(refuse)?;
         if let Some(legend) = &legend {
-            legend::lay_over(&mut image, legend, height / 50);
+            legend::composite(&mut image, legend, height / 50);
         }
         pngs.push(picture_file::png(image)?);
         progress.set(0.3 + 0.7 * (number + 1) as f32 / count as f32);

@@ -1,14 +1,14 @@
-//! Colours of surface vertices, handed down to the drawn ones.
+//! Colours of surface vertices, copied to the drawn vertices.
 
 use std::ops::Range;
 
 use pliant_mesh::{DrawnVertex, Model, SurfaceVertex};
 use rayon::prelude::*;
 
-/// Drawn vertices are recoloured and uploaded in blocks of so many.
+/// Number of drawn vertices in a block; colours are uploaded in whole blocks.
 const BLOCK: usize = 1024;
 
-/// The colour of each drawn vertex; those that belong to no kept triangle get a transparent one.
+/// The colour of each drawn vertex; vertices of no kept triangle are transparent.
 pub fn drawn_colours(model: &Model, surface_colours: &[[u8; 4]]) -> Vec<[u8; 4]> {
     (0..model.drawn.vertex_count() as u32)
         .into_par_iter()
@@ -21,8 +21,8 @@ pub fn drawn_colours(model: &Model, surface_colours: &[[u8; 4]]) -> Vec<[u8; 4]>
         .collect()
 }
 
-/// Gives the drawn vertices behind some surface vertices their new colours, and tells which ranges of `drawn_colours`
-/// (one a drawn vertex) changed.
+/// Updates the colours of the drawn vertices of some surface vertices. Returns the changed ranges of `drawn_colours`,
+/// which has one entry per drawn vertex.
 pub fn recolour(
     model: &Model,
     vertices: &[SurfaceVertex],
@@ -30,17 +30,17 @@ pub fn recolour(
     drawn_colours: &mut [[u8; 4]],
 ) -> Vec<Range<usize>> {
     let mut is_touched = vec![false; drawn_colours.len().div_ceil(BLOCK)];
-    // As many of either: each surface vertex has one drawn one, which any of its triangles names.
+    // Equal counts mean one drawn vertex per surface vertex, which any one of its triangles leads to.
     let is_one_to_one = model.drawn.vertex_count() == model.surface.positions.len();
     for &vertex in vertices {
         let colour = colour(vertex);
-        // A drawn vertex belongs to a triangle behind one of the surface's around the vertex.
+        // The drawn vertices are corners of the drawn triangles of the faces around the surface vertex.
         let faces = model.topology.faces(vertex, &model.surface.triangles);
-        let telling = if is_one_to_one { 1 } else { usize::MAX };
-        for face in faces.take(telling) {
+        let face_limit = if is_one_to_one { 1 } else { usize::MAX };
+        for face in faces.take(face_limit) {
             for drawn in model.drawn_corners(face as usize) {
-                let is_behind = model.drawn.surface_vertex(drawn) == Some(vertex);
-                if let (true, Some(present)) = (is_behind, drawn_colours.get_mut(drawn.index())) {
+                let is_of_vertex = model.drawn.surface_vertex(drawn) == Some(vertex);
+                if let (true, Some(present)) = (is_of_vertex, drawn_colours.get_mut(drawn.index())) {
                     *present = colour;
                     is_touched[drawn.index() / BLOCK] = true;
                 }
@@ -65,8 +65,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_recoloured_vertex_by_vertex_is_as_if_all_were_coloured_anew() {
-        // Each surface vertex drawn once, and several times.
+    fn recolouring_some_vertices_equals_recolouring_all() {
+        // One and several drawn vertices per surface vertex.
         let torus = shapes::torus(40, 30);
         for (model, is_one_to_one) in [
             (shapes::model(torus.clone()), true),
@@ -82,8 +82,8 @@ mod tests {
             let before = drawn.clone();
             let ranges = recolour(&model, &some, colour, &mut drawn);
             assert!(drawn == drawn_colours(&model, &colours));
-            let is_told = |place: usize| ranges.iter().any(|range| range.contains(&place));
-            assert!((0..drawn.len()).all(|place| drawn[place] == before[place] || is_told(place)));
+            let is_reported = |place: usize| ranges.iter().any(|range| range.contains(&place));
+            assert!((0..drawn.len()).all(|place| drawn[place] == before[place] || is_reported(place)));
         }
     }
 }

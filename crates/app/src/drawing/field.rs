@@ -1,52 +1,52 @@
-//! Numbers on the surface as colours: how far a shape is from the rest shape, how it curves, how stiff it is.
+//! Scalar fields on the surface as colours: deformation from the rest shape, curvature, stiffness.
 
 use glam::DVec3;
 use pliant_mesh::{Model, SurfaceVertex, cotangents, edge_lengths, face_area, mixed_corner_areas};
 use rayon::prelude::*;
 
-/// What the colours say.
+/// A scalar field on the surface.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
 pub enum Field {
-    /// Of the edges at a vertex, the length over that at rest that is farthest from 1.
+    /// Edge length over rest length; at each vertex, the ratio of its edges that is farthest from 1.
     Stretch,
-    /// Area of the triangles around a vertex over that at rest.
+    /// Area of the triangles around a vertex over their area at rest.
     Area,
-    /// Mean curvature, positive where the surface bulges outwards.
+    /// Mean curvature, positive where the surface is convex.
     Curvature,
-    /// Stiffness, 1 where nothing is said.
+    /// Stiffness, 1 by default.
     Stiffness,
 }
 
-/// How numbers become colours; also what a legend shows.
+/// A colour scale, which a legend shows.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Scale {
-    /// What is measured, in words.
+    /// The field and its unit.
     pub title: &'static str,
     spacing: Spacing,
-    /// Numbers beside the bar, the lowest first, with what they say.
+    /// Ticks beside the bar, the lowest first.
     pub ticks: Vec<Tick>,
 }
 
-/// A number beside a legend's bar.
+/// A tick beside a legend's bar.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Tick {
-    /// 0 at the lower end, 1 at the upper.
+    /// Position from 0 (bottom) to 1 (top).
     pub at: f64,
-    /// The number.
+    /// The number beside the tick.
     pub label: String,
 }
 
-/// Where a number is between the scale's ends.
+/// How numbers are distributed along a scale.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Spacing {
-    /// By its logarithm, from 1/most to most.
+    /// Logarithmic, from 1/most to most.
     Ratio { most: f64 },
-    /// Evenly, from −most to most.
+    /// Linear, from −most to most.
     Even { most: f64 },
 }
 
 impl Scale {
-    /// The scale of a field on `model`: the same for every shape of it, so that pictures compare.
+    /// The scale of a field on `model`: the same for all of its shapes, so that pictures can be compared.
     pub fn of(field: Field, model: &Model) -> Self {
         let ratio = |title, most: f64, labels: &[f64]| {
             let spacing = Spacing::Ratio { most };
@@ -80,7 +80,7 @@ impl Scale {
         }
     }
 
-    /// The colour of a number, sRGB; what lies beyond an end has that end's, what is no number is black.
+    /// The sRGB colour of a number, clamped to the scale; NaN is black.
     pub fn colour(&self, value: f64) -> [u8; 4] {
         if value.is_nan() {
             return [0, 0, 0, 255];
@@ -99,8 +99,8 @@ impl Spacing {
     }
 }
 
-/// The colour at a share of any scale, from its lower end to its upper: blue through grey to red, equally bright at
-/// both ends, so that less and more weigh the same (after Moreland 2009).
+/// The colour at a position on the scale, 0 to 1: a diverging colour map from blue through grey to red, equally dark at
+/// both ends so that neither direction stands out, after [Mor09].
 pub fn colour_at(share: f64) -> [u8; 4] {
     const STOPS: [[f64; 3]; 7] = [
         [40.0, 62.0, 176.0],
@@ -121,7 +121,7 @@ pub fn colour_at(share: f64) -> [u8; 4] {
     [mixed(0), mixed(1), mixed(2), 255]
 }
 
-/// The colours of the surface's vertices in the shape that `displacements` give.
+/// The colours of the surface vertices in the shape given by `displacements`.
 pub fn colours(
     field: Field,
     scale: &Scale,
@@ -165,7 +165,7 @@ pub fn colours(
     }
 }
 
-/// Of the edges at `v`, the ratio of lengths that is farthest from 1; edges without length at rest don't count.
+/// The ratio of lengths of the edges at `v` that is farthest from 1; edges of zero length at rest are skipped.
 fn stretch(model: &Model, moved: &[DVec3], v: SurfaceVertex) -> f64 {
     let rest = &model.surface.positions;
     let mut worst = 1.0_f64;
@@ -181,8 +181,8 @@ fn stretch(model: &Model, moved: &[DVec3], v: SurfaceVertex) -> f64 {
     worst
 }
 
-/// Mean curvature of each vertex by the cotangent formula (Meyer et al. 2003, eq. 8), in 1/unit; 0 where the surface
-/// ends or has no area.
+/// Mean curvature of each vertex by the cotangent formula ([MDSB03], eq. 8), in 1/unit; 0 at the boundary and where the
+/// area is zero.
 fn mean_curvatures(model: &Model, positions: &[DVec3]) -> Vec<f64> {
     let triangles = &model.surface.triangles;
     let faces: Vec<([f64; 3], [f64; 3], DVec3)> = triangles
@@ -210,7 +210,7 @@ fn mean_curvatures(model: &Model, positions: &[DVec3]) -> Vec<f64> {
                 };
                 let (next, last) = ((at + 1) % 3, (at + 2) % 3);
                 let here = positions[v.index()];
-                // The edge to a corner lies opposite the third one.
+                // The edge to one corner is opposite the other.
                 pull += cotangents[last] * (here - positions[corners[next].index()]);
                 pull += cotangents[next] * (here - positions[corners[last].index()]);
                 area += areas[at];
@@ -222,7 +222,7 @@ fn mean_curvatures(model: &Model, positions: &[DVec3]) -> Vec<f64> {
         .collect()
 }
 
-/// What 95% of the rest shape's vertices stay below, rounded to a number that reads well.
+/// The 95th percentile of the absolute mean curvature at rest, rounded up to 1, 2 or 5 times a power of ten.
 fn usual_curvature(model: &Model) -> f64 {
     let mut sizes: Vec<f64> = mean_curvatures(model, &model.surface.positions)
         .into_iter()
@@ -242,7 +242,7 @@ fn usual_curvature(model: &Model) -> f64 {
     step * power
 }
 
-/// A number in few characters.
+/// A number in at most a few characters.
 fn short(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
@@ -257,7 +257,7 @@ mod tests {
     use super::*;
     use pliant_mesh::{Cancel, Progress, WeldOptions, shapes};
 
-    /// A sphere of radius `radius`, its faces split in four `levels` times.
+    /// An icosphere of radius `radius`.
     fn sphere(radius: f64, levels: u32) -> Model {
         let mut drawn = shapes::icosphere(levels);
         drawn.positions.iter_mut().for_each(|position| *position *= radius);

@@ -1,24 +1,24 @@
-//! The grid on the ground: where it lies and how far its lines are apart.
+//! The ground grid: its position and spacing.
 
 use glam::{DVec2, DVec3};
 use pliant_editor::{Camera, Projection, UpAxis};
 use pliant_render::Grid;
 
-/// About how many points of the screen lie between two lines.
+/// Approximate distance between lines on the screen, in points.
 const SPACING_PX: f64 = 26.0;
-/// The grid reaches this many of its steps, or the eye's distance times the second, whichever is more.
+/// The grid's radius: this many steps, or this many camera distances, whichever is larger.
 const REACH_STEPS: f64 = 40.0;
 const REACH_DISTANCES: f64 = 4.0;
 
-/// How much of the lines' alpha is left from below, where they lie before the model.
+/// Factor of alpha when the grid is seen from below, where it is in front of the model.
 const SHARE_FROM_BELOW: f32 = 0.4;
 
 const LINES: [u8; 4] = [168, 176, 190, 48];
-/// Muted x, y and z, in the gizmo's order.
+/// Muted colours of the x, y and z axes.
 const AXES: [[u8; 4]; 3] = [[190, 84, 90, 190], [112, 158, 72, 190], [84, 126, 196, 190]];
 
-/// The grid at the height `ground` along the up axis, under what the camera looks at, relative to `centre`. Lines are a
-/// power of ten apart, in world units, so that it measures.
+/// The grid at height `ground` along the up axis, below the camera's target, relative to `centre`. Its step is a power
+/// of ten in world units, so that it can be used for measuring.
 pub fn ground(camera: &Camera, viewport_px: DVec2, ground: f64, centre: DVec3) -> Grid {
     let (up, [u, v]) = match camera.up {
         UpAxis::Y => (1, [2, 0]),
@@ -27,9 +27,9 @@ pub fn ground(camera: &Camera, viewport_px: DVec2, ground: f64, centre: DVec3) -
     let wanted = SPACING_PX * camera.world_per_px(camera.target, viewport_px);
     let power = wanted.max(f64::MIN_POSITIVE).log10();
     let step = 10.0_f64.powf(power.floor());
-    // The finer lines fade while the step waits to become ten times as wide.
+    // The fine lines fade out before the step grows tenfold.
     let fine_share = 1.0 - (power - power.floor());
-    // A crossing of strong lines: the texture of lines stays where it is in the world as the camera moves.
+    // Snapped to a crossing of strong lines, so that the grid stays fixed in the world when the camera moves.
     let strong = 10.0 * step;
     let mut middle = DVec3::ZERO;
     for axis in [u, v] {

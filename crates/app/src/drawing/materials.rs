@@ -1,7 +1,7 @@
-//! A file's images, decoded for the renderer, and its materials in the renderer's words.
+//! A file's materials and images, converted for the renderer.
 //!
-//! Decoding takes longer than everything else about opening a file, so materials exist in two states: plain ones,
-//! without any image, to show at once; and dressed ones, when the images have been decoded on another thread.
+//! Decoding images takes longer than everything else in opening a file. So a file is shown at once with its materials
+//! without textures, and with textures when another thread has decoded the images.
 
 use std::collections::HashMap;
 
@@ -11,26 +11,26 @@ use pliant_render::{
 };
 use rayon::prelude::*;
 
-/// A file's materials and the encoded images that they use.
+/// A file's materials, and the encoded images that they use.
 #[derive(Debug)]
 pub struct EncodedMaterials {
     materials: Vec<Material>,
-    /// The images to decode: number of the file's image, and what its bytes say.
+    /// The images to decode: index in the file, and encoding of the bytes.
     wanted: Vec<(usize, Encoding)>,
     images: Vec<Image>,
 }
 
-/// Materials with their images, decoded.
+/// A file's materials with decoded images.
 #[derive(Debug)]
 pub struct DecodedMaterials {
     materials: Vec<Material>,
     textures: Vec<(Rgba8, Encoding)>,
-    /// What can't be shown, a sentence each.
+    /// One sentence for each image that can't be shown.
     pub notes: Vec<String>,
 }
 
 impl EncodedMaterials {
-    /// The materials of a file.
+    /// Converts a file's materials and takes its images.
     pub fn new(appearance: &mut Appearance) -> Self {
         let mut encoded = Self {
             materials: Vec::new(),
@@ -102,7 +102,7 @@ impl EncodedMaterials {
         !self.wanted.is_empty()
     }
 
-    /// Decodes the images, beside each other; what can't be decoded is left out and told in a sentence.
+    /// Decodes the images in parallel. Images that can't be decoded are left out and reported in the notes.
     pub fn decode(&self) -> DecodedMaterials {
         let decoded: Vec<Result<Rgba8, String>> = self
             .wanted
@@ -147,7 +147,7 @@ impl EncodedMaterials {
 }
 
 impl DecodedMaterials {
-    /// Uploads the images, for the file's surface to set_materials.
+    /// Uploads the materials and images, for [`Surface::set_materials`](pliant_render::Surface::set_materials).
     ///
     /// # Errors
     /// As [`Materials::new`].
@@ -166,7 +166,7 @@ impl DecodedMaterials {
     }
 }
 
-/// The material with each of its maps as `map` says.
+/// The material with `map` applied to each of its maps; `None` removes a map.
 fn with_maps(material: &Material, map: impl Fn(Map) -> Option<Map>) -> Material {
     Material {
         base_colour_map: material.base_colour_map.and_then(&map),

@@ -1,8 +1,8 @@
-//! From a file's geometry and appearance to what the renderer takes: shared by the window and `pliant render`.
+//! Converts a file's geometry and appearance for the renderer. Shared by the window and `pliant render`.
 //!
-//! A [`Drawing`] is what stays the same while the shape moves: triangles, texture coordinates, materials, and which
-//! drawn vertices share a normal. A [`Pose`] is one shape in the renderer's f32, relative to the drawing's centre;
-//! making one is pure computation, so the window does it away from its own thread.
+//! A [`Drawing`] holds what stays the same while the shape changes: triangles, texture coordinates, materials, and
+//! which drawn vertices share a normal. A [`Pose`] is one shape in f32, relative to the drawing's centre. Computing one
+//! needs no device, so the window does it on another thread.
 
 mod drawn_colours;
 mod field;
@@ -30,12 +30,12 @@ pub use stage::{field, overlays, style, view};
 
 use normals::NormalGroups;
 
-/// What stays the same while the shape moves.
+/// What stays the same while the shape changes.
 #[derive(Debug)]
 pub struct Drawing {
     /// The f64 point that GPU positions are relative to: the centre of the file's bounding box.
     pub centre: DVec3,
-    /// The file's materials and images.
+    /// The file's materials and their encoded images.
     pub materials: EncodedMaterials,
     triangles: Vec<[u32; 3]>,
     welded: Vec<u32>,
@@ -48,7 +48,7 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Prepares a file for drawing. Its images are decoded apart: see [`EncodedMaterials::decode`].
+    /// Prepares a file for drawing. Its images are decoded separately: see [`EncodedMaterials::decode`].
     pub fn new(model: &Model, mut appearance: Appearance) -> Self {
         let centre = bounding_box(&model.surface.positions).map_or(DVec3::ZERO, |bounds| bounds.centre());
         let materials = EncodedMaterials::new(&mut appearance);
@@ -79,15 +79,15 @@ impl Drawing {
         }
     }
 
-    /// The shape that `displacements` (one a surface vertex, from the file's shape) give, ready for the renderer.
+    /// The shape given by `displacements` (one per surface vertex, from the file's shape) for the renderer.
     pub fn pose(&self, model: &Model, displacements: &[DVec3]) -> Pose {
         Pose::of(model, displacements, self)
     }
 
-    /// Uploads everything but the images, in the shape of `pose`.
+    /// Uploads everything except the images, in the shape of `pose`.
     ///
     /// # Errors
-    /// What the device refuses: see [`Surface::new`].
+    /// See [`Surface::new`].
     pub fn upload(&self, renderer: &Renderer, pose: &Pose) -> Result<Surface, RenderError> {
         Surface::new(
             renderer,
@@ -110,7 +110,7 @@ impl Drawing {
     }
 }
 
-/// For each drawn vertex the first one that is welded with it.
+/// For each drawn vertex, the first drawn vertex that it is welded to.
 fn welded(model: &Model) -> Vec<u32> {
     let mut first = vec![u32::MAX; model.surface.positions.len()];
     let of_drawn = model.drawn.surface_vertices().enumerate();

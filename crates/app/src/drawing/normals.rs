@@ -1,9 +1,9 @@
-//! Normals of a moving shape that respect the file's own: smooth where it is smooth, hard where it is hard.
+//! Normals of a deformed shape that keep the file's smooth and hard edges.
 //!
-//! Drawn vertices that share a surface vertex and a stored normal form one group, over whose triangles the geometric
-//! normal is averaged by area. The stored normal is then turned by the smallest rotation that takes the geometric
-//! normal at rest to the present one: at rest the file's normals are shown bit by bit, and no first drag makes the
-//! shading jump.
+//! Drawn vertices that share a surface vertex and a stored normal form one group, whose geometric normal is the
+//! area-weighted mean over its triangles. The stored normal is rotated by the smallest rotation from the geometric
+//! normal at rest to the current one. So the file's normals are shown bit for bit at rest, and shading does not jump
+//! when a drag begins.
 
 use std::collections::HashMap;
 
@@ -11,15 +11,15 @@ use glam::{DVec3, Quat, Vec3};
 use pliant_mesh::Model;
 use rayon::prelude::*;
 
-/// Which drawn vertices share a normal, and which triangles it comes from.
+/// Which drawn vertices share a normal, and the triangles that it is computed from.
 #[derive(Debug)]
 pub struct NormalGroups {
     /// The group of each drawn vertex.
     group_of_drawn: Vec<u32>,
-    /// Triangles of group `g`: `faces[offsets[g]..offsets[g + 1]]`, ascending, so that sums are in one order.
+    /// Triangles of group `g`: `faces[offsets[g]..offsets[g + 1]]`, ascending, so that the order of sums is fixed.
     offsets: Vec<u32>,
     faces: Vec<u32>,
-    /// Per group, geometric normals of the file's shape and the stored ones; `None` where the file stores none.
+    /// Geometric normals at rest and stored normals of each group; `None` if the file stores no normals.
     rest: Option<RestNormals>,
 }
 
@@ -30,8 +30,8 @@ struct RestNormals {
 }
 
 impl NormalGroups {
-    /// Groups the model's drawn vertices, which `triangles` are over; `stored` has one unit normal a drawn vertex, in
-    /// world space.
+    /// Groups the model's drawn vertices. `triangles` are in drawn vertices; `stored` has one world-space unit normal
+    /// per drawn vertex.
     pub fn of(model: &Model, triangles: &[[u32; 3]], stored: Option<Vec<[f32; 3]>>) -> Self {
         let (group_of_drawn, stored_of_group) = group_vertices(model, stored.as_deref());
         let group_count = stored_of_group.len();
@@ -69,8 +69,8 @@ impl NormalGroups {
         groups
     }
 
-    /// One unit normal a drawn vertex, of the shape in which the drawn vertices stand at `positions`; `triangles` are
-    /// those that were grouped.
+    /// One unit normal per drawn vertex, for a shape with these positions of drawn vertices; `triangles` as in
+    /// [`NormalGroups::of`].
     pub fn at(&self, positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<[f32; 3]> {
         let mut normals = self.geometric(positions, triangles);
         if let Some(rest) = &self.rest {
@@ -79,12 +79,12 @@ impl NormalGroups {
                 .zip(&rest.geometric)
                 .zip(&rest.stored)
                 .for_each(|((normal, &from), &stored)| {
-                    // A vertex that the file gives no normal shows the geometric one.
+                    // Without a stored normal, the vertex gets the geometric one.
                     if stored != Vec3::ZERO {
                         *normal = if *normal == from {
                             stored
                         } else {
-                            carry(stored, from, *normal)
+                            rotated(stored, from, *normal)
                         };
                     }
                 });
@@ -95,9 +95,9 @@ impl NormalGroups {
             .collect()
     }
 
-    /// Area-weighted geometric normals per group; the z axis where a group's triangles have no area.
+    /// Area-weighted geometric normal of each group; the z axis if its triangles have no area.
     fn geometric(&self, positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-        // f32 begins here: a doubled area vector only tells a direction for shading.
+        // f32 is enough from here on: a doubled area vector only gives a direction for shading.
         let doubled_areas: Vec<Vec3> = triangles
             .par_iter()
             .map(|corners| {
@@ -121,15 +121,15 @@ impl NormalGroups {
     }
 }
 
-/// `stored`, turned by the smallest rotation from one geometric normal to another.
-fn carry(stored: Vec3, from: Vec3, to: Vec3) -> Vec3 {
+/// Rotates `stored` by the smallest rotation from one geometric normal to another.
+fn rotated(stored: Vec3, from: Vec3, to: Vec3) -> Vec3 {
     Quat::from_rotation_arc(from, to)
         .mul_vec3(stored)
         .try_normalize()
         .unwrap_or(to)
 }
 
-/// The group of each drawn vertex and each group's stored normal (zero where the file has none).
+/// The group of each drawn vertex, and the stored normal of each group (zero if the file has none).
 fn group_vertices(model: &Model, stored: Option<&[[f32; 3]]>) -> (Vec<u32>, Vec<Vec3>) {
     let vertex_count = model.drawn.vertex_count();
     let mut group_of_drawn = Vec::with_capacity(vertex_count);

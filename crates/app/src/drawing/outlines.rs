@@ -1,5 +1,5 @@
-//! The rims of regions as lines on the drawn surface: each handle's in its colour, and a pale one where the free region
-//! meets what is held. Every line lies on a wider dark one, so that it reads on any shading.
+//! The outlines of regions as lines on the surface: each handle's in its own colour, and a pale one between the free
+//! region and what is held still. Every line has a wider, dark casing, so that it is visible on any shading.
 
 use pliant_editor::{Editor, Rim};
 use pliant_mesh::{ContourLine, Model};
@@ -12,11 +12,11 @@ const CASING_COLOUR: [u8; 4] = [24, 25, 28, 255];
 const HANDLE_WIDTH: f32 = 2.2;
 const SELECTED_WIDTH: f32 = 3.4;
 const HELD_WIDTH: f32 = 1.4;
-/// On each side of a line.
+/// Width of the casing on each side of a line.
 const CASING_WIDTH: f32 = 1.1;
 
-/// The lines that the editor's regions have on `model`, in the order of drawing: casings, what is held, handles, and
-/// the selected one last.
+/// The outlines of the editor's regions on `model`, in draw order: casings, the held region, handles, the selected
+/// handle.
 pub fn outlines(editor: &Editor, model: &Model) -> Vec<SurfaceLine> {
     let view = editor.view();
     let mut lines: Vec<(f32, SurfaceLine)> = Vec::new();
@@ -47,7 +47,7 @@ pub fn outlines(editor: &Editor, model: &Model) -> Vec<SurfaceLine> {
     casings.chain(lines.iter().map(|&(_, line)| line)).collect()
 }
 
-/// A line's ends on the edges of the drawn triangle behind the surface's.
+/// A line's ends on the edges of the drawn triangle of its surface triangle.
 fn drawn_ends(line: &ContourLine, model: &Model) -> Option<[EdgePoint; 2]> {
     let triangle = line.triangle as usize;
     let corners = (triangle < model.surface.triangles.len()).then(|| model.drawn_corners(triangle))?;

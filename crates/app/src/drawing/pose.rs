@@ -1,4 +1,4 @@
-//! One shape in the renderer's numbers.
+//! One shape, converted for the renderer.
 
 use glam::DVec3;
 use pliant_mesh::Model;
@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::Drawing;
 
-/// Positions and normals of the drawn vertices. f32 begins here: positions are relative to the drawing's centre.
+/// Positions and normals of the drawn vertices, rounded to f32 after subtracting the drawing's centre.
 #[derive(Debug)]
 pub struct Pose {
     /// Positions relative to the drawing's centre.
@@ -36,7 +36,7 @@ impl Pose {
         }
     }
 
-    /// What the renderer takes.
+    /// The shape as the renderer's type.
     pub fn data(&self) -> ShapeData<'_> {
         ShapeData {
             positions: &self.positions,
@@ -46,8 +46,7 @@ impl Pose {
     }
 }
 
-/// A position for the GPU; vertices that the file gives no finite position (they belong to no kept triangle) go to
-/// the centre.
+/// A position in f32. Vertices without a finite position, which belong to no kept triangle, are moved to the centre.
 pub(super) fn finite(relative: DVec3) -> [f32; 3] {
     if relative.is_finite() {
         relative.as_vec3().to_array()

@@ -1,4 +1,4 @@
-//! The editor's view in the renderer's terms: the eye, and the marks above the surface.
+//! The editor's view, converted for the renderer: point of view, style and overlays.
 
 use glam::{DMat4, DVec2, DVec3};
 use pliant_editor::{Camera, Clay, Look, SceneView, Shading};
@@ -6,24 +6,24 @@ use pliant_render::{Borders, Faces, Matcap, Outlines, Overlay, OverlayLine, Over
 
 use super::field::Field;
 
-/// How much of a mark's alpha is left where the surface hides it.
+/// Factor of an overlay's alpha where a surface hides it.
 const HIDDEN_SHARE: f32 = 0.35;
-/// The brush ring's colour, sRGB.
+/// Colour of the brush ring, sRGB.
 const RING_COLOUR: [u8; 4] = [255, 255, 255, 220];
-/// The brush ring's width in points.
+/// Width of the brush ring in points.
 const RING_WIDTH_PX: f32 = 2.0;
 
-/// The width of the gizmo's lines in points, and of those under the pointer.
+/// Widths in points of the gizmo's lines, and of those under the pointer.
 const GIZMO_WIDTH_PX: f32 = 2.5;
 const GIZMO_HIGHLIGHTED_PX: f32 = 4.0;
 
-/// The camera's eye, seen from `centre`. f32 begins here, after the subtraction in f64.
+/// The camera's view, relative to `centre`. Rounded to f32 only after the subtraction in f64.
 pub fn view(camera: &Camera, viewport_px: DVec2, centre: DVec3) -> View {
     let view_from_world = camera.view_from_world() * DMat4::from_translation(centre);
     View::new(camera.clip_from_view(viewport_px).as_mat4(), view_from_world.as_mat4())
 }
 
-/// The numbers that a shading shows as colours, if it does.
+/// The field that a shading shows as colours, if any.
 pub fn field(shading: Shading) -> Option<Field> {
     match shading {
         Shading::Stiffness => Some(Field::Stiffness),
@@ -34,11 +34,11 @@ pub fn field(shading: Shading) -> Option<Field> {
     }
 }
 
-/// The renderer's style for how a person wants the surface shown, in a picture of so many pixels a point.
+/// The renderer's style for a look.
 pub fn style(look: &Look, pixels_per_point: f32) -> Style {
     let (shading, region_share) = match look.shading {
         Shading::Clay => (pliant_render::Shading::Matcap(matcap(look.clay)), 1.0),
-        // The file's colours stay to be seen under the paint.
+        // The file's colours stay visible under the region colours.
         Shading::Material => (pliant_render::Shading::Material, 0.45),
         Shading::Zebra => (pliant_render::Shading::Zebra, 0.0),
         Shading::Normals => (pliant_render::Shading::Normals, 0.0),
@@ -73,7 +73,7 @@ fn matcap(clay: Clay) -> Matcap {
     }
 }
 
-/// The marks of a view, relative to `centre`: the brush's ring, then the gizmo. `pixels_per_point` scales widths.
+/// The overlays of a view, relative to `centre`: the brush ring, then the gizmo. `pixels_per_point` scales widths.
 pub fn overlays(view: &SceneView<'_>, centre: DVec3, pixels_per_point: f32) -> Vec<Overlay> {
     let relative = |position: DVec3| (position - centre).as_vec3().to_array();
     let mut ring = Overlay {

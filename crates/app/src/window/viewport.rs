@@ -354,7 +354,7 @@ impl Viewport {
         let mut image = renderer.draw_to_image(size_px, Samples::Four, &frame)?;
         if let Some(scale) = self.scale() {
             let legend = legend::picture(&renderer, scale, pixels_per_point)?;
-            legend::lay_over(&mut image, &legend, (14.0 * pixels_per_point) as u32);
+            legend::composite(&mut image, &legend, (14.0 * pixels_per_point) as u32);
         }
         Ok(Some(image))
     }
