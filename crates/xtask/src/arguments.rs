@@ -1,71 +1,71 @@
-//! What the person asked for, from the words after `cargo xtask`.
+//! Parses the command line of `cargo xtask`.
 
 use std::path::PathBuf;
 
 use crate::bench::Scale;
 use crate::install::Consent;
 
-/// What `cargo xtask` answers when asked for help or in words it doesn't know.
+/// Printed for `--help` and for unknown commands.
 pub const HELP: &str = "\
 usage: cargo xtask COMMAND
 
   run [FILE] [--yes]         build Pliant and open its window on the sample, or on FILE; without a display,
                              do the sample's edit headless and say where the result is
-  test [FILTER..] [--yes]    everything that must pass: formatting, clippy, every test
-  check                      the fast part of that: formatting, clippy, unit tests
+  test [FILTER..] [--yes]    run all checks: formatting, clippy, every test
+  check                      run the fast checks: formatting, clippy, unit tests
   bench [SECTION..] [--full] measure, and print tables
   assets [NAME..] [--triangles N] [--output DIR]
                              make the samples; with --triangles the creature at that size (60k, 600k, 5M)
 
-`run` and `test` look for what they need and install it with apt where they may; --yes answers their questions.";
+`run` and `test` install missing packages with apt after asking; --yes answers yes.";
 
-/// One command with what it needs to know.
+/// A command with its arguments.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Command {
-    /// Say what there is.
+    /// Print the help.
     Help,
-    /// The main job.
+    /// Build Pliant and open its window.
     Run {
         /// A mesh in place of the sample.
         file: Option<PathBuf>,
-        /// May packages be installed without a question?
+        /// Whether packages may be installed without asking.
         consent: Consent,
     },
-    /// Everything that must pass.
+    /// Run all checks.
     Test {
-        /// Names handed on to the tests; formatting and clippy are skipped when there are any.
+        /// Filters of test names. With filters, formatting and clippy are skipped.
         filters: Vec<String>,
-        /// May packages be installed without a question?
+        /// Whether packages may be installed without asking.
         consent: Consent,
     },
-    /// The fast part of `Test`.
+    /// Run the fast checks.
     Check,
-    /// Measurements.
+    /// Measure.
     Bench {
-        /// Names of sections; empty for all.
+        /// Sections to run; empty for all.
         sections: Vec<String>,
-        /// How large the meshes get.
+        /// Sizes of the meshes.
         scale: Scale,
     },
-    /// The samples.
+    /// Make the samples.
     Assets(Order),
 }
 
 /// Which samples to make, how fine, and where to put them.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Order {
-    /// Names of samples; empty for all.
+    /// Samples to make; empty for all.
     pub names: Vec<String>,
-    /// A size for the creature in place of the committed one.
+    /// Number of triangles of the creature, if not the committed one.
     pub triangles: Option<usize>,
-    /// A folder in place of `assets`, or of `target/assets` for other sizes.
+    /// Output folder; `assets` by default, or `target/assets` for other sizes.
     pub output: Option<PathBuf>,
 }
 
-/// Reads the words after `cargo xtask`.
+/// Parses the arguments after `cargo xtask`.
 ///
 /// # Errors
-/// One sentence naming the word that isn't understood.
+/// One sentence naming the argument that isn't understood.
 pub fn parse(words: &[String]) -> Result<Command, String> {
     let Some((command, rest)) = words.split_first() else {
         return Ok(Command::Help);

@@ -1,8 +1,8 @@
 //! `cargo xtask bench`: measurements as tables, on creatures of several sizes, kept as JSON in `target/bench`.
 //!
-//! To add a section: an example in the crate that is measured prints one flat JSON object a line (texts and numbers);
-//! a module in `bench` with a function from [`Scale`] to rows runs it with [`table::measured`] on the meshes of
-//! [`meshes`]; and [`SECTIONS`] names it. Printing and keeping are done here.
+//! To add a section, write an example in the measured crate that prints flat JSON objects (strings and numbers), one
+//! per line; add a module to `bench` that runs it with [`table::measured`] on the meshes of [`meshes`] and returns
+//! rows; and list it in [`SECTIONS`]. Printing and saving happen here.
 
 mod arap;
 mod cholesky;
@@ -18,7 +18,7 @@ mod view;
 
 use table::Row;
 
-/// How large the meshes get.
+/// Sizes of the meshes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Scale {
     /// Up to 200 thousand vertices.
@@ -27,7 +27,7 @@ pub enum Scale {
     Full,
 }
 
-/// One table.
+/// A section: one table.
 struct Section {
     name: &'static str,
     title: &'static str,
@@ -52,37 +52,37 @@ const SECTIONS: &[Section] = &[
     },
     Section {
         name: "primo",
-        title: "Coupled prisms on the survey's scenes, from the rest shape to 1% of the least energy: milliseconds",
+        title: "Coupled prisms on the survey's scenes, from the rest shape to within 1% of the minimal energy: milliseconds",
         rows: primo::rows,
     },
     Section {
         name: "arap",
-        title: "As rigid as possible beside libigl: milliseconds; energies without unit; distances in diagonals",
+        title: "As-rigid-as-possible compared with libigl: milliseconds; energies without unit; distances in diagonals",
         rows: arap::rows,
     },
     Section {
         name: "files",
-        title: "Reading and saving: megabytes a second, beside a plain read of the file; medians",
+        title: "Reading and saving, compared with a plain read of the file: megabytes per second, medians",
         rows: files::rows,
     },
     Section {
         name: "view",
-        title: "Drawing at 1280×800, moving and asking: milliseconds, medians; the processor's side and the device's own clock",
+        title: "Drawing at 1280×800, moving and picking: milliseconds, medians; CPU time and GPU time",
         rows: view::rows,
     },
     Section {
         name: "editor",
-        title: "Events on 400k triangles, drawing and jobs apart: milliseconds; a hundred strokes: megabytes",
+        title: "Events on 400k triangles, without drawing and jobs: milliseconds; a hundred strokes: megabytes",
         rows: editor::rows,
     },
     Section {
         name: "peers",
-        title: "The same edit of horse.ply by others, in the same minute: milliseconds",
+        title: "The same edit of horse.ply by other programs, in the same run: milliseconds",
         rows: peers::rows,
     },
 ];
 
-/// Runs the sections that `names` asks for, or all: prints their tables and keeps them.
+/// Runs the sections in `names`, or all if it is empty; prints and saves their tables.
 ///
 /// # Errors
 /// One sentence naming an unknown section or what failed.

@@ -1,4 +1,4 @@
-//! `cargo xtask check`: the part of the tests that answers while one works.
+//! `cargo xtask check`: the checks that are fast enough to run while working.
 
 use std::time::Instant;
 
@@ -6,10 +6,10 @@ use crate::install::prepare_toolchain;
 use crate::process;
 use crate::verdict::{Skips, Verdict};
 
-/// Formatting, clippy and the unit tests of every crate.
+/// Runs formatting, clippy and the unit tests of every crate.
 ///
 /// # Errors
-/// One sentence when something fails.
+/// One sentence if something fails.
 pub fn check() -> Result<(), String> {
     let started = Instant::now();
     prepare_toolchain()?;
@@ -30,12 +30,12 @@ pub fn check() -> Result<(), String> {
     verdict.conclude(started, Skips::Named)
 }
 
-/// Every file stands as rustfmt would write it.
+/// Checks that every file is formatted.
 pub fn formatting(verdict: &mut Verdict) {
     verdict.step("formatting", &mut process::cargo(&["fmt", "--all", "--", "--check"]));
 }
 
-/// No lint warns, in code and in tests.
+/// Checks that clippy has no warnings, in code and in tests.
 pub fn clippy(verdict: &mut Verdict) {
     let arguments = [
         "clippy",

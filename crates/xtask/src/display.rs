@@ -1,4 +1,4 @@
-//! A display of our own: Xvfb with a window manager, ended when dropped.
+//! A virtual display: Xvfb with a window manager, terminated when dropped.
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
@@ -12,12 +12,12 @@ pub struct Display {
 }
 
 impl Display {
-    /// Starts a display with a number that is free, or says why there is none.
+    /// Starts Xvfb on a free display number.
     ///
     /// # Errors
-    /// One sentence when Xvfb can't be started.
+    /// One sentence if Xvfb can't be started.
     pub fn start() -> Result<Self, String> {
-        let failed = |why: &str| format!("Xvfb gives no display ({why}): install the package xvfb.");
+        let failed = |why: &str| format!("Xvfb can't open a display ({why}); install the package xvfb.");
         let program = process::program("Xvfb").ok_or_else(|| failed("not found"))?;
         let mut server = Command::new(program)
             .args(["-displayfd", "1", "-screen", "0", "1600x1000x24", "-nolisten", "tcp"])
@@ -50,7 +50,7 @@ impl Display {
         Ok(display)
     }
 
-    /// Its name as `DISPLAY` wants it.
+    /// The value for `DISPLAY`.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -59,7 +59,7 @@ impl Display {
 impl Drop for Display {
     fn drop(&mut self) {
         for child in self.children.iter_mut().rev() {
-            // It may have ended by itself; then there is nothing to end.
+            // The process may have exited already.
             let _ = child.kill();
             let _ = child.wait();
         }

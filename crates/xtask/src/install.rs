@@ -1,4 +1,4 @@
-//! Seeing to it that what a command needs is there.
+//! Installing the packages that a command needs.
 
 use std::io::{BufRead, IsTerminal, Write};
 use std::process::{Command, Stdio};
@@ -7,7 +7,7 @@ use crate::process;
 use crate::requirement::{Requirement, missing_packages};
 use crate::system::{self, System};
 
-/// May packages be installed without a question?
+/// Whether packages may be installed without asking.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Consent {
     /// Ask first.
@@ -16,24 +16,24 @@ pub enum Consent {
     Given,
 }
 
-/// What there is after looking and installing.
+/// The result of preparing.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Prepared {
-    /// Everything.
+    /// Everything is installed.
     Complete,
-    /// Not everything, on a system whose packages we don't know: the sentence says what is skipped.
+    /// Something is missing, on a system whose packages are unknown: the sentence says what is skipped.
     Without(String),
 }
 
-/// Looks for `requirements` and installs what is missing where that may be done; `purpose` says what they're for.
+/// Checks `requirements` and installs missing packages if allowed; `purpose` says in messages what they are for.
 ///
 /// # Errors
-/// One sentence naming the packages, on a system that has apt, when they can't be installed from here.
+/// One sentence naming the packages, if the system has apt but they can't be installed.
 pub fn prepare(requirements: &[&[Requirement]], purpose: &str, consent: Consent) -> Result<Prepared, String> {
     let system = System::here();
     if let System::Other { name } = &system {
         return Ok(Prepared::Without(format!(
-            "On {name}, {purpose} are not looked after: what they need there is not known yet, so they may be skipped."
+            "The packages that {purpose} need on {name} are not known yet, so they may be skipped."
         )));
     }
     let packages = missing_packages(requirements);
@@ -70,13 +70,13 @@ pub fn prepare(requirements: &[&[Requirement]], purpose: &str, consent: Consent)
         Ok(Prepared::Complete)
     } else {
         Err(format!(
-            "Though installed, what {} bring for {purpose} is not found.",
+            "The packages {} were installed, but what {purpose} need from them was not found.",
             missing.join(" ")
         ))
     }
 }
 
-/// An apt-get command that asks nothing, its talk on standard error.
+/// A non-interactive apt-get command whose output goes to standard error.
 fn apt(prefix: &[&str], arguments: &[&str]) -> Command {
     let words = [
         prefix,
@@ -92,7 +92,7 @@ fn apt(prefix: &[&str], arguments: &[&str]) -> Command {
     command
 }
 
-/// Shows the line and asks whether to run it; nobody there to answer means no.
+/// Shows the command and asks whether to run it; without a terminal the answer is no.
 fn agreed(line: &str, purpose: &str, consent: Consent) -> bool {
     println!("For {purpose} some packages are missing:\n\n  {line}\n");
     if consent == Consent::Given {
@@ -109,10 +109,10 @@ fn agreed(line: &str, purpose: &str, consent: Consent) -> bool {
     heard.is_ok() && matches!(answer.trim(), "y" | "Y" | "yes" | "Yes")
 }
 
-/// Sees to cargo's own parts: rustfmt and clippy, which a minimal toolchain lacks.
+/// Installs rustfmt and clippy, which a minimal toolchain does not have.
 ///
 /// # Errors
-/// One sentence naming the part when it is missing and rustup can't add it.
+/// One sentence naming the component, if it is missing and rustup can't add it.
 pub fn prepare_toolchain() -> Result<(), String> {
     for (command, component) in [("fmt", "rustfmt"), ("clippy", "clippy")] {
         let mut probe = process::cargo(&[command, "--version"]);

@@ -1,10 +1,10 @@
 //! Pliant's own commands: `cargo xtask run|test|check|bench|assets`.
 //!
-//! Only the standard library is used, so that this builds in seconds on a machine that has nothing else yet.
+//! It depends only on the standard library, so it builds in seconds on a fresh machine.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
-    reason = "a command speaks to the person who gave it"
+    reason = "a command-line tool prints its results"
 )]
 
 mod arguments;

@@ -1,4 +1,4 @@
-//! `cargo xtask assets`: the samples, written.
+//! `cargo xtask assets`: makes the samples.
 
 use std::path::Path;
 use std::time::Instant;
@@ -7,7 +7,7 @@ use crate::arguments::Order;
 use crate::assets::mesh::Mesh;
 use crate::assets::{SAMPLES, creature_of, glb};
 
-/// Writes what `order` names.
+/// Makes and writes the samples of `order`.
 ///
 /// # Errors
 /// One sentence naming the sample or file that can't be made.

@@ -1,10 +1,10 @@
-//! Starting other programs.
+//! Running other programs.
 
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// The first program of this name on the search path, or where administrators' programs lie.
+/// The first program with this name in `PATH` or the `sbin` folders.
 pub fn program(name: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     std::env::split_paths(&path)
@@ -13,7 +13,7 @@ pub fn program(name: &str) -> Option<PathBuf> {
         .find(|file| file.is_file())
 }
 
-/// What a program prints, or nothing when it can't be started or fails.
+/// The output of a program; `None` if it can't be started or fails.
 pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
     let program = self::program(program)?;
     let output = Command::new(program)
@@ -28,28 +28,28 @@ pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
         .then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// A cargo command in the workspace's folder: the same cargo that started this program.
+/// A cargo command in the workspace's folder, with the cargo that started this program.
 pub fn cargo(arguments: &[&str]) -> Command {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
     command.args(arguments).current_dir(crate::root());
     if std::env::var_os("CI").is_some() {
-        // A machine that builds once has no use for what makes the second build fast.
+        // Incremental compilation only costs time on a machine that builds once.
         command.env("CARGO_INCREMENTAL", "0");
     }
     command
 }
 
-/// The folder that cargo builds into.
+/// Cargo's target folder.
 pub fn target_folder() -> PathBuf {
     let root = crate::root();
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder))
 }
 
-/// Runs a command to its end.
+/// Runs a command and waits for it.
 ///
 /// # Errors
-/// One sentence with the command's words when it can't be started or fails.
+/// One sentence with the command line, if it can't be started or fails.
 pub fn succeed(command: &mut Command) -> Result<(), String> {
     let words = words(command);
     let status = command
@@ -62,7 +62,7 @@ pub fn succeed(command: &mut Command) -> Result<(), String> {
     }
 }
 
-/// The command as one would type it.
+/// The command line.
 pub fn words(command: &Command) -> String {
     let name = std::path::Path::new(command.get_program())
         .file_name()

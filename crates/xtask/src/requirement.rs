@@ -1,22 +1,22 @@
-//! What building and testing Pliant needs from the system, how to see that it is there, and which package brings it.
+//! What building and testing Pliant needs from the system, how to detect it, and which package provides it.
 
 use crate::{process, system};
 
-/// One thing that must be there.
+/// Something that must be installed.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Requirement {
-    /// How it shows that it's there.
+    /// How to detect it.
     pub evidence: Evidence,
-    /// The Debian and Ubuntu package that brings it.
+    /// The Debian and Ubuntu package that provides it.
     pub package: &'static str,
 }
 
-/// How something shows that it's there.
+/// How to detect something.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Evidence {
-    /// A program on the search path.
+    /// A program in `PATH`.
     Program(&'static str),
-    /// A shared library that the loader finds.
+    /// A shared library that the dynamic loader finds.
     Library(&'static str),
     /// Any Vulkan driver.
     VulkanDriver,
@@ -47,7 +47,7 @@ pub const PICTURES: &[Requirement] = &[
     },
 ];
 
-/// For a window: what winit loads at run time.
+/// For a window: the libraries that winit loads at run time.
 pub const WINDOW: &[Requirement] = &[
     library("libX11.so.6", "libx11-6"),
     library("libX11-xcb.so.1", "libx11-xcb1"),
@@ -58,7 +58,7 @@ pub const WINDOW: &[Requirement] = &[
     library("libwayland-client.so.0", "libwayland-client0"),
 ];
 
-/// For the tests beyond that: a display of their own, a hand on its mouse, and the driver that pictures bind to.
+/// For the tests: a virtual display, a tool that moves its mouse, and the driver that pictures are compared on.
 pub const TESTS: &[Requirement] = &[
     Requirement {
         evidence: Evidence::SoftwareVulkanDriver,
@@ -70,7 +70,7 @@ pub const TESTS: &[Requirement] = &[
     tool("wmctrl", "wmctrl"),
 ];
 
-/// The packages of those that are not there, each once.
+/// The packages of the missing requirements, without duplicates.
 pub fn missing_packages(requirements: &[&[Requirement]]) -> Vec<&'static str> {
     let mut packages = Vec::new();
     for requirement in requirements.iter().copied().flatten() {

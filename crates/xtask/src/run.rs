@@ -1,4 +1,4 @@
-//! `cargo xtask run`: the main job on the sample.
+//! `cargo xtask run`: builds Pliant and opens the sample.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,8 @@ use crate::install::{Consent, Prepared, prepare};
 use crate::process::{cargo, succeed, target_folder};
 use crate::requirement::{PICTURES, WINDOW};
 
-/// Builds Pliant and opens its window on `file` or on the sample; without a display the sample's edit is done headless.
+/// Builds Pliant and opens its window on `file` or on the sample. Without a display, applies the sample's edit
+/// headless.
 ///
 /// # Errors
 /// One sentence naming what failed.
@@ -34,9 +35,9 @@ pub fn run(file: Option<&Path>, consent: Consent) -> Result<(), String> {
     headless(consent)
 }
 
-/// The sample's edit from the command line, and a picture before and after where the machine can make one.
+/// Applies the sample's edit from the command line, and renders a picture before and after if possible.
 fn headless(consent: Consent) -> Result<(), String> {
-    println!("There is no display, so the sample's edit is done without the window.");
+    println!("There is no display, so the sample's edit is applied without the window.");
     let pictures = match prepare(&[PICTURES], "the pictures", consent) {
         Ok(Prepared::Complete) => true,
         Ok(Prepared::Without(sentence)) | Err(sentence) => {
@@ -68,7 +69,7 @@ fn headless(consent: Consent) -> Result<(), String> {
     Ok(())
 }
 
-/// Builds the optimised program.
+/// Builds Pliant in release.
 fn build() -> Result<(), String> {
     println!("Building Pliant; the first time takes some minutes.");
     succeed(&mut cargo(&[

@@ -1,31 +1,31 @@
-//! Which system this is, and what of it can be seen from here: its packages, programs and libraries.
+//! Detects the operating system and its installed libraries and drivers.
 
 use std::path::{Path, PathBuf};
 
 use crate::process;
 
-/// A kind of system, as far as setting up goes.
+/// The operating system, as far as installing packages is concerned.
 #[derive(Clone, PartialEq, Debug)]
 pub enum System {
-    /// Debian, Ubuntu or a child of theirs: packages come by apt.
+    /// Debian, Ubuntu or a derivative: packages are installed with apt.
     Debian {
-        /// What it calls itself.
+        /// Its name in `os-release`.
         name: String,
     },
-    /// Another Linux: it has other names for the packages.
+    /// Another Linux, with other package names.
     OtherLinux {
-        /// What it calls itself.
+        /// Its name in `os-release`.
         name: String,
     },
-    /// Another system; the name is Rust's.
+    /// Another system.
     Other {
-        /// Rust's name of it.
+        /// Rust's name for it.
         name: String,
     },
 }
 
 impl System {
-    /// This machine's.
+    /// The system of this machine.
     pub fn here() -> Self {
         if std::env::consts::OS != "linux" {
             return Self::Other {
@@ -38,7 +38,7 @@ impl System {
         Self::from_os_release(&text.unwrap_or_default())
     }
 
-    /// The system that an os-release file describes.
+    /// Parses an `os-release` file.
     pub fn from_os_release(text: &str) -> Self {
         let value = |key: &str| {
             text.lines()
@@ -62,7 +62,7 @@ impl System {
         }
     }
 
-    /// What a person calls it.
+    /// Its name in messages.
     pub fn name(&self) -> &str {
         match self {
             Self::Debian { name } | Self::OtherLinux { name } | Self::Other { name } => name,
@@ -70,14 +70,14 @@ impl System {
     }
 }
 
-/// Can the loader find the shared library of this exact name (`libvulkan.so.1`)?
+/// Whether the loader finds the shared library with this exact name (`libvulkan.so.1`).
 pub fn has_library(name: &str) -> bool {
     let cached = process::output("ldconfig", &["-p"]).unwrap_or_default();
     let listed = cached.lines().any(|line| line.split_whitespace().next() == Some(name));
     listed || library_folders().iter().any(|folder| folder.join(name).exists())
 }
 
-/// Folders that the loader's cache may not list.
+/// Library folders that may be missing from the loader's cache.
 fn library_folders() -> Vec<PathBuf> {
     let asked = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
     let triple = format!("/usr/lib/{}-linux-gnu", std::env::consts::ARCH);
@@ -86,7 +86,7 @@ fn library_folders() -> Vec<PathBuf> {
         .collect()
 }
 
-/// The manifests of the Vulkan drivers that the loader would find.
+/// The manifests of the installed Vulkan drivers.
 pub fn vulkan_drivers() -> Vec<PathBuf> {
     for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
         if let Some(files) = std::env::var_os(variable) {
@@ -111,7 +111,7 @@ pub fn software_vulkan_driver() -> Option<PathBuf> {
     })
 }
 
-/// Is this the administrator?
+/// Whether this process runs as root.
 pub fn is_root() -> bool {
     process::output("id", &["-u"]).is_some_and(|answer| answer.trim() == "0")
 }

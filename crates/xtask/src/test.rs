@@ -1,4 +1,4 @@
-//! `cargo xtask test`: everything that must pass.
+//! `cargo xtask test`: all checks.
 
 use std::process::Command;
 use std::time::Instant;
@@ -11,10 +11,10 @@ use crate::requirement::{PICTURES, TESTS, WINDOW};
 use crate::system;
 use crate::verdict::{Skips, Verdict};
 
-/// Formatting, clippy and every test; with `filters` only the tests that they name.
+/// Runs formatting, clippy and every test; with `filters`, only the tests that match.
 ///
 /// # Errors
-/// One sentence when something fails, or when packages are missing that can't be installed from here.
+/// One sentence if something fails, or if missing packages can't be installed.
 pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
     let started = Instant::now();
     prepare_toolchain()?;
@@ -29,13 +29,13 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
         check::clippy(&mut verdict);
     }
     let mut tests = process::cargo(&["test", "--locked", "--workspace", "--no-fail-fast"]);
-    // Output of tests that pass is asked for, since it says what they skip.
+    // Show the output of passing tests, because it says what they skip.
     tests.args(["--", "--show-output"]).args(filters);
     let display = match &prepared {
         Prepared::Complete => Some(Display::start()?),
         Prepared::Without(_) => Display::start().ok(),
     };
-    surround(&mut tests, display.as_ref());
+    set_environment(&mut tests, display.as_ref());
     verdict.tests("workspace", &mut tests);
     if let Prepared::Without(sentence) = prepared {
         println!("\n{sentence}");
@@ -47,8 +47,8 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
     verdict.conclude(started, skips)
 }
 
-/// Gives the tests a display of their own and the driver that pictures are compared on.
-fn surround(tests: &mut Command, display: Option<&Display>) {
+/// Sets the virtual display and the driver that pictures are compared on.
+fn set_environment(tests: &mut Command, display: Option<&Display>) {
     tests.env_remove("WAYLAND_DISPLAY");
     match display {
         Some(display) => tests.env("DISPLAY", display.name()),

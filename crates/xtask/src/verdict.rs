@@ -1,4 +1,4 @@
-//! What tests said, counted: the sum over every `test result:` line and over our own steps.
+//! Counts test results: the sum of all `test result:` lines and of the steps run here.
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Write};
@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use crate::process;
 
-/// Counts so far, and the names of what failed.
+/// The counts so far, and the names of failures.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Verdict {
     passed: usize,
@@ -16,20 +16,20 @@ pub struct Verdict {
     failures: Vec<String>,
     steps: Vec<String>,
     skipped: BTreeSet<String>,
-    /// Between a test binary's "successes:" and what follows: output of tests that passed.
+    /// Whether the current lines are output of passing tests, which follows "successes:".
     in_successes: bool,
 }
 
-/// What becomes of tests that were skipped for want of a graphics device or a display.
+/// How tests that were skipped without a graphics device or a display are counted.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Skips {
-    /// They are named, and nothing else: a person's machine may have neither.
+    /// They are only listed: a user's machine may have neither.
     Named,
-    /// They count as failures: continuous integration has set up both.
+    /// They count as failures: continuous integration provides both.
     Failures,
 }
 
-/// How the lines begin by which tests of pictures and of the window say that they are skipped.
+/// Beginnings of the lines with which tests of pictures and of the window report that they are skipped.
 const NEEDS_GRAPHICS: [&str; 4] = [
     "skipped: pictures",
     "skipped: the picture",
@@ -37,7 +37,7 @@ const NEEDS_GRAPHICS: [&str; 4] = [
     "skipped: the real window",
 ];
 
-/// What a line is worth to the person who waits.
+/// What to do with a line of output.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Worth {
     Showing,
@@ -45,7 +45,7 @@ enum Worth {
 }
 
 impl Verdict {
-    /// Runs one command as a test of its own name.
+    /// Runs a command as a step with this name.
     pub fn step(&mut self, name: &str, command: &mut Command) {
         println!("\n── {name}: {}", process::words(command));
         let started = Instant::now();
@@ -53,14 +53,14 @@ impl Verdict {
         self.record(name, result, started);
     }
 
-    /// Runs a `cargo test` command: its lines are shown and counted.
+    /// Runs a `cargo test` command, and shows and counts its lines.
     pub fn tests(&mut self, name: &str, command: &mut Command) {
         println!("\n── {name}: {}", process::words(command));
         let started = Instant::now();
         let failures = self.failures.len();
         let result = self.listen(command);
         if self.failures.len() > failures {
-            // A test that failed is named already; anything else that went wrong (it didn't compile) is this step's.
+            // Failed tests are already listed; any other failure, such as a compile error, counts as this step's.
             self.steps.push(step(name, "FAILED", started));
         } else {
             self.record(name, result, started);
@@ -105,7 +105,7 @@ impl Verdict {
         }
     }
 
-    /// Takes in one line of cargo's. What passing tests print is not shown; of it, what they skip is kept.
+    /// Processes one line of cargo's output. Output of passing tests is hidden, except for what they skip.
     fn count(&mut self, line: &str) -> Worth {
         if line == "successes:" {
             self.in_successes = true;
@@ -144,10 +144,10 @@ impl Verdict {
         Worth::Showing
     }
 
-    /// Prints the sum, in cargo's own form, as the last lines.
+    /// Prints the totals as the last lines, in cargo's format.
     ///
     /// # Errors
-    /// One sentence when anything failed.
+    /// One sentence if anything failed.
     pub fn conclude(mut self, started: Instant, skips: Skips) -> Result<(), String> {
         if skips == Skips::Failures {
             let needed = |line: &&String| NEEDS_GRAPHICS.iter().any(|start| line.starts_with(start));
@@ -188,7 +188,7 @@ impl Verdict {
     }
 }
 
-/// A step as the summary lists it.
+/// A step's line in the summary.
 fn step(name: &str, word: &str, started: Instant) -> String {
     format!("test {name} ... {word} ({:.0} s)", started.elapsed().as_secs_f64())
 }

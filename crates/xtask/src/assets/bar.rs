@@ -1,4 +1,4 @@
-//! The bar: an upright square rod in a regular grid, to twist.
+//! The bar: an upright square rod with regular quads, for twisting.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! The cactus: a ribbed trunk with two arms in a pot, a flower on top; strongly protruding parts to bend.
+//! The cactus: a ribbed trunk with two arms in a pot and a flower on top, with strongly protruding parts to bend.
 
 use super::Solid;
 use super::limb::Limb;
@@ -16,7 +16,7 @@ pub struct Cactus {
 const RIBS: u32 = 10;
 
 impl Cactus {
-    /// Lays out the stems.
+    /// Places the stems.
     pub fn new() -> Self {
         let trunk = Limb::through(
             &[
@@ -51,7 +51,7 @@ impl Cactus {
         }
     }
 
-    /// Ribs around the vertical axis through `centre`: 1 on a crest, -1 in a furrow.
+    /// Height of the ribs around the vertical axis through `centre`: 1 on a crest, -1 in a furrow.
     ///
     /// cos(n θ) is the Chebyshev polynomial of cos θ, so no trigonometry is needed.
     fn ribs(p: Vec3, centre: Vec3) -> f64 {

@@ -1,7 +1,7 @@
 //! The sample: a small long-necked animal with ears, four legs, a crest along its back and a tail to bend.
 //!
-//! A unit is a metre; it stands on y = 0, looks along +z and is modelled as smoothly joined round cones. Legs, ears and
-//! eyes are modelled on the side x > 0 and mirrored; skin and tail keep the two sides from being equal.
+//! A unit is a metre. The creature stands on y = 0, faces +z and is a smooth union of round cones. Legs, ears and eyes
+//! are modelled at x > 0 and mirrored; skin and tail differ between the sides.
 
 use super::Solid;
 use super::limb::{Limb, smooth_knots};
@@ -9,7 +9,7 @@ use super::noise::{fractal, gradient, scales, white};
 use super::solid::{chain, ellipsoid, mix, round_cone, smooth_difference, smooth_union, sphere, srgb, step};
 use super::vector::{Vec3, v};
 
-/// The creature's parts that cost something to lay out.
+/// The creature's parts whose layout is precomputed.
 pub struct Creature {
     neck: Limb,
     tail: Limb,
@@ -26,7 +26,7 @@ const EYE_RADIUS: f64 = 0.046;
 const SCALES: f64 = 27.0;
 
 impl Creature {
-    /// Lays out the creature.
+    /// Places the parts.
     pub fn new() -> Self {
         let neck = Limb::through(
             &[
@@ -126,7 +126,7 @@ impl Creature {
         plates
     }
 
-    /// Trunk, neck and tail: what the crest stands on.
+    /// Trunk, neck and tail, which carry the crest.
     fn torso(&self, p: Vec3) -> f64 {
         let trunk = round_cone(p, v(0.0, 0.405, -0.14), 0.205, v(0.0, 0.435, 0.10), 0.185);
         let width = 0.10;
@@ -147,7 +147,7 @@ impl Creature {
         smooth_union(head, lids(q), 0.010) * HEAD_SCALE
     }
 
-    /// The line of the mouth: 1 in its groove, 0 a centimetre away. It curls up at its corners.
+    /// The mouth's groove: 1 inside, 0 a centimetre away. It curls up at its corners.
     fn mouth(&self, q: Vec3) -> f64 {
         let back = 0.755 - q.z;
         let curl = (back - 0.10).max(0.0);
@@ -192,7 +192,7 @@ impl Creature {
         })
     }
 
-    /// The body without skin detail. A part too far away to touch `d` is not evaluated.
+    /// Distance to the body without skin detail. Parts too far away to change the minimum are skipped.
     fn smooth(&self, p: Vec3) -> f64 {
         let q = p.mirrored();
         let away = |centre: Vec3, radius: f64| (q - centre).length() - radius;
@@ -215,7 +215,7 @@ impl Creature {
         d
     }
 
-    /// How much of the skin is scaly at `p`: the back and sides, not the face, the ears or the feet.
+    /// Weight of the scales at `p`: back and sides, not the face, the ears or the feet.
     fn scaliness(&self, p: Vec3) -> f64 {
         let h = in_head(p);
         let face = step(0.24, 0.13, (h - v(0.0, 0.93, 0.65)).length());
@@ -223,9 +223,9 @@ impl Creature {
         (1.0 - 0.9 * face) * (1.0 - 0.9 * ears) * step(0.06, 0.16, p.y)
     }
 
-    /// How much of belly, throat and tail's underside `p` belongs to.
+    /// Weight of the underside (belly, throat, tail) at `p`.
     fn underside(&self, p: Vec3) -> f64 {
-        // The direction of the body at large, not of each scale.
+        // The normal of the smooth body, not of single scales.
         let far = 0.02;
         let rise = |axis: Vec3| (self.smooth(p + axis * far) - self.smooth(p - axis * far)) / (2.0 * far);
         let normal = v(rise(v(1.0, 0.0, 0.0)), rise(v(0.0, 1.0, 0.0)), rise(v(0.0, 0.0, 1.0))).normalized();
@@ -235,7 +235,7 @@ impl Creature {
         step(-0.30, -0.62, normal.y + wobble).max(throat * step(1.0, 0.9, p.y)) * (1.0 - legs)
     }
 
-    /// White, iris and pupil, each with a soft rim, and a glint above.
+    /// White, iris and pupil, each with a soft edge, and a highlight above.
     fn eye_colour(&self, q: Vec3) -> Vec3 {
         let gaze = v(0.46, 0.02, 0.89).normalized();
         let out = (q - EYE).normalized();
@@ -252,18 +252,18 @@ impl Creature {
     }
 }
 
-/// The head is modelled small and shown larger, as the young of most animals have it.
+/// Scale of the head, which is larger than modelled, as in most young animals.
 const HEAD_SCALE: f64 = 1.16;
-/// Where the head sits on the neck: the point that stays.
+/// The point where the head joins the neck, which scaling keeps fixed.
 const NAPE: Vec3 = v(0.0, 0.915, 0.50);
-/// Where the hollows of the ears look (on the side x > 0).
+/// Direction in which the ears open (at x > 0).
 const EAR_FRONT: Vec3 = v(-0.25, 0.35, 0.903);
-/// Where an ear grows from the head (on the side x > 0).
+/// The base of an ear (at x > 0).
 const EAR_ROOT: Vec3 = v(0.072, 1.020, 0.515);
 /// The ball at the tail's tip.
 const BOB: Vec3 = v(0.305, 0.395, -1.232);
 
-/// A point in the space in which the head is modelled.
+/// Maps a point to the head's model space.
 fn in_head(p: Vec3) -> Vec3 {
     NAPE + (p - NAPE) * (1.0 / HEAD_SCALE)
 }
@@ -316,7 +316,7 @@ impl Solid for Creature {
             srgb(0x4a3a35),
             step(0.056, 0.040, p.y) * step(0.072, 0.086, ahead),
         );
-        // Grooves are darker, as dust and shadow leave them on a scan.
+        // Grooves are darker, as dust and shadow make them in a scan.
         skin = skin * (1.0 - 0.36 * (1.0 - scales(p * SCALES, 23)) * self.scaliness(p));
         skin = mix(plate, skin, step(0.003, 0.010, self.crest(p)));
         let outward = v(if p.x < 0.0 { -normal.x } else { normal.x }, normal.y, normal.z);

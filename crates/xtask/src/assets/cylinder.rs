@@ -4,11 +4,11 @@ use super::mesh::Mesh;
 use super::solid::{mix, srgb};
 use super::vector::{Vec3, v};
 
-/// Segments around: a power of two, so that the circle comes from halving a quarter turn.
+/// Segments around the circle: a power of two, so that the points follow by halving a quarter turn.
 const AROUND: u32 = 64;
 /// Rings from the bottom's rim to the top's.
 const RINGS: u32 = 96;
-/// Rings of a disc, its rim not counted.
+/// Rings of a disc without its rim.
 const DISC: u32 = 9;
 const RADIUS: f64 = 0.12;
 const HEIGHT: f64 = 1.2;
@@ -16,7 +16,7 @@ const HEIGHT: f64 = 1.2;
 /// The rod from y = 0 upwards.
 pub fn cylinder() -> Mesh {
     let circle = circle();
-    // One profile from the bottom's middle over both rims to the top's middle: radius and height of each ring.
+    // The profile from the bottom's centre over both rims to the top's centre: radius and height of each ring.
     let mut profile = Vec::new();
     profile.extend((1..=DISC).map(|i| (RADIUS * f64::from(i) / f64::from(DISC + 1), 0.0)));
     profile.extend((0..=RINGS).map(|i| (RADIUS, HEIGHT * f64::from(i) / f64::from(RINGS))));
@@ -52,13 +52,13 @@ pub fn cylinder() -> Mesh {
     mesh
 }
 
-/// Twelve alternating bands along a length measured from 0 to 1: they show how a bend distributes.
+/// Twelve alternating bands along the length, 0 to 1, which show how a bend is distributed.
 pub fn banded(along: f64, one: u32, other: u32) -> Vec3 {
     let band = (along * 12.0 - 0.5).floor() as i32;
     mix(srgb(one), srgb(other), f64::from(band.rem_euclid(2)))
 }
 
-/// [`AROUND`] points on the unit circle from z to x, by halving angles: only roots, so the same on every machine.
+/// [`AROUND`] points on the unit circle from z to x, by halving angles: square roots only, so equal on every machine.
 fn circle() -> Vec<Vec3> {
     let mut quarter = vec![v(0.0, 0.0, 1.0), v(1.0, 0.0, 0.0)];
     while quarter.len() as u32 - 1 < AROUND / 4 {

@@ -4,7 +4,7 @@ use super::mesh::Mesh;
 
 /// The file's bytes. `name` names the mesh and its node.
 ///
-/// f32 begins here; colours become 8-bit, linear. Indices are 16-bit where they fit.
+/// Positions are rounded to f32, colours to 8 bits, linear. Indices are 16-bit if they fit.
 pub fn write(mesh: &Mesh, name: &str) -> Vec<u8> {
     let count = mesh.positions.len();
     let mut buffer = Vec::new();
@@ -91,7 +91,7 @@ fn container(mut json: Vec<u8>, buffer: &[u8]) -> Vec<u8> {
     out
 }
 
-/// A share of one as a byte, rounded.
+/// A number from 0 to 1 as a rounded byte.
 fn byte(share: f64) -> u8 {
     (share.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }

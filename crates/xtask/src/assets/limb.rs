@@ -1,4 +1,4 @@
-//! Limbs: round cones strung along a curve, grouped so that far groups cost one comparison.
+//! Limbs: round cones along a curve, grouped so that a distant group costs one comparison.
 
 use super::solid::{chain, sphere};
 use super::vector::{Vec3, v};
@@ -10,12 +10,12 @@ const GROUP: usize = 4;
 pub struct Limb {
     /// Centre and radius of every ball along the limb.
     pub knots: Vec<(Vec3, f64)>,
-    /// Centre and radius of a sphere around each group, and where the group begins.
+    /// Bounding sphere of each group (centre and radius), and the group's first ball.
     groups: Vec<(Vec3, f64, usize)>,
 }
 
 impl Limb {
-    /// A limb along the smooth curve through `knots`, in `pieces` round cones a span.
+    /// A limb along the smooth curve through `knots`, with `pieces` round cones per span.
     pub fn through(knots: &[(Vec3, f64)], pieces: usize) -> Self {
         let knots = smooth_knots(knots, pieces);
         let groups = (0..knots.len() - 1)
@@ -32,7 +32,7 @@ impl Limb {
         Self { knots, groups }
     }
 
-    /// The distance to the limb where it is below `limit`; else some distance that is not.
+    /// The distance to the limb if it is below `limit`; otherwise any value not below `limit`.
     pub fn distance(&self, p: Vec3, limit: f64) -> f64 {
         self.groups.iter().fold(f64::INFINITY, |near, &(centre, reach, from)| {
             if sphere(p, centre, reach) >= near.min(limit) {
@@ -43,7 +43,7 @@ impl Limb {
     }
 }
 
-/// A smooth chain: the Catmull-Rom curve through `knots`, in `pieces` round cones a span.
+/// The Catmull-Rom curve through `knots`, with `pieces` round cones per span.
 pub fn smooth_knots(knots: &[(Vec3, f64)], pieces: usize) -> Vec<(Vec3, f64)> {
     let at = |i: isize| knots[i.clamp(0, knots.len() as isize - 1) as usize];
     let mut out = Vec::new();

@@ -1,23 +1,23 @@
-//! The triangle mesh that the generator makes, its neighbourhoods, and the proof that it is closed and manifold.
+//! The generated triangle mesh: half-edge adjacency, and the check that it is closed and manifold.
 
 use super::vector::Vec3;
 
-/// Vertices with colours, and triangles counter-clockwise seen from outside.
+/// Vertices with colours, and triangles, counterclockwise seen from outside.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// Positions in world units.
     pub positions: Vec<Vec3>,
-    /// Linear red, green and blue in [0, 1], one a vertex.
+    /// Linear red, green and blue in [0, 1], one entry per vertex.
     pub colours: Vec<Vec3>,
-    /// Vertex numbers, three a triangle.
+    /// Vertex indices, three per triangle.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// No half-edge lies opposite: the edge is on the boundary.
+/// The opposite of a half-edge on the boundary.
 pub const BOUNDARY: u32 = u32::MAX;
 
 impl Mesh {
-    /// Area-weighted unit normals, one a vertex.
+    /// Area-weighted unit normals, one per vertex.
     pub fn normals(&self) -> Vec<Vec3> {
         let mut sums = vec![Vec3::default(); self.positions.len()];
         for t in &self.triangles {
@@ -30,11 +30,11 @@ impl Mesh {
         sums.into_iter().map(Vec3::normalized).collect()
     }
 
-    /// For half-edge `3 t + c` (corner `c` of triangle `t` to the next corner) the half-edge that runs the other way,
-    /// or [`BOUNDARY`].
+    /// For half-edge `3 t + c` (from corner `c` of triangle `t` to the next corner), the opposite half-edge or
+    /// [`BOUNDARY`].
     ///
     /// # Errors
-    /// Names an edge that more than two triangles share or that two triangles run the same way.
+    /// Names an edge of more than two triangles, or of two triangles with opposite orientation.
     pub fn opposites(&self) -> Result<Vec<u32>, String> {
         let mut edges: Vec<(u32, u32, u32)> = Vec::with_capacity(self.triangles.len() * 3);
         for (t, triangle) in self.triangles.iter().enumerate() {
@@ -59,7 +59,7 @@ impl Mesh {
         Ok(opposite)
     }
 
-    /// Drops every part but the largest: detail on detail can pinch off a speck, which a scan's clean-up drops too.
+    /// Keeps only the largest component: fine detail can pinch off a speck.
     pub fn keep_largest_part(&mut self) {
         let mut leader: Vec<u32> = (0..self.positions.len() as u32).collect();
         for triangle in &self.triangles {
@@ -96,10 +96,10 @@ impl Mesh {
         });
     }
 
-    /// That the mesh is one closed, manifold, outward-turned piece whose triangles all have area.
+    /// Checks that the mesh is closed, manifold, connected and oriented outwards, without degenerate triangles.
     ///
     /// # Errors
-    /// Names the first edge, vertex or triangle that breaks this.
+    /// Names the first edge, vertex or triangle that violates this.
     pub fn check_closed(&self) -> Result<(), String> {
         let opposite = self.opposites()?;
         if let Some(h) = opposite.iter().position(|&o| o == BOUNDARY) {
@@ -148,7 +148,7 @@ impl Mesh {
         }
         if count != self.triangles.len() {
             return Err(format!(
-                "only {count} of {} triangles hang together",
+                "only {count} of {} triangles are connected",
                 self.triangles.len()
             ));
         }
@@ -157,13 +157,13 @@ impl Mesh {
             a.dot(b.cross(c))
         };
         if self.triangles.iter().map(six_volumes).sum::<f64>() <= 0.0 {
-            return Err("the triangles are turned inwards".to_owned());
+            return Err("the triangles are oriented inwards".to_owned());
         }
         Ok(())
     }
 }
 
-/// The leader of `i`'s set, the way there halved.
+/// The root of `i`'s set, with path halving.
 fn find(leader: &mut [u32], mut i: u32) -> u32 {
     while leader[i as usize] != i {
         leader[i as usize] = leader[leader[i as usize] as usize];
@@ -182,7 +182,7 @@ pub fn previous(h: u32) -> u32 {
     if h.is_multiple_of(3) { h + 2 } else { h - 1 }
 }
 
-/// `function` of 0..`count` on as many threads as the machine has; the result doesn't depend on how many those are.
+/// Maps 0..`count` in parallel on all threads; the result does not depend on their number.
 pub fn in_parallel<T: Send>(count: usize, function: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let share = count.div_ceil(threads).max(1);

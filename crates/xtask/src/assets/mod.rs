@@ -1,6 +1,6 @@
-//! The samples that ship in `assets/`, made from our own shapes: `cargo xtask assets`.
+//! The samples that ship in `assets/`, generated from our own shapes: `cargo xtask assets`.
 //!
-//! Deterministic to the bit, on every machine and whatever its number of threads: see [`vector`].
+//! Bit-for-bit deterministic on every machine, for any number of threads: see [`vector`].
 
 pub mod bar;
 pub mod cactus;
@@ -19,15 +19,15 @@ pub mod vector;
 use mesh::{Mesh, in_parallel};
 use vector::Vec3;
 
-/// A closed shape given by its signed distance and coloured everywhere.
+/// A closed shape, given by its signed distance and its colour.
 pub trait Solid: Sync {
-    /// About the distance to the surface at `p`, negative inside, slope near one.
+    /// Approximate signed distance to the surface at `p`, negative inside, with a slope near one.
     fn distance(&self, p: Vec3) -> f64;
-    /// A box that holds the surface.
+    /// A bounding box of the surface.
     fn bounds(&self) -> (Vec3, Vec3);
     /// Linear colour of the surface at `p`, in [0, 1].
     fn colour(&self, p: Vec3, normal: Vec3) -> Vec3;
-    /// What a scanner adds along the normal of a vertex, in [-1, 1] of its grain.
+    /// Simulated scanner noise along the normal of a vertex, from -1 to 1.
     fn scanner_noise(&self, vertex: usize, p: Vec3) -> f64 {
         let _ = p;
         noise::white(vertex as u64, 7)
@@ -36,13 +36,13 @@ pub trait Solid: Sync {
 
 /// A sample that ships.
 pub struct Sample {
-    /// The file's name without its extension.
+    /// File name without extension.
     pub name: &'static str,
-    /// Makes the mesh as it is committed.
+    /// Makes the mesh at the committed size.
     pub make: fn() -> Result<Mesh, String>,
 }
 
-/// Every sample that ships, the one that opens by itself first.
+/// Every sample that ships. The first is the one that opens by default.
 pub const SAMPLES: [Sample; 5] = [
     Sample {
         name: "creature",
@@ -66,7 +66,7 @@ pub const SAMPLES: [Sample; 5] = [
     },
 ];
 
-/// The creature in about `triangles` triangles: the more, the finer its skin.
+/// The creature with about `triangles` triangles; more triangles give finer skin.
 ///
 /// # Errors
 /// As [`mesh_of`].
@@ -74,16 +74,16 @@ pub fn creature_of(triangles: usize) -> Result<Mesh, String> {
     mesh_of(&creature::Creature::new(), triangles)
 }
 
-/// How far a scanner's grain moves a vertex along its normal, as a share of the mesh's edge length.
+/// Amplitude of the scanner noise, as a fraction of the edge length.
 const GRAIN: f64 = 0.03;
 
-/// The surface of `solid` in about `triangles` triangles: closed, manifold, turned outwards.
+/// The surface of `solid` with about `triangles` triangles: closed, manifold, oriented outwards.
 ///
 /// # Errors
-/// Says what is wrong with the surface on the last of several grids, when none gives a manifold.
+/// What is wrong with the surface on the last of several grids, if none gives a manifold.
 pub fn mesh_of(solid: &dyn Solid, triangles: usize) -> Result<Mesh, String> {
     let (low, high) = solid.bounds();
-    // The count grows with the inverse square of the cell: two trials at coarse sizes give the factor.
+    // The count grows with the inverse square of the cell size; two coarse trials give the factor.
     let mut size = (high - low).length() / 60.0;
     for _ in 0..2 {
         let trial = surface_nets::extract(solid, size, 0.0).triangles.len().max(1);

@@ -1,8 +1,8 @@
-//! Deterministic noise: an integer hash of lattice points, gradient noise over it, and a cellular pattern for scales.
+//! Deterministic noise: an integer hash of lattice points, gradient noise, and a cellular pattern for scales.
 
 use super::vector::{Vec3, v};
 
-/// A well-mixed 64-bit hash of a lattice point and a seed (the finaliser of splitmix64).
+/// A 64-bit hash of a lattice point and a seed (the finaliser of SplitMix64 [SLF14]).
 pub fn hash(x: i64, y: i64, z: i64, seed: u64) -> u64 {
     let mut h = seed
         .wrapping_add((x as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15))
@@ -18,12 +18,12 @@ fn signed(h: u64, which: u32) -> f64 {
     ((h >> (21 * which)) & 0x1f_ffff) as f64 / 1_048_576.0 - 1.0
 }
 
-/// A number in [-1, 1) for a vertex: what a scanner adds.
+/// A number in [-1, 1) for a vertex: simulated scanner noise.
 pub fn white(index: u64, seed: u64) -> f64 {
     signed(hash(index as i64, 0, 0, seed), 0)
 }
 
-/// Gradient noise (Perlin 2002): smooth, about [-1, 1], features of size 1, zero at lattice points.
+/// Gradient noise [Per02]: smooth, about [-1, 1], features of size 1, zero at lattice points.
 pub fn gradient(p: Vec3, seed: u64) -> f64 {
     let (bx, by, bz) = (p.x.floor(), p.y.floor(), p.z.floor());
     let f = v(p.x - bx, p.y - by, p.z - bz);
@@ -43,7 +43,7 @@ pub fn gradient(p: Vec3, seed: u64) -> f64 {
     mix(mix(x00, x10, w), mix(x01, x11, w), s) * 1.4
 }
 
-/// `octaves` of gradient noise, each half the size and half the height of the one before.
+/// `octaves` of gradient noise, each with half the size and half the amplitude of the one before.
 pub fn fractal(p: Vec3, octaves: u32, seed: u64) -> f64 {
     let (mut sum, mut height, mut q) = (0.0, 1.0, p);
     for octave in 0..octaves {
@@ -54,7 +54,7 @@ pub fn fractal(p: Vec3, octaves: u32, seed: u64) -> f64 {
     sum
 }
 
-/// Scales: about 1 on top of a cell and 0 in the groove between two (Worley 1996: second distance less the first).
+/// Scales: about 1 on a cell and 0 in the groove between two cells ([Wor96]: second distance minus first).
 pub fn scales(p: Vec3, seed: u64) -> f64 {
     let (ix, iy, iz) = (p.x.floor() as i64, p.y.floor() as i64, p.z.floor() as i64);
     let (mut first, mut second) = (f64::INFINITY, f64::INFINITY);

@@ -8,10 +8,10 @@ use super::vector::v;
 const QUADS: u32 = 96;
 /// Bumps along each side.
 const BUMPS: f64 = 8.0;
-/// Height of a bump over the sheet, whose sides are 1.
+/// Height of a bump; the sheet's sides are 1.
 const HEIGHT: f64 = 0.035;
 
-/// The sheet in the plane of x and z, its bumps towards +y.
+/// The sheet in the xz plane, with bumps towards +y.
 pub fn plane() -> Mesh {
     let mut mesh = Mesh::default();
     for row in 0..=QUADS {

@@ -1,14 +1,13 @@
-//! Better triangles on the same surface: vertices glide towards the middle of their neighbours, edges flip to the
-//! Delaunay side, and everything is carried back onto the solid's surface.
+//! Remeshing for better triangles: tangential smoothing, Delaunay edge flips, and projection back onto the surface.
 
 use super::Solid;
 use super::mesh::{BOUNDARY, Mesh, in_parallel, next, previous};
 use super::vector::{Vec3, v};
 
-/// `rounds` of gliding and flipping; `size` is the mesh's edge length.
+/// `rounds` of smoothing and flipping; `size` is the mesh's edge length.
 ///
 /// # Errors
-/// A mesh that is not manifold is refused, by its edge.
+/// Names an edge that is not manifold.
 pub fn relax(mesh: &mut Mesh, solid: &dyn Solid, size: f64, rounds: usize) -> Result<(), String> {
     for _ in 0..rounds {
         flip_to_delaunay(mesh)?;
@@ -28,7 +27,7 @@ pub fn relax(mesh: &mut Mesh, solid: &dyn Solid, size: f64, rounds: usize) -> Re
     Ok(())
 }
 
-/// The gradient of the distance at `p`, by differences over a quarter of an edge on a tetrahedron's corners.
+/// The gradient of the distance at `p`, by finite differences at the corners of a tetrahedron of a quarter edge length.
 pub fn slope(solid: &dyn Solid, p: Vec3, size: f64) -> Vec3 {
     let h = size * 0.25;
     let corners = [
@@ -67,7 +66,7 @@ fn neighbour_middles(mesh: &Mesh) -> Vec<Vec3> {
         .collect()
 }
 
-/// Flips every edge whose two opposite angles sum to more than half a turn, a few sweeps in fixed order.
+/// Flips edges whose opposite angles sum to more than π, in a few sweeps in fixed order.
 fn flip_to_delaunay(mesh: &mut Mesh) -> Result<(), String> {
     let mut opposite = mesh.opposites()?;
     for _ in 0..3 {
@@ -86,7 +85,7 @@ fn flip_to_delaunay(mesh: &mut Mesh) -> Result<(), String> {
     Ok(())
 }
 
-/// The vertex that half-edge `h` leaves.
+/// The start vertex of half-edge `h`.
 fn start(mesh: &Mesh, h: u32) -> u32 {
     mesh.triangles[h as usize / 3][h as usize % 3]
 }
@@ -99,7 +98,7 @@ fn cotangent(mesh: &Mesh, h: u32) -> f64 {
     a.dot(b) / a.cross(b).length().max(1e-30)
 }
 
-/// The edge is not Delaunay, and flipping it folds nothing.
+/// Whether the edge is not Delaunay and flipping it causes no fold.
 fn wants_flip(mesh: &Mesh, h: u32, o: u32) -> bool {
     if cotangent(mesh, h) + cotangent(mesh, o) >= -1e-6 {
         return false;
@@ -110,7 +109,7 @@ fn wants_flip(mesh: &Mesh, h: u32, o: u32) -> bool {
     (a - c).cross(d - c).dot(old) > 0.0 && (d - c).cross(b - c).dot(old) > 0.0
 }
 
-/// The two vertices that the flipped edge would join are joined already.
+/// Whether the two vertices of the flipped edge already share an edge.
 fn joined(mesh: &Mesh, opposite: &[u32], h: u32, o: u32) -> bool {
     let far = start(mesh, previous(o));
     let first = previous(h);
@@ -129,7 +128,7 @@ fn joined(mesh: &Mesh, opposite: &[u32], h: u32, o: u32) -> bool {
     }
 }
 
-/// Turns the edge of half-edges `h` and `o` in its quad.
+/// Flips the edge of half-edges `h` and `o`.
 fn flip(mesh: &mut Mesh, opposite: &mut [u32], h: u32, o: u32) {
     let (hn, hp, on, op) = (next(h), previous(h), next(o), previous(o));
     let (a, b, c, d) = (start(mesh, h), start(mesh, o), start(mesh, hp), start(mesh, op));

@@ -1,6 +1,6 @@
-//! Solids as signed distances (negative inside) and the ways to join them.
+//! Solids as signed distance functions (negative inside), and operations to combine them.
 //!
-//! The distances are bounds where exactness costs more than it gives (ellipsoids): extraction asks only for the sign
+//! Some distances are only bounds, where exactness is not worth its cost (ellipsoids): extraction needs only the sign
 //! and a slope near one.
 
 use super::vector::{Vec3, v};
@@ -10,7 +10,7 @@ pub fn sphere(p: Vec3, centre: Vec3, radius: f64) -> f64 {
     (p - centre).length() - radius
 }
 
-/// About the distance to an ellipsoid with half axes `radii` along x, y and z.
+/// Approximate distance to an ellipsoid with semi-axes `radii` along x, y and z.
 pub fn ellipsoid(p: Vec3, centre: Vec3, radii: Vec3) -> f64 {
     let q = p - centre;
     let near = q.over(radii).length();
@@ -22,7 +22,7 @@ pub fn ellipsoid(p: Vec3, centre: Vec3, radii: Vec3) -> f64 {
     }
 }
 
-/// Distance to two spheres and the cone that touches both.
+/// Distance to a round cone: two spheres and the cone tangent to both.
 pub fn round_cone(p: Vec3, a: Vec3, radius_a: f64, b: Vec3, radius_b: f64) -> f64 {
     let axis = b - a;
     let length = axis.length();
@@ -50,31 +50,31 @@ pub fn chain(p: Vec3, knots: &[(Vec3, f64)]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The union of two solids, their crease filled over a width of about `width`.
+/// Smooth union, blended over a width of about `width`.
 pub fn smooth_union(a: f64, b: f64, width: f64) -> f64 {
     let overlap = (width - (a - b).abs()).max(0.0) / width;
     a.min(b) - overlap * overlap * width * 0.25
 }
 
-/// `a` without `b`, the edge rounded over a width of about `width`.
+/// Smooth difference of `a` and `b`, blended over a width of about `width`.
 pub fn smooth_difference(a: f64, b: f64, width: f64) -> f64 {
     -smooth_union(-a, b, width)
 }
 
-/// 0 below `from`, 1 above `to`, a smooth step between; `from` may lie above `to`.
+/// Smooth step from 0 at `from` to 1 at `to`; `from` may be larger than `to`.
 pub fn step(from: f64, to: f64, x: f64) -> f64 {
     let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Colour `a` turning into colour `b` as `t` goes from 0 to 1.
+/// Linear interpolation from colour `a` to colour `b`.
 pub fn mix(a: Vec3, b: Vec3, t: f64) -> Vec3 {
     a.lerp(b, t.clamp(0.0, 1.0))
 }
 
-/// A colour from its sRGB hexadecimal form, made linear as glTF wants its vertex colours.
+/// A linear colour from sRGB in hexadecimal; glTF stores linear vertex colours.
 ///
-/// The curve is a cubic within 0.003 of sRGB's, because powers are not the same on every machine.
+/// A cubic approximates the sRGB curve within 0.003, because `powf` differs between machines.
 pub fn srgb(hex: u32) -> Vec3 {
     let linear = |c: u32| {
         let s = f64::from(c & 0xff) / 255.0;

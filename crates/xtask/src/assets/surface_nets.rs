@@ -1,9 +1,9 @@
-//! From a solid to a mesh of its surface: surface nets (Gibson 1998) over the blocks that the surface crosses, with one
-//! vertex for each sheet through a cell (Nielson 2004), so that two sheets close together are not joined in a point.
+//! Extracts a solid's surface as a mesh: surface nets [Gib98] in the blocks that the surface crosses, with one vertex
+//! for each sheet through a cell [Nie04], so that two close sheets don't share a vertex.
 //!
-//! Marching cubes was not taken: its slivers would have to be removed again, while these triangles are about equal from
-//! the start. The one ambiguity left (both sheets of two cells meeting in their common face) is found by
-//! [`Mesh::check_closed`] and answered by shifting the grid.
+//! Not marching cubes, whose sliver triangles would have to be removed; these triangles are about equal from the start.
+//! The remaining ambiguity (both sheets of two cells meeting in their common face) is detected by
+//! [`Mesh::check_closed`] and resolved by shifting the grid.
 
 use std::collections::HashMap;
 
@@ -11,12 +11,12 @@ use super::Solid;
 use super::mesh::{Mesh, in_parallel};
 use super::vector::{Vec3, v};
 
-/// Cells along a block's edge. Blocks that the surface can't cross are skipped after one evaluation.
+/// Cells per block side. Blocks that the surface can't cross are skipped after one evaluation.
 const BLOCK: i32 = 8;
-/// How much steeper than one a solid's distance may be before a block is skipped wrongly.
+/// The largest slope of a solid's distance for which no block is skipped wrongly.
 const SLOPE: f64 = 1.6;
 
-/// A cell's twelve edges as corner numbers (x, y, z from bits 0, 1, 2), four along each axis.
+/// A cell's twelve edges as pairs of corners (bits 0, 1, 2 are x, y, z), four along each axis.
 const EDGES: [(u8, u8); 12] = [
     (0, 1),
     (2, 3),
@@ -42,7 +42,7 @@ struct Crossing {
     position: Vec3,
 }
 
-/// The surface of `solid` on a grid of cells `size` wide, its corner moved by the share `shift` of a cell.
+/// The surface of `solid` on a grid with cells of width `size`, offset by `shift` cells.
 pub fn extract(solid: &dyn Solid, size: f64, shift: f64) -> Mesh {
     let (low, high) = solid.bounds();
     let margin = size * 2.0;
@@ -109,8 +109,8 @@ fn crossings(solid: &dyn Solid, origin: Vec3, size: f64, block: [i32; 3]) -> Vec
     out
 }
 
-/// The sets of crossed edges that belong to one sheet each. On a face that all four edges cross, the two edges at an
-/// inside corner belong together: both cells at the face see it alike.
+/// The crossed edges of each sheet. On a face with four crossed edges, the two edges at an inside corner belong
+/// together, which both cells of the face decide alike.
 fn sheets(inside: u8) -> Vec<u16> {
     let is_inside = |corner: u8| inside >> corner & 1 == 1;
     let mut sheets: Vec<u16> = (0..12)
@@ -172,7 +172,7 @@ fn connect(crossings: &[Crossing]) -> Mesh {
     let mut triangles = Vec::with_capacity(crossings.len() * 2);
     for crossing in crossings {
         for axis in 0..3 {
-            // The cell's edge from corner 0 along the axis; three other cells see it as another of their edges.
+            // The cell's edge from corner 0 along the axis; three other cells share it as another of their edges.
             if crossing.edges >> (4 * axis) & 1 == 0 {
                 continue;
             }

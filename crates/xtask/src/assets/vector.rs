@@ -1,7 +1,7 @@
-//! Three numbers with the few operations the generator needs.
+//! A 3D vector with the few operations that the generator needs.
 //!
-//! Only `+ - * /` and the square root are used, here and in the shapes: IEEE 754 fixes their every bit, so the samples
-//! come out the same on every machine, which no platform's `sin` or `exp` promises.
+//! Here and in the shapes, only `+ - * /` and square roots are used: IEEE 754 defines their results exactly, so the
+//! samples are equal on every machine, which is not guaranteed for `sin` or `exp`.
 
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 
@@ -16,18 +16,18 @@ pub struct Vec3 {
     pub z: f64,
 }
 
-/// Short for the three numbers as a vector.
+/// Shorthand for a vector.
 pub const fn v(x: f64, y: f64, z: f64) -> Vec3 {
     Vec3 { x, y, z }
 }
 
 impl Vec3 {
-    /// The inner product.
+    /// Dot product.
     pub fn dot(self, other: Self) -> f64 {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
-    /// The vector product, right-handed.
+    /// Cross product, right-handed.
     pub fn cross(self, other: Self) -> Self {
         v(
             self.y * other.z - self.z * other.y,
@@ -36,12 +36,12 @@ impl Vec3 {
         )
     }
 
-    /// The Euclidean length.
+    /// Euclidean length.
     pub fn length(self) -> f64 {
         self.dot(self).sqrt()
     }
 
-    /// The direction, or zero for a vector without one.
+    /// The unit vector, or zero for the zero vector.
     pub fn normalized(self) -> Self {
         let length = self.length();
         if length > 0.0 {
@@ -51,22 +51,22 @@ impl Vec3 {
         }
     }
 
-    /// The point a share `t` of the way to `other`.
+    /// Linear interpolation towards `other`.
     pub fn lerp(self, other: Self, t: f64) -> Self {
         self * (1.0 - t) + other * t
     }
 
-    /// Each component divided by that of `other`.
+    /// Componentwise quotient.
     pub fn over(self, other: Self) -> Self {
         v(self.x / other.x, self.y / other.y, self.z / other.z)
     }
 
-    /// The point with x positive: a shape symmetric left and right is modelled on one side only.
+    /// The point mirrored to x ≥ 0, for shapes that are modelled on one side only.
     pub fn mirrored(self) -> Self {
         v(self.x.abs(), self.y, self.z)
     }
 
-    /// The three numbers in order.
+    /// The components.
     pub fn array(self) -> [f64; 3] {
         [self.x, self.y, self.z]
     }

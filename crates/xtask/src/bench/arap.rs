@@ -1,8 +1,8 @@
-//! As-rigid-as-possible deformation beside libigl's, by the example `arap` of `deform` and `tests/peer/arap.py`: the
-//! survey's scenes and a scan.
+//! As-rigid-as-possible deformation compared with libigl, by the example `arap` of `deform` and `tests/peer/arap.py`:
+//! the scenes of [BS08] and a scan.
 //!
-//! libigl runs 400 iterations; `reach` is how long Pliant takes to get below the energy of its shape. An iteration is a
-//! local and a global step on both sides. Neither side's times hold its binding, which has a column of its own.
+//! libigl runs 400 iterations; `reach` is the time in which Pliant gets below the energy of its result. An iteration is
+//! a local and a global step in both. The times do not include binding, which has its own column.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use super::Scale;
 use super::table::{Row, folder, measured};
 use crate::process::output;
 
-/// A row for each scene and program.
+/// One row per scene and program.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     let data = crate::root().join("../shared/data");
     if !data.is_dir() {
@@ -52,7 +52,7 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-/// A scene of the survey in the folder of measurements, where other shapes may stand beside it.
+/// Copies a scene of the survey to the folder of measurements, where other shapes may be written next to it.
 fn copied(survey: &Path, name: &str) -> Result<PathBuf, String> {
     let folder = folder();
     for extension in ["off", "sel", "def"] {

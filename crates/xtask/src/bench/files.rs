@@ -4,7 +4,7 @@ use super::Scale;
 use super::meshes::creature_glb;
 use super::table::{Row, measured};
 
-/// A row for each size and kind. A file is read by all threads.
+/// One row per size and kind of file. Reading uses all threads.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     let sizes: &[usize] = match scale {
         Scale::Usual => &[60_000, 600_000],

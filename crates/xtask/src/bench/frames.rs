@@ -1,4 +1,4 @@
-//! The command line's own report: what a person waits for.
+//! Binding and drag frames, from the command line's own report: what a user waits for.
 
 use std::path::Path;
 use std::process::Stdio;
@@ -19,7 +19,7 @@ const COLUMNS: [&str; 8] = [
     "normals_ms",
 ];
 
-/// A row for every size and for one and all threads.
+/// One row per size, for one and for all threads.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     let mut rows = Vec::new();
@@ -62,7 +62,7 @@ fn apply(file: &Path, output: &Path, report: &Path, threads: usize) -> Result<()
     succeed(command.stdout(Stdio::null()))
 }
 
-/// The number behind the first member of this name in a report of our own.
+/// The number of the first member with this name in a report.
 fn number(report: &str, name: &str) -> Option<f64> {
     let (_, rest) = report.split_once(&format!("\"{name}\""))?;
     let rest = rest.trim_start().strip_prefix(':')?.trim_start();

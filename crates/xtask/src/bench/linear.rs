@@ -4,14 +4,14 @@ use super::Scale;
 use super::meshes::{creature_off, sizes};
 use super::table::{Row, measured};
 
-/// A row for each size and for one and all threads.
+/// One row per size, for one and for all threads.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     let mut rows = Vec::new();
     for &vertices in sizes(scale) {
         let file = creature_off(vertices)?;
         for threads in [1, all] {
-            // A process of its own, so that the peak of its memory is this mesh's.
+            // One process per mesh, so that its peak memory is this mesh's.
             let arguments = [file.display().to_string(), threads.to_string()];
             rows.extend(measured("pliant-deform", "linear", &arguments)?);
         }

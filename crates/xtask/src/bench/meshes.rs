@@ -1,4 +1,4 @@
-//! The meshes that are measured on, made once and kept in `target/bench`.
+//! The meshes for measurements, made once and kept in `target/bench`.
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -15,10 +15,10 @@ pub fn sizes(scale: Scale) -> &'static [usize] {
     }
 }
 
-/// The creature with about so many triangles, as GLB.
+/// The creature with about this many triangles, as GLB.
 ///
 /// # Errors
-/// One sentence when it can't be made or written.
+/// One sentence if it can't be made or written.
 pub fn creature_glb(triangles: usize) -> Result<PathBuf, String> {
     let path = folder().join(format!("creature-{triangles}.glb"));
     if !path.exists() {
@@ -27,10 +27,10 @@ pub fn creature_glb(triangles: usize) -> Result<PathBuf, String> {
     Ok(path)
 }
 
-/// The creature with about so many vertices, as OFF, which an example reads in a few lines.
+/// The creature with about this many vertices, as OFF, which examples can read in a few lines.
 ///
 /// # Errors
-/// One sentence when it can't be made or written.
+/// One sentence if it can't be made or written.
 pub fn creature_off(vertices: usize) -> Result<PathBuf, String> {
     let path = folder().join(format!("creature-{vertices}.off"));
     if path.exists() {

@@ -1,5 +1,5 @@
-//! Other programs on the same edit, in the same minute: what `../shared/peers` can time on this machine, and how many
-//! times faster Pliant is at what answers to it.
+//! Other programs on the same edit, in the same run: the times of `../shared/peers` on this machine, and how many times
+//! faster Pliant does the same.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,13 +8,13 @@ use super::Scale;
 use super::table::{Row, folder, measured};
 use crate::process::output;
 
-/// A comparison: what a line of a peer says that it took, and the columns of Pliant's rows that together do the same.
+/// A comparison of a time that a peer prints with the columns of Pliant's rows that together do the same work.
 struct Versus {
-    /// How the peer's line begins.
+    /// Beginning of the peer's line.
     line: &'static str,
     /// The word before its milliseconds.
     does: &'static str,
-    /// Which of Pliant's rows.
+    /// The kind of Pliant's row.
     ours: Ours,
     columns: &'static [&'static str],
 }
@@ -47,7 +47,7 @@ const VERSUS: [Versus; 13] = [
     Versus { line: "cgal sr-arap", does: "iteration", ours: Ours::Smooth, columns: &["step"] },
 ];
 
-/// A row for each thing that a peer does, for horse.ply as it is and subdivided.
+/// One row per comparison, for horse.ply as it is and subdivided.
 pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     let peers = crate::root().join("../shared/peers");
     let mesh = crate::root().join("../shared/data/scans/horse.ply");
@@ -81,7 +81,7 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-/// A row for every comparison that the peers' lines allow.
+/// One row for each comparison whose line a peer printed.
 fn compared(off: &Path, level: usize, lines: &str) -> Result<Vec<Row>, String> {
     let mut measurements: Vec<(Ours, Row)> = Vec::new();
     let mut rows = Vec::new();
@@ -90,7 +90,7 @@ fn compared(off: &Path, level: usize, lines: &str) -> Result<Vec<Row>, String> {
         let Some(theirs) = line.and_then(|line| word_after(line, versus.does)) else {
             continue;
         };
-        // Blender says so on its standard error alone; then nothing has moved.
+        // Blender reports failure only on standard error; then no vertex has moved.
         let found = !line.is_some_and(|line| line.contains("bound False") || line.contains("moved 0.0000"));
         if !measurements.iter().any(|(ours, _)| *ours == versus.ours) {
             measurements.push((versus.ours, versus.ours.measure(off)?));
@@ -98,7 +98,7 @@ fn compared(off: &Path, level: usize, lines: &str) -> Result<Vec<Row>, String> {
         let ours = measurements.iter().find(|(ours, _)| *ours == versus.ours);
         let times = |column: &&str| ours.and_then(|(_, row)| row.get(column)?.parse::<f64>().ok());
         let Some(ms) = versus.columns.iter().map(times).sum::<Option<f64>>() else {
-            return Err(format!("Pliant's rows lack one of {:?}.", versus.columns));
+            return Err(format!("Pliant's rows have no column for one of {:?}.", versus.columns));
         };
         rows.push(
             Row::default()
@@ -131,7 +131,7 @@ impl Ours {
         let rows = measured("pliant-deform", example, &arguments)?;
         rows.into_iter()
             .next()
-            .ok_or_else(|| format!("The example {example} says nothing."))
+            .ok_or_else(|| format!("The example {example} printed no row."))
     }
 }
 
@@ -144,7 +144,7 @@ fn said(level: usize, sentence: &str) -> Row {
     Row::default().number("subdivided", level as f64).text("says", sentence)
 }
 
-/// Writes the mesh as the peers see it.
+/// Writes the mesh in the format that the peers read.
 fn scene(peers: &Path, mesh: &Path, level: usize, off: &Path) -> Option<()> {
     if off.exists() {
         return Some(());
@@ -155,7 +155,7 @@ fn scene(peers: &Path, mesh: &Path, level: usize, off: &Path) -> Option<()> {
     output("python3", &words.each_ref().map(String::as_str)).map(|_| ())
 }
 
-/// What a peer's Python script prints.
+/// The output of a peer's Python script.
 fn script(peers: &Path, mesh: &Path, level: usize, package: &str, script: &str) -> Result<String, String> {
     if output("python3", &["-c", &format!("import {package}, numpy, scipy, trimesh")]).is_none() {
         let wanted = if package == "igl" { "libigl" } else { package };
@@ -166,7 +166,7 @@ fn script(peers: &Path, mesh: &Path, level: usize, package: &str, script: &str) 
     output("python3", &words.each_ref().map(String::as_str)).ok_or_else(|| format!("{script} failed"))
 }
 
-/// What CGAL's program prints; it is built the first time.
+/// The output of CGAL's program, which is built on first use.
 fn cgal(peers: &Path, off: &Path) -> Result<String, String> {
     let program: PathBuf = folder().join("cgal_time");
     if !program.exists() {

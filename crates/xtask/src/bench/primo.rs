@@ -5,7 +5,7 @@ use std::path::Path;
 use super::Scale;
 use super::table::{Row, measured};
 
-/// A row for each scene, on all threads; none where the survey's scenes are not beside the project.
+/// One row per scene, on all threads; none if the survey's scenes are not there.
 pub fn rows(_: Scale) -> Result<Vec<Row>, String> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/survey");

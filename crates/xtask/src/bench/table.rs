@@ -1,16 +1,16 @@
-//! Rows of measurements: read from what an example prints, printed as a table, kept as JSON.
+//! Rows of measurements: parsed from an example's output, printed as a table, saved as JSON.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
 
 use crate::process::{cargo, target_folder, words};
 
-/// What one measurement found: names and values as JSON writes them, in the order in which they are to be shown.
+/// One row: names and JSON values, in column order.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Row(Vec<(String, String)>);
 
 impl Row {
-    /// With a text put behind what is there.
+    /// Appends a text.
     #[must_use]
     pub fn text(mut self, name: &str, value: &str) -> Self {
         let escaped = value.replace('\\', "\\\\").replace('"', "\\\"");
@@ -18,21 +18,21 @@ impl Row {
         self
     }
 
-    /// With a number put behind what is there.
+    /// Appends a number.
     #[must_use]
     pub fn number(mut self, name: &str, value: f64) -> Self {
         self.0.push((name.to_owned(), format!("{value}")));
         self
     }
 
-    /// With all of another row behind what is there.
+    /// Appends another row.
     #[must_use]
     pub fn and(mut self, other: Self) -> Self {
         self.0.extend(other.0);
         self
     }
 
-    /// Reads one flat JSON object of texts and numbers on one line; `None` for anything else.
+    /// Parses a line with one flat JSON object of strings and numbers; `None` for anything else.
     pub fn parse(line: &str) -> Option<Self> {
         let mut rest = line.trim().strip_prefix('{')?.strip_suffix('}')?.trim();
         let mut row = Vec::new();
@@ -50,7 +50,7 @@ impl Row {
         Some(Self(row))
     }
 
-    /// A value as JSON writes it.
+    /// A value in JSON.
     pub fn get(&self, name: &str) -> Option<&str> {
         let (_, value) = self.0.iter().find(|(own, _)| own == name)?;
         Some(value)
@@ -66,25 +66,25 @@ impl Row {
     }
 }
 
-/// Builds a crate's example in release and runs it; every JSON object that it prints on a line of its own is a row.
+/// Builds a crate's example in release and runs it. Every line with a JSON object is a row.
 ///
 /// # Errors
-/// One sentence when it can't be built or fails.
+/// One sentence if it can't be built or fails.
 pub fn measured(package: &str, example: &str, arguments: &[String]) -> Result<Vec<Row>, String> {
     rows_of(release(package, ["--example", example]).args(arguments))
 }
 
-/// The command that builds a program of the workspace in release and runs it.
+/// The command that builds a program in release and runs it.
 pub fn release(package: &str, program: [&str; 2]) -> Command {
     let mut command = cargo(&["run", "--locked", "--quiet", "--release", "--package", package]);
     command.args(program).arg("--");
     command
 }
 
-/// Runs a program; every JSON object that it prints on a line of its own is a row.
+/// Runs a program. Every line with a JSON object is a row.
 ///
 /// # Errors
-/// One sentence when it can't be started or fails.
+/// One sentence if it can't be started or fails.
 pub fn rows_of(command: &mut Command) -> Result<Vec<Row>, String> {
     let words = words(command);
     let output = command
@@ -100,7 +100,7 @@ pub fn rows_of(command: &mut Command) -> Result<Vec<Row>, String> {
         .collect())
 }
 
-/// Prints rows below the names of their columns; rows with other columns start a table of their own.
+/// Prints rows as a table; a row with other columns starts a new table.
 pub fn print(rows: &[Row]) {
     let names = |row: &Row| row.0.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
     let mut rest = rows;
@@ -126,7 +126,7 @@ pub fn print(rows: &[Row]) {
     }
 }
 
-/// Numbers with three digits that count, texts without their quotes.
+/// Numbers with three significant digits, strings without quotes.
 fn shown(value: &str) -> String {
     match value.parse::<f64>() {
         Ok(number) if number.fract() == 0.0 || number.abs() >= 100.0 => format!("{number:.0}"),
@@ -137,25 +137,25 @@ fn shown(value: &str) -> String {
     }
 }
 
-/// Keeps a section's rows as `target/bench/<name>.json`.
+/// Saves a section's rows as `target/bench/<name>.json`.
 ///
 /// # Errors
-/// One sentence when it can't be written.
+/// One sentence if it can't be written.
 pub fn keep(name: &str, rows: &[Row]) -> Result<(), String> {
     let path = folder().join(format!("{name}.json"));
     let lines: Vec<String> = rows.iter().map(|row| format!("  {}", row.json())).collect();
     write(&path, format!("[\n{}\n]\n", lines.join(",\n")).as_bytes())
 }
 
-/// Where measurements and the meshes for them lie.
+/// The folder of measurements and their meshes.
 pub fn folder() -> std::path::PathBuf {
     target_folder().join("bench")
 }
 
-/// Writes a file, and the folders above it.
+/// Writes a file and creates its parent folders.
 ///
 /// # Errors
-/// One sentence when it can't be written.
+/// One sentence if it can't be written.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
     let parent = path.parent().unwrap_or(path);
     std::fs::create_dir_all(parent)
