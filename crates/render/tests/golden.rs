@@ -1,7 +1,9 @@
-//! One small picture for every mode and mark, compared with the one that was looked at and kept. They bind to Mesa's
-//! software device, whose pictures are the same to the bit on every machine; elsewhere they are skipped by name.
+//! Golden pictures: a small picture for every shading and overlay, compared with the checked one. They are bound to
+//! Mesa's software device, whose pictures are equal on every machine bit for bit; on other devices the tests are
+//! skipped.
 //!
-//! `PLIANT_KEEP_PICTURES=1 cargo test -p pliant-render --test golden` keeps the present ones; look at them.
+//! `PLIANT_KEEP_PICTURES=1 cargo test -p pliant-render --test golden` replaces the pictures; check them before
+//! committing.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may fail by panicking")]
 
 mod rig;
@@ -17,7 +19,7 @@ use pliant_render::{
 };
 use rig::{SIZE_PX, Shape, golden, oblique_view, renderer};
 
-/// What a picture shows, beside its surface: most show it plainly from the same place.
+/// What a picture shows in addition to its surface; most use the default style and view.
 struct Shot<'a> {
     view: View,
     style: Style,
@@ -47,7 +49,7 @@ impl Shot<'_> {
         }
     }
 
-    /// Draws it and compares it with the picture of this name.
+    /// Draws the picture and compares it with the golden one.
     fn compare(&self, renderer: &mut Renderer, name: &str, surface: &Surface) {
         let frame = Frame {
             view: &self.view,
@@ -62,7 +64,7 @@ impl Shot<'_> {
     }
 }
 
-/// The ring, a third of it painted.
+/// The ring, a third of it in a region colour.
 fn painted_ring(renderer: &Renderer) -> Surface {
     let ring = Shape::open_ring(48, 20);
     let regions: Vec<[u8; 4]> = ring
@@ -116,7 +118,7 @@ fn modes() {
     }
 }
 
-/// A part of the ring is hidden: neither its triangles nor its edges nor its borders are drawn.
+/// Part of the ring is hidden: neither its triangles nor its edges nor its borders are drawn.
 #[test]
 fn hidden() {
     let Some(mut headless) = renderer() else { return };
@@ -140,7 +142,7 @@ fn outlines() {
     let Some(mut headless) = renderer() else { return };
     let renderer = &mut headless.renderer;
     let mut surface = painted_ring(renderer);
-    // Around the ring's tube between two of its rows, over the middles of edges.
+    // Around the tube between two of its rows, through the midpoints of edges.
     let (across, row) = (20, 6);
     let between = |k: u32, to: u32| EdgePoint {
         vertices: [row * across + k % across, (row + 1) * across + to % across],
@@ -244,7 +246,7 @@ fn marks() {
 #[test]
 fn odd_edges() {
     let Some(mut headless) = renderer() else { return };
-    // Two squares that meet in a cross: where they do, four triangles share an edge.
+    // Two crossing squares: four triangles share the common edge.
     let mut cross = Shape::default();
     for axis in [Vec3::X, Vec3::Z] {
         let first = cross.positions.len() as u32;
@@ -282,7 +284,7 @@ fn odd_edges() {
     .compare(&mut headless.renderer, "odd-edges", &surface);
 }
 
-/// A sphere of one material over the longitudes and latitudes of its images.
+/// A UV sphere of one material.
 fn ball(renderer: &Renderer, material: Material, textures: &[TextureData<'_>]) -> Surface {
     let mut sphere = Shape::default();
     let (around, across) = (48_u32, 24_u32);
@@ -407,7 +409,7 @@ fn materials() {
 fn maps() {
     let Some(mut headless) = renderer() else { return };
     let side = 64;
-    // Round studs: normals lean outwards from the middle of each tile.
+    // Round studs: normals lean outwards from the centre of each tile.
     let studs = image_of(side, |u, v| {
         let (x, y) = (2.0 * u - 1.0, 1.0 - 2.0 * v);
         let radius = (x * x + y * y).sqrt();

@@ -1,4 +1,4 @@
-//! Laws of meshes that are cut into chunks and spread over buffers: nobody sees that they are.
+//! Laws of meshes that are split into chunks and distributed over pages: the result looks and picks the same.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may fail by panicking")]
 
 mod rig;
@@ -11,7 +11,7 @@ use pliant_render::{
 };
 use rig::{SIZE_PX, Shape, draw, front_view, oblique_view, renderer};
 
-/// 150,000 triangles in an order that jumps about.
+/// 150,000 triangles in shuffled order.
 fn large() -> Shape {
     let mut ring = Shape::open_ring(600, 143);
     let count = ring.triangles.len();
@@ -75,7 +75,7 @@ fn a_mesh_spread_over_several_buffers_looks_and_picks_the_same() {
     for round in 0..2 {
         for view in [oblique_view(), close_view()] {
             let [a, b] = [&whole, &spread].map(|surface| pictures(renderer, surface, &view));
-            // Edges between two buffers' triangles are drawn twice and show a little stronger.
+            // Edges between triangles of two pages are drawn twice and look slightly stronger.
             assert!(a[0] == b[0] && a[1] == b[1], "round {round}");
             assert_eq!(ids(renderer, &whole, &view), ids(renderer, &spread, &view));
         }
@@ -97,7 +97,7 @@ fn what_lies_beside_the_picture_is_not_drawn_and_not_missed() {
         "{near} of {}",
         shape.triangles.len()
     );
-    // The same picture from parts small enough to be drawn whole.
+    // The same picture from parts small enough not to be culled.
     let parts: Vec<Surface> = shape
         .triangles
         .chunks(50_000)
@@ -175,7 +175,7 @@ fn tiles_join_without_a_trace() {
         let bytes = whole.rgba.iter().zip(&tiled.rgba);
         bytes.filter(|(a, b)| a.abs_diff(**b) > tolerance).count()
     };
-    // Rounding moves single samples along contours; the background's noise is that of each tile.
+    // Rounding moves single samples along silhouettes, and the background's dither restarts in each tile.
     assert!(apart(2) < whole.rgba.len() / 200, "{} bytes differ", apart(2));
     assert!(apart(60) < 20, "{} bytes differ by far", apart(60));
 }
@@ -215,7 +215,7 @@ fn fewer_triangles_look_nearly_the_same_and_follow_the_shape() {
         assert!(off < 300, "{off} of 15000 pixels are off");
     }
     assert!(!surface.has_reduced(&close_view()), "from near their size would show");
-    // What is hidden stays hidden.
+    // Hidden triangles stay hidden.
     let half: Vec<bool> = (0..shape.triangles.len()).map(|t| t % 2000 < 1000).collect();
     surface.show(renderer, Some(Arc::new(half))).unwrap();
     let [full, few] = [Style::default(), reduced].map(|style| draw(renderer, &view, &style, &[&surface], &[]));

@@ -1,4 +1,4 @@
-//! Laws of the marks above the surfaces, on a device if there is one.
+//! Laws of overlays, tested if there is a device.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may fail by panicking")]
 
 mod rig;
@@ -99,7 +99,7 @@ fn a_line_is_as_wide_as_asked_for_whatever_its_distance() {
             ..Overlay::default()
         };
         let image = draw(&mut headless.renderer, &front_view(), &on_black(), &[], &[overlay]);
-        // Light across the line, as a share of the mark's own, adds up to the width.
+        // Coverage across the line adds up to its width.
         let linear = |byte: u8| (f64::from(byte) / 255.0 + 0.055).max(0.0).powf(2.4) / 1.055_f64.powf(2.4);
         let column = (0..SIZE_PX[1]).map(|y| image.pixel(SIZE_PX[0] / 2, y).unwrap()[0]);
         let black = linear(0);

@@ -1,4 +1,4 @@
-//! Laws of triangle numbers, on a device if there is one.
+//! Laws of picking, tested if there is a device.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may fail by panicking")]
 
 mod rig;
@@ -50,7 +50,7 @@ fn the_number_under_each_pixel_is_the_triangle_that_a_ray_meets() {
                 let (origin, direction) = ray(&view, x, y);
                 let seen = ids[(y * SIZE_PX[0] + x) as usize];
                 match shape.ray(origin, direction) {
-                    // Too near an edge to tell.
+                    // Too close to an edge to decide.
                     Some((_, margin)) if margin < 0.02 => {}
                     Some((triangle, _)) => {
                         compared += 1;
@@ -64,7 +64,7 @@ fn the_number_under_each_pixel_is_the_triangle_that_a_ray_meets() {
     }
 }
 
-/// Whether a ray a hundredth of a pixel aside does meet the shape: rounding decides such a pixel.
+/// Whether a ray a hundredth of a pixel away hits the shape: rounding decides such a pixel.
 fn is_beside_a_miss(shape: &Shape, view: &View, x: u32, y: u32) -> bool {
     let (origin, direction) = ray(view, x, y);
     [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y]
@@ -151,7 +151,7 @@ fn an_answer_comes_without_waiting_for_it() {
         .wait(renderer)
         .unwrap();
     let mut request = renderer.pick(&mut target, SIZE_PX, rect, &frame).unwrap();
-    // A dropped request harms nobody.
+    // Dropping a request is fine.
     drop(renderer.pick(&mut target, SIZE_PX, rect, &frame).unwrap());
     let polled = (0..1_000_000).find_map(|_| {
         std::thread::yield_now();

@@ -1,4 +1,4 @@
-//! Laws of what is drawn, on a device if there is one.
+//! Laws of pictures, tested if there is a device.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may fail by panicking")]
 
 mod rig;
@@ -95,7 +95,7 @@ fn the_nearer_surface_hides_the_farther_one_in_either_order() {
             assert!(red > 100 && blue < 60, "red is nearer");
         }
     }
-    // Reversed depth keeps its digits far away: two squares at three thousand, a third of a percent apart.
+    // Reversed depth stays precise far away: two squares at distance 3000, a third of a percent apart.
     for surfaces in [[&from_near, &from_afar], [&from_afar, &from_near]] {
         let image = draw(
             &mut headless.renderer,
@@ -269,7 +269,7 @@ fn textures_show_upright_and_masks_cut_holes() {
     let Some(mut headless) = renderer() else { return };
     let view = front_view();
     let square = Shape::square(0.0, 0.0, 1.0);
-    // glTF: v = 0 is the image's first row, here red; below it green, the right half without alpha.
+    // In glTF v = 0 is the image's first row, red here; the last row is green, and its right half has alpha 0.
     let (width, height) = (32_u32, 8_u32);
     let rgba: Vec<u8> = (0..height)
         .flat_map(|y| (0..width).map(move |x| (x, y)))
@@ -331,7 +331,7 @@ fn textures_show_upright_and_masks_cut_holes() {
 fn mipmaps_keep_the_mean_light() {
     let Some(mut headless) = renderer() else { return };
     let view = front_view();
-    // A fine chequer, far smaller on the screen than in the image, against a plain grey of the same mean light.
+    // A fine checkerboard, minified on the screen, compared with a plain grey of the same mean light.
     let side = 512_u32;
     let chequer: Vec<u8> = (0..side * side)
         .flat_map(|at| {

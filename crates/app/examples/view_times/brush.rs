@@ -1,5 +1,5 @@
-//! Strokes of the brush across the mesh: what an event of the pointer costs the window's thread until the new colours
-//! are on their way to the device.
+//! Brush strokes across the mesh: how long a pointer event occupies the window's thread until the new colours are
+//! queued for the device.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use pliant_render::{RenderError, Renderer, Surface};
 
 use crate::{SIZE_PX, median, timed};
 
-/// A row for each brush: members of a JSON object.
+/// One row per brush: members of a JSON object.
 pub fn rows(
     model: &Arc<Model>,
     drawing: &Drawing,
@@ -49,7 +49,7 @@ pub fn rows(
             editor.region_colours(&mut by_surface);
             let mut colours = drawing::drawn_colours(model, &by_surface);
             surface.update_regions(renderer, &colours)?;
-            let (mut deciding, mut colouring, mut whole) = (Vec::new(), Vec::new(), Vec::new());
+            let (mut handling, mut colouring, mut whole) = (Vec::new(), Vec::new(), Vec::new());
             let mut vertices = 0;
             for event in stroke(&editor, model) {
                 let known = editor.view().regions_revision;
@@ -69,7 +69,7 @@ pub fn rows(
                 });
                 uploaded?;
                 if is_dab {
-                    deciding.push(ms);
+                    handling.push(ms);
                     colouring.push(colour_ms);
                 }
                 whole.push(ms + colour_ms);
@@ -79,7 +79,7 @@ pub fn rows(
             rows.push(format!(
                 "\"brush\": \"{name}\", \"radius_px\": {radius_px}, \"dab_ms\": {:.2}, \"colour_ms\": {:.2}, \
                  \"longest_ms\": {longest:.1}, \"letting_go_ms\": {end:.1}, \"vertices\": {vertices}",
-                median(deciding),
+                median(handling),
                 median(colouring),
             ));
             editor.handle(Event::Command(Command::Undo));
@@ -88,7 +88,7 @@ pub fn rows(
     Ok(rows)
 }
 
-/// A press where the mesh is nearest to the eye, thirty movements of ten points each to and fro, and letting go.
+/// A press where the mesh is nearest to the eye, thirty moves of ten points back and forth, and a release.
 fn stroke(editor: &Editor, model: &Model) -> Vec<Event> {
     let view = editor.view();
     let eye = view.camera.eye();

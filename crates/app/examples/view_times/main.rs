@@ -1,5 +1,5 @@
-//! `view_times TRIANGLES [TRIANGLES ..]`: how long the view takes at each size, a JSON object a line: getting ready, a
-//! moved shape, a frame on the processor's side and on the device's, answers to the pointer, and dabs of the brush.
+//! `view_times TRIANGLES [TRIANGLES ..]`: times of the view at each size, one JSON object per line: preparation, a
+//! shape update, CPU and GPU time of a frame, picks, and dabs of the brush.
 
 #![expect(clippy::print_stdout, reason = "its output is the measurement")]
 
@@ -119,7 +119,7 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
     let device = renderer.device_name();
     for (name, look, camera) in looks {
         for (samples, count) in [(Samples::One, 1), (Samples::Four, 4)] {
-            // Of these minutes on a software device nothing would be learnt that the smaller ones do not tell.
+            // These take minutes on a software device and show nothing that the smaller meshes don't.
             if triangles > 1_000_000 && !name.starts_with("clay,") && name != "clay" && count > 1 {
                 continue;
             }
@@ -145,7 +145,7 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Medians of the call that draws and of the device's own time.
+/// Median CPU time of the draw call and median GPU time, in milliseconds.
 fn frames(
     renderer: &mut pliant_render::Renderer,
     target: &Target,
@@ -166,12 +166,12 @@ fn frames(
         let (ms, drawn) = timed(|| renderer.draw(target, &frame));
         drawn?;
         renderer.finish()?;
-        // The first one makes pipelines.
+        // The first frame creates pipelines.
         if number > 0 {
             processor.push(ms);
             device.extend(renderer.device_ms());
         }
-        // A software device with millions of triangles has been watched long enough by then.
+        // Stop after two seconds: software devices are slow with millions of triangles.
         if number >= 1 && start.elapsed().as_secs() >= 2 {
             break;
         }

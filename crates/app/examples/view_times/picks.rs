@@ -1,4 +1,4 @@
-//! Answers to the pointer on a moved mesh, and getting ready for them.
+//! Picks on a deformed mesh, and preparing for them.
 
 use std::hint::black_box;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,8 +10,8 @@ use pliant_mesh::{Bvh, Model};
 
 use crate::{SIZE_PX, median, timed};
 
-/// Members of a JSON object: the hierarchy's building, its refitting to a shape of which everything or a twentieth moved,
-/// and rays from the eye that meet the surface, alone and while the hierarchy is being refitted.
+/// Members of a JSON object: building the hierarchy, refitting it when everything or a twentieth moved, and rays from
+/// the eye that hit the surface, alone and during refitting.
 pub fn row(model: &Model, moved: &[DVec3], camera: &Camera) -> String {
     let rest = &model.surface.positions;
     let (build_ms, mut bvh) = timed(|| Bvh::build(rest, &model.surface.triangles));
@@ -26,7 +26,7 @@ pub fn row(model: &Model, moved: &[DVec3], camera: &Camera) -> String {
         })
     });
     let alone = picks(&bvh, camera, || ());
-    // In the window a pick comes with an event of the pointer.
+    // Pauses between picks stand for the time between pointer events.
     let is_over = AtomicBool::new(false);
     let beside = std::thread::scope(|threads| {
         threads.spawn(|| {
@@ -56,7 +56,8 @@ pub fn row(model: &Model, moved: &[DVec3], camera: &Camera) -> String {
     )
 }
 
-/// Milliseconds of rays all over the picture; what meets nothing is answered at once and would make the others look fast.
+/// Milliseconds of rays all over the picture. Rays that miss return at once and would distort the median, so they are
+/// left out.
 fn picks(bvh: &Bvh, camera: &Camera, between: impl Fn()) -> Vec<f64> {
     let size_px = DVec2::new(f64::from(SIZE_PX[0]), f64::from(SIZE_PX[1]));
     (0..4000_u32)

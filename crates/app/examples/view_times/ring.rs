@@ -1,11 +1,11 @@
-//! The mesh that is measured: as large as one likes, with relief at every scale.
+//! The measured mesh, of any size, with relief at every scale.
 
 use std::f64::consts::TAU;
 
 use glam::DVec3;
 use pliant_mesh::{Drawn, DrawnVertex};
 
-/// A ring with knobs, of about so many triangles.
+/// A ring with knobs, of about this many triangles.
 pub fn knobbly_ring(triangles: usize) -> Drawn {
     let across = ((triangles as f64 / 5.0).sqrt() as u32).max(3);
     let around = (triangles as u32 / (2 * across)).max(3);

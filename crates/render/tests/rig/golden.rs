@@ -1,15 +1,15 @@
-//! Kept pictures: compared with what is drawn now, by the one tolerance that there is.
+//! Comparison with golden pictures, with one tolerance for all.
 
 use std::path::Path;
 
 use pliant_render::{Image, Renderer};
 
-/// How far a byte may be from the kept picture's, and how many of a picture's pixels may be farther: another version
-/// of the same driver may round otherwise along contours.
+/// The largest difference of a byte, and how many pixels may differ more: another version of the same driver may round
+/// differently along silhouettes.
 const BYTE_TOLERANCE: u8 = 6;
 const STRAY_SHARE: f64 = 0.01;
 
-/// Compares a picture with `folder/name.png`, which was looked at and kept; panics where they differ.
+/// Compares a picture with the golden `folder/name.png`; panics if they differ.
 pub fn compare(renderer: &Renderer, folder: &Path, name: &str, image: &Image) {
     let path = folder.join(name).with_extension("png");
     let Image { width, height, rgba } = image;

@@ -1,4 +1,4 @@
-//! Verbs for tests that draw: a shared device, simple shapes, views and colours.
+//! Test rig for drawing: a shared device, simple shapes, views and colours.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 pub mod golden;
@@ -8,10 +8,10 @@ use std::sync::{Mutex, MutexGuard, OnceLock};
 use glam::{Mat4, Vec3};
 use pliant_render::{Frame, Headless, Image, Overlay, Renderer, Samples, Style, Surface, SurfaceData, View};
 
-/// The size of test pictures: small, with sides that are no multiples of a row's padding.
+/// Size of test pictures: small, and not a multiple of the row alignment.
 pub const SIZE_PX: [u32; 2] = [150, 100];
 
-/// The renderer of the one device that all tests share, or `None` (with a word) where there is no device.
+/// The renderer that all tests share; `None`, with a message, if there is no device.
 pub fn renderer() -> Option<MutexGuard<'static, Headless>> {
     static HEADLESS: OnceLock<Option<Mutex<Headless>>> = OnceLock::new();
     let shared = HEADLESS.get_or_init(|| match Headless::new() {
@@ -24,7 +24,7 @@ pub fn renderer() -> Option<MutexGuard<'static, Headless>> {
             None
         }
     });
-    // A test that failed while drawing leaves the renderer as good as it was.
+    // A test that failed while drawing does not break the renderer.
     shared
         .as_ref()
         .map(|headless| headless.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
@@ -73,8 +73,8 @@ impl Shape {
         shape
     }
 
-    /// A ring (a torus about the z axis) of `around` by `across` quads, from which the last eighth is missing, so that
-    /// its inside and its border are seen.
+    /// A torus around the z axis of `around` by `across` quads without its last eighth, so that its inside and its
+    /// border are visible.
     pub fn open_ring(around: u32, across: u32) -> Self {
         let mut shape = Self::default();
         let kept = around - around / 8;
@@ -137,12 +137,12 @@ impl Shape {
         Surface::new(renderer, &self.data()).expect("the shape is sound")
     }
 
-    /// The triangle that a ray meets first, and how far from the triangle's border (in barycentric coordinates).
+    /// The first triangle that a ray hits, and the hit's distance from its edges (in barycentric coordinates).
     pub fn ray(&self, origin: Vec3, direction: Vec3) -> Option<(u32, f32)> {
         let mut nearest: Option<(f32, u32, f32)> = None;
         for (number, triangle) in self.triangles.iter().enumerate() {
             let [a, b, c] = triangle.map(|vertex| Vec3::from(self.positions[vertex as usize]));
-            // Möller and Trumbore, 1997.
+            // [MT97].
             let (ab, ac) = (b - a, c - a);
             let p = direction.cross(ac);
             let determinant = ab.dot(p);
@@ -163,19 +163,19 @@ impl Shape {
     }
 }
 
-/// From (0, 0, 4) towards the origin.
+/// A perspective view from (0, 0, 4) towards the origin.
 pub fn front_view() -> View {
     let view_from_world = View::look_at(Vec3::new(0.0, 0.0, 4.0), Vec3::ZERO, Vec3::Y);
     View::perspective(0.7, SIZE_PX[0] as f32 / SIZE_PX[1] as f32, 0.01, view_from_world)
 }
 
-/// The same without perspective.
+/// [`front_view`] in orthographic projection.
 pub fn parallel_front_view() -> View {
     let view_from_world = Mat4::from_translation(Vec3::new(0.0, 0.0, -4.0));
     View::orthographic(1.4, SIZE_PX[0] as f32 / SIZE_PX[1] as f32, 0.0, 10.0, view_from_world)
 }
 
-/// From the front, the right and above.
+/// A view from the front, the right and above.
 pub fn oblique_view() -> View {
     let view_from_world = View::look_at(Vec3::new(1.6, 2.0, 3.6), Vec3::new(0.0, -0.05, 0.0), Vec3::Y);
     View::perspective(0.62, SIZE_PX[0] as f32 / SIZE_PX[1] as f32, 0.01, view_from_world)
