@@ -80,6 +80,18 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
         println!("{{\"triangles\": {triangles}, {row}}}");
     }
     surface.update_shape(&renderer, &pose.data())?;
+    let view = |camera: &Camera| drawing::view(camera, size_px, drawing.centre);
+    measure_looks(&mut renderer, &surface, triangles, camera, view)
+}
+
+/// Measures frames in several looks, with one and four samples per pixel.
+fn measure_looks(
+    renderer: &mut pliant_render::Renderer,
+    surface: &Surface,
+    triangles: usize,
+    camera: Camera,
+    view: impl Fn(&Camera) -> pliant_render::View,
+) -> Result<(), Box<dyn std::error::Error>> {
     let mut near = camera;
     near.distance *= 0.12;
     near.target += DVec3::X * 0.9;
@@ -124,8 +136,8 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
                 continue;
             }
             let mut target = Target::new();
-            target.resize(&renderer, SIZE_PX, samples)?;
-            let view = drawing::view(&camera, size_px, drawing.centre);
+            target.resize(renderer, SIZE_PX, samples)?;
+            let view = view(&camera);
             let style = Style {
                 detail: if name == "clay, moving" {
                     Detail::Reduced
@@ -134,7 +146,7 @@ fn measure(triangles: usize) -> Result<(), Box<dyn std::error::Error>> {
                 },
                 ..drawing::style(&look, 1.0)
             };
-            let (processor_ms, device_ms) = frames(&mut renderer, &target, &view, &style, &surface)?;
+            let (processor_ms, device_ms) = frames(renderer, &target, &view, &style, surface)?;
             println!(
                 "{{\"triangles\": {triangles}, \"device\": \"{device}\", \"look\": \"{name}\", \"samples\": {count}, \
                  \"processor_ms\": {processor_ms:.3}, \"device_ms\": {device_ms:.2}, \"drawn\": {}}}",

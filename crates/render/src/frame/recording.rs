@@ -5,7 +5,7 @@ use crate::frame::target::{Attachments, cleared_depth};
 use crate::pipelines::{Alpha, Pipeline, Visibility};
 use crate::surface::draw_calls::DrawCall;
 use crate::surface::lines::LineSet;
-use crate::{Background, Borders, Frame, Matcap, Outlines, Renderer, Samples, Shading, Surface, Wireframe};
+use crate::{Background, Borders, Frame, Matcap, Outlines, Renderer, Samples, Shading, Style, Surface, Wireframe};
 
 /// A frame whose buffers and pipelines are prepared on the device.
 pub(crate) struct PreparedFrame<'a> {
@@ -20,10 +20,7 @@ impl Renderer {
     /// that order.
     pub(crate) fn record(&self, pass: &mut wgpu::RenderPass<'_>, prepared: &PreparedFrame<'_>, samples: Samples) {
         let style = prepared.frame.style;
-        let set = |pass: &mut wgpu::RenderPass<'_>, pipeline| match self.pipelines.get(pipeline, samples) {
-            Some(pipeline) => pass.set_pipeline(pipeline),
-            None => debug_assert!(false, "{pipeline:?} was not prepared"),
-        };
+        let set = |pass: &mut wgpu::RenderPass<'_>, pipeline| self.set_pipeline(pass, pipeline, samples);
         pass.set_bind_group(0, &self.frame_group, &[]);
         let is_material = style.shading == Shading::Material;
         let draw_surfaces = |pass: &mut wgpu::RenderPass<'_>, is_wanted: &dyn Fn(&DrawCall) -> bool| {
@@ -65,49 +62,66 @@ impl Renderer {
             draw_surfaces(pass, &|call| call.alpha == Alpha::Blend);
         }
         for (surface, _) in &prepared.draw_calls {
-            surface.bind(pass);
-            if style.wireframe == Wireframe::On {
-                set(pass, Pipeline::Wireframe);
-                for page in surface.pages() {
-                    let Some(edges) = page.edges() else { continue };
-                    pass.set_vertex_buffer(0, page.positions.slice(..));
-                    pass.set_index_buffer(edges.buffer.slice(..), wgpu::IndexFormat::Uint32);
-                    pass.draw_indexed(0..edges.index_count, 0, 0..1);
-                }
+            self.record_lines(pass, surface, style, samples);
+        }
+        self.record_overlays(pass, &prepared.overlays, samples);
+    }
+
+    /// Records a surface's edges, outlines and borders.
+    fn record_lines(&self, pass: &mut wgpu::RenderPass<'_>, surface: &Surface, style: &Style, samples: Samples) {
+        surface.bind(pass);
+        if style.wireframe == Wireframe::On {
+            self.set_pipeline(pass, Pipeline::Wireframe, samples);
+            for page in surface.pages() {
+                let Some(edges) = page.edges() else { continue };
+                pass.set_vertex_buffer(0, page.positions.slice(..));
+                pass.set_index_buffer(edges.buffer.slice(..), wgpu::IndexFormat::Uint32);
+                pass.draw_indexed(0..edges.index_count, 0, 0..1);
             }
-            let draw_lines = |pass: &mut wgpu::RenderPass<'_>, lines: &LineSet, visibility| {
-                set(pass, Pipeline::SurfaceLines(visibility));
-                pass.set_bind_group(2, &lines.positions, &[]);
-                pass.set_vertex_buffer(0, lines.lines.slice(..));
-                pass.draw(0..4, 0..lines.count);
-            };
-            if style.outlines == Outlines::On {
-                let outlines = surface.outlines().iter().flatten();
-                outlines.for_each(|lines| draw_lines(pass, lines, Visibility::Visible));
+        }
+        let draw_lines = |pass: &mut wgpu::RenderPass<'_>, lines: &LineSet, visibility| {
+            self.set_pipeline(pass, Pipeline::SurfaceLines(visibility), samples);
+            pass.set_bind_group(2, &lines.positions, &[]);
+            pass.set_vertex_buffer(0, lines.lines.slice(..));
+            pass.draw(0..4, 0..lines.count);
+        };
+        if style.outlines == Outlines::On {
+            for lines in surface.outlines().iter().flatten() {
+                draw_lines(pass, lines, Visibility::Visible);
             }
-            if style.borders == Borders::On {
-                for lines in surface.borders().iter().flatten() {
-                    Visibility::BOTH
-                        .into_iter()
-                        .for_each(|visibility| draw_lines(pass, lines, visibility));
+        }
+        if style.borders == Borders::On {
+            for lines in surface.borders().iter().flatten() {
+                for visibility in Visibility::BOTH {
+                    draw_lines(pass, lines, visibility);
                 }
             }
         }
-        for layer in &prepared.overlays.layers {
+    }
+
+    fn record_overlays(&self, pass: &mut wgpu::RenderPass<'_>, overlays: &OverlayBatch, samples: Samples) {
+        for layer in &overlays.layers {
             if let (Some(buffer), false) = (self.overlay_triangles.buffer(), layer.vertices.is_empty()) {
                 pass.set_vertex_buffer(0, buffer.slice(..));
                 for visibility in Visibility::BOTH {
-                    set(pass, Pipeline::OverlayTriangles(visibility));
+                    self.set_pipeline(pass, Pipeline::OverlayTriangles(visibility), samples);
                     pass.draw(layer.vertices.clone(), 0..1);
                 }
             }
             if let (Some(buffer), false) = (self.overlay_lines.buffer(), layer.lines.is_empty()) {
                 pass.set_vertex_buffer(0, buffer.slice(..));
                 for visibility in Visibility::BOTH {
-                    set(pass, Pipeline::OverlayLines(visibility));
+                    self.set_pipeline(pass, Pipeline::OverlayLines(visibility), samples);
                     pass.draw(0..4, layer.lines.clone());
                 }
             }
+        }
+    }
+
+    fn set_pipeline(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: Pipeline, samples: Samples) {
+        match self.pipelines.get(pipeline, samples) {
+            Some(pipeline) => pass.set_pipeline(pipeline),
+            None => debug_assert!(false, "{pipeline:?} was not prepared"),
         }
     }
 }

@@ -32,7 +32,7 @@ const BLENDED: wgpu::ColorTargetState = wgpu::ColorTargetState {
 
 impl PipelineDescription {
     pub(super) fn of(pipeline: Pipeline) -> Self {
-        let solid = |fragment_entry| Self {
+        let opaque = |fragment_entry| Self {
             shader: Shader::Surface,
             vertex_entry: "vs_surface",
             fragment_entry,
@@ -43,16 +43,17 @@ impl PipelineDescription {
             colour: OPAQUE,
         };
         // Drawn over or behind surfaces, without writing depth.
-        let light = |shader, vertex_entry, fragment_entry| Self {
+        let blended = |shader, vertex_entry, fragment_entry| Self {
             shader,
             vertex_entry,
             buffers: Vec::new(),
             depth_compare: wgpu::CompareFunction::GreaterEqual,
             writes_depth: false,
             colour: BLENDED,
-            ..solid(fragment_entry)
+            ..opaque(fragment_entry)
         };
-        let mark = |shader, vertex_entry, buffer, topology, visibility| {
+        // Drawn once per visibility, with opposite depth tests.
+        let twice = |shader, vertex_entry, buffer, topology, visibility| {
             let (fragment_entry, depth_compare) = match visibility {
                 Visibility::Visible => ("fs_visible", wgpu::CompareFunction::GreaterEqual),
                 Visibility::Hidden => ("fs_hidden", wgpu::CompareFunction::Less),
@@ -61,7 +62,7 @@ impl PipelineDescription {
                 buffers: vec![Some(buffer)],
                 topology,
                 depth_compare,
-                ..light(shader, vertex_entry, fragment_entry)
+                ..blended(shader, vertex_entry, fragment_entry)
             }
         };
         let (triangles, strip) = (
@@ -69,32 +70,32 @@ impl PipelineDescription {
             wgpu::PrimitiveTopology::TriangleStrip,
         );
         match pipeline {
-            Pipeline::Matcap => solid("fs_matcap"),
-            Pipeline::Painted => solid("fs_painted"),
-            Pipeline::Zebra => solid("fs_zebra"),
-            Pipeline::Normals => solid("fs_normals"),
+            Pipeline::Matcap => opaque("fs_matcap"),
+            Pipeline::Painted => opaque("fs_painted"),
+            Pipeline::Zebra => opaque("fs_zebra"),
+            Pipeline::Normals => opaque("fs_normals"),
             Pipeline::Material(alpha, attributes) => {
                 let fragment_entry = match alpha {
                     Alpha::Opaque => "fs_material_opaque",
                     Alpha::Mask => "fs_material_mask",
                     Alpha::Blend => "fs_material_blend",
                 };
-                let is_glass = alpha == Alpha::Blend;
+                let is_blended = alpha == Alpha::Blend;
                 Self {
                     shader: Shader::Material,
                     vertex_entry: "vs_material",
                     buffers: material_buffers(attributes).to_vec(),
-                    writes_depth: !is_glass,
-                    colour: if is_glass { BLENDED } else { OPAQUE },
-                    ..solid(fragment_entry)
+                    writes_depth: !is_blended,
+                    colour: if is_blended { BLENDED } else { OPAQUE },
+                    ..opaque(fragment_entry)
                 }
             }
             Pipeline::Wireframe => Self {
                 buffers: SHAPE_BUFFERS[..1].to_vec(),
                 topology: wgpu::PrimitiveTopology::LineList,
-                ..light(Shader::Wireframe, "vs_wireframe", "fs_wireframe")
+                ..blended(Shader::Wireframe, "vs_wireframe", "fs_wireframe")
             },
-            Pipeline::SurfaceLines(visibility) => mark(
+            Pipeline::SurfaceLines(visibility) => twice(
                 Shader::SurfaceLine,
                 "vs_surface_line",
                 SURFACE_LINE_BUFFER,
@@ -103,20 +104,20 @@ impl PipelineDescription {
             ),
             Pipeline::Background => Self {
                 colour: OPAQUE,
-                ..light(Shader::Background, "vs_background", "fs_background")
+                ..blended(Shader::Background, "vs_background", "fs_background")
             },
             Pipeline::Grid => Self {
                 topology: strip,
-                ..light(Shader::Grid, "vs_grid", "fs_grid")
+                ..blended(Shader::Grid, "vs_grid", "fs_grid")
             },
-            Pipeline::OverlayTriangles(visibility) => mark(
+            Pipeline::OverlayTriangles(visibility) => twice(
                 Shader::OverlayTriangle,
                 "vs_overlay_triangle",
                 OVERLAY_TRIANGLE_BUFFER,
                 triangles,
                 visibility,
             ),
-            Pipeline::OverlayLines(visibility) => mark(
+            Pipeline::OverlayLines(visibility) => twice(
                 Shader::OverlayLine,
                 "vs_overlay_line",
                 OVERLAY_LINE_BUFFER,
@@ -131,7 +132,7 @@ impl PipelineDescription {
                     format: ID_FORMAT,
                     ..OPAQUE
                 },
-                ..solid("fs_id")
+                ..opaque("fs_id")
             },
         }
     }
