@@ -295,7 +295,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_split_among_surfaces_and_zero_is_none() {
+    fn ids_are_decoded_per_surface_and_zero_is_none() {
         let rect = PixelRect {
             x: 0,
             y: 0,
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rectangle_is_cut_to_the_picture() {
+    fn a_rectangle_is_clipped_to_the_picture() {
         let cut = |x, y, width, height| PixelRect { x, y, width, height }.clipped_to([10, 8]);
         assert_eq!(
             cut(2, 3, 4, 4),

@@ -244,7 +244,7 @@ fn marks() {
 }
 
 #[test]
-fn odd_edges() {
+fn irregular_edges_are_marked() {
     let Some(mut headless) = renderer() else { return };
     // Two crossing squares: four triangles share the common edge.
     let mut cross = Shape::default();

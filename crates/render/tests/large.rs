@@ -85,7 +85,7 @@ fn a_mesh_spread_over_several_buffers_looks_and_picks_the_same() {
 }
 
 #[test]
-fn what_lies_beside_the_picture_is_not_drawn_and_not_missed() {
+fn culling_leaves_out_only_invisible_triangles() {
     let Some(mut headless) = renderer() else { return };
     let renderer = &mut headless.renderer;
     let shape = large();
@@ -118,7 +118,7 @@ fn what_lies_beside_the_picture_is_not_drawn_and_not_missed() {
 }
 
 #[test]
-fn the_number_in_a_sorted_mesh_is_the_triangle_under_the_ray() {
+fn the_id_in_a_sorted_mesh_is_the_triangle_under_the_ray() {
     let Some(mut headless) = renderer() else { return };
     let renderer = &mut headless.renderer;
     let shape = large();
@@ -149,7 +149,7 @@ fn the_number_in_a_sorted_mesh_is_the_triangle_under_the_ray() {
 }
 
 #[test]
-fn tiles_join_without_a_trace() {
+fn tiles_join_without_a_seam() {
     let Some(mut headless) = renderer() else { return };
     let renderer = &mut headless.renderer;
     let surface = Shape::open_ring(48, 20).upload(renderer);
@@ -181,7 +181,7 @@ fn tiles_join_without_a_trace() {
 }
 
 #[test]
-fn fewer_triangles_look_nearly_the_same_and_follow_the_shape() {
+fn the_reduced_level_looks_nearly_the_same_and_follows_the_shape() {
     let Some(mut headless) = renderer() else { return };
     let renderer = &mut headless.renderer;
     let shape = Shape::open_ring(1000, 200);

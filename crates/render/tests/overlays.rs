@@ -34,7 +34,7 @@ fn line(start: [f32; 3], end: [f32; 3], width_px: f32) -> OverlayLine {
 }
 
 #[test]
-fn a_mark_has_the_very_colour_asked_for() {
+fn an_overlay_has_exactly_its_colour() {
     let Some(mut headless) = renderer() else { return };
     let view = front_view();
     let overlay = Overlay {
@@ -46,7 +46,7 @@ fn a_mark_has_the_very_colour_asked_for() {
 }
 
 #[test]
-fn what_a_surface_hides_is_fainter_by_its_share() {
+fn hidden_parts_of_overlays_are_fainter_by_the_hidden_share() {
     let Some(mut headless) = renderer() else { return };
     let view = front_view();
     let square = Shape::square(0.0, 0.0, 1.2).upload(&headless.renderer);
@@ -74,7 +74,7 @@ fn what_a_surface_hides_is_fainter_by_its_share() {
 }
 
 #[test]
-fn a_mark_that_lies_on_a_surface_is_seen_whole() {
+fn an_overlay_on_a_surface_is_fully_visible() {
     let Some(mut headless) = renderer() else { return };
     let view = front_view();
     let square = Shape::square(0.0, 0.0, 1.2).upload(&headless.renderer);
@@ -90,7 +90,7 @@ fn a_mark_that_lies_on_a_surface_is_seen_whole() {
 }
 
 #[test]
-fn a_line_is_as_wide_as_asked_for_whatever_its_distance() {
+fn a_line_has_its_width_at_any_distance() {
     let Some(mut headless) = renderer() else { return };
     for (width_px, z) in [(1.0, 0.0), (3.0, 0.0), (6.0, 2.0), (6.0, -20.0)] {
         let lines = vec![line([-9.0, 0.0, z], [9.0, 0.0, z], width_px)];
@@ -111,7 +111,7 @@ fn a_line_is_as_wide_as_asked_for_whatever_its_distance() {
 }
 
 #[test]
-fn a_line_through_the_eye_is_cut_at_the_near_plane() {
+fn a_line_through_the_eye_is_clipped_at_the_near_plane() {
     let Some(mut headless) = renderer() else { return };
     let view = front_view();
     let through = line([0.3, -0.4, 0.0], [0.3, 3.0, 60.0], 4.0);

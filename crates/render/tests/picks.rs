@@ -37,7 +37,7 @@ fn ray(view: &View, x: u32, y: u32) -> (Vec3, Vec3) {
 }
 
 #[test]
-fn the_number_under_each_pixel_is_the_triangle_that_a_ray_meets() {
+fn the_id_in_each_pixel_is_the_triangle_that_a_ray_hits() {
     let Some(mut headless) = renderer() else { return };
     let shape = Shape::sphere(2);
     let surface = shape.upload(&headless.renderer);
@@ -73,7 +73,7 @@ fn is_beside_a_miss(shape: &Shape, view: &View, x: u32, y: u32) -> bool {
 }
 
 #[test]
-fn several_surfaces_are_told_apart_and_empty_ones_count() {
+fn ids_distinguish_surfaces_and_empty_ones_count() {
     let Some(mut headless) = renderer() else { return };
     let view = front_view();
     let upload = |shape: Shape| shape.upload(&headless.renderer);
@@ -131,7 +131,7 @@ fn part_of_the_picture_says_what_the_whole_says() {
 }
 
 #[test]
-fn an_answer_comes_without_waiting_for_it() {
+fn polling_returns_the_result_without_blocking() {
     let Some(mut headless) = renderer() else { return };
     let (view, style) = (front_view(), Style::default());
     let sphere = Shape::sphere(3).upload(&headless.renderer);

@@ -20,7 +20,7 @@ fn style(shading: Shading) -> Style {
 }
 
 #[test]
-fn a_sphere_is_brighter_where_it_faces_the_key_than_at_its_far_contour() {
+fn a_sphere_is_brighter_towards_the_key_light_than_at_its_far_silhouette() {
     let Some(mut headless) = renderer() else { return };
     let sphere = Shape::sphere(4).upload(&headless.renderer);
     for view in [front_view(), parallel_front_view()] {
@@ -40,7 +40,7 @@ fn a_sphere_is_brighter_where_it_faces_the_key_than_at_its_far_contour() {
 }
 
 #[test]
-fn nothing_hides_the_background() {
+fn an_empty_frame_shows_the_background() {
     let Some(mut headless) = renderer() else { return };
     let view = front_view();
     let sphere = Shape::sphere(3).upload(&headless.renderer);
@@ -407,7 +407,7 @@ fn four_samples_smooth_borders_and_change_nothing_else() {
 }
 
 #[test]
-fn no_size_draws_nothing_and_too_large_a_size_is_refused() {
+fn an_empty_size_draws_nothing_and_a_too_large_size_is_rejected() {
     let Some(mut headless) = renderer() else { return };
     let (view, style) = (front_view(), Style::default());
     let empty = Shape::default().upload(&headless.renderer);
@@ -445,7 +445,7 @@ fn no_size_draws_nothing_and_too_large_a_size_is_refused() {
 }
 
 #[test]
-fn numbers_that_are_not_finite_harm_nothing_else() {
+fn non_finite_numbers_affect_nothing_else() {
     let Some(mut headless) = renderer() else { return };
     let view = front_view();
     let mut broken = Shape::sphere(2);

@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_understood_is_named() {
+    fn unknown_arguments_are_named() {
         for (line, culprit) in [
             ("fly", "fly"),
             ("test --full", "--full"),

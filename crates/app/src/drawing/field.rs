@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_surface_grown_to_twice_its_size_is_at_the_ends_of_both_scales() {
+    fn doubling_a_surface_reaches_the_upper_end_of_both_scales() {
         let model = sphere(1.0, 2);
         let grown = model.surface.positions.clone();
         let area = Scale::of(Field::Area, &model);
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_black_and_what_is_beyond_an_end_has_its_colour() {
+    fn nan_is_black_and_values_beyond_the_scale_are_clamped() {
         let scale = Scale::of(Field::Stretch, &sphere(1.0, 2));
         assert_eq!(scale.colour(f64::NAN), [0, 0, 0, 255]);
         assert_eq!((scale.colour(0.0), scale.colour(1e9)), (colour_at(0.0), colour_at(1.0)));

@@ -11,11 +11,11 @@ const HIDDEN_SHARE: f32 = 0.35;
 /// Colour of the brush ring, sRGB.
 const RING_COLOUR: [u8; 4] = [255, 255, 255, 220];
 /// Width of the brush ring in points.
-const RING_WIDTH_PX: f32 = 2.0;
+const RING_WIDTH_POINTS: f32 = 2.0;
 
 /// Widths in points of the gizmo's lines, and of those under the pointer.
-const GIZMO_WIDTH_PX: f32 = 2.5;
-const GIZMO_HIGHLIGHTED_PX: f32 = 4.0;
+const GIZMO_WIDTH_POINTS: f32 = 2.5;
+const GIZMO_HIGHLIGHTED_POINTS: f32 = 4.0;
 
 /// The camera's view, relative to `centre`. Rounded to f32 only after the subtraction in f64.
 pub fn view(camera: &Camera, viewport_px: DVec2, centre: DVec3) -> View {
@@ -85,7 +85,7 @@ pub fn overlays(view: &SceneView<'_>, centre: DVec3, pixels_per_point: f32) -> V
         .extend(view.brush_ring.iter().zip(next).map(|(&from, &to)| OverlayLine {
             ends: [relative(from), relative(to)],
             colours: [RING_COLOUR; 2],
-            width_px: RING_WIDTH_PX * pixels_per_point,
+            width_px: RING_WIDTH_POINTS * pixels_per_point,
         }));
     let mut gizmo = Overlay {
         hidden_share: HIDDEN_SHARE,
@@ -93,9 +93,9 @@ pub fn overlays(view: &SceneView<'_>, centre: DVec3, pixels_per_point: f32) -> V
     };
     for shape in view.gizmo {
         let width_px = if shape.highlighted {
-            GIZMO_HIGHLIGHTED_PX
+            GIZMO_HIGHLIGHTED_POINTS
         } else {
-            GIZMO_WIDTH_PX
+            GIZMO_WIDTH_POINTS
         } * pixels_per_point;
         gizmo.lines.extend(shape.lines.iter().map(|ends| OverlayLine {
             ends: ends.map(relative),

@@ -1,4 +1,4 @@
-//! The point of view: two matrices and the eye, from whatever camera.
+//! The point of view: two matrices and the eye, from any camera.
 
 use glam::{Mat4, Vec3, Vec4, Vec4Swizzles};
 
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_looked_at_is_in_the_middle_and_up_is_up() {
+    fn the_target_is_in_the_middle_and_up_is_up() {
         let target = Vec3::new(0.5, 0.0, 0.0);
         let view = View::perspective(0.8, 1.5, 0.01, View::look_at(Vec3::new(3.0, 2.0, 5.0), target, Vec3::Y));
         let (Some(middle), Some(above)) = (

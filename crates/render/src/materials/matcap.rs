@@ -280,7 +280,7 @@ mod tests {
     /// Blue, gold, red and grey (linear) as the shader shows them on a sphere of each clay: as saturated as on plain
     /// clay (grey stays grey), and with enough contrast to show the form.
     #[test]
-    fn a_regions_colour_is_as_deep_on_every_clay_and_shows_the_form() {
+    fn region_colours_are_equally_saturated_on_every_clay_and_show_the_form() {
         let colours = [
             [0.12, 0.31, 0.73],
             [0.81, 0.48, 0.09],
@@ -321,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn every_clay_is_lit_from_above_and_never_clips_its_light() {
+    fn every_clay_is_lit_from_above_without_clipping() {
         for matcap in Matcap::ALL {
             let parameters = parameters(matcap);
             let mean = |y: f32| {

@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_is_left_out_only_where_none_of_its_corners_could_be_seen() {
+    fn a_box_is_culled_only_outside_the_frustum() {
         let view_from_world = View::look_at(Vec3::new(0.0, 0.0, 4.0), Vec3::ZERO, Vec3::Y);
         let views = [
             View::perspective(0.7, 1.5, 0.01, view_from_world),

@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_edge_comes_once_on_closed_open_and_broken_meshes() {
+    fn each_edge_is_listed_once_on_closed_open_and_broken_meshes() {
         let tetrahedron = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
         assert_eq!(
             unique_edges(&tetrahedron, 4),

@@ -298,7 +298,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_chunk_is_on_one_page_and_no_page_is_beyond_its_limits() {
+    fn every_chunk_is_on_one_page_and_no_page_exceeds_its_limits() {
         let count = 300_000_u32;
         let positions: Vec<[f32; 3]> = (0..count + 2).map(|v| [(v / 2) as f32, (v % 2) as f32, 0.0]).collect();
         let triangles: Vec<[u32; 3]> = (0..count).map(|t| [t, t + 1, t + 2]).collect();

@@ -24,7 +24,7 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     let mut rows = Vec::new();
     for &vertices in sizes(scale) {
-        // A closed surface has about two triangles a vertex.
+        // A closed surface has about two triangles per vertex.
         let triangles = 2 * vertices;
         let file = creature_glb(triangles)?;
         for threads in [1, all] {

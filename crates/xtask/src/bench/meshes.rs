@@ -36,7 +36,7 @@ pub fn creature_off(vertices: usize) -> Result<PathBuf, String> {
     if path.exists() {
         return Ok(path);
     }
-    // A closed surface has about two triangles a vertex.
+    // A closed surface has about two triangles per vertex.
     let mesh = creature_of(2 * vertices)?;
     let mut text = format!("OFF\n{} {} 0\n", mesh.positions.len(), mesh.triangles.len());
     for p in &mesh.positions {

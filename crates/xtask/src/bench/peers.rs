@@ -190,7 +190,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_peer_s_times_are_found_by_the_word_before_them() {
+    fn a_peers_times_are_found_by_the_word_before_them() {
         let line = "libigl bilaplacian n=193934 precompute 9046 ms  solve 184.2 ms";
         assert_eq!(word_after(line, "precompute"), Some(9046.0));
         assert_eq!(word_after(line, "solve"), Some(184.2));

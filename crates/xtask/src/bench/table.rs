@@ -168,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_row_is_read_as_it_is_written() {
+    fn a_row_survives_writing_and_parsing() {
         let row = Row::default()
             .text("mesh", "a, b")
             .number("ms", 1.25)
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_shown_as_far_as_they_count() {
+    fn numbers_are_shown_with_three_significant_digits() {
         assert_eq!(
             ["1234.5", "12.34", "0.123", "7", "\"x\""].map(shown),
             ["1234", "12.3", "0.12", "7", "x"]
