@@ -16,7 +16,8 @@ use pliant_io::{Format, MorphTarget, Opened, OutputFile, Save, SaveError, Saved,
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 
 use crate::AppError;
-use crate::files::{self, Bridge, Neighbours, Staged, Staging};
+use crate::files::{self, Bridge, Staged, Staging};
+use crate::neighbours::Neighbours;
 use crate::report::{Distortion, Energy, FrameTimes, Report, finite_or};
 use crate::watch::Watch;
 

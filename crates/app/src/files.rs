@@ -1,10 +1,10 @@
-//! Files on disk: reading whole ones, a glTF's neighbours, and where a file stands. [`Staging`] writes them.
+//! Files on disk: reading whole ones, and where a file stands. [`Staging`] writes them.
 
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use pliant_io::{Placement, Resolver};
+use pliant_io::Placement;
 
 pub use crate::staging::{Bridge, Staged, Staging};
 
@@ -36,7 +36,7 @@ impl FileError {
 }
 
 /// What the system said, with the remedy.
-fn reason(error: &io::Error) -> String {
+pub(crate) fn reason(error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => "there is no such file or folder; check the path".to_owned(),
         ErrorKind::PermissionDenied => "permission is denied; check the rights of the file and its folder".to_owned(),
@@ -75,30 +75,6 @@ pub fn read(path: &Path) -> Result<Vec<u8>, FileError> {
 pub fn read_text(path: &Path) -> Result<String, FileError> {
     let bytes = read(path)?;
     String::from_utf8(bytes).map_err(|_| FileError::reading(path, ErrorKind::InvalidData.into()))
-}
-
-/// A file's neighbours: what a glTF or an OBJ names by a path relative to its own folder.
-#[derive(Clone, Debug)]
-pub struct Neighbours {
-    folder: PathBuf,
-}
-
-impl Neighbours {
-    /// The neighbours of `file`.
-    pub fn of(file: &Path) -> Self {
-        Self {
-            folder: folder_of(file).to_owned(),
-        }
-    }
-}
-
-impl Resolver for Neighbours {
-    fn read(&self, uri: &str) -> Result<Vec<u8>, String> {
-        if uri.contains("://") {
-            return Err("it is an address and no path; download it and name it by its path".to_owned());
-        }
-        read(&self.folder.join(uri)).map_err(|error| reason(&error.source))
-    }
 }
 
 /// Where `output` stands as seen from `source`.

@@ -6,6 +6,7 @@ pub mod engine;
 mod error;
 pub mod files;
 pub mod legend;
+pub mod neighbours;
 mod picture_file;
 pub mod report;
 mod staging;

@@ -9,14 +9,16 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use glam::{DQuat, DVec3};
-use pliant_io::{Format, Placement, Resolver, Save, read};
+use pliant_io::{Bytes, Format, Placement, Resolver, Save, read};
 use pliant_mesh::{Cancel, Progress};
 
 struct Folder(PathBuf);
 
 impl Resolver for Folder {
-    fn read(&self, uri: &str) -> Result<Vec<u8>, String> {
-        std::fs::read(self.0.join(uri)).map_err(|error| error.to_string())
+    fn read(&self, uri: &str) -> Result<Bytes, String> {
+        std::fs::read(self.0.join(uri))
+            .map(Bytes::from)
+            .map_err(|error| error.to_string())
     }
 }
 

@@ -21,7 +21,7 @@ use std::time::Instant;
 use counting::{Counting, HELD, PEAK};
 
 use glam::DVec3;
-use pliant_io::{Format, Opened, Placement, Resolver, Save, read};
+use pliant_io::{Bytes, Format, Opened, Placement, Resolver, Save, read};
 use pliant_mesh::{Cancel, Model, Progress, Survey, WeldOptions};
 
 #[global_allocator]
@@ -31,7 +31,7 @@ static ALLOCATOR: Counting = Counting;
 struct Alone;
 
 impl Resolver for Alone {
-    fn read(&self, _: &str) -> Result<Vec<u8>, String> {
+    fn read(&self, _: &str) -> Result<Bytes, String> {
         Err("it stands alone".to_owned())
     }
 }

@@ -1,7 +1,8 @@
 //! How a scene looks: attributes of the drawn vertices, materials and images.
 
 use std::ops::Range;
-use std::sync::Arc;
+
+use crate::Bytes;
 
 /// What a renderer or another kind of file needs beside positions and triangles; made on request, never edited.
 ///
@@ -139,7 +140,7 @@ pub enum AlphaMode {
 }
 
 /// How an image continues beyond its edges.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Wrap {
     /// Its edge goes on.
     ClampToEdge,
@@ -155,5 +156,16 @@ pub struct Image {
     /// The file's name for it, or its neighbour's; empty where there is neither.
     pub name: String,
     /// PNG, JPEG or whatever else the file holds; empty where the neighbour is missing.
-    pub encoded: Arc<[u8]>,
+    pub encoded: Bytes,
+    /// Where it was read from.
+    pub origin: Origin,
+}
+
+/// Where an image was read from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Origin {
+    /// The file itself, or its folder.
+    Inside,
+    /// A place outside the file's folder: a stranger's file may point at anything there.
+    Outside,
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use pliant_mesh::Drawn;
 
-use crate::{Appearance, Material};
+use crate::{Appearance, Material, quoted};
 
 /// One thing that differs between two files.
 #[derive(Clone, PartialEq, Debug)]
@@ -67,11 +67,13 @@ const LONGEST_VALUE: usize = 60;
 impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { place, what } = self;
+        let place = quoted(place);
         let short = |text: &str| -> String {
+            let text = quoted(text);
             if text.chars().count() > LONGEST_VALUE {
                 text.chars().take(LONGEST_VALUE).chain("...".chars()).collect()
             } else {
-                text.to_owned()
+                text
             }
         };
         match what {

@@ -2,11 +2,11 @@
 
 use pliant_mesh::Cancelled;
 
-use crate::Format;
+use crate::{Format, quoted};
 
 /// A name whose extension tells no known kind of file.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("{name:?} has no extension of a known kind: name it .glb, .gltf, .obj, .ply, .stl or .off")]
+#[error("\"{}\" has no extension of a known kind: name it .glb, .gltf, .obj, .ply, .stl or .off", quoted(.name))]
 pub struct UnknownFormat {
     /// The file's name.
     pub name: String,
@@ -16,7 +16,7 @@ pub struct UnknownFormat {
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 pub enum ReadError {
     /// The bytes are not what the format asks for.
-    #[error("{name} is not a readable {format} file: {reason}")]
+    #[error("{} is not a readable {format} file: {reason}", quoted(.name))]
     Malformed {
         /// The file's name.
         name: String,
@@ -26,7 +26,7 @@ pub enum ReadError {
         reason: String,
     },
     /// The file is whole but uses something that is not read.
-    #[error("{name} uses {feature}, which is not read: {remedy}")]
+    #[error("{} uses {feature}, which is not read: {remedy}", quoted(.name))]
     Unsupported {
         /// The file's name.
         name: String,
@@ -36,7 +36,7 @@ pub enum ReadError {
         remedy: String,
     },
     /// A neighbour that holds geometry could not be read.
-    #[error("{name} names {uri}, which could not be read ({reason}): put it back beside the file")]
+    #[error("{} names {}, which could not be read ({reason}): put it back beside the file", quoted(.name), quoted(.uri))]
     Neighbour {
         /// The file's name.
         name: String,
@@ -46,7 +46,10 @@ pub enum ReadError {
         reason: String,
     },
     /// The file asks for more than its bytes can justify.
-    #[error("{name} asks for {what}, more than a file of its size can hold: it is damaged or not meant to be opened")]
+    #[error(
+        "{} asks for {what}, more than a file of its size can hold: it is damaged or not meant to be opened",
+        quoted(.name)
+    )]
     TooLarge {
         /// The file's name.
         name: String,
@@ -61,9 +64,9 @@ pub enum ReadError {
 /// Why a scene could not be saved; nothing was written.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 pub enum SaveError {
-    /// A new position is not finite, or too large for the file's numbers.
+    /// A position is beyond what single precision holds, as nearly every reader keeps it.
     #[error(
-        "vertex {file_vertex} would be saved at a position that is not a finite number of the file's kind: undo the last edit"
+        "vertex {file_vertex} would be saved at a position that single precision can't hold, beyond 3.4e38 or no number: undo the last edit, or scale the file down before it is edited"
     )]
     NotFinite {
         /// The vertex in the file's numbering.
@@ -89,7 +92,8 @@ pub enum SaveError {
     },
     /// A neighbour would have to be written outside OUT's folder.
     #[error(
-        "{uri} lies outside the file's own folder and is never written there: save as .glb, which holds everything"
+        "{} lies outside the file's own folder and is never written there: save as .glb, which holds everything",
+        quoted(.uri)
     )]
     NeighbourOutside {
         /// The neighbour as the file names it.
@@ -108,7 +112,7 @@ pub enum SaveError {
 
 /// Why an image could not be decoded.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("the image could not be decoded ({reason}): convert it to PNG or JPEG")]
+#[error("the image could not be decoded ({reason}): convert it to PNG or JPEG, or make it smaller")]
 pub struct ImageError {
     /// What the decoder said.
     pub reason: String,

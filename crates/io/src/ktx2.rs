@@ -16,12 +16,22 @@ const LEVEL_BYTES: usize = 24;
 /// Bytes of a block of 4 by 4 pixels.
 const BLOCK_BYTES: u64 = 16;
 
-/// The first level of a KTX2 file.
-pub(crate) fn decode(encoded: &[u8]) -> Result<Rgba8, ImageError> {
-    let failed = |reason: &str| ImageError {
+fn failed(reason: &str) -> ImageError {
+    ImageError {
         reason: format!("KTX2: {reason}"),
-    };
-    let [width, height] = checked_size(encoded).map_err(failed)?;
+    }
+}
+
+/// The size in pixels that a KTX2 file's header tells.
+pub(crate) fn size(encoded: &[u8]) -> Result<[u32; 2], ImageError> {
+    checked_size(encoded).map(|(size, _)| size).map_err(failed)
+}
+
+/// The level of a KTX2 file that is `halvings` times smaller than its first one, or else its smallest, and how many
+/// halvings that leaves.
+pub(crate) fn decode(encoded: &[u8], halvings: u32) -> Result<(Rgba8, u32), ImageError> {
+    let ([width, height], levels) = checked_size(encoded).map_err(failed)?;
+    let level = halvings.min(levels - 1);
     // The reader runs on behind keys of a length that is no multiple of 4. One image needs none of them.
     let mut encoded = encoded.to_vec();
     encoded[KEYS_LENGTH_AT].fill(0);
@@ -30,13 +40,17 @@ pub(crate) fn decode(encoded: &[u8]) -> Result<Rgba8, ImageError> {
         return Err(failed("it holds neither ETC1S nor UASTC"));
     }
     let pixels = image
-        .transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE)
+        .transcode(level, TargetFormat::Rgba32, DecodeFlags::NONE)
         .map_err(|error| failed(&format!("{error:?}")))?;
-    Ok(Rgba8 { width, height, pixels })
+    let [width, height] = [width, height].map(|side| (side >> level).max(1));
+    if pixels.len() != 4 * width as usize * height as usize {
+        return Err(failed("a level is not of the size that its header tells"));
+    }
+    Ok((Rgba8 { width, height, pixels }, halvings - level))
 }
 
-/// The image's size in pixels, if the file is one image and has the bytes that its levels tell of.
-fn checked_size(encoded: &[u8]) -> Result<[u32; 2], &'static str> {
+/// The image's size in pixels and its levels, if the file is one image and has the bytes that its levels tell of.
+fn checked_size(encoded: &[u8]) -> Result<([u32; 2], u32), &'static str> {
     let word = |at: usize| Some(u32::from_le_bytes(*encoded.get(at..)?.first_chunk()?));
     let long = |at: usize| Some(u64::from_le_bytes(*encoded.get(at..)?.first_chunk()?));
     let header = (|| Some([word(20)?, word(24)?, word(28)?, word(32)?, word(36)?, word(40)?]))();
@@ -78,5 +92,5 @@ fn checked_size(encoded: &[u8]) -> Result<[u32; 2], &'static str> {
             return Err("its levels are not what its header tells");
         }
     }
-    Ok([width, height])
+    Ok(([width, height], levels))
 }

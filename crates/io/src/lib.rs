@@ -7,6 +7,7 @@
 
 mod appearance;
 mod bits;
+mod bytes;
 mod colour;
 mod course;
 mod difference;
@@ -15,11 +16,13 @@ mod format;
 mod frames;
 mod gltf;
 mod image;
+mod images;
 mod ktx2;
 mod moved;
 mod new_faces;
 mod new_glb;
 mod new_mesh;
+mod notes;
 mod obj;
 mod objects;
 mod off;
@@ -34,12 +37,14 @@ mod stl;
 mod summary;
 mod text;
 
-pub use appearance::{AlphaMode, Appearance, Group, Image, Lighting, Map, Material, UvSet, Wrap};
+pub use appearance::{AlphaMode, Appearance, Group, Image, Lighting, Map, Material, Origin, UvSet, Wrap};
+pub use bytes::Bytes;
 pub use difference::{Difference, What};
 pub use error::{ImageError, ReadError, SaveError, UnknownFormat};
 pub use format::Format;
 pub use gltf::with_neighbours_renamed;
 pub use image::decode_image;
+pub use images::{DecodedImage, IMAGE_BYTES, decode_images};
 pub use pixels::Rgba8;
 pub use quote::quoted;
 pub use save::{MorphTarget, OutputFile, Placement, Save, Saved};

@@ -3,17 +3,28 @@
 use std::sync::OnceLock;
 
 use glam::DVec3;
-use pliant_mesh::{Cancelled, Drawn, DrawnVertex};
+use pliant_mesh::{Cancelled, Drawn, DrawnVertex, FileVertex};
 
 use crate::SaveError;
 use crate::bits::bit_equal;
 use crate::course::Course;
 use crate::frames::Frames;
 
+/// Refuses a position that single precision can't hold.
+pub(crate) fn check_single(position: DVec3, file_vertex: FileVertex) -> Result<(), SaveError> {
+    if position.as_vec3().is_finite() {
+        Ok(())
+    } else {
+        Err(SaveError::NotFinite {
+            file_vertex: file_vertex.0,
+        })
+    }
+}
+
 /// The rest shape and the new one, over the drawn vertices.
 ///
 /// A vertex moved exactly where its new position is not bit-equal to its rest position; every moved vertex's new
-/// position is finite.
+/// position is finite in single precision, whatever kind of file it goes to: nearly every reader keeps no more.
 pub(crate) struct Moved<'a> {
     pub drawn: &'a Drawn,
     /// New world positions, one a drawn vertex.
@@ -35,9 +46,7 @@ impl<'a> Moved<'a> {
         for ((rest, new), file) in drawn.positions.iter().zip(positions).zip(&drawn.file_vertex) {
             if !bit_equal(*rest, *new) {
                 any = true;
-                if !new.is_finite() {
-                    return Err(SaveError::NotFinite { file_vertex: file.0 });
-                }
+                check_single(*new, *file)?;
             }
         }
         Ok(Self {

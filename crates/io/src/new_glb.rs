@@ -5,17 +5,20 @@
 //! the vertices are taken relative to its centre and the node carries the way there.
 
 use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 use pliant_mesh::{Cancelled, DrawnVertex, bounding_box};
 use serde_json::{Value, json};
 
-use crate::appearance::{AlphaMode, Material, Wrap};
+use crate::appearance::{AlphaMode, Material, Origin, Wrap};
 use crate::course::Course;
-use crate::gltf::join_glb;
+use crate::gltf::{FROM_OUTSIDE, NO_IMAGE, join_glb};
 use crate::image::mime_type;
+use crate::images::decodes;
 use crate::new_faces::coarse_in_f32;
 use crate::new_mesh::{NewMesh, Parting};
+use crate::quote::quoted;
 use crate::save::{OutputFile, Saved};
 use crate::{Format, SaveError};
 
@@ -413,6 +416,10 @@ struct Looks {
     images: Vec<Value>,
     /// The written image of each of the appearance's; `None` where it can't be held.
     image_of: BTreeMap<usize, Option<usize>>,
+    /// The written texture of each image and wrapping.
+    texture_of: HashMap<(usize, [Wrap; 2]), usize>,
+    /// The image that was made of bytes at each place.
+    image_at: HashMap<(usize, Range<usize>), usize>,
 }
 
 impl Looks {
@@ -463,9 +470,12 @@ impl Looks {
             Wrap::MirroredRepeat => 33648,
             Wrap::Repeat => 10497,
         };
-        let sampler = json!({ "wrapS": mode(wrap[0]), "wrapT": mode(wrap[1]) });
-        let sampler = index_of(&mut self.samplers, sampler);
-        index_of(&mut self.textures, json!({ "source": image, "sampler": sampler }))
+        *self.texture_of.entry((image, wrap)).or_insert_with(|| {
+            let sampler = json!({ "wrapS": mode(wrap[0]), "wrapT": mode(wrap[1]) });
+            let sampler = index_of(&mut self.samplers, sampler);
+            self.textures.push(json!({ "source": image, "sampler": sampler }));
+            self.textures.len() - 1
+        })
     }
 
     fn image(&mut self, out: &mut Built, mesh: &NewMesh<'_>, image: usize) -> Option<usize> {
@@ -473,16 +483,30 @@ impl Looks {
             return known;
         }
         let found = mesh.appearance.images.get(image)?;
-        let name = &found.name;
+        let name = quoted(&found.name);
+        if let Some(&same) = self.image_at.get(&found.encoded.place()) {
+            self.image_of.insert(image, Some(same));
+            return Some(same);
+        }
+        if found.origin == Origin::Outside && !decodes(&found.encoded) {
+            // A stranger's file may point at anything there, and would carry it away as an image.
+            out.warnings.push(format!("{name} {NO_IMAGE}"));
+            self.image_of.insert(image, None);
+            return None;
+        }
         let mime = mime_type(&found.encoded).filter(|mime| matches!(*mime, "image/png" | "image/jpeg"));
         let written = match mime {
             Some(mime) => {
                 let view = out.bytes(found.encoded.iter().copied());
                 let mut value = json!({ "bufferView": view, "mimeType": mime });
-                if !name.is_empty() {
-                    value["name"] = name.as_str().into();
+                if !found.name.is_empty() {
+                    value["name"] = found.name.as_str().into();
                 }
                 self.images.push(value);
+                self.image_at.insert(found.encoded.place(), self.images.len() - 1);
+                if found.origin == Origin::Outside {
+                    out.warnings.push(format!("{name} {FROM_OUTSIDE}"));
+                }
                 Some(self.images.len() - 1)
             }
             None if found.encoded.is_empty() => {

@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use glam::DVec3;
-use pliant_mesh::{Cancelled, DrawnVertex, FileVertex};
+use pliant_mesh::{DrawnVertex, FileVertex};
 
-use crate::Appearance;
 use crate::course::Course;
-use crate::moved::Moved;
+use crate::moved::{Moved, check_single};
+use crate::{Appearance, SaveError};
 
 /// A deformed shape with its looks, free of the kind of file it came from.
 ///
@@ -64,7 +64,8 @@ impl Polygons {
 }
 
 impl<'a> NewMesh<'a> {
-    /// The moved shape with `appearance`, whose normals are carried along here.
+    /// The moved shape with `appearance`, whose normals are carried along here. Refuses a position beyond single
+    /// precision.
     pub fn of(
         moved: &Moved<'a>,
         mut appearance: Appearance,
@@ -72,7 +73,14 @@ impl<'a> NewMesh<'a> {
         polygons: Option<Polygons>,
         parting: Parting,
         course: &Course<'_>,
-    ) -> Result<Self, Cancelled> {
+    ) -> Result<Self, SaveError> {
+        // What the file itself says is no number stays so; what is one has to stay one.
+        for (v, &position) in moved.positions.iter().enumerate() {
+            course.pass(v, moved.positions.len())?;
+            if position.is_finite() {
+                check_single(position, moved.drawn.file_vertex[v])?;
+            }
+        }
         if let Some(normals) = appearance.normals.as_mut()
             && !moved.is_nothing()
         {

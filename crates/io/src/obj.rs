@@ -61,7 +61,7 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
         .collect();
     let mut materials = materials::look_up(source, &libraries, &statements.material_names);
     let groups = groups(&statements, &corners, &mut materials);
-    let mut notes = std::mem::take(&mut materials.notes);
+    let mut notes = std::mem::take(&mut materials.notes).sentences();
     notes.extend(left_out(source, &statements));
     let has_polygons = corners.drawn.triangles.len() != statements.face_ends.len();
     statements.positions = Vec::new();
@@ -159,7 +159,7 @@ impl Stored {
         objects::gathered(self.groups.iter().map(|group| objects::Part {
             key: (&group.node_name, group.material),
             name: group.node_name.clone(),
-            material: self.materials.materials[group.material].name.clone(),
+            material: objects::short_name(&self.materials.materials[group.material].name),
             triangles: group.triangles.clone(),
         }))
     }

@@ -6,6 +6,15 @@ use std::ops::Range;
 
 use pliant_mesh::Object;
 
+/// The most characters of a name that every run of triangles gets a copy of: as many as a person would read. The file
+/// keeps it all.
+const LONGEST_NAME: usize = 120;
+
+/// A name as it is shown.
+pub(crate) fn short_name(name: &str) -> String {
+    name.chars().take(LONGEST_NAME).collect()
+}
+
 /// A run of triangles: what tells it apart from others, and how that is called.
 pub(crate) struct Part<Key> {
     /// Runs with equal keys are one object.

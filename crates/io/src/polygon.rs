@@ -1,8 +1,11 @@
 //! Polygons as triangles: how a face with more than three corners is drawn and bent. The file keeps the polygon.
 //!
 //! A quad is cut along the shorter of its diagonals that don't fold it over; a larger polygon is cut by ears in the
-//! plane of its Newell normal, which is right for every simple planar polygon, convex or not. Ears cost n², so
-//! polygons beyond [`MOST_EARS`] corners, and those whose corners aren't finite, become a fan.
+//! plane of its Newell normal, which is right for every simple planar polygon, convex or not. Ears cost n times the
+//! reflex corners, so polygons beyond [`MOST_EARS`] corners, and those whose corners aren't finite, become a fan.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 use glam::{DVec2, DVec3};
 use pliant_mesh::{Cancel, Cancelled, DrawnVertex};
@@ -11,6 +14,9 @@ use crate::new_mesh::Polygons;
 
 /// The most corners that are cut by ears.
 const MOST_EARS: usize = 256;
+
+/// Corners of faces between two looks at whether they are still wanted.
+pub(crate) const CORNERS_BETWEEN_LOOKS: usize = 1 << 12;
 
 /// Cuts all faces of a file whose vertices are drawn as they are numbered: `corners` of all faces, one after the other,
 /// which end at `face_ends`. Gives the triangles, and the faces themselves where one isn't a triangle.
@@ -21,10 +27,11 @@ pub(crate) fn cut_faces(
     cancel: &Cancel,
 ) -> Result<(Vec<[DrawnVertex; 3]>, Option<Polygons>), Cancelled> {
     let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2 * face_ends.len()));
-    let mut start = 0;
-    for (face, &end) in face_ends.iter().enumerate() {
-        if face.is_multiple_of(1 << 12) {
+    let (mut start, mut looked_at) = (0, 0);
+    for &end in face_ends {
+        if end as usize >= looked_at {
             cancel.check()?;
+            looked_at = end as usize + CORNERS_BETWEEN_LOOKS;
         }
         let face = &corners[start..end as usize];
         triangulate(
@@ -89,63 +96,145 @@ fn fan(corner_count: usize, emit: &mut impl FnMut([usize; 3])) {
 
 /// Ears of the polygon projected along its Newell normal. Where no ear is left (a polygon that crosses itself) the
 /// corner that turns most is cut off, so that n − 2 triangles come out whatever the shape.
+///
+/// Only a reflex corner can lie in the triangle of another, so a convex polygon takes n log n steps.
 fn cut_ears(corners: &[DVec3], emit: &mut impl FnMut([usize; 3])) {
     let flat = match flatten(corners) {
         Some(flat) => flat,
         None => return fan(corners.len(), emit),
     };
-    let mut ring: Vec<usize> = (0..corners.len()).collect();
-    let mut ears: Vec<bool> = (0..ring.len()).map(|k| is_ear(&flat, &ring, k)).collect();
-    while ring.len() > 3 {
-        // Among the ears the one with the shortest cut, which keeps slivers away in the convex polygons of scans.
-        let cut_length = |k: usize| {
-            let [a, _, c] = around(&ring, k);
-            flat[a].distance_squared(flat[c])
+    let mut ring = Ring::of(&flat);
+    // Among the ears the one with the shortest cut, which keeps slivers away in the convex polygons of scans. A corner
+    // whose neighbours changed since stands in it again, with another version.
+    let mut ears: BinaryHeap<Reverse<Ear>> = (0..flat.len())
+        .filter_map(|corner| ring.ear(corner))
+        .map(Reverse)
+        .collect();
+    while ring.left > 3 {
+        let cut = loop {
+            match ears.pop() {
+                Some(Reverse(ear)) if ring.version[ear.corner] == ear.version => break ear.corner,
+                Some(_) => {}
+                None => break ring.sharpest(),
+            }
         };
-        let ear = (0..ring.len())
-            .filter(|&k| ears[k])
-            .min_by(|&a, &b| cut_length(a).total_cmp(&cut_length(b)));
-        let turn_at = |k: usize| {
-            let [a, b, c] = around(&ring, k);
-            turn(flat[a], flat[b], flat[c])
-        };
-        let sharpest = || {
-            (0..ring.len())
-                .max_by(|&a, &b| turn_at(a).total_cmp(&turn_at(b)))
-                .unwrap_or(0)
-        };
-        let cut = ear.unwrap_or_else(sharpest);
-        emit(around(&ring, cut));
-        ring.remove(cut);
-        ears.remove(cut);
+        emit(ring.around(cut));
         // Only the two neighbours of a cut corner have new triangles.
-        for neighbour in [(cut + ring.len() - 1) % ring.len(), cut % ring.len()] {
-            ears[neighbour] = is_ear(&flat, &ring, neighbour);
+        for neighbour in ring.remove(cut) {
+            ears.extend(ring.ear(neighbour).map(Reverse));
         }
     }
-    emit([ring[0], ring[1], ring[2]]);
+    let first = ring.first();
+    let [last, _, second] = ring.around(first);
+    emit([first, second, last]);
 }
 
-/// The corner `k` of the ring between its neighbours.
-fn around(ring: &[usize], k: usize) -> [usize; 3] {
-    [
-        ring[(k + ring.len() - 1) % ring.len()],
-        ring[k],
-        ring[(k + 1) % ring.len()],
-    ]
+/// A corner that can be cut off, ordered by the length of the cut and then by its number.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Ear {
+    /// The bits of a number that is not negative, which are ordered as it is.
+    cut_length: u64,
+    corner: usize,
+    version: u32,
+}
+
+/// The corners that are not yet cut off.
+struct Ring<'a> {
+    flat: &'a [DVec2],
+    before: Vec<usize>,
+    behind: Vec<usize>,
+    /// How often a corner's neighbours changed; the last of all numbers once it is cut off.
+    version: Vec<u32>,
+    /// The corners that don't turn left, some of which may do so by now.
+    reflex: Vec<usize>,
+    left: usize,
+}
+
+const CUT_OFF: u32 = u32::MAX;
+
+impl<'a> Ring<'a> {
+    fn of(flat: &'a [DVec2]) -> Self {
+        let count = flat.len();
+        let mut ring = Self {
+            flat,
+            before: (0..count).map(|corner| (corner + count - 1) % count).collect(),
+            behind: (0..count).map(|corner| (corner + 1) % count).collect(),
+            version: vec![0; count],
+            reflex: Vec::new(),
+            left: count,
+        };
+        ring.reflex = (0..count).filter(|&corner| !ring.turns_left(corner)).collect();
+        ring
+    }
+
+    /// The corner between its neighbours.
+    fn around(&self, corner: usize) -> [usize; 3] {
+        [self.before[corner], corner, self.behind[corner]]
+    }
+
+    fn turn_at(&self, corner: usize) -> f64 {
+        let [a, b, c] = self.around(corner).map(|corner| self.flat[corner]);
+        turn(a, b, c)
+    }
+
+    fn turns_left(&self, corner: usize) -> bool {
+        self.turn_at(corner) > 0.0
+    }
+
+    fn is_there(&self, corner: usize) -> bool {
+        self.version[corner] != CUT_OFF
+    }
+
+    /// The lowest corner that is left.
+    fn first(&self) -> usize {
+        (0..self.flat.len()).find(|&corner| self.is_there(corner)).unwrap_or(0)
+    }
+
+    /// Cuts a corner off and gives its neighbours.
+    fn remove(&mut self, corner: usize) -> [usize; 2] {
+        let [a, _, c] = self.around(corner);
+        self.behind[a] = c;
+        self.before[c] = a;
+        self.version[corner] = CUT_OFF;
+        self.version[a] += 1;
+        self.version[c] += 1;
+        self.left -= 1;
+        // A corner that turns left goes on doing so, but in a polygon that crosses itself.
+        let mut reflex = std::mem::take(&mut self.reflex);
+        reflex.retain(|&corner| self.is_there(corner) && !self.turns_left(corner));
+        for neighbour in [a, c] {
+            if !self.turns_left(neighbour) && !reflex.contains(&neighbour) {
+                reflex.push(neighbour);
+            }
+        }
+        self.reflex = reflex;
+        [a, c]
+    }
+
+    /// The corner as an ear, if it can be cut off: it turns left and no other corner lies in its triangle.
+    fn ear(&self, corner: usize) -> Option<Ear> {
+        let [a, b, c] = self.around(corner).map(|corner| self.flat[corner]);
+        let is_inside = |p: DVec2| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
+        let blocks = |p: DVec2| p != a && p != b && p != c && is_inside(p);
+        let is_ear = turn(a, b, c) > 0.0 && !self.reflex.iter().any(|&other| blocks(self.flat[other]));
+        is_ear.then(|| Ear {
+            cut_length: a.distance_squared(c).to_bits(),
+            corner,
+            version: self.version[corner],
+        })
+    }
+
+    /// The corner that turns most; of equal ones the last.
+    fn sharpest(&self) -> usize {
+        let all = (0..self.flat.len()).filter(|&corner| self.is_there(corner));
+        all.max_by(|&a, &b| self.turn_at(a).total_cmp(&self.turn_at(b)))
+            .unwrap_or(0)
+    }
 }
 
 /// Twice the signed area of a triangle, positive when it turns left.
 fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
-}
-
-/// Whether corner `k` can be cut off: it turns left and no other corner lies in its triangle.
-fn is_ear(flat: &[DVec2], ring: &[usize], k: usize) -> bool {
-    let [a, b, c] = around(ring, k).map(|corner| flat[corner]);
-    let is_inside = |p: DVec2| turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
-    let blocks = |p: DVec2| p != a && p != b && p != c && is_inside(p);
-    turn(a, b, c) > 0.0 && !ring.iter().any(|&corner| blocks(flat[corner]))
 }
 
 /// The corners in the plane of the polygon, counter-clockwise; `None` where it has no plane.

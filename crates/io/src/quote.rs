@@ -48,10 +48,15 @@ mod tests {
     #[test]
     fn nothing_that_steers_a_terminal_comes_through() {
         let steering = (0..=0x9f_u32).chain(0x200e..0x2070).chain([0x61c]);
-        for letter in steering.filter_map(char::from_u32).filter(|&letter| is_steering(letter)) {
+        for letter in steering
+            .filter_map(char::from_u32)
+            .filter(|&letter| is_steering(letter))
+        {
             assert_eq!(quoted(&format!("a{letter}b")), "a\u{fffd}b", "{letter:?}");
         }
-        for letter in ['\u{1b}', '\n', '\r', '\u{7f}', '\u{9b}', '\u{202e}', '\u{2066}', '\u{2028}'] {
+        for letter in [
+            '\u{1b}', '\n', '\r', '\u{7f}', '\u{9b}', '\u{202e}', '\u{2066}', '\u{2028}',
+        ] {
             assert!(is_steering(letter), "{letter:?}");
         }
     }

@@ -19,7 +19,7 @@ use crate::new_mesh::{NewMesh, Parting, Polygons};
 use crate::save::{MorphTarget, OutputFile, Placement, Save, Saved};
 use crate::source::{Resolver, Source};
 use crate::summary::Summary;
-use crate::{Appearance, Format, ReadError, SaveError, gltf, new_glb, obj, off, ply, stl};
+use crate::{Appearance, Bytes, Format, ReadError, SaveError, gltf, new_glb, obj, off, ply, stl};
 
 /// What [`read`] gives.
 #[derive(Debug)]
@@ -97,9 +97,12 @@ pub fn read(
 
 /// A saved file's own neighbours.
 impl Resolver for Saved {
-    fn read(&self, uri: &str) -> Result<Vec<u8>, String> {
+    fn read(&self, uri: &str) -> Result<Bytes, String> {
         let file = self.files.iter().find(|file| file.name == uri);
-        file.map_or_else(|| Err("it was not written".to_owned()), |file| Ok(file.bytes.clone()))
+        file.map_or_else(
+            || Err("it was not written".to_owned()),
+            |file| Ok(file.bytes.clone().into()),
+        )
     }
 }
 

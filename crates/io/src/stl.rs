@@ -108,14 +108,6 @@ impl Stored {
 
     /// The file with the moved corners' numbers and their facets' normals changed, and warnings.
     pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
-        for (vertex, new) in moved.of_file().iter().enumerate() {
-            // f32: STL holds nothing finer, and ascii STL is read as f32 by nearly everyone.
-            if new.is_some_and(|new| !new.as_vec3().is_finite()) {
-                return Err(SaveError::NotFinite {
-                    file_vertex: vertex as u32,
-                });
-            }
-        }
         let bytes = match &self.layout {
             Layout::Binary => binary::patched(&self.bytes, self.facet_count, moved, course)?,
             Layout::Ascii(facets) => ascii::patched(&self.bytes, facets, moved, course)?,

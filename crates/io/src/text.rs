@@ -7,7 +7,7 @@ use std::io::Write;
 use std::ops::Range;
 
 use crate::source::Source;
-use crate::{Format, ReadError};
+use crate::{Format, ReadError, quoted};
 
 /// A place in a text file that moves forward.
 ///
@@ -314,13 +314,8 @@ pub(crate) fn line_of(bytes: &[u8], at: usize) -> usize {
 /// Bytes of a file as text for a sentence: lossy, and no longer than a person would read.
 pub(crate) fn excerpt(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(160)]);
-    let mut short: String = text
-        .chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .take(40)
-        .collect::<String>()
-        .trim()
-        .to_owned();
+    let blank = |letter: char| if letter.is_control() { ' ' } else { letter };
+    let mut short = quoted(text.chars().map(blank).take(40).collect::<String>().trim());
     if text.chars().count() > 40 {
         short.push('…');
     }

@@ -15,7 +15,7 @@ fn every_sound_file_is_read_and_no_broken_one_panics() {
     assert!(sound.len() >= 12);
     let mut chance = Chance(1);
     for file in &sound {
-        let beside = Beside(vec![7; 600]);
+        let beside = Beside(vec![7; 600].into());
         let outcome = exercise(&file.bytes, file.kind, Format::Glb, &beside, || {});
         assert_eq!(outcome, Outcome::Read, "{}", file.name);
     }

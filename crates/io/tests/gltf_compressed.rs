@@ -351,6 +351,35 @@ fn an_edit_of_draco_writes_its_mesh_out_and_no_other() {
     }
 }
 
+/// An accessor without a view may tell an offset, which says nothing as long as Draco fills it.
+#[test]
+fn an_offset_without_a_view_does_not_reach_into_what_an_edit_writes() {
+    for offset in [4, 12, 100_000] {
+        let mut maker = with_draco(DRACO[0], 1);
+        for accessor in maker.root["accessors"].as_array_mut().unwrap() {
+            accessor["byteOffset"] = offset.into();
+        }
+        let opened = open(&maker.glb());
+        let positions = moved(&opened, |v| v % 3 == 0, bent);
+        let again = open(&saved_glb(&opened, &positions));
+        assert_near(&again.drawn.positions, &positions, 4.0);
+        assert_eq!(again.drawn.triangles, opened.drawn.triangles);
+        assert_eq!(again.scene.appearance().uvs, opened.scene.appearance().uvs);
+    }
+}
+
+/// What data may become is shared by their sizes, and those that several primitives name are decoded once.
+#[test]
+fn many_primitives_of_the_same_draco_data_are_read() {
+    let mut maker = with_draco(DRACO[0], 1);
+    let primitive = maker.root["meshes"][0]["primitives"][0].clone();
+    let primitives = vec![primitive; 3000];
+    maker.root["meshes"][0]["primitives"] = primitives.into();
+    let opened = open(&maker.glb());
+    assert_eq!(opened.drawn.positions.len(), 16);
+    assert_eq!(opened.drawn.triangles.len(), 3000 * 18);
+}
+
 #[test]
 fn nodes_that_share_a_draco_mesh_part_company() {
     let mut maker = with_draco(DRACO[0], 1);

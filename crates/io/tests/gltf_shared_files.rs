@@ -9,15 +9,17 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use gltf_maker::{assert_near, bent, moved};
-use pliant_io::{Difference, Format, Material, Opened, Placement, ReadError, Resolver, Save, Saved, What, read};
+use pliant_io::{Bytes, Difference, Format, Material, Opened, Placement, ReadError, Resolver, Save, Saved, What, read};
 use pliant_mesh::{Cancel, Drawn, Progress};
 use serde_json::Value;
 
 struct Disk(PathBuf);
 
 impl Resolver for Disk {
-    fn read(&self, uri: &str) -> Result<Vec<u8>, String> {
-        std::fs::read(self.0.join(uri)).map_err(|error| error.to_string())
+    fn read(&self, uri: &str) -> Result<Bytes, String> {
+        std::fs::read(self.0.join(uri))
+            .map(Bytes::from)
+            .map_err(|error| error.to_string())
     }
 }
 
@@ -25,9 +27,9 @@ impl Resolver for Disk {
 struct Fresh<'a>(&'a Saved, Disk);
 
 impl Resolver for Fresh<'_> {
-    fn read(&self, uri: &str) -> Result<Vec<u8>, String> {
+    fn read(&self, uri: &str) -> Result<Bytes, String> {
         let file = self.0.files.iter().find(|file| file.name == uri);
-        file.map_or_else(|| self.1.read(uri), |file| Ok(file.bytes.clone()))
+        file.map_or_else(|| self.1.read(uri), |file| Ok(file.bytes.clone().into()))
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use pliant_io::{Opened, Scene};
+use pliant_io::{Opened, Scene, quoted};
 use pliant_mesh::{FindingKind, Survey, WeldOptions};
 use serde_json::{Value, json};
 
@@ -45,7 +45,7 @@ fn look_at<'a>(path: &'a Path, watch: &Watch) -> Result<LookedAt<'a>, AppError> 
 /// What is told of a file, for a person.
 fn as_text(LookedAt { path, scene, survey }: &LookedAt<'_>) -> String {
     let summary = scene.summary();
-    let mut text = format!("{}: {}\n", path.display(), scene.format());
+    let mut text = format!("{}: {}\n", quoted(&path.to_string_lossy()), scene.format());
     let mut line = |what: &str, said: String| {
         // A String takes whatever is written to it.
         let _ = writeln!(text, "  {what:<12}{said}");

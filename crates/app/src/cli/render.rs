@@ -109,7 +109,10 @@ fn pictures(arguments: &RenderArguments, watch: &Watch) -> Result<Vec<Vec<u8>>, 
     surface.update_regions(&renderer, &colours).map_err(refuse)?;
     surface.update_lines(&renderer, &shape.outlines).map_err(refuse)?;
     if look.shading == Shading::Material {
-        let decoded = drawing.materials.decode();
+        let decoded = drawing
+            .materials
+            .decode(&watch.cancel)
+            .map_err(|_| AppError::Interrupted)?;
         surface
             .set_materials(decoded.upload(&renderer).map_err(refuse)?)
             .map_err(refuse)?;

@@ -5,27 +5,31 @@
 
 use std::collections::HashMap;
 
-use pliant_io::{Appearance, Image, Rgba8, decode_image};
+use pliant_io::{Appearance, DecodedImage, IMAGE_BYTES, Image, decode_images, quoted};
+use pliant_mesh::{Cancel, Cancelled};
 use pliant_render::{
     AlphaMode, Encoding, Lighting, Map, Material, Materials, RenderError, Renderer, TextureData, UvSet, Wrap,
 };
-use rayon::prelude::*;
 
 /// A file's materials, and the encoded images that they use.
 #[derive(Debug)]
 pub struct EncodedMaterials {
     materials: Vec<Material>,
-    /// The images to decode: index in the file, and encoding of the bytes.
+    /// The images to show: number of the file's image, and what its bytes say.
     wanted: Vec<(usize, Encoding)>,
     images: Vec<Image>,
+    /// What all images together may take while they are decoded.
+    budget: u64,
 }
 
 /// A file's materials with decoded images.
 #[derive(Debug)]
 pub struct DecodedMaterials {
     materials: Vec<Material>,
-    textures: Vec<(Rgba8, Encoding)>,
-    /// One sentence for each image that can't be shown.
+    images: Vec<DecodedImage>,
+    /// The number of each texture's image, and what its bytes say.
+    textures: Vec<(usize, Encoding)>,
+    /// What can't be shown, a sentence each.
     pub notes: Vec<String>,
 }
 
@@ -36,9 +40,17 @@ impl EncodedMaterials {
             materials: Vec::new(),
             wanted: Vec::new(),
             images: std::mem::take(&mut appearance.images),
+            budget: IMAGE_BYTES,
         };
+        // Images of the same bytes are one.
+        let mut image_at = HashMap::new();
+        let images = encoded.images.iter().enumerate();
+        let first_alike: Vec<usize> = images
+            .map(|(number, image)| *image_at.entry(image.encoded.place()).or_insert(number))
+            .collect();
         let mut texture_of: HashMap<(usize, Encoding), usize> = HashMap::new();
         let mut texture = |image: usize, encoding: Encoding| {
+            let image = first_alike.get(image).copied().unwrap_or(image);
             *texture_of.entry((image, encoding)).or_insert_with(|| {
                 encoded.wanted.push((image, encoding));
                 encoded.wanted.len() - 1
@@ -102,52 +114,89 @@ impl EncodedMaterials {
         !self.wanted.is_empty()
     }
 
-    /// Decodes the images in parallel. Images that can't be decoded are left out and reported in the notes.
-    pub fn decode(&self) -> DecodedMaterials {
-        let decoded: Vec<Result<Rgba8, String>> = self
-            .wanted
-            .par_iter()
-            .map(|&(image, _)| {
-                let Some(source) = self.images.get(image) else {
-                    return Err("an image is missing".to_owned());
-                };
-                decode_image(&source.encoded)
-                    .map_err(|error| format!("the image {} is not shown: {error}", source.name))
-            })
+    /// The same with images that together take at most so many bytes while they are decoded.
+    #[must_use]
+    pub fn within(self, budget: u64) -> Self {
+        Self { budget, ..self }
+    }
+
+    /// Decodes the images, in parallel as far as the budget allows. What is shown smaller than it is stored, or
+    /// can't be decoded and is left out, is told in a sentence.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `cancel` is raised.
+    pub fn decode(&self, cancel: &Cancel) -> Result<DecodedMaterials, Cancelled> {
+        let mut numbers: Vec<usize> = self.wanted.iter().map(|&(image, _)| image).collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        let encoded: Vec<&[u8]> = (numbers.iter())
+            .map(|&number| self.images.get(number).map_or(&[][..], |image| &image.encoded))
             .collect();
-        let (mut textures, mut notes, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
-        for (result, &(_, encoding)) in decoded.into_iter().zip(&self.wanted) {
-            match result {
-                Ok(pixels) => {
-                    numbers.push(Some(textures.len()));
-                    textures.push((pixels, encoding));
+        let decoded = decode_images(&encoded, self.budget, cancel)?;
+        let (mut images, mut notes) = (Vec::new(), Vec::new());
+        let mut place_of: HashMap<usize, usize> = HashMap::new();
+        for (&number, result) in numbers.iter().zip(decoded) {
+            let name = self
+                .images
+                .get(number)
+                .map_or(String::new(), |image| quoted(&image.name));
+            let sentence = match result {
+                Ok(image) => {
+                    let sentence = shrunk_note(&name, &image, self.budget);
+                    place_of.insert(number, images.len());
+                    images.push(image);
+                    sentence
                 }
-                Err(sentence) => {
-                    numbers.push(None);
-                    if !notes.contains(&sentence) {
-                        notes.push(sentence);
-                    }
-                }
+                Err(error) => Some(format!("the image {name} is not shown: {error}")),
+            };
+            notes.extend(sentence.filter(|sentence| !notes.contains(sentence)));
+            if notes.len() > MOST_NOTES {
+                notes.truncate(MOST_NOTES);
             }
         }
+        let (mut textures, mut texture_of) = (Vec::new(), Vec::new());
+        for (image, encoding) in &self.wanted {
+            texture_of.push(place_of.get(image).map(|&place| {
+                textures.push((place, *encoding));
+                textures.len() - 1
+            }));
+        }
         let with_number = |map: Map| {
-            let texture = numbers.get(map.texture).copied().flatten()?;
+            let texture = texture_of.get(map.texture).copied().flatten()?;
             Some(Map { texture, ..map })
         };
-        DecodedMaterials {
+        Ok(DecodedMaterials {
             materials: self
                 .materials
                 .iter()
                 .map(|material| with_maps(material, with_number))
                 .collect(),
+            images,
             textures,
             notes,
-        }
+        })
     }
 }
 
+/// The most sentences about images that are told.
+const MOST_NOTES: usize = 12;
+
+/// A sentence about an image that is smaller than it is stored.
+fn shrunk_note(name: &str, image: &DecodedImage, budget: u64) -> Option<String> {
+    let [width, height] = image.stored_size;
+    let shown = &image.pixels;
+    (shown.width < width || shown.height < height).then(|| {
+        format!(
+            "the image {name} of {width} by {height} pixels is shown with {} by {}: all images together may take {} MiB",
+            shown.width,
+            shown.height,
+            budget >> 20
+        )
+    })
+}
+
 impl DecodedMaterials {
-    /// Uploads the materials and images, for [`Surface::set_materials`](pliant_render::Surface::set_materials).
+    /// Uploads the images for the file's surface.
     ///
     /// # Errors
     /// As [`Materials::new`].
@@ -155,11 +204,14 @@ impl DecodedMaterials {
         let textures: Vec<TextureData<'_>> = self
             .textures
             .iter()
-            .map(|(pixels, encoding)| TextureData {
-                width: pixels.width,
-                height: pixels.height,
-                rgba: &pixels.pixels,
-                encoding: *encoding,
+            .map(|&(image, encoding)| {
+                let pixels = &self.images[image].pixels;
+                TextureData {
+                    width: pixels.width,
+                    height: pixels.height,
+                    rgba: &pixels.pixels,
+                    encoding,
+                }
             })
             .collect();
         Materials::new(renderer, &self.materials, &textures)

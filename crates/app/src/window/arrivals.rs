@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_editor::{Event, Revision, Shading};
+use pliant_mesh::Cancel;
 
 use super::application::Application;
 use super::message::{LoadedMaterials, Message, Opened, Posed};
@@ -133,7 +134,11 @@ impl Application {
         self.workers.spawn(
             "images",
             move || {
-                let decoded = drawing.materials.decode();
+                // Nobody stops it: the file that it is for may be gone, but its images are decoded in rounds.
+                let decoded = match drawing.materials.decode(&Cancel::new()) {
+                    Ok(decoded) => decoded,
+                    Err(cancelled) => return Message::LoadedMaterials(drawing, Err(cancelled.to_string())),
+                };
                 let materials = gpu.upload_images(&decoded).map_err(|error| error.to_string());
                 let notes = decoded.notes;
                 Message::LoadedMaterials(drawing, materials.map(|materials| LoadedMaterials { materials, notes }))

@@ -9,6 +9,8 @@ pub struct Counting;
 
 /// The largest allocation since it was last set to 0.
 pub static LARGEST: AtomicUsize = AtomicUsize::new(0);
+/// The sum of all allocations.
+pub static ALLOCATED: AtomicUsize = AtomicUsize::new(0);
 /// What is held.
 pub static HELD: AtomicUsize = AtomicUsize::new(0);
 /// The most that was held at once since it was last set.
@@ -16,6 +18,7 @@ pub static PEAK: AtomicUsize = AtomicUsize::new(0);
 
 fn count(bytes: usize) {
     LARGEST.fetch_max(bytes, Ordering::Relaxed);
+    ALLOCATED.fetch_add(bytes, Ordering::Relaxed);
     let held = HELD.fetch_add(bytes, Ordering::Relaxed) + bytes;
     PEAK.fetch_max(held, Ordering::Relaxed);
 }

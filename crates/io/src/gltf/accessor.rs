@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::document::Document;
 
 /// Elements at equal distances in a buffer, all within its bytes.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(super) struct Strided {
     pub buffer: usize,
     /// First byte of the first element.
@@ -52,14 +52,18 @@ impl Strided {
         start..start + self.size
     }
 
+    /// Behind the last byte of the last element.
+    pub fn end(&self) -> usize {
+        self.element(self.count.saturating_sub(1)).end
+    }
+
     /// Whether an element of one shares a byte with an element of the other.
     pub fn overlaps(&self, other: &Self) -> bool {
-        let end = |strided: &Self| strided.element(strided.count.saturating_sub(1)).end;
         let apart = self.buffer != other.buffer
             || self.count == 0
             || other.count == 0
-            || end(self) <= other.start
-            || end(other) <= self.start;
+            || self.end() <= other.start
+            || other.end() <= self.start;
         if apart {
             return false;
         }
@@ -73,7 +77,7 @@ impl Strided {
 }
 
 impl Layout {
-    /// Checks an accessor against its buffer views and buffers; in words what is wrong.
+    /// Checks an accessor against its buffer views and buffers; in words what is wrong. [`Document::layout`] keeps it.
     pub fn of(document: &Document, index: usize) -> Result<Self, String> {
         Self::check(document, index).map_err(|reason| format!("accessor {index} {reason}"))
     }
@@ -109,8 +113,12 @@ impl Layout {
                 })
             }
         };
+        if let Some(sparse) = sparse.filter(|sparse| sparse.indices.count > count) {
+            let some = sparse.indices.count;
+            return Err(format!("has {some} sparse elements, more than its {count} elements"));
+        }
         // Zeros cost no bytes in the file, so their number is held to what the file could have stored.
-        if dense.is_none() && count > document.loaded_bytes() {
+        if dense.is_none() && count > document.loaded_bytes {
             return Err(format!(
                 "has {count} elements without bytes, more than the file has bytes"
             ));

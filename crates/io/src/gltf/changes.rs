@@ -6,7 +6,6 @@ use glam::{DMat3, DVec3, Vec3, Vec4};
 use pliant_mesh::{Cancelled, DrawnVertex};
 use rayon::prelude::*;
 
-use super::accessor::Layout;
 use super::document::Document;
 use super::geometry::{Part, Pieces};
 use super::look;
@@ -217,7 +216,9 @@ impl Rest {
             return true;
         }
         let (stored, tolerance) = self.0.entry(accessor).or_insert_with(|| {
-            let stored = Layout::of(document, accessor).map_or_else(|_| Vec::new(), |layout| layout.floats(document));
+            let stored = document
+                .layout(accessor)
+                .map_or_else(|_| Vec::new(), |layout| layout.floats(document));
             let finite = stored.as_flattened().iter().filter(|x| x.is_finite());
             let size = finite.fold(0.0_f32, |most, x| most.max(x.abs()));
             (stored, 4.0 * f32::EPSILON * size)

@@ -4,13 +4,17 @@
 //! first ones, keep the original. An accessor that several primitives name is doubled where they come to differ;
 //! whoever did not change (or is no vertex attribute at all: morph targets, animations, skins) keeps the original.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
 use super::changes::{Change, PartChange, Rest, Semantic};
 use super::document::Document;
 use super::geometry::Pieces;
 use super::json::At;
 use super::primitive::Primitive;
+use crate::course::Course;
+use pliant_mesh::Cancelled;
 
 /// A mesh after the edit: the file's own, or a clone of it.
 #[derive(Clone, PartialEq, Debug)]
@@ -23,17 +27,18 @@ pub(super) struct MeshCopy {
 }
 
 impl MeshCopy {
-    /// The part that says what becomes of a primitive. One that is not drawn (the lines along a surface's edges, say)
+    /// The part that says what becomes of each primitive. One that is not drawn (the lines along a surface's edges, say)
     /// follows a drawn one of its mesh that names the same positions.
-    pub fn part_of(&self, primitives: &[Primitive], primitive: usize) -> Option<usize> {
-        let position = primitives[primitive].position;
-        let followed = || {
-            let others = self.parts.iter().zip(primitives);
-            others
-                .filter(|(_, other)| other.position == position)
-                .find_map(|(part, _)| *part)
-        };
-        self.parts[primitive].or_else(followed)
+    pub fn followed_parts(&self, primitives: &[Primitive]) -> Vec<Option<usize>> {
+        let mut leader: HashMap<Option<usize>, usize> = HashMap::new();
+        for (part, primitive) in self.parts.iter().zip(primitives) {
+            if let Some(part) = part {
+                leader.entry(primitive.position).or_insert(*part);
+            }
+        }
+        let each = self.parts.iter().zip(primitives);
+        each.map(|(part, primitive)| part.or_else(|| leader.get(&primitive.position).copied()))
+            .collect()
     }
 }
 
@@ -62,13 +67,33 @@ pub(super) struct Outcome<'a> {
 
 static UNCHANGED: Change = Change::new();
 
+/// Nodes of one mesh with this many different edits: further ones are told apart by their exact numbers alone, instead
+/// of being compared with each of them.
+const MOST_CLASSES_COMPARED: usize = 64;
+
+/// A number for each part's changes, by attribute; equal for equal ones.
+fn hashes(changes: &[PartChange]) -> Vec<[u64; 3]> {
+    let of_change = |change: &Change| {
+        let mut hasher = DefaultHasher::new();
+        for (element, new) in change {
+            // Adding zero makes 0 of -0, which is equal to it.
+            (element, new.map(|number| (number + 0.0).to_bits())).hash(&mut hasher);
+        }
+        hasher.finish()
+    };
+    let of_part = |part: &PartChange| Semantic::ALL.map(|semantic| of_change(part.of(semantic)));
+    changes.iter().map(of_part).collect()
+}
+
 /// The meshes after the edit, the file's own first (mesh `m` is copy `m`), then the clones.
 pub(super) fn copies(
     document: &Document,
     meshes: &[Vec<Primitive>],
     pieces: &Pieces,
     changes: &[PartChange],
-) -> Vec<MeshCopy> {
+    course: &Course<'_>,
+) -> Result<Vec<MeshCopy>, Cancelled> {
+    let hashes = hashes(changes);
     let mut copies: Vec<MeshCopy> = meshes
         .iter()
         .enumerate()
@@ -93,8 +118,22 @@ pub(super) fn copies(
             })
         };
         let mut classes: Vec<(Vec<Option<usize>>, Vec<usize>)> = Vec::new();
+        let mut class_of: HashMap<u64, usize> = HashMap::new();
         for (node, parts) in uses {
-            match classes.iter_mut().find(|(other, _)| is_same(other, &parts)) {
+            course.reach(0, 1)?;
+            let mut hasher = DefaultHasher::new();
+            parts
+                .iter()
+                .for_each(|part| part.map(|part| hashes[part]).hash(&mut hasher));
+            let likely = class_of.entry(hasher.finish());
+            let mut candidates = match likely {
+                Entry::Occupied(ref entry) => *entry.get()..*entry.get() + 1,
+                Entry::Vacant(_) => 0..classes.len().min(MOST_CLASSES_COMPARED),
+            };
+            let class = candidates.find(|&class| is_same(&classes[class].0, &parts));
+            let class = class.unwrap_or(classes.len());
+            likely.or_insert(class);
+            match classes.get_mut(class) {
                 Some((_, nodes)) => nodes.push(node),
                 None => classes.push((parts, vec![node])),
             }
@@ -114,7 +153,7 @@ pub(super) fn copies(
         }
     }
     copies.extend(clones);
-    copies
+    Ok(copies)
 }
 
 /// A node that shows a mesh, and the part of each primitive.
@@ -143,38 +182,67 @@ pub(super) fn outcomes<'a>(
     meshes: &[Vec<Primitive>],
     copies: &[MeshCopy],
     changes: &'a [PartChange],
-) -> BTreeMap<usize, Outcome<'a>> {
+    course: &Course<'_>,
+) -> Result<BTreeMap<usize, Outcome<'a>>, Cancelled> {
+    let hashes = hashes(changes);
     let mut claims: BTreeMap<usize, Vec<Claim<'a>>> = BTreeMap::new();
+    // Where among an accessor's claims those with a hash stand.
+    let mut known: HashMap<(usize, u64), Vec<usize>> = HashMap::new();
     for (copy, of_copy) in copies.iter().enumerate() {
-        for (primitive, named) in meshes[of_copy.mesh].iter().enumerate() {
-            for semantic in Semantic::ALL {
+        course.reach(0, 1)?;
+        let primitives = &meshes[of_copy.mesh];
+        // Primitives that are not drawn follow a drawn one that names the same accessor.
+        let mut leader: HashMap<(usize, usize), usize> = HashMap::new();
+        for (part, named) in of_copy.parts.iter().zip(primitives) {
+            for (place, semantic) in Semantic::ALL.into_iter().enumerate() {
+                if let (Some(part), Some(accessor)) = (part, semantic.accessor(named)) {
+                    leader.entry((place, accessor)).or_insert(*part);
+                }
+            }
+        }
+        for (primitive, named) in primitives.iter().enumerate() {
+            for (place, semantic) in Semantic::ALL.into_iter().enumerate() {
                 let Some(accessor) = semantic.accessor(named) else {
                     continue;
                 };
-                let change = change_of(&meshes[of_copy.mesh], of_copy, primitive, semantic, changes);
+                let part = of_copy.parts[primitive].or_else(|| leader.get(&(place, accessor)).copied());
+                let (change, hash) = part.map_or((&UNCHANGED, UNCHANGED_HASH), |part| {
+                    let change = changes[part].of(semantic);
+                    let hash = if change.is_empty() {
+                        UNCHANGED_HASH
+                    } else {
+                        hashes[part][place]
+                    };
+                    (change, hash)
+                });
                 let of_accessor = claims.entry(accessor).or_default();
                 let naming = Naming {
                     copy,
                     primitive,
                     semantic,
                 };
-                match of_accessor
-                    .iter_mut()
-                    .find(|claim| std::ptr::eq(claim.change, change) || claim.change == change)
-                {
-                    Some(claim) => claim.namings.push(naming),
-                    None => of_accessor.push(Claim {
-                        change,
-                        semantic,
-                        namings: vec![naming],
-                    }),
+                let alike = known.entry((accessor, hash)).or_default();
+                let same = |&place: &usize| {
+                    let other = of_accessor[place].change;
+                    std::ptr::eq(other, change) || other == change
+                };
+                match alike.iter().copied().find(same) {
+                    Some(place) => of_accessor[place].namings.push(naming),
+                    None => {
+                        alike.push(of_accessor.len());
+                        of_accessor.push(Claim {
+                            change,
+                            semantic,
+                            namings: vec![naming],
+                        });
+                    }
                 }
             }
         }
     }
     claims.retain(|_, claims| claims.iter().any(|claim| !claim.change.is_empty()));
     let elsewhere = used_elsewhere(document, meshes);
-    claims
+    let outcomes = claims
         .into_iter()
         .filter_map(|(accessor, mut claims)| {
             if elsewhere.contains(&accessor) && claims.iter().all(|claim| !claim.change.is_empty()) {
@@ -195,30 +263,12 @@ pub(super) fn outcomes<'a>(
                 },
             ))
         })
-        .collect()
+        .collect();
+    Ok(outcomes)
 }
 
-/// What a primitive wants of an attribute. One that is not drawn (the lines along a surface's edges, say) follows a
-/// drawn one of its mesh that names the same accessor.
-fn change_of<'a>(
-    primitives: &[Primitive],
-    copy: &MeshCopy,
-    primitive: usize,
-    semantic: Semantic,
-    changes: &'a [PartChange],
-) -> &'a Change {
-    let accessor = semantic.accessor(&primitives[primitive]);
-    let followed = || {
-        let others = copy.parts.iter().zip(primitives);
-        others
-            .filter(|(_, other)| semantic.accessor(other) == accessor)
-            .find_map(|(part, _)| *part)
-    };
-    match copy.parts[primitive].or_else(followed) {
-        Some(part) => changes[part].of(semantic),
-        None => &UNCHANGED,
-    }
-}
+/// Stands for the hash of what does not change.
+const UNCHANGED_HASH: u64 = 0;
 
 /// Accessors that something else than a primitive's POSITION, NORMAL or TANGENT reads.
 fn used_elsewhere(document: &Document, meshes: &[Vec<Primitive>]) -> BTreeSet<usize> {

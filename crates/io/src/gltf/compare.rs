@@ -3,7 +3,8 @@
 //! Accessors, meshes and images are compared where something names them, so that it doesn't matter which number a
 //! part has, where its bytes stand or in which container. What nothing names is compared by its number.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::ops::Range;
 
 use super::accessor::Layout;
 use super::document::Document;
@@ -17,6 +18,7 @@ pub(super) fn differences(a: &Document, b: &Document) -> Vec<Difference> {
         b,
         seen: BTreeSet::new(),
         meshes_seen: BTreeSet::new(),
+        images_seen: HashMap::new(),
         out: Vec::new(),
     };
     comparison.objects(a.json.root(), b.json.root(), &mut Vec::new());
@@ -31,8 +33,13 @@ struct Comparison<'a> {
     seen: BTreeSet<(usize, usize)>,
     /// Pairs of meshes that were compared.
     meshes_seen: BTreeSet<(usize, usize)>,
+    /// Pairs of images that were compared, by where their bytes are, and what differs.
+    images_seen: HashMap<(Place, Place), Option<What>>,
     out: Vec<Difference>,
 }
+
+/// Where bytes are held.
+type Place = (usize, Range<usize>);
 
 /// What a number in the JSON names.
 enum Names {
@@ -120,16 +127,22 @@ impl Comparison<'_> {
         let is_skipped = |key: &str| {
             (is_root && PLACES.contains(&key)) || (is_image && ["uri", "bufferView", "mimeType"].contains(&key))
         };
+        // The first of several members with one name is the one that is read.
+        let mut first_of_b: HashMap<&str, At> = HashMap::new();
+        for (key, at) in &of_b {
+            first_of_b.entry(key).or_insert(*at);
+        }
         for (key, at) in of_a.iter().filter(|(key, _)| !is_skipped(key)) {
             path.push(key.clone());
-            match of_b.iter().find(|(other, _)| other == key) {
-                Some(&(_, other)) => self.values(*at, other, path),
+            match first_of_b.get(key.as_str()) {
+                Some(&other) => self.values(*at, other, path),
                 None => self.say(path, What::OnlyInFirst),
             }
             path.pop();
         }
+        let keys_of_a: HashSet<&str> = of_a.iter().map(|(key, _)| key.as_str()).collect();
         for (key, _) in of_b.iter().filter(|(key, _)| !is_skipped(key)) {
-            if of_a.iter().all(|(other, _)| other != key) {
+            if !keys_of_a.contains(key.as_str()) {
                 path.push(key.clone());
                 self.say(path, What::OnlyInSecond);
                 path.pop();
@@ -171,8 +184,12 @@ impl Comparison<'_> {
         let Some(number) = path.last().and_then(|number| number.parse().ok()) else {
             return;
         };
-        let bytes = |document: &Document| document.image(number).unwrap_or_default().to_vec();
-        if let Some(Difference { what, .. }) = difference::of_bytes(&bytes(self.a), &bytes(self.b)) {
+        let bytes = |document: &Document| document.image(number).unwrap_or_default();
+        let (first, second) = (bytes(self.a), bytes(self.b));
+        // Many images may be of the same bytes.
+        let known = self.images_seen.entry((first.place(), second.place()));
+        let what = known.or_insert_with(|| difference::of_bytes(&first, &second).map(|difference| difference.what));
+        if let Some(what) = what.clone() {
             self.say(path, what);
         }
     }
@@ -184,7 +201,7 @@ impl Comparison<'_> {
         let (Some(&at_a), Some(&at_b)) = (self.a.accessors_at.get(first), self.b.accessors_at.get(second)) else {
             return self.say(path, What::OnlyInFirst);
         };
-        let layouts = (Layout::of(self.a, first), Layout::of(self.b, second));
+        let layouts = (self.a.layout(first), self.b.layout(second));
         let (Ok(a), Ok(b)) = &layouts else {
             // What can't be read is compared as text.
             return self.values(at_a, at_b, &mut path.to_vec());

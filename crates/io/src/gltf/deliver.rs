@@ -182,7 +182,7 @@ fn bring_images(
             Some(_) if neighbours.iter().any(|neighbour| neighbour.name == name) => {}
             Some(bytes) => neighbours.push(OutputFile {
                 name,
-                bytes: bytes.clone(),
+                bytes: bytes.to_vec(),
             }),
             None => warnings.push(format!("The image {path} was missing and could not be brought along.")),
         }

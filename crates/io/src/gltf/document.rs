@@ -5,19 +5,23 @@
 //! has f32, which moves scans at geographic coordinates by half a metre), attributes with whatever names, and scenes
 //! without nodes, which the crate refuses.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use ::gltf::json::validation::USize64;
 use ::gltf::json::{self, Accessor, Material, Texture, texture::Sampler};
 
+use super::accessor::Layout;
 use super::container::{self, Container};
 use super::fault::Fault;
 use super::json::{At, Json};
+use super::maps::MaterialMaps;
 use super::uri::{self, Address};
-use crate::Format;
+use crate::notes::Notes;
+use crate::quote::quoted;
 use crate::source::Source;
+use crate::{Bytes, Format};
 
 /// A glTF as read.
 #[derive(Debug)]
@@ -45,11 +49,17 @@ pub(super) struct Document {
     pub images_at: Vec<At>,
     pub materials_at: Vec<At>,
     /// What was missing but not needed, as sentences.
-    pub notes: Vec<String>,
+    pub notes: Notes,
     /// Compressed buffer views without bytes, and what is wrong with them.
     pub undecoded_views: BTreeMap<usize, String>,
     /// Compressed primitives whose accessors have no bytes, and what is wrong with them.
-    pub undecoded_primitives: Vec<(At, String)>,
+    pub undecoded_primitives: BTreeMap<At, String>,
+    /// How many bytes were read in all, neighbours included, each once.
+    pub loaded_bytes: usize,
+    /// Which texture coordinates each material's images take.
+    pub material_maps: Vec<MaterialMaps>,
+    /// Each accessor's layout once it was asked for: checking it looks at all its sparse elements.
+    layouts: Vec<OnceLock<Result<Layout, String>>>,
 }
 
 /// A buffer's bytes and where they came from.
@@ -58,13 +68,13 @@ pub(super) enum Buffer {
     /// The GLB's BIN chunk: a range of the file.
     Bin(Range<usize>),
     /// A data URI.
-    Data(Vec<u8>),
+    Data(Bytes),
     /// A file beside this one, by its decoded path.
-    Neighbour { path: String, bytes: Vec<u8> },
+    Neighbour { path: String, bytes: Bytes },
     /// None at all: a placeholder that an extension fills.
     Absent,
     /// What a compressed buffer view or accessor holds: no buffer of the file. These stand behind the file's own.
-    Decoded(Vec<u8>),
+    Decoded(Bytes),
 }
 
 /// An image's bytes and where they came from.
@@ -73,15 +83,21 @@ pub(super) enum ImageFile {
     /// A buffer view.
     View(usize),
     /// A data URI.
-    Data(Vec<u8>),
+    Data(Bytes),
     /// A file beside this one, by its decoded path; no bytes where it is missing.
-    Neighbour { path: String, bytes: Option<Vec<u8>> },
+    Neighbour { path: String, bytes: Option<Bytes> },
     /// Nowhere that is read.
     Absent,
 }
 
 /// How many bytes of geometry a byte of the file may become.
 pub(super) const MOST_GROWTH: usize = 64;
+
+/// How many bytes of the drawn set a byte of geometry may become.
+const MOST_DRAWN: usize = 16;
+
+/// What the drawn set of the smallest of files may take: five million triangles.
+const DRAWN_ANYWAY: usize = 64 << 20;
 
 /// What compressed geometry may become in the smallest of files.
 const DECODED_ANYWAY: usize = 1 << 20;
@@ -133,13 +149,22 @@ impl Document {
             buffers_at,
             images_at,
             materials_at,
-            notes: Vec::new(),
+            notes: Notes::default(),
             undecoded_views: BTreeMap::new(),
-            undecoded_primitives: Vec::new(),
+            undecoded_primitives: BTreeMap::new(),
+            loaded_bytes: 0,
+            material_maps: Vec::new(),
+            layouts: Vec::new(),
             json,
         };
+        document.layouts.resize_with(document.accessors.len(), OnceLock::new);
         document.fetch_buffers(source)?;
         document.fetch_images(source)?;
+        document.loaded_bytes = document.count_loaded_bytes();
+        let count = document.materials_at.len();
+        document.material_maps = (0..count)
+            .map(|material| MaterialMaps::of(&document, material))
+            .collect();
         Ok(document)
     }
 
@@ -154,38 +179,76 @@ impl Document {
 
     /// The bytes of a buffer view; `None` where they are not all there.
     pub fn view(&self, view: usize) -> Option<&[u8]> {
-        let view = self.views.get(view)?;
-        let start = usize::try_from(view.byte_offset.map_or(0, |offset| offset.0)).ok()?;
-        let length = usize::try_from(view.byte_length.0).ok()?;
-        self.buffer(view.buffer.value()).get(start..start.checked_add(length)?)
+        let (buffer, range) = self.place_of_view(view)?;
+        self.buffer(buffer).get(range)
     }
 
-    /// The encoded bytes of an image; `None` where they are missing.
-    pub fn image(&self, image: usize) -> Option<&[u8]> {
+    /// The encoded bytes of an image, shared with what holds them; `None` where they are missing.
+    pub fn image(&self, image: usize) -> Option<Bytes> {
         match self.images.get(image)? {
-            ImageFile::View(view) => self.view(*view),
-            ImageFile::Data(bytes) => Some(bytes),
-            ImageFile::Neighbour { bytes, .. } => bytes.as_deref(),
+            ImageFile::View(view) => {
+                let (buffer, range) = self.place_of_view(*view)?;
+                match self.buffers.get(buffer)? {
+                    Buffer::Bin(bin) => Bytes::from(Arc::clone(&self.file)).slice(bin.clone())?.slice(range),
+                    Buffer::Data(bytes) | Buffer::Neighbour { bytes, .. } | Buffer::Decoded(bytes) => {
+                        bytes.slice(range)
+                    }
+                    Buffer::Absent => None,
+                }
+            }
+            ImageFile::Data(bytes) => Some(bytes.clone()),
+            ImageFile::Neighbour { bytes, .. } => bytes.clone(),
             ImageFile::Absent => None,
         }
     }
 
-    /// How many bytes were read in all, neighbours included.
-    pub fn loaded_bytes(&self) -> usize {
-        let of_buffers = self.buffers.iter().map(|buffer| match buffer {
-            Buffer::Data(bytes) | Buffer::Neighbour { bytes, .. } => bytes.len(),
-            Buffer::Bin(_) | Buffer::Absent | Buffer::Decoded(_) => 0,
+    fn place_of_view(&self, view: usize) -> Option<(usize, Range<usize>)> {
+        let view = self.views.get(view)?;
+        let start = usize::try_from(view.byte_offset.map_or(0, |offset| offset.0)).ok()?;
+        let length = usize::try_from(view.byte_length.0).ok()?;
+        Some((view.buffer.value(), start..start.checked_add(length)?))
+    }
+
+    fn count_loaded_bytes(&self) -> usize {
+        let of_buffers = self.buffers.iter().filter_map(|buffer| match buffer {
+            Buffer::Data(bytes) | Buffer::Neighbour { bytes, .. } => Some(bytes),
+            Buffer::Bin(_) | Buffer::Absent | Buffer::Decoded(_) => None,
         });
-        let of_images = self.images.iter().map(|image| match image {
-            ImageFile::Data(bytes) | ImageFile::Neighbour { bytes: Some(bytes), .. } => bytes.len(),
-            _ => 0,
+        let of_images = self.images.iter().filter_map(|image| match image {
+            ImageFile::Data(bytes) | ImageFile::Neighbour { bytes: Some(bytes), .. } => Some(bytes),
+            _ => None,
         });
-        self.file.len() + of_buffers.sum::<usize>() + of_images.sum::<usize>()
+        let mut counted = HashSet::new();
+        let fresh = of_buffers
+            .chain(of_images)
+            .filter(|bytes| counted.insert(bytes.place()));
+        self.file.len() + fresh.map(|bytes| bytes.len()).sum::<usize>()
     }
 
     /// How many bytes compressed geometry may become in all.
     pub fn decoding_budget(&self) -> usize {
-        self.loaded_bytes().saturating_mul(MOST_GROWTH).max(DECODED_ANYWAY)
+        self.loaded_bytes.saturating_mul(MOST_GROWTH).max(DECODED_ANYWAY)
+    }
+
+    /// How many bytes of memory the drawn set may take: what the bytes justify, and small files with many instances.
+    ///
+    /// No accessor seen through one node takes more than sixteen times its bytes (a strip of byte indices takes twelve).
+    /// Welding takes eight times the drawn set again.
+    pub fn drawing_budget(&self) -> usize {
+        let decoded = self.buffers.iter().map(|buffer| match buffer {
+            Buffer::Decoded(bytes) => bytes.len(),
+            _ => 0,
+        });
+        let bytes = self.loaded_bytes.saturating_add(decoded.sum());
+        bytes.saturating_mul(MOST_DRAWN).saturating_add(DRAWN_ANYWAY)
+    }
+
+    /// An accessor's shape and place, checked; in words what is wrong.
+    pub fn layout(&self, accessor: usize) -> Result<Layout, String> {
+        match self.layouts.get(accessor) {
+            Some(layout) => layout.get_or_init(|| Layout::of(self, accessor)).clone(),
+            None => Layout::of(self, accessor),
+        }
     }
 
     /// Lets a buffer view of the file point at bytes that were decoded from it.
@@ -196,7 +259,7 @@ impl Document {
         view.byte_offset = None;
         view.byte_length = USize64(length);
         view.byte_stride = stride.map(json::buffer::Stride);
-        self.buffers.push(Buffer::Decoded(bytes));
+        self.buffers.push(Buffer::Decoded(bytes.into()));
     }
 
     /// Gives an accessor bytes of its own, elements tightly packed, in a buffer view that the file does not have.
@@ -216,7 +279,7 @@ impl Document {
             extensions: None,
             extras: Default::default(),
         });
-        self.buffers.push(Buffer::Decoded(bytes));
+        self.buffers.push(Buffer::Decoded(bytes.into()));
     }
 
     /// Whether an accessor's bytes came out of a compressed primitive.
@@ -248,11 +311,7 @@ impl Document {
         match number {
             Some(number) if number < count as f64 => Ok(number as usize),
             _ => {
-                let raw = String::from_utf8_lossy(self.json.raw(at))
-                    .chars()
-                    .map(|letter| if letter.is_control() { ' ' } else { letter })
-                    .take(24)
-                    .collect::<String>();
+                let raw = quoted(&String::from_utf8_lossy(self.json.raw(at)));
                 Err(format!("{} {raw}, but there are {count}", what()))
             }
         }
@@ -275,9 +334,13 @@ impl Document {
                 (None, Some(bin)) if number == 0 => Buffer::Bin(bin),
                 (None, _) => Buffer::Absent,
                 (Some(uri), _) => match uri::address(&uri).map_err(|reason| format!("buffer {number} is {reason}"))? {
-                    Address::Data(bytes) => Buffer::Data(bytes),
+                    Address::Data(bytes) => Buffer::Data(bytes.into()),
                     Address::Neighbour(path) => match source.resolver.read(&path) {
-                        Ok(bytes) => Buffer::Neighbour { path, bytes },
+                        Ok(bytes) => {
+                            self.notes
+                                .add("buffers of other folders", outside_note("Buffer", &path));
+                            Buffer::Neighbour { path, bytes }
+                        }
                         Err(reason) => return Err(Fault::Neighbour { uri, reason }),
                     },
                     Address::Elsewhere => {
@@ -298,22 +361,25 @@ impl Document {
             let view = self.index(at, "bufferView", self.views.len(), || format!("image {number}"))?;
             let image = match (view, uri.as_deref().map(uri::address)) {
                 (Some(view), _) => ImageFile::View(view),
-                (None, Some(Ok(Address::Data(bytes)))) => ImageFile::Data(bytes),
+                (None, Some(Ok(Address::Data(bytes)))) => ImageFile::Data(bytes.into()),
                 (None, Some(Ok(Address::Neighbour(path)))) => {
                     let bytes = match source.resolver.read(&path) {
-                        Ok(bytes) => Some(bytes),
+                        Ok(bytes) => {
+                            self.notes.add("images of other folders", outside_note("Image", &path));
+                            Some(bytes)
+                        }
                         Err(reason) => {
-                            self.notes
-                                .push(format!("Image {path} is not shown: it could not be read ({reason})."));
+                            let path = quoted(&path);
+                            let note = format!("Image {path} is not shown: it could not be read ({reason}).");
+                            self.notes.add("images", Some(note));
                             None
                         }
                     };
                     ImageFile::Neighbour { path, bytes }
                 }
                 (None, _) => {
-                    self.notes.push(format!(
-                        "Image {number} is not shown: it has neither bytes nor a file's name."
-                    ));
+                    let note = format!("Image {number} is not shown: it has neither bytes nor a file's name.");
+                    self.notes.add("images", Some(note));
                     ImageFile::Absent
                 }
             };
@@ -321,6 +387,13 @@ impl Document {
         }
         Ok(())
     }
+}
+
+/// A sentence about a neighbour outside the file's folder.
+fn outside_note(what: &str, path: &str) -> Option<String> {
+    uri::inside(path)
+        .is_none()
+        .then(|| format!("{what} {} was read from outside the file's own folder.", quoted(path)))
 }
 
 /// Where a section's objects stand; in words what is wrong where it is no list of objects.
@@ -341,7 +414,7 @@ fn objects(json: &Json, section: &str) -> Result<Vec<At>, String> {
 fn typed<T: serde::de::DeserializeOwned>(json: &Json, section: &[At], what: &str) -> Result<Vec<T>, String> {
     let one = |(number, &at): (usize, &At)| {
         json.typed(at)
-            .map_err(|error| format!("{what} {number} is broken: {error}"))
+            .map_err(|error| format!("{what} {number} is broken: {}", quoted(&error)))
     };
     section.iter().enumerate().map(one).collect()
 }

@@ -3,6 +3,8 @@
 //! Accessors then read as any others. Where a file brings plain bytes beside the compressed ones, those are taken. An
 //! edit writes the mesh's accessors out plainly and takes the extension off its primitives (`patch.rs`).
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use ::gltf::json::accessor::ComponentType;
 use ::gltf::json::validation::Checked;
 use draco_core::{AttributeValueIndex, DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointIndex};
@@ -64,18 +66,40 @@ pub(super) fn decode(document: &mut Document, meshes: &[Vec<Primitive>], cancel:
             is_lacking.then_some((primitive, extension, filled))
         })
         .collect();
-    let budget = document.decoding_budget() / lacking.len().max(1);
-    let decoded: Vec<Result<Vec<Bytes>, String>> = lacking
+    // Primitives may share their data; each is decoded once, and all of them within one budget, by their sizes.
+    let mut by_view: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
+    for (place, &(_, extension, _)) in lacking.iter().enumerate() {
+        let view = document.json.member(extension, "bufferView");
+        let number = view
+            .and_then(|at| document.json.number(at))
+            .map(|number| number as usize);
+        by_view.entry(number).or_default().push(place);
+    }
+    let size = |view: Option<usize>| view.and_then(|view| document.view(view)).map_or(0, <[u8]>::len);
+    let all: usize = by_view.keys().map(|&view| size(view)).sum();
+    let budget = document.decoding_budget() as f64 / all.max(1) as f64;
+    let decoded: Vec<Vec<(usize, Result<Vec<FilledBytes>, String>)>> = by_view
         .par_iter()
-        .map(|(primitive, extension, filled)| {
+        .map(|(&view, places)| {
             if cancel.is_cancelled() {
-                return Ok(Vec::new());
+                return Vec::new();
             }
-            bytes_of_accessors(document, primitive, *extension, filled, budget)
+            let mut left = (budget * size(view) as f64) as usize;
+            let mesh = decoded_mesh(document, lacking[places[0]].1, left);
+            let mut done = BTreeSet::new();
+            let of_primitive = |&place: &usize| {
+                let (primitive, _, filled) = &lacking[place];
+                let wanted = filled.accessors().filter(|&accessor| done.insert(accessor)).collect();
+                let bytes = (mesh.as_ref().map_err(Clone::clone))
+                    .and_then(|mesh| bytes_of_accessors(document, primitive, mesh, filled, &wanted, &mut left));
+                (place, bytes)
+            };
+            places.iter().map(of_primitive).collect()
         })
         .collect();
     cancel.check()?;
-    for ((primitive, ..), decoded) in lacking.iter().zip(decoded) {
+    for (place, decoded) in decoded.into_iter().flatten() {
+        let (primitive, ..) = &lacking[place];
         match decoded {
             Ok(accessors) => {
                 for (accessor, bytes) in accessors {
@@ -85,26 +109,19 @@ pub(super) fn decode(document: &mut Document, meshes: &[Vec<Primitive>], cancel:
                     }
                 }
             }
-            Err(reason) => document.undecoded_primitives.push((primitive.at, reason)),
+            Err(reason) => {
+                document.undecoded_primitives.insert(primitive.at, reason);
+            }
         }
     }
     Ok(())
 }
 
 /// An accessor and its bytes.
-type Bytes = (usize, Vec<u8>);
+type FilledBytes = (usize, Vec<u8>);
 
-/// The bytes of each accessor, elements tightly packed in the accessor's own type.
-fn bytes_of_accessors(
-    document: &Document,
-    primitive: &Primitive,
-    extension: At,
-    filled: &Filled,
-    budget: usize,
-) -> Result<Vec<Bytes>, String> {
-    if primitive.mode != Some(Mode::Triangles) {
-        return Err("Draco data of a primitive that is no list of triangles".to_owned());
-    }
+/// What a primitive's compressed data holds, if that is no more than `budget` bytes.
+fn decoded_mesh(document: &Document, extension: At, budget: usize) -> Result<Mesh, String> {
     let view = document.index(extension, "bufferView", document.views.len(), || {
         "its Draco data".to_owned()
     })?;
@@ -120,12 +137,38 @@ fn bytes_of_accessors(
     MeshDecoder::new()
         .decode(&mut DecoderBuffer::new(source).with_limits(limits), &mut mesh)
         .map_err(|error| format!("Draco data that can't be decoded ({error})"))?;
-    let mut out = Vec::new();
-    if let Some(accessor) = filled.indices {
-        out.push((accessor, index_bytes(document, accessor, &mesh)?));
+    Ok(mesh)
+}
+
+/// The bytes of each accessor that is `wanted`, elements tightly packed in the accessor's own type, as long as there is
+/// room `left` for them.
+fn bytes_of_accessors(
+    document: &Document,
+    primitive: &Primitive,
+    mesh: &Mesh,
+    filled: &Filled,
+    wanted: &BTreeSet<usize>,
+    left: &mut usize,
+) -> Result<Vec<FilledBytes>, String> {
+    if primitive.mode != Some(Mode::Triangles) {
+        return Err("Draco data of a primitive that is no list of triangles".to_owned());
     }
-    for &(accessor, number) in &filled.attributes {
-        out.push((accessor, attribute_bytes(document, accessor, number, &mesh)?));
+    let mut out: Vec<FilledBytes> = Vec::new();
+    let mut keep = |accessor: usize, bytes: Vec<u8>| -> Result<(), String> {
+        let room = left.checked_sub(bytes.len());
+        *left = room.ok_or("Draco data that becomes more than a file of its size can hold")?;
+        out.push((accessor, bytes));
+        Ok(())
+    };
+    if let Some(accessor) = filled.indices.filter(|accessor| wanted.contains(accessor)) {
+        keep(accessor, index_bytes(document, accessor, mesh)?)?;
+    }
+    for &(accessor, number) in filled
+        .attributes
+        .iter()
+        .filter(|(accessor, _)| wanted.contains(accessor))
+    {
+        keep(accessor, attribute_bytes(document, accessor, number, mesh)?)?;
     }
     Ok(out)
 }

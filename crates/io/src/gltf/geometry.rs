@@ -7,16 +7,17 @@
 //! Drawn vertices come node by node (depth first), primitive by primitive. Primitives of one mesh that name the same
 //! accessors share their drawn vertices, so that a mesh cut into a hundred materials is not multiplied by a hundred.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use glam::{DAffine3, Vec3};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, FileVertex, Progress};
 use rayon::prelude::*;
 
-use super::accessor::Layout;
-use super::document::{Document, MOST_GROWTH};
+use super::document::Document;
 use super::fault::Fault;
-use super::primitive::{Mode, Primitive};
+use super::json::At;
+use super::primitive::{self, Mode, Primitive};
 use super::tree::Placed;
 
 /// The drawn vertices of one attribute set seen through one node.
@@ -49,8 +50,8 @@ pub(super) struct Pieces {
     pub pieces: Vec<Piece>,
 }
 
-/// How many bytes the drawn set may have beyond [`MOST_GROWTH`]: small files with many instances.
-const GRACE_BYTES: usize = 256 << 20;
+/// What a piece takes, however few triangles it has: its own description, a group's and an object's.
+const PIECE_BYTES: usize = 256;
 
 /// Vertices that a thread handles at a time.
 const CHUNK: usize = 1 << 14;
@@ -69,14 +70,20 @@ pub(super) fn drawn(
         ..Drawn::default()
     };
     let mut pieces = Pieces::default();
-    let mut budget = document
-        .loaded_bytes()
-        .saturating_mul(MOST_GROWTH)
-        .saturating_add(GRACE_BYTES);
+    let mut budget = document.drawing_budget();
+    let mut weights = Weights::default();
+    let mut first_alike: HashMap<usize, Vec<usize>> = HashMap::new();
     for (number, place) in placed.iter().enumerate() {
-        let first_part = pieces.parts.len();
-        for (number, primitive) in meshes[place.mesh].iter().enumerate() {
+        cancel.check()?;
+        let primitives = &meshes[place.mesh];
+        let alike = first_alike
+            .entry(place.mesh)
+            .or_insert_with(|| primitive::first_alike(primitives));
+        let mut part_of: HashMap<usize, usize> = HashMap::new();
+        let applied = weights.of(document, place);
+        for (number, primitive) in primitives.iter().enumerate() {
             cancel.check()?;
+            spend(&mut budget, 1, PIECE_BYTES, "runs of triangles")?;
             let (Some(mode), Some(position)) = (primitive.mode, primitive.position) else {
                 continue;
             };
@@ -87,15 +94,12 @@ pub(super) fn drawn(
             primitive
                 .check_decoded(document)
                 .map_err(|what| format!("{} {what}", here()))?;
-            let layout = Layout::of(document, position)?;
+            let layout = document.layout(position)?;
             if layout.lanes != 3 {
                 return Err(format!("{}: POSITION is not made of three numbers each", here()).into());
             }
-            let known = pieces.parts[first_part..]
-                .iter()
-                .position(|part| meshes[place.mesh][part.primitive].has_attributes_of(primitive));
-            let part = match known {
-                Some(known) => first_part + known,
+            let part = match part_of.get(&alike[number]) {
+                Some(&known) => known,
                 None => {
                     spend(
                         &mut budget,
@@ -104,12 +108,23 @@ pub(super) fn drawn(
                         "vertices",
                     )?;
                     let start = drawn.positions.len() as u32;
-                    let weights = default_weights(document, place, primitive);
+                    let weights: Vec<(usize, f64)> = applied
+                        .iter()
+                        .copied()
+                        .take_while(|(target, _)| *target < primitive.targets.len())
+                        .collect();
+                    // Every target is read for every part that applies it.
+                    spend(
+                        &mut budget,
+                        weights.len().saturating_mul(layout.count.max(2)),
+                        size_of::<[f32; 3]>(),
+                        "numbers of morph targets",
+                    )?;
                     let mut positions = layout.floats::<3>(document);
                     let targets = weights
                         .iter()
                         .map(|&(target, weight)| (primitive.targets[target].position, weight));
-                    apply_targets(document, &mut positions, targets)?;
+                    apply_targets(document, &mut positions, targets, cancel)?;
                     place_vertices(
                         &positions,
                         place.world_from_node,
@@ -130,16 +145,18 @@ pub(super) fn drawn(
                         primitive: number,
                         weights,
                     });
+                    part_of.insert(alike[number], pieces.parts.len() - 1);
                     pieces.parts.len() - 1
                 }
             };
-            let corners = corners(document, primitive, layout.count).map_err(|what| format!("{} {what}", here()))?;
+            let corner_count = corner_count(document, primitive, layout.count)?;
             spend(
                 &mut budget,
-                corners.count(mode),
+                triangle_count(mode, corner_count),
                 size_of::<[DrawnVertex; 3]>(),
                 "triangles",
             )?;
+            let corners = corners(document, primitive, layout.count).map_err(|what| format!("{} {what}", here()))?;
             let start = drawn.triangles.len() as u32;
             let is_mirrored = place.world_from_node.matrix3.determinant() < 0.0;
             let winding = if is_mirrored {
@@ -171,11 +188,7 @@ fn number_file_vertices(document: &Document, meshes: &[Vec<Primitive>]) -> Resul
         }
     }
     // Every element of a sound accessor has a byte in the file, but several accessors may share it.
-    let most = document
-        .loaded_bytes()
-        .saturating_mul(MOST_GROWTH)
-        .saturating_add(GRACE_BYTES)
-        / size_of::<u32>();
+    let most = document.drawing_budget() / size_of::<u32>();
     if count > most.min(u32::MAX as usize) as u64 {
         return Err(Fault::TooLarge(format!("{count} vertices")));
     }
@@ -186,22 +199,39 @@ fn spend(budget: &mut usize, count: usize, bytes_each: usize, what: &str) -> Res
     let left = count
         .checked_mul(bytes_each)
         .and_then(|bytes| budget.checked_sub(bytes));
-    *budget = left.ok_or_else(|| Fault::TooLarge(format!("{count} {what} more, each seen through a node")))?;
+    *budget = left.ok_or_else(|| Fault::TooLarge(format!("{count} {what} more, each seen through a node,")))?;
     Ok(())
 }
 
-/// The targets of a primitive that its node, or else its mesh, applies, with their weights.
-fn default_weights(document: &Document, place: &Placed, primitive: &Primitive) -> Vec<(usize, f64)> {
-    let json = &document.json;
-    let own = json.member(document.nodes_at[place.node], "weights");
-    let list = own.or_else(|| json.member(document.meshes_at[place.mesh], "weights"));
-    let numbers = list.into_iter().flat_map(|list| json.elements(list));
-    numbers
-        .map(|at| json.number(at).unwrap_or(0.0))
-        .take(primitive.targets.len())
-        .enumerate()
-        .filter(|(_, weight)| *weight != 0.0 && weight.is_finite())
-        .collect()
+/// The weights that nodes and meshes give to morph targets, each list read once.
+#[derive(Default)]
+struct Weights {
+    of_mesh: HashMap<usize, Vec<(usize, f64)>>,
+    of_node: Vec<(usize, f64)>,
+}
+
+impl Weights {
+    /// The targets that a node, or else its mesh, applies, with their weights.
+    fn of(&mut self, document: &Document, place: &Placed) -> &[(usize, f64)] {
+        let json = &document.json;
+        let read = |list: At| {
+            let numbers = json.elements(list).map(|at| json.number(at).unwrap_or(0.0));
+            let applied = numbers.enumerate();
+            applied
+                .filter(|(_, weight)| *weight != 0.0 && weight.is_finite())
+                .collect()
+        };
+        match json.member(document.nodes_at[place.node], "weights") {
+            Some(own) => {
+                self.of_node = read(own);
+                &self.of_node
+            }
+            None => self.of_mesh.entry(place.mesh).or_insert_with(|| {
+                let list = json.member(document.meshes_at[place.mesh], "weights");
+                list.map(read).unwrap_or_default()
+            }),
+        }
+    }
 }
 
 /// Adds the ways of morph targets, each times its weight. A target of another count is refused in words.
@@ -209,14 +239,15 @@ pub(super) fn apply_targets(
     document: &Document,
     elements: &mut [[f32; 3]],
     targets: impl Iterator<Item = (Option<usize>, f64)>,
-) -> Result<(), String> {
+    cancel: &Cancel,
+) -> Result<(), Fault> {
     for (accessor, weight) in targets {
+        cancel.check()?;
         let Some(accessor) = accessor else { continue };
-        let layout = Layout::of(document, accessor)?;
+        let layout = document.layout(accessor)?;
         if layout.count != elements.len() || layout.lanes != 3 {
-            return Err(format!(
-                "accessor {accessor}, a morph target, is not of its base's size"
-            ));
+            let reason = format!("accessor {accessor}, a morph target, is not of its base's size");
+            return Err(Fault::Malformed(reason));
         }
         for (element, way) in elements.iter_mut().zip(layout.floats::<3>(document)) {
             (0..3).for_each(|lane| element[lane] = (f64::from(element[lane]) + weight * f64::from(way[lane])) as f32);
@@ -254,11 +285,29 @@ enum Winding {
     Flipped,
 }
 
+/// How many corners a primitive has, without reading them.
+fn corner_count(document: &Document, primitive: &Primitive, vertex_count: usize) -> Result<usize, String> {
+    let Some(accessor) = primitive.indices else {
+        return Ok(vertex_count);
+    };
+    Ok(document.layout(accessor)?.count)
+}
+
+/// At most how many triangles so many corners make.
+fn triangle_count(mode: Mode, corner_count: usize) -> usize {
+    if mode == Mode::Triangles {
+        corner_count / 3
+    } else {
+        corner_count.saturating_sub(2)
+    }
+}
+
 fn corners(document: &Document, primitive: &Primitive, vertex_count: usize) -> Result<Corners, String> {
     let Some(accessor) = primitive.indices else {
         return Ok(Corners::Counted(vertex_count as u32));
     };
-    let indices = Layout::of(document, accessor)?
+    let indices = document
+        .layout(accessor)?
         .indices(document)
         .map_err(|what| format!("has indices that {what}"))?;
     match indices
@@ -279,15 +328,6 @@ impl Corners {
         match self {
             Self::Listed(indices) => indices.len(),
             Self::Counted(count) => *count as usize,
-        }
-    }
-
-    /// At most how many triangles these are.
-    fn count(&self, mode: Mode) -> usize {
-        if mode == Mode::Triangles {
-            self.len() / 3
-        } else {
-            self.len().saturating_sub(2)
         }
     }
 
@@ -312,7 +352,9 @@ impl Corners {
             };
             corners.map(|corner| DrawnVertex(first + corner))
         };
-        let all = (0..self.count(mode)).into_par_iter().with_min_len(CHUNK);
+        let all = (0..triangle_count(mode, self.len()))
+            .into_par_iter()
+            .with_min_len(CHUNK);
         if mode == Mode::Triangles {
             out.par_extend(all.map(|t| wound(triangle(t))));
         } else {

@@ -23,7 +23,7 @@ struct Token {
 }
 
 /// A value's place on the tape.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub(super) struct At(u32);
 
 impl Json {

@@ -1,19 +1,19 @@
 //! How a glTF looks: attributes of its drawn vertices, materials and images.
 
-use std::sync::Arc;
+use std::collections::HashMap;
 
 use ::gltf::json;
 use ::gltf::json::validation::Checked;
 use glam::{DMat3, DVec3, Vec3};
-use pliant_mesh::Object;
+use pliant_mesh::{Cancel, Object};
 use rayon::prelude::*;
 
-use super::accessor::Layout;
 use super::document::{Document, ImageFile};
 use super::geometry::{self, Part, Pieces};
-use super::maps;
+use super::json::At;
 use super::primitive::Primitive;
-use crate::appearance::{AlphaMode, Appearance, Group, Image, Material, Wrap};
+use super::{maps, uri};
+use crate::appearance::{AlphaMode, Appearance, Group, Image, Material, Origin, Wrap};
 use crate::objects;
 
 /// Vertices that a thread handles at a time.
@@ -44,7 +44,7 @@ pub(super) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
         }),
         colours: gather(pieces, [255; 4], |part| {
             let accessor = primitive(meshes, part).colour?;
-            let has_alpha = Layout::of(document, accessor).ok()?.lanes == 4;
+            let has_alpha = document.layout(accessor).ok()?.lanes == 4;
             let colours = attribute::<4>(document, part, Some(accessor))?;
             let byte = |x: f32| (x * 255.0).round().clamp(0.0, 255.0) as u8;
             let whole = |[r, g, b, a]: [f32; 4]| [r, g, b, if has_alpha { a } else { 1.0 }].map(byte);
@@ -74,6 +74,7 @@ pub(super) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
     {
         out.materials.push(material(document, &json::Material::default()));
     }
+    let mut names = Names::of(document);
     out.groups = pieces
         .pieces
         .iter()
@@ -82,7 +83,7 @@ pub(super) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
             material: of_piece(meshes, pieces, piece.part, piece.primitive)
                 .material
                 .unwrap_or(default_material),
-            node_name: document.name(document.nodes_at[pieces.parts[piece.part].node]),
+            node_name: names.get(document.nodes_at[pieces.parts[piece.part].node]),
         })
         .collect();
     out
@@ -90,21 +91,43 @@ pub(super) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
 
 /// What the drawn set's nodes and materials tell apart; a node without a name is called as its mesh is.
 pub(super) fn objects(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<Object> {
+    let mut names = Names::of(document);
     objects::gathered(pieces.pieces.iter().map(|piece| {
         let part = &pieces.parts[piece.part];
         let material = of_piece(meshes, pieces, piece.part, piece.primitive).material;
-        let name = document.name(document.nodes_at[part.node]);
+        let name = names.get(document.nodes_at[part.node]);
         objects::Part {
             key: (part.node, material),
             name: if name.is_empty() {
-                document.name(document.meshes_at[part.mesh])
+                names.get(document.meshes_at[part.mesh])
             } else {
                 name
             },
-            material: material.map_or_else(String::new, |material| document.name(document.materials_at[material])),
+            material: material.map_or_else(String::new, |material| names.get(document.materials_at[material])),
             triangles: piece.triangles.clone(),
         }
     }))
+}
+
+/// Names as they are shown, each read once.
+struct Names<'a> {
+    document: &'a Document,
+    known: HashMap<At, String>,
+}
+
+impl<'a> Names<'a> {
+    fn of(document: &'a Document) -> Self {
+        Self {
+            document,
+            known: HashMap::new(),
+        }
+    }
+
+    /// The name of a node, mesh or material.
+    fn get(&mut self, object: At) -> String {
+        let name = || objects::short_name(&self.document.name(object));
+        self.known.entry(object).or_insert_with(name).clone()
+    }
 }
 
 /// The rest normals of all drawn vertices in world space, of unit length, zero where there are none.
@@ -128,7 +151,7 @@ fn normals(document: &Document, part: &Part, primitive: &Primitive) -> Option<Ve
         .iter()
         .map(|&(target, weight)| (primitive.targets[target].normal, weight));
     // A target whose normals can't be read leaves the others as they are.
-    let _ = geometry::apply_targets(document, &mut normals, targets);
+    let _ = geometry::apply_targets(document, &mut normals, targets, &Cancel::new());
     Some(normals)
 }
 
@@ -138,7 +161,7 @@ pub(super) fn attribute<const N: usize>(
     part: &Part,
     accessor: Option<usize>,
 ) -> Option<Vec<[f32; N]>> {
-    let layout = Layout::of(document, accessor?).ok()?;
+    let layout = document.layout(accessor?).ok()?;
     (layout.count == part.vertices.len()).then(|| layout.floats(document))
 }
 
@@ -200,12 +223,14 @@ fn material(document: &Document, material: &json::Material) -> Material {
 }
 
 fn image(document: &Document, image: usize) -> Image {
-    let name = match &document.images[image] {
-        ImageFile::Neighbour { path, .. } => path.clone(),
-        _ => document.name(document.images_at[image]),
+    let (name, origin) = match &document.images[image] {
+        ImageFile::Neighbour { path, .. } if uri::inside(path).is_none() => (path.clone(), Origin::Outside),
+        ImageFile::Neighbour { path, .. } => (path.clone(), Origin::Inside),
+        _ => (document.name(document.images_at[image]), Origin::Inside),
     };
     Image {
         name,
-        encoded: Arc::from(document.image(image).unwrap_or_default()),
+        encoded: document.image(image).unwrap_or_default(),
+        origin,
     }
 }

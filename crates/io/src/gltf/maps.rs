@@ -39,6 +39,12 @@ impl UvTransform {
         [cos * u + sin * v + self.offset[0], cos * v - sin * u + self.offset[1]]
     }
 
+    /// What tells it apart from others.
+    pub fn bits(&self) -> [u32; 5] {
+        let ([u, v], [s, t]) = (self.offset, self.scale);
+        [u, v, self.rotation, s, t].map(f32::to_bits)
+    }
+
     fn matrix(&self) -> Mat3 {
         let at = |uv| Vec2::from(self.apply(uv));
         let origin = at([0.0, 0.0]);
@@ -110,10 +116,12 @@ pub(super) fn dress(document: &Document, material: usize, out: &mut Material) {
     };
     let json = &document.json;
     let number = |path: &[&str]| json.path(at, path).and_then(|at| json.number(at));
-    let sets = MaterialMaps::of(document, material);
+    let Some(sets) = document.material_maps.get(material) else {
+        return;
+    };
     let references = References::of(document, material);
     let [metallic_roughness, normal, occlusion, emissive] =
-        references.others.map(|reference| map(document, &sets, reference?));
+        references.others.map(|reference| map(document, sets, reference?));
     out.metallic_roughness_map = metallic_roughness;
     out.normal_map = normal;
     out.occlusion_map = occlusion;

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use super::document::Document;
 use super::json::At;
+use crate::quote::quoted;
 
 const EXTENSIONS: [&str; 2] = ["KHR_meshopt_compression", "EXT_meshopt_compression"];
 
@@ -64,6 +65,9 @@ pub(super) fn decode(document: &mut Document, cancel: &Cancel) -> Result<(), Can
         .into_par_iter()
         .map(|compressed| {
             let compressed = compressed?;
+            if cancel.is_cancelled() {
+                return Err("was not wanted any more".to_owned());
+            }
             let stride = (compressed.mode == Mode::Attributes).then_some(compressed.stride);
             Ok::<_, String>((compressed.decoded()?, stride))
         })
@@ -102,7 +106,7 @@ impl<'a> Compressed<'a> {
             .ok_or_else(|| format!("lies beyond the bytes of buffer {buffer}"))?;
         let mode = word("mode").unwrap_or_default();
         let filter = word("filter").unwrap_or_else(|| "NONE".to_owned());
-        let unknown = |what: &str, name: &str| format!("has the unknown {what} {name:?}");
+        let unknown = |what: &str, name: &str| format!("has the unknown {what} '{}'", quoted(name));
         let mode = Mode::parse(&mode).map_err(|_| unknown("mode", &mode))?;
         let filter = match &*filter {
             "COLOR" => None,

@@ -15,6 +15,7 @@ mod look;
 mod maps;
 mod meshopt;
 mod morph;
+mod overlap;
 mod pack;
 mod patch;
 mod primitive;
@@ -56,9 +57,9 @@ fn open(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn), Fault> {
     let mut document = Document::read(source, format)?;
     let mut notes = std::mem::take(&mut document.notes);
     meshopt::decode(&mut document, source.cancel)?;
-    let meshes = primitive::primitives(&document)?;
+    let meshes = primitive::primitives(&document, source.cancel)?;
     draco::decode(&mut document, &meshes, source.cancel)?;
-    let placed = tree::placed_meshes(&document, &mut notes)?;
+    let placed = tree::placed_meshes(&document, &mut notes, source.cancel)?;
     let (drawn, pieces) = geometry::drawn(&document, &meshes, &placed, source.progress, source.cancel)?;
     Ok((
         Stored {
@@ -66,7 +67,7 @@ fn open(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn), Fault> {
             document,
             meshes,
             pieces,
-            notes,
+            notes: notes.sentences(),
         },
         drawn,
     ))
@@ -96,6 +97,18 @@ pub fn with_neighbours_renamed(gltf: &[u8], names: &[(&str, String)]) -> Option<
         }
     }
     (!edits.is_empty()).then(|| edits.apply(json.text(), 0..gltf.len()))
+}
+
+/// What is said of a neighbour outside the file's folder that a save takes into its result.
+pub(crate) const FROM_OUTSIDE: &str =
+    "lies outside the file's own folder and was put into the result: share that only if you mean to share it too.";
+
+/// What is said of one that is named as an image and is none.
+pub(crate) const NO_IMAGE: &str = "lies outside the file's own folder and is no image, so it was left out.";
+
+/// Whether a neighbour's path stays in the file's own folder.
+pub(crate) fn stays_inside(path: &str) -> bool {
+    uri::inside(path).is_some()
 }
 
 /// A neighbour's path as a URI.

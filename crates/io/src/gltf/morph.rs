@@ -4,9 +4,8 @@
 //! Whatever tells as many weights as a mesh has targets is told one more: the mesh's weights and names, the weights of
 //! its nodes, and the animations of them.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, HashMap};
 
-use super::accessor::Layout;
 use super::changes::{PartChange, Semantic};
 use super::claims::{self, MeshCopy};
 use super::document::Document;
@@ -15,6 +14,7 @@ use super::json::{At, Edits};
 use super::patch::{Bounds, Patch, Patched, cannot_hold, number};
 use super::primitive::Primitive;
 use crate::course::Course;
+use crate::quote::quoted;
 use crate::save::MorphTarget;
 use crate::{Format, SaveError};
 
@@ -28,7 +28,9 @@ pub(super) fn with_target<'a>(
     format: Format,
     course: &Course<'_>,
 ) -> Result<Patched<'a>, SaveError> {
-    let copies = claims::copies(document, meshes, pieces, changes);
+    let (of_claims, course) = course.split(0.3);
+    let copies = claims::copies(document, meshes, pieces, changes, &of_claims)?;
+    let nodes = nodes_of_copies(document, &copies);
     let mut maker = TargetMaker {
         patch: Patch::new(document),
         meshes,
@@ -38,11 +40,12 @@ pub(super) fn with_target<'a>(
         deltas: BTreeMap::new(),
         zeros: BTreeMap::new(),
         samplers: BTreeMap::new(),
+        animated: Animated::of(document),
     };
     for (number, copy) in copies.iter().enumerate() {
         course.reach(number, copies.len())?;
         if copy.parts.iter().flatten().any(|&part| !changes[part].is_empty()) {
-            maker.add_to(&copies, number)?;
+            maker.add_to(&copies, number, &nodes[number])?;
         }
     }
     let samplers = std::mem::take(&mut maker.samplers);
@@ -50,7 +53,7 @@ pub(super) fn with_target<'a>(
         maker.patch.edits.append_elements(&document.json, list, &texts);
     }
     maker.patch.clone_meshes(&copies);
-    Ok(maker.patch.finished())
+    maker.patch.finished(format)
 }
 
 struct TargetMaker<'a, 'b> {
@@ -65,6 +68,7 @@ struct TargetMaker<'a, 'b> {
     zeros: BTreeMap<(usize, bool), usize>,
     /// Samplers to be added to each animation, and where.
     samplers: BTreeMap<usize, (At, Vec<String>)>,
+    animated: Animated,
 }
 
 impl TargetMaker<'_, '_> {
@@ -77,7 +81,7 @@ impl TargetMaker<'_, '_> {
     }
 
     /// Adds the target to a mesh or a clone.
-    fn add_to(&mut self, copies: &[MeshCopy], number: usize) -> Result<(), SaveError> {
+    fn add_to(&mut self, copies: &[MeshCopy], number: usize, nodes: &[usize]) -> Result<(), SaveError> {
         let document = self.patch.document;
         let json = &document.json;
         let copy = &copies[number];
@@ -89,8 +93,7 @@ impl TargetMaker<'_, '_> {
                 "those of mesh {mesh}, whose primitives have different numbers of them"
             )));
         }
-        for (place, primitive) in primitives.iter().enumerate() {
-            let part = copy.part_of(primitives, place);
+        for (primitive, part) in primitives.iter().zip(copy.followed_parts(primitives)) {
             let text = self.target_of(primitive, part)?;
             let edits = self.patch.edits_of_copy(copies, number);
             match json.member(primitive.at, "targets") {
@@ -104,16 +107,16 @@ impl TargetMaker<'_, '_> {
         append_weight(document, edits, mesh, known, weight, Missing::Write);
         if !append_name(document, edits, mesh, known, self.target.name) {
             self.patch.out.warnings.push(format!(
-                "The names of mesh {}'s morph targets are not as many as the targets, so {:?} is not named there.",
-                copy.mesh, self.target.name
+                "The names of mesh {}'s morph targets are not as many as the targets, so '{}' is not named there.",
+                copy.mesh,
+                quoted(self.target.name)
             ));
         }
-        let nodes = nodes_of(document, copies, number);
-        for &node in &nodes {
+        for &node in nodes {
             let at = document.nodes_at[node];
             append_weight(document, &mut self.patch.edits, at, known, weight, Missing::Leave);
         }
-        self.widen_animations(copy.mesh, &nodes, known)
+        self.widen_animations(copy.mesh, nodes, known)
     }
 
     /// A primitive's target as JSON.
@@ -124,7 +127,7 @@ impl TargetMaker<'_, '_> {
             let Some(base) = semantic.accessor(primitive) else {
                 continue;
             };
-            let layout = Layout::of(document, base).map_err(|what| cannot_hold(what, self.format))?;
+            let layout = document.layout(base).map_err(|what| cannot_hold(what, self.format))?;
             let change = part.map(|part| (part, self.changes[part].of(semantic)));
             let accessor = match change.filter(|(_, change)| !change.is_empty()) {
                 None => self.zeros(layout.count, semantic),
@@ -135,6 +138,9 @@ impl TargetMaker<'_, '_> {
                     for &(element, new) in change {
                         let (way, rest) = (&mut way[element as usize], rest[element as usize]);
                         (0..3).for_each(|lane| way[lane] = new[lane] - rest[lane]);
+                        if !way.iter().all(|number| number.is_finite()) {
+                            return Err(SaveError::NotFinite { file_vertex: element });
+                        }
                     }
                     let accessor = self.new_accessor(&way, semantic)?;
                     self.deltas.insert((part, place), accessor);
@@ -186,41 +192,40 @@ impl TargetMaker<'_, '_> {
     }
 
     /// Gives every animation of the weights of `nodes`, which show `mesh` with `known` targets, the new one's weight.
-    fn widen_animations(&mut self, mesh: usize, nodes: &BTreeSet<usize>, known: usize) -> Result<(), SaveError> {
-        let document = self.patch.document;
-        let json = &document.json;
-        let list = |object: At, key: &str| json.member(object, key);
-        let animations = list(json.root(), "animations");
-        for (animation, at) in animations.into_iter().flat_map(|at| json.elements(at)).enumerate() {
-            let samplers = list(at, "samplers");
-            let sampler_list: Vec<At> = samplers.into_iter().flat_map(|at| json.elements(at)).collect();
-            for channel in list(at, "channels").into_iter().flat_map(|at| json.elements(at)) {
-                let pointer = json.path(channel, &["target", "extensions", "KHR_animation_pointer", "pointer"]);
-                let pointer = pointer.and_then(|at| json.string(at)).unwrap_or_default();
-                let of_nodes = nodes.iter().any(|node| pointer == format!("/nodes/{node}/weights"));
-                if of_nodes || pointer == format!("/meshes/{mesh}/weights") {
-                    return Err(self.refuse(format!("animation {animation} of {pointer} (KHR_animation_pointer)")));
-                }
-                let node = json.path(channel, &["target", "node"]).and_then(|at| json.number(at));
-                let path = json.path(channel, &["target", "path"]).and_then(|at| json.string(at));
-                let is_ours = node.is_some_and(|node| nodes.contains(&(node as usize)));
-                if path.as_deref() != Some("weights") || !is_ours {
-                    continue;
-                }
-                let broken = || format!("animation {animation}, whose weights are not as many as the targets,");
-                let named = json.member(channel, "sampler");
-                let number = named.and_then(|at| json.number(at)).map(|number| number as usize);
-                let (Some(named), Some(&sampler), Some(samplers)) =
-                    (named, number.and_then(|number| sampler_list.get(number)), samplers)
-                else {
-                    return Err(self.refuse(broken()));
-                };
-                let text = self.widened(sampler, known).ok_or_else(|| self.refuse(broken()))?;
-                let added = self.samplers.entry(animation).or_insert_with(|| (samplers, Vec::new()));
-                added.1.push(text);
-                let number = sampler_list.len() + added.1.len() - 1;
-                self.patch.edits.replace(json.span(named), number.to_string());
+    fn widen_animations(&mut self, mesh: usize, nodes: &[usize], known: usize) -> Result<(), SaveError> {
+        let pointers = nodes.iter().map(|node| format!("/nodes/{node}/weights"));
+        for pointer in pointers.chain([format!("/meshes/{mesh}/weights")]) {
+            if let Some(animation) = self.animated.pointers.get(&pointer) {
+                return Err(self.refuse(format!(
+                    "animation {animation} of {} (KHR_animation_pointer)",
+                    quoted(&pointer)
+                )));
             }
+        }
+        let of_nodes = nodes.iter().filter_map(|node| self.animated.weights_of_node.get(node));
+        let mut channels: Vec<Channel> = of_nodes.flatten().copied().collect();
+        channels.sort_by_key(|channel| (channel.animation, channel.number));
+        for Channel { animation, sampler, .. } in channels {
+            let broken = || format!("animation {animation}, whose weights are not as many as the targets,");
+            let samplers = &self.animated.samplers[animation];
+            let found = sampler.and_then(|named| {
+                let number = self.patch.document.json.number(named)? as usize;
+                Some((
+                    named,
+                    *samplers.elements.get(number)?,
+                    samplers.list?,
+                    samplers.elements.len(),
+                ))
+            });
+            let Some((named, sampler, list, count)) = found else {
+                return Err(self.refuse(broken()));
+            };
+            let text = self.widened(sampler, known).ok_or_else(|| self.refuse(broken()))?;
+            let added = self.samplers.entry(animation).or_insert_with(|| (list, Vec::new()));
+            added.1.push(text);
+            let number = count + added.1.len() - 1;
+            let span = self.patch.document.json.span(named);
+            self.patch.edits.replace(span, number.to_string());
         }
         Ok(())
     }
@@ -230,8 +235,8 @@ impl TargetMaker<'_, '_> {
         let document = self.patch.document;
         let json = &document.json;
         let accessor = |key: &str| Some(json.number(json.member(sampler, key)?)? as usize);
-        let input = Layout::of(document, accessor("input")?).ok()?;
-        let output = Layout::of(document, accessor("output")?).ok()?;
+        let input = document.layout(accessor("input")?).ok()?;
+        let output = document.layout(accessor("output")?).ok()?;
         let interpolation = json.member(sampler, "interpolation").and_then(|at| json.string(at));
         let is_cubic = interpolation.as_deref() == Some("CUBICSPLINE");
         let rows = input.count * if is_cubic { 3 } else { 1 };
@@ -306,23 +311,79 @@ fn append_name(document: &Document, edits: &mut Edits, mesh: At, known: usize, n
     true
 }
 
-/// The nodes that show a copy after the edit.
-fn nodes_of(document: &Document, copies: &[MeshCopy], number: usize) -> BTreeSet<usize> {
-    if let Some(nodes) = &copies[number].clone_for {
-        return nodes.iter().copied().collect();
-    }
+/// The nodes that show each copy after the edit, ascending.
+fn nodes_of_copies(document: &Document, copies: &[MeshCopy]) -> Vec<Vec<usize>> {
     let json = &document.json;
-    let cloned: BTreeSet<usize> = copies
-        .iter()
-        .filter_map(|copy| copy.clone_for.as_ref())
-        .flatten()
-        .copied()
-        .collect();
-    let shows = |node: &usize| {
-        let mesh = json
-            .member(document.nodes_at[*node], "mesh")
-            .and_then(|at| json.number(at));
-        mesh == Some(copies[number].mesh as f64) && !cloned.contains(node)
-    };
-    (0..document.nodes_at.len()).filter(shows).collect()
+    let mut copy_of: HashMap<usize, usize> = HashMap::new();
+    for (number, copy) in copies.iter().enumerate() {
+        copy_of.extend(copy.clone_for.iter().flatten().map(|&node| (node, number)));
+    }
+    let mut nodes = vec![Vec::new(); copies.len()];
+    for (node, &at) in document.nodes_at.iter().enumerate() {
+        let mesh = json.member(at, "mesh").and_then(|at| json.number(at));
+        // The file's own meshes come first among the copies.
+        let shown = copy_of.get(&node).copied().or(mesh.map(|mesh| mesh as usize));
+        if let Some(nodes) = shown.and_then(|copy| nodes.get_mut(copy)) {
+            nodes.push(node);
+        }
+    }
+    nodes
+}
+
+/// What animates weights, found once for all meshes.
+struct Animated {
+    /// The samplers of each animation.
+    samplers: Vec<Samplers>,
+    weights_of_node: HashMap<usize, Vec<Channel>>,
+    /// What `KHR_animation_pointer` points at, and by which animation.
+    pointers: HashMap<String, usize>,
+}
+
+struct Samplers {
+    list: Option<At>,
+    elements: Vec<At>,
+}
+
+/// A channel of an animation, by its number in it, and where it names its sampler.
+#[derive(Clone, Copy)]
+struct Channel {
+    animation: usize,
+    number: usize,
+    sampler: Option<At>,
+}
+
+impl Animated {
+    fn of(document: &Document) -> Self {
+        let json = &document.json;
+        let mut out = Self {
+            samplers: Vec::new(),
+            weights_of_node: HashMap::new(),
+            pointers: HashMap::new(),
+        };
+        let animations = json.member(json.root(), "animations");
+        for (animation, at) in animations.into_iter().flat_map(|at| json.elements(at)).enumerate() {
+            let list = json.member(at, "samplers");
+            out.samplers.push(Samplers {
+                list,
+                elements: list.into_iter().flat_map(|at| json.elements(at)).collect(),
+            });
+            let channels = json.member(at, "channels");
+            for (number, channel) in channels.into_iter().flat_map(|at| json.elements(at)).enumerate() {
+                let pointer = json.path(channel, &["target", "extensions", "KHR_animation_pointer", "pointer"]);
+                if let Some(pointer) = pointer.and_then(|at| json.string(at)) {
+                    out.pointers.entry(pointer).or_insert(animation);
+                }
+                let path = json.path(channel, &["target", "path"]).and_then(|at| json.string(at));
+                let node = json.path(channel, &["target", "node"]).and_then(|at| json.number(at));
+                if let (Some("weights"), Some(node)) = (path.as_deref(), node) {
+                    out.weights_of_node.entry(node as usize).or_default().push(Channel {
+                        animation,
+                        number,
+                        sampler: json.member(channel, "sampler"),
+                    });
+                }
+            }
+        }
+        out
+    }
 }

@@ -1,12 +1,19 @@
 //! A `.gltf` packed into a GLB: its buffers and images become one BIN chunk.
 
+use std::borrow::Cow;
+use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
+
 use super::container;
 use super::deliver::{reparsed, saved, without_padding};
 use super::document::{Buffer, Document, ImageFile};
 use super::json::{At, Edits, Json};
 use super::patch::Patched;
+use super::{FROM_OUTSIDE, NO_IMAGE, uri};
 use crate::SaveError;
 use crate::image::mime_type;
+use crate::images::decodes;
+use crate::quote::quoted;
 use crate::save::{Save, Saved};
 
 /// The GLB of a `.gltf`. Images whose bytes are missing or of no kind that glTF knows keep their address.
@@ -17,6 +24,9 @@ pub(super) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
     let mut bin: Vec<u8> = Vec::new();
     let mut homes = Vec::new();
     let mut placeholders = Vec::new();
+    // Where bytes that several name are packed: once.
+    let mut packed: HashMap<(usize, Range<usize>), usize> = HashMap::new();
+    refuse_unused(document, save)?;
     for (buffer, bytes) in document.buffers.iter().zip(&patched.buffers) {
         homes.push(match buffer {
             Buffer::Decoded(_) => break,
@@ -25,17 +35,31 @@ pub(super) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
                 placeholders.push(homes.len());
                 Home::Placeholder(placeholders.len())
             }
+            Buffer::Neighbour { path, bytes: own } => {
+                if uri::inside(path).is_none() {
+                    warnings.push(format!("{} {FROM_OUTSIDE}", quoted(path)));
+                }
+                match bytes {
+                    Cow::Borrowed(_) => {
+                        Home::Packed(*packed.entry(own.place()).or_insert_with(|| append(&mut bin, bytes)))
+                    }
+                    Cow::Owned(_) => Home::Packed(append(&mut bin, bytes)),
+                }
+            }
             _ => Home::Packed(append(&mut bin, bytes)),
         });
     }
     move_views(&json, &homes, &mut edits);
-    let mut views = Vec::new();
+    let mut views: Vec<String> = Vec::new();
+    let mut sound: HashMap<(usize, Range<usize>), bool> = HashMap::new();
     let view_count = elements(&json, "bufferViews").len();
+    let mut view_of: HashMap<(usize, Range<usize>), usize> = HashMap::new();
     for (number, at) in elements(&json, "images").into_iter().enumerate() {
         let told = json.member(at, "mimeType").and_then(|at| json.string(at));
         let bytes = match &document.images[number] {
             ImageFile::Data(bytes) | ImageFile::Neighbour { bytes: Some(bytes), .. } => bytes,
             ImageFile::Neighbour { path, bytes: None } => {
+                let path = quoted(path);
                 warnings.push(format!("The image {path} was missing and could not be packed."));
                 continue;
             }
@@ -51,12 +75,25 @@ pub(super) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
         else {
             continue;
         };
-        let start = append(&mut bin, bytes);
-        let view = view_count + views.len();
-        views.push(format!(
-            "{{\"buffer\":0,\"byteOffset\":{start},\"byteLength\":{}}}",
-            bytes.len()
-        ));
+        if let ImageFile::Neighbour { path, .. } = &document.images[number]
+            && uri::inside(path).is_none()
+        {
+            // A stranger's file may point at anything there, and would carry it away as an image.
+            if !*sound.entry(bytes.place()).or_insert_with(|| decodes(bytes)) {
+                let path = quoted(path);
+                warnings.push(format!("{path} {NO_IMAGE}"));
+                continue;
+            }
+            warnings.push(format!("{} {FROM_OUTSIDE}", quoted(path)));
+        }
+        let view = *view_of.entry(bytes.place()).or_insert_with(|| {
+            let start = *packed.entry(bytes.place()).or_insert_with(|| append(&mut bin, bytes));
+            let length = bytes.len();
+            views.push(format!(
+                "{{\"buffer\":0,\"byteOffset\":{start},\"byteLength\":{length}}}"
+            ));
+            view_count + views.len() - 1
+        });
         let mime = if told.is_none() {
             format!(",\"mimeType\":\"{mime}\"")
         } else {
@@ -72,6 +109,51 @@ pub(super) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
     let bytes = container::join(without_padding(&text), bin, &[], &[]);
     let bytes = bytes.ok_or(SaveError::TooLarge { format: save.format })?;
     Ok(saved(save, bytes, Vec::new(), warnings))
+}
+
+/// Refuses a buffer outside the file's folder that no accessor reads: a stranger's file may point at anything there,
+/// and would carry it away.
+fn refuse_unused(document: &Document, save: &Save<'_>) -> Result<(), SaveError> {
+    let is_outside = |buffer: &Buffer| matches!(buffer, Buffer::Neighbour { path, .. } if uri::inside(path).is_none());
+    if !document.buffers.iter().any(is_outside) {
+        return Ok(());
+    }
+    let json = &document.json;
+    let views = document.accessors.iter().flat_map(|accessor| {
+        let sparse = accessor.sparse.iter();
+        let sparse = sparse.flat_map(|sparse| [sparse.indices.buffer_view, sparse.values.buffer_view]);
+        accessor.buffer_view.into_iter().chain(sparse)
+    });
+    let images = document.images.iter().filter_map(|image| match image {
+        ImageFile::View(view) => Some(*view),
+        _ => None,
+    });
+    let views: BTreeSet<usize> = views.map(|view| view.value()).chain(images).collect();
+    // The text says where a view stands; one that was decoded from compressed bytes stands elsewhere by now.
+    let mut used: BTreeSet<usize> = BTreeSet::new();
+    for &at in views.iter().filter_map(|&view| document.views_at.get(view)) {
+        let extensions = json.member(at, "extensions");
+        let of_extensions = extensions.into_iter().flat_map(|at| json.members(at));
+        let places = std::iter::once(at).chain(of_extensions.map(|(_, extension)| extension));
+        let numbers = places.filter_map(|at| json.number(json.member(at, "buffer")?));
+        used.extend(numbers.map(|number| number as usize));
+    }
+    for (number, buffer) in document.buffers.iter().enumerate() {
+        if let Buffer::Neighbour { path, .. } = buffer
+            && is_outside(buffer)
+            && !used.contains(&number)
+        {
+            return Err(SaveError::CannotHold {
+                what: format!(
+                    "{}, a buffer outside the file's own folder that nothing in it reads,",
+                    quoted(path)
+                ),
+                format: save.format,
+                remedy: "take it out of the file's buffers".to_owned(),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Puts bytes at the next multiple of four and says where they begin.
@@ -130,7 +212,7 @@ fn set_buffers(json: &Json, length: usize, placeholders: &[usize], edits: &mut E
     };
     let old: Vec<At> = json.elements(list).collect();
     let text = |at: At| String::from_utf8_lossy(json.raw(at)).into_owned();
-    let first = (0..old.len()).find(|number| !placeholders.contains(number));
+    let first = (0..old.len()).find(|number| placeholders.binary_search(number).is_err());
     let kept = first.into_iter().flat_map(|first| json.members(old[first]));
     let kept = kept.filter(|&(key, _)| !matches!(json.string(key).as_deref(), Some("uri" | "byteLength")));
     let mut members: Vec<String> = vec![format!("\"byteLength\":{length}")];

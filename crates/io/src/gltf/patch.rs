@@ -1,18 +1,21 @@
 //! A save's changes to the JSON text and the buffers' bytes, and to nothing else.
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use ::gltf::json::accessor::ComponentType;
 
-use super::accessor::{Layout, Strided};
+use super::accessor::Layout;
 use super::changes::{Change, PartChange, Semantic};
 use super::claims::{self, Claim, MeshCopy, Naming, Outcome};
 use super::document::{Buffer, Document};
 use super::geometry::Pieces;
 use super::json::{At, Edits};
+use super::overlap::Places;
 use super::primitive::Primitive;
 use crate::course::Course;
+use crate::notes::Notes;
+use crate::quote::quoted;
 use crate::{Format, SaveError};
 
 /// The JSON text and the buffers after an edit.
@@ -54,6 +57,10 @@ pub(super) struct Patch<'a> {
     clone_edits: BTreeMap<usize, Edits>,
     new_accessors: Vec<String>,
     new_views: Vec<String>,
+    /// How many bytes buffers may yet take for themselves.
+    room: Option<usize>,
+    /// For each group of accessors at one place whether all of them become the same.
+    are_twins_alike: HashMap<usize, bool>,
 }
 
 /// The document with each part's attributes changed.
@@ -65,10 +72,11 @@ pub(super) fn patch<'a>(
     format: Format,
     course: &Course<'_>,
 ) -> Result<Patched<'a>, SaveError> {
-    let copies = claims::copies(document, meshes, pieces, changes);
-    let outcomes = claims::outcomes(document, meshes, &copies, changes);
+    let (of_claims, course) = course.split(0.5);
+    let copies = claims::copies(document, meshes, pieces, changes, &of_claims)?;
+    let outcomes = claims::outcomes(document, meshes, &copies, changes, &of_claims)?;
     let mut patch = Patch::new(document);
-    let places = places(document);
+    let places = Places::of(document);
     for (number, (&accessor, outcome)) in outcomes.iter().enumerate() {
         course.reach(number, outcomes.len())?;
         if !outcome.kept.change.is_empty() {
@@ -83,6 +91,7 @@ pub(super) fn patch<'a>(
             }
         }
         for claim in &outcome.moved_out {
+            course.reach(number, outcomes.len())?;
             let text = patch.new_accessor(accessor, claim, format)?;
             let number = patch.push_accessor(text);
             for naming in &claim.namings {
@@ -92,7 +101,7 @@ pub(super) fn patch<'a>(
     }
     patch.unpack(meshes, &copies, &outcomes, format)?;
     patch.clone_meshes(&copies);
-    let mut patched = patch.finished();
+    let mut patched = patch.finished(format)?;
     patched
         .warnings
         .extend(morph_warnings(document, meshes, pieces, changes));
@@ -109,6 +118,8 @@ impl<'a> Patch<'a> {
             clone_edits: BTreeMap::new(),
             new_accessors: Vec::new(),
             new_views: Vec::new(),
+            room: Some(document.drawing_budget().saturating_mul(MOST_SAVED)),
+            are_twins_alike: HashMap::new(),
         }
     }
 
@@ -127,32 +138,26 @@ impl<'a> Patch<'a> {
         accessor: usize,
         claim: &Claim<'_>,
         outcomes: &BTreeMap<usize, Outcome<'_>>,
-        places: &[Vec<Strided>],
+        places: &Places,
     ) -> Option<()> {
         let document = self.document;
-        let layout = Layout::of(document, accessor).ok()?;
+        let layout = document.layout(accessor).ok()?;
         if layout.component != ComponentType::F32 || layout.lanes != claim.semantic.lanes() {
             return None;
         }
-        let wants_the_same = |other: usize| {
-            places[other] == places[accessor]
-                && outcomes
-                    .get(&other)
-                    .is_some_and(|outcome| outcome.kept.change == claim.change)
+        let (group, twins) = places.twins(accessor);
+        let wants_the_same = |other: &usize| {
+            let outcome = outcomes.get(other);
+            outcome.is_some_and(|outcome| outcome.kept.change == claim.change)
         };
-        let is_shared = (0..places.len()).any(|other| {
-            other != accessor
-                && places[other]
-                    .iter()
-                    .any(|theirs| places[accessor].iter().any(|ours| ours.overlaps(theirs)))
-                && !wants_the_same(other)
-        });
-        let is_decoded = places[accessor]
+        let are_alike = self.are_twins_alike.entry(group);
+        let are_alike = *are_alike.or_insert_with(|| twins.len() == 1 || twins.iter().all(wants_the_same));
+        let is_shared = !are_alike || places.is_overlapped(accessor);
+        let places = places.of_accessor(accessor);
+        let is_decoded = places
             .iter()
             .any(|place| matches!(document.buffers[place.buffer], Buffer::Decoded(_)));
-        let laps_itself = places[accessor]
-            .iter()
-            .any(|place| place.count > 1 && place.stride < place.size);
+        let laps_itself = places.iter().any(|place| place.count > 1 && place.stride < place.size);
         if is_shared || laps_itself || is_decoded {
             return None;
         }
@@ -173,7 +178,7 @@ impl<'a> Patch<'a> {
             .map(|&(element, _)| bytes_of(element))
             .collect::<Option<_>>()?;
         for ((buffer, range), (_, new)) in places.into_iter().zip(claim.change) {
-            let bytes = &mut self.out.buffers[buffer].to_mut()[range];
+            let bytes = &mut self.own(buffer)?[range];
             for (bytes, number) in bytes.chunks_exact_mut(4).zip(&new[..layout.lanes]) {
                 bytes.copy_from_slice(&number.to_le_bytes());
             }
@@ -210,7 +215,7 @@ impl<'a> Patch<'a> {
         let json = &document.json;
         let old = document.accessors_at[accessor];
         let cannot = |what: String| cannot_hold(what, format);
-        let layout = Layout::of(document, accessor).map_err(cannot)?;
+        let layout = document.layout(accessor).map_err(cannot)?;
         let lanes = claim.semantic.lanes();
         let elements = whole(document, &layout, claim.change);
         let home = layout.dense.as_ref().map(|dense| dense.buffer);
@@ -221,7 +226,7 @@ impl<'a> Patch<'a> {
             numbers.flat_map(|number| number.to_le_bytes()),
             ",\"target\":34962",
         );
-        let view = view.ok_or_else(|| cannot(format!("accessor {accessor}, which is in no buffer,")))?;
+        let view = view.ok_or_else(|| cannot(self.why_no_view(accessor)))?;
         let mut text = format!(
             "{{\"bufferView\":{view},\"componentType\":5126,\"count\":{},\"type\":\"VEC{lanes}\"",
             layout.count
@@ -243,6 +248,14 @@ impl<'a> Patch<'a> {
         Ok(text)
     }
 
+    /// Why an accessor gets no view of its own.
+    pub(super) fn why_no_view(&self, accessor: usize) -> String {
+        match self.room {
+            None => TOO_MANY_COPIES.to_owned(),
+            Some(_) => format!("accessor {accessor}, which is in no buffer,"),
+        }
+    }
+
     /// Puts bytes behind a buffer's others (those of `home` where it can take them) and gives the number of a view of
     /// them, which has `members` beside its place; `None` where the file has no buffer with bytes.
     pub(super) fn new_view(
@@ -254,16 +267,27 @@ impl<'a> Patch<'a> {
         let buffers = &self.document.buffers;
         let can_take = |buffer: &usize| !matches!(buffers[*buffer], Buffer::Absent | Buffer::Decoded(_));
         let buffer = home.filter(can_take).or_else(|| (0..buffers.len()).find(can_take))?;
-        let bytes = self.out.buffers[buffer].to_mut();
+        let bytes = self.own(buffer)?;
         let offset = bytes.len().next_multiple_of(4);
         bytes.resize(offset, 0);
         bytes.extend(content);
         let length = bytes.len() - offset;
+        self.room = self.room.and_then(|room| room.checked_sub(length));
         let view = self.document.views_at.len() + self.new_views.len();
         self.new_views.push(format!(
             "{{\"buffer\":{buffer},\"byteOffset\":{offset},\"byteLength\":{length}{members}}}"
         ));
         Some(view)
+    }
+
+    /// A buffer's bytes, to be changed; `None` where the save already takes more than the file justifies.
+    fn own(&mut self, buffer: usize) -> Option<&mut Vec<u8>> {
+        let bytes = &mut self.out.buffers[buffer];
+        if matches!(bytes, Cow::Borrowed(_)) {
+            self.room = self.room.and_then(|room| room.checked_sub(bytes.len()));
+        }
+        self.room?;
+        Some(bytes.to_mut())
     }
 
     /// Lets a primitive's attribute name another accessor.
@@ -305,7 +329,10 @@ impl<'a> Patch<'a> {
     }
 
     /// The whole, put together.
-    pub(super) fn finished(mut self) -> Patched<'a> {
+    pub(super) fn finished(mut self, format: Format) -> Result<Patched<'a>, SaveError> {
+        if self.room.is_none() {
+            return Err(cannot_hold(TOO_MANY_COPIES.to_owned(), format));
+        }
         let document = self.document;
         let json = &document.json;
         let (accessors, views) = (
@@ -323,7 +350,7 @@ impl<'a> Patch<'a> {
         if !self.edits.is_empty() {
             self.out.text = Cow::Owned(self.edits.apply(json.text(), 0..json.text().len()));
         }
-        self.out
+        Ok(self.out)
     }
 
     fn append(&mut self, section: &str, elements: &[String]) {
@@ -337,6 +364,11 @@ impl<'a> Patch<'a> {
         }
     }
 }
+
+/// How many bytes a save may make for each that the drawn set may take.
+const MOST_SAVED: usize = 4;
+
+const TOO_MANY_COPIES: &str = "an edit that needs more copies of the same bytes than a file of its size justifies";
 
 /// The refusal of something that no accessor of the file's can be.
 pub(super) fn cannot_hold(what: String, format: Format) -> SaveError {
@@ -397,18 +429,6 @@ fn whole(document: &Document, layout: &Layout, change: &Change) -> Vec<[f32; 4]>
     elements
 }
 
-/// Where each accessor's elements stand; nothing for those that can't be read.
-fn places(document: &Document) -> Vec<Vec<Strided>> {
-    let of_accessor = |accessor| {
-        let Ok(layout) = Layout::of(document, accessor) else {
-            return Vec::new();
-        };
-        let sparse = layout.sparse.iter().flat_map(|sparse| [sparse.values, sparse.indices]);
-        layout.dense.into_iter().chain(sparse).collect()
-    };
-    (0..document.accessors.len()).map(of_accessor).collect()
-}
-
 /// A sentence for each edited mesh whose morph targets did not turn with it.
 fn morph_warnings(
     document: &Document,
@@ -416,22 +436,21 @@ fn morph_warnings(
     pieces: &Pieces,
     changes: &[PartChange],
 ) -> Vec<String> {
-    let is_edited = |mesh: usize| {
-        let mut parts = pieces.parts.iter().zip(changes);
-        parts.any(|(part, change)| part.mesh == mesh && !change.is_empty())
-    };
+    let parts = pieces.parts.iter().zip(changes);
+    let edited = parts.filter(|(_, change)| !change.is_empty());
+    let edited: BTreeSet<usize> = edited.map(|(part, _)| part.mesh).collect();
     let has_targets = |mesh: &usize| meshes[*mesh].iter().any(|primitive| !primitive.targets.is_empty());
-    (0..meshes.len())
-        .filter(has_targets)
-        .filter(|&mesh| is_edited(mesh))
-        .map(|mesh| {
-            let name = document.name(document.meshes_at[mesh]);
-            let called = if name.is_empty() {
-                String::new()
-            } else {
-                format!(" ({name})")
-            };
-            format!("The morph targets of mesh {mesh}{called} keep their deltas: they did not turn with the edit.")
-        })
-        .collect()
+    let mut notes = Notes::default();
+    for mesh in edited.into_iter().filter(has_targets) {
+        let name = document.name(document.meshes_at[mesh]);
+        let called = if name.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", quoted(&name))
+        };
+        let note =
+            format!("The morph targets of mesh {mesh}{called} keep their deltas: they did not turn with the edit.");
+        notes.add("meshes", Some(note));
+    }
+    notes.sentences()
 }

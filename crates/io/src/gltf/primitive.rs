@@ -1,6 +1,11 @@
 //! Meshes' primitives as the file names them.
 
+use std::collections::HashMap;
+
+use pliant_mesh::Cancel;
+
 use super::document::Document;
+use super::fault::Fault;
 use super::json::At;
 use super::maps::{MaterialMaps, UvTransform};
 
@@ -37,20 +42,36 @@ pub(super) struct Primitive {
 }
 
 /// A morph target: the ways of the base's numbers.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(super) struct Target {
     pub position: Option<usize>,
     pub normal: Option<usize>,
 }
 
+/// The accessors, morph targets and transform of texture coordinates of a primitive's vertices.
+type Attributes<'a> = ([Option<usize>; 6], &'a [Target], Option<[u32; 5]>);
+
+/// For each primitive of a mesh the first one with the same vertices, which may be itself.
+pub(super) fn first_alike(primitives: &[Primitive]) -> Vec<usize> {
+    let mut first: HashMap<Attributes<'_>, usize> = HashMap::new();
+    let all = primitives.iter().enumerate();
+    all.map(|(number, primitive)| *first.entry(primitive.attributes()).or_insert(number))
+        .collect()
+}
+
 /// The primitives of every mesh, in the file's order.
-pub(super) fn primitives(document: &Document) -> Result<Vec<Vec<Primitive>>, String> {
+pub(super) fn primitives(document: &Document, cancel: &Cancel) -> Result<Vec<Vec<Primitive>>, Fault> {
     let json = &document.json;
     let of_mesh = |(mesh, &at): (usize, &At)| {
         let list = json.member(at, "primitives");
         let primitives = list.into_iter().flat_map(|list| json.elements(list)).enumerate();
         primitives
-            .map(|(number, at)| Primitive::read(document, at, || format!("mesh {mesh} primitive {number}")))
+            .map(|(number, at)| {
+                cancel.check()?;
+                Ok(Primitive::read(document, at, || {
+                    format!("mesh {mesh} primitive {number}")
+                })?)
+            })
             .collect()
     };
     document.meshes_at.iter().enumerate().map(of_mesh).collect()
@@ -71,7 +92,7 @@ impl Primitive {
         let attributes = json.member(at, "attributes");
         let attribute = |key: &str| attributes.map_or(Ok(None), |attributes| accessor(attributes, key));
         let material = document.index(at, "material", document.materials.len(), &what)?;
-        let maps = material.map_or_else(MaterialMaps::default, |material| MaterialMaps::of(document, material));
+        let maps = material.map_or_else(MaterialMaps::default, |material| document.material_maps[material]);
         let targets = json.member(at, "targets");
         Ok(Self {
             at,
@@ -101,18 +122,22 @@ impl Primitive {
         })
     }
 
-    /// Whether two primitives' vertices look the same, so that their drawn vertices are the same.
-    pub fn has_attributes_of(&self, other: &Self) -> bool {
-        let key = |p: &Self| (p.position, p.normal, p.tangent, p.colour, p.uv, p.second_uv);
-        key(self) == key(other)
-            && self.targets == other.targets
-            && (self.uv.is_none() || self.uv_transform == other.uv_transform)
+    /// What makes the look of a primitive's vertices: equal for two whose drawn vertices are the same.
+    fn attributes(&self) -> Attributes<'_> {
+        let accessors = [
+            self.position,
+            self.normal,
+            self.tangent,
+            self.colour,
+            self.uv,
+            self.second_uv,
+        ];
+        (accessors, &self.targets, self.uv.map(|_| self.uv_transform.bits()))
     }
 
     /// Refuses, in words, what is compressed and could not be decoded.
     pub fn check_decoded(&self, document: &Document) -> Result<(), String> {
-        let undecoded = document.undecoded_primitives.iter().find(|(at, _)| *at == self.at);
-        if let Some((_, reason)) = undecoded {
+        if let Some(reason) = document.undecoded_primitives.get(&self.at) {
             return Err(format!("has {reason}"));
         }
         let read = [

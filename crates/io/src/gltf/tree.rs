@@ -1,9 +1,13 @@
 //! The node tree: which mesh stands where in the default scene.
 
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use pliant_mesh::Cancel;
 
 use super::document::Document;
+use super::fault::Fault;
 use super::json::At;
+use crate::notes::Notes;
+use crate::quote::quoted;
 
 /// A mesh seen through a node.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -20,11 +24,12 @@ const FLAT: f64 = 1e-12;
 /// nodes. Nodes whose world transform can't be inverted are left out and named in `notes`.
 ///
 /// A skinned mesh stands where its node stands, as its POSITION accessor has it: joints are not applied.
-pub(super) fn placed_meshes(document: &Document, notes: &mut Vec<String>) -> Result<Vec<Placed>, String> {
+pub(super) fn placed_meshes(document: &Document, notes: &mut Notes, cancel: &Cancel) -> Result<Vec<Placed>, Fault> {
     let json = &document.json;
     let node_count = document.nodes_at.len();
     let mut children = Vec::with_capacity(node_count);
     for (node, &at) in document.nodes_at.iter().enumerate() {
+        cancel.check()?;
         children.push(node_list(document, at, "children", || {
             format!("node {node} has child")
         })?);
@@ -34,8 +39,9 @@ pub(super) fn placed_meshes(document: &Document, notes: &mut Vec<String>) -> Res
     let mut seen = vec![false; node_count];
     let mut open: Vec<(usize, DAffine3)> = roots.into_iter().rev().map(|root| (root, DAffine3::IDENTITY)).collect();
     while let Some((node, world_from_parent)) = open.pop() {
+        cancel.check()?;
         if std::mem::replace(&mut seen[node], true) {
-            return Err(format!("node {node} is reached twice: its nodes are not a tree"));
+            return Err(format!("node {node} is reached twice: its nodes are not a tree").into());
         }
         let at = document.nodes_at[node];
         let world_from_node = world_from_parent * parent_from_node(document, at);
@@ -52,11 +58,10 @@ pub(super) fn placed_meshes(document: &Document, notes: &mut Vec<String>) -> Res
                 let called = if name.is_empty() {
                     String::new()
                 } else {
-                    format!(" ({name})")
+                    format!(" ({})", quoted(&name))
                 };
-                notes.push(format!(
-                    "Node {node}{called} is left out: its transform flattens it and can't be undone."
-                ));
+                let note = format!("Node {node}{called} is left out: its transform flattens it and can't be undone.");
+                notes.add("nodes", Some(note));
             }
         }
         open.extend(children[node].iter().rev().map(|&child| (child, world_from_node)));
@@ -64,7 +69,7 @@ pub(super) fn placed_meshes(document: &Document, notes: &mut Vec<String>) -> Res
     // A ring of nodes hangs on no root, so it shows only as nodes that nothing reaches.
     if json.member(json.root(), "scene").is_none() && seen.contains(&false) {
         let node = seen.iter().position(|seen| !seen).unwrap_or(0);
-        return Err(format!("node {node} is its own ancestor: its nodes are not a tree"));
+        return Err(format!("node {node} is its own ancestor: its nodes are not a tree").into());
     }
     Ok(placed)
 }

@@ -5,7 +5,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::accessor::Layout;
 use super::claims::{MeshCopy, Outcome};
 use super::document::Document;
 use super::draco::{self, Filled};
@@ -25,6 +24,10 @@ impl Patch<'_> {
     ) -> Result<(), SaveError> {
         let document = self.document;
         let is_changed = |accessor: usize| document.is_filled(accessor) && outcomes.contains_key(&accessor);
+        let mut copies_of_mesh: Vec<Vec<usize>> = vec![Vec::new(); meshes.len()];
+        for (number, copy) in copies.iter().enumerate() {
+            copies_of_mesh[copy.mesh].push(number);
+        }
         let mut plain: BTreeSet<usize> = BTreeSet::new();
         let (mut unpacked, mut packed) = (0, 0);
         for (mesh, primitives) in meshes.iter().enumerate() {
@@ -42,7 +45,7 @@ impl Patch<'_> {
             unpacked += compressed.len();
             for (primitive, filled) in &compressed {
                 plain.extend(filled.accessors());
-                for (number, _) in copies.iter().enumerate().filter(|(_, copy)| copy.mesh == mesh) {
+                for &number in &copies_of_mesh[mesh] {
                     remove_extension(document, self.edits_of_copy(copies, number), primitive.at);
                 }
             }
@@ -65,7 +68,7 @@ impl Patch<'_> {
     /// Gives an accessor the bytes that it was decoded to.
     fn write_out(&mut self, accessor: usize, format: Format) -> Result<(), SaveError> {
         let document = self.document;
-        let layout = Layout::of(document, accessor).map_err(|what| cannot_hold(what, format))?;
+        let layout = document.layout(accessor).map_err(|what| cannot_hold(what, format))?;
         let Some(dense) = layout.dense else { return Ok(()) };
         let is_indices = layout.lanes == 1;
         // Vertex attributes begin at multiples of four.
@@ -85,10 +88,14 @@ impl Patch<'_> {
             (false, _) => format!(",\"byteStride\":{},\"target\":34962", dense.size + padding),
         };
         let view = self.new_view(None, content, &members);
-        let view = view.ok_or_else(|| cannot_hold(format!("accessor {accessor}, which is in no buffer,"), format))?;
+        let view = view.ok_or_else(|| cannot_hold(self.why_no_view(accessor), format))?;
         let at = document.accessors_at[accessor];
         self.edits
             .set_member(&document.json, at, "bufferView", &view.to_string());
+        // Without a view of its own an accessor's offset said nothing; in the new one its elements begin at the start.
+        if let Some(offset) = document.json.member(at, "byteOffset") {
+            self.edits.replace(document.json.span(offset), "0");
+        }
         Ok(())
     }
 

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use pliant_mesh::{Cancel, Cancelled, Drawn, DrawnVertex, FileVertex};
 
 use super::statements::{NONE, Statements, UNUSED};
-use crate::polygon::triangulate;
+use crate::polygon::{CORNERS_BETWEEN_LOOKS, triangulate};
 
 /// How many combinations of one `v` line are looked through one by one before a table is asked.
 const LONGEST_CHAIN: u32 = 16;
@@ -38,7 +38,7 @@ pub(super) fn draw(statements: &Statements, cancel: &Cancel) -> Result<Corners, 
     out.drawn.file_vertex = (0..count as u32).map(FileVertex).collect();
     out.drawn.file_vertex_count = count;
     if has_uv || has_normal {
-        number_combinations(statements, &mut out);
+        number_combinations(statements, &mut out, cancel)?;
     } else {
         out.drawn_of_corner = statements.corners.iter().map(|corner| corner.position).collect();
     }
@@ -52,7 +52,7 @@ pub(super) fn draw(statements: &Statements, cancel: &Cancel) -> Result<Corners, 
 }
 
 /// Gives every combination of `v`, `vt` and `vn` that a corner names its drawn vertex.
-fn number_combinations(statements: &Statements, out: &mut Corners) {
+fn number_combinations(statements: &Statements, out: &mut Corners, cancel: &Cancel) -> Result<(), Cancelled> {
     let count = statements.positions.len();
     out.uv = vec![UNUSED; count];
     out.normal = vec![UNUSED; count];
@@ -60,7 +60,10 @@ fn number_combinations(statements: &Statements, out: &mut Corners) {
     let mut next = vec![NONE; count];
     let mut beyond_chains: HashMap<(u32, u32, u32), u32> = HashMap::new();
     out.drawn_of_corner.reserve_exact(statements.corners.len());
-    for corner in &statements.corners {
+    for (number, corner) in statements.corners.iter().enumerate() {
+        if number.is_multiple_of(CORNERS_BETWEEN_LOOKS) {
+            cancel.check()?;
+        }
         let (position, uv, normal) = (corner.position, corner.uv, corner.normal);
         let mut drawn = position;
         if out.uv[drawn as usize] == UNUSED {
@@ -100,17 +103,19 @@ fn number_combinations(statements: &Statements, out: &mut Corners) {
             *index = NONE;
         }
     }
+    Ok(())
 }
 
 /// Cuts every face into triangles over drawn vertices.
 fn cut_faces(statements: &Statements, out: &mut Corners, cancel: &Cancel) -> Result<(), Cancelled> {
     let faces = statements.face_ends.len();
     out.drawn.triangles.reserve_exact(statements.corners.len() - 2 * faces);
-    let mut start = 0;
+    let (mut start, mut looked_at) = (0, 0);
     let mut runs = statements.runs.iter().peekable();
     for (face, &end) in statements.face_ends.iter().enumerate() {
-        if face.is_multiple_of(1 << 12) {
+        if end >= looked_at {
             cancel.check()?;
+            looked_at = end + CORNERS_BETWEEN_LOOKS;
         }
         while runs.next_if(|run| run.first_face == face).is_some() {
             out.run_triangles.push(out.drawn.triangles.len() as u32);

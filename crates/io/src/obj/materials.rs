@@ -3,9 +3,14 @@
 //! Nothing here can stop a file from being opened: what is missing or can't be read becomes a note and is drawn plain.
 
 use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
 
-use crate::appearance::{AlphaMode, Image, Material, Wrap};
+use crate::Bytes;
+use crate::appearance::{AlphaMode, Image, Material, Origin, Wrap};
 use crate::colour::linear_of_srgb;
+use crate::gltf::stays_inside;
+use crate::notes::Notes;
+use crate::quote::quoted;
 use crate::save::OutputFile;
 use crate::source::Source;
 use crate::text::excerpt;
@@ -15,9 +20,9 @@ use crate::text::excerpt;
 pub(super) struct Materials {
     pub(super) materials: Vec<Material>,
     pub(super) images: Vec<Image>,
-    pub(super) notes: Vec<String>,
+    pub(super) notes: Notes,
     /// The libraries as read, by their paths.
-    pub(super) libraries: Vec<(String, Vec<u8>)>,
+    pub(super) libraries: Vec<(String, Bytes)>,
     /// The path that each image was read at.
     pub(super) image_paths: Vec<String>,
     /// The libraries' statements that say something and aren't read: maps other than the base colour's, what shines.
@@ -38,6 +43,13 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
         match read_library(source, library) {
             Ok(files) => {
                 for (path, text) in files {
+                    if out.libraries.iter().any(|(_, other)| other.place() == text.place()) {
+                        continue;
+                    }
+                    out.notes.add(
+                        "libraries of other folders",
+                        outside_note("The material library", &path),
+                    );
                     for material in parse(&text, &mut out.unread) {
                         let folder = folder_of(&path).to_owned();
                         known.entry(material.name.clone()).or_insert((material, folder));
@@ -45,13 +57,17 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
                     out.libraries.push((path, text));
                 }
             }
-            Err(reason) => out.notes.push(format!(
-                "The material library {} could not be read ({reason}), so its materials are drawn plain.",
-                excerpt(library)
-            )),
+            Err(reason) => {
+                let library = excerpt(library);
+                let note = format!(
+                    "The material library {library} could not be read ({reason}), so its materials are drawn plain."
+                );
+                out.notes.add("material libraries", Some(note));
+            }
         }
     }
     let mut image_of: HashMap<String, Option<usize>> = HashMap::new();
+    let mut image_at: HashMap<(usize, Range<usize>), usize> = HashMap::new();
     for name in names {
         let mut material = plain(name);
         if let Some((stored, folder)) = known.get(name) {
@@ -62,7 +78,7 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
                 let uri = join(folder, &file);
                 let image = *image_of
                     .entry(uri.clone())
-                    .or_insert_with(|| read_image(source, &uri, &mut out));
+                    .or_insert_with(|| read_image(source, &uri, &mut image_at, &mut out));
                 material.base_colour_image = image;
             }
         }
@@ -87,7 +103,7 @@ const MOST_UNREAD: usize = 12;
 const MOST_LIBRARIES: usize = 256;
 
 /// The bytes of a library, with its path: the whole rest of the line as one name, or else each word as one.
-fn read_library(source: &Source<'_>, library: &[u8]) -> Result<Vec<(String, Vec<u8>)>, String> {
+fn read_library(source: &Source<'_>, library: &[u8]) -> Result<Vec<(String, Bytes)>, String> {
     let whole = as_uri(&String::from_utf8_lossy(library));
     let read = |uri: &str| source.resolver.read(uri).map(|text| (uri.to_owned(), text));
     match read(&whole) {
@@ -225,7 +241,14 @@ fn join(folder: &str, file: &str) -> String {
 }
 
 /// Reads an image where it is said to be, or by its bare name beside the file (paths of another computer).
-fn read_image(source: &Source<'_>, uri: &str, out: &mut Materials) -> Option<usize> {
+///
+/// `known` says which image each place in memory is, so that one file is one image however its path is spelt.
+fn read_image(
+    source: &Source<'_>,
+    uri: &str,
+    known: &mut HashMap<(usize, Range<usize>), usize>,
+    out: &mut Materials,
+) -> Option<usize> {
     let bare = uri.rsplit('/').next().unwrap_or(uri);
     let read = |path: &str| source.resolver.read(path).map(|encoded| (path.to_owned(), encoded));
     let found = match read(uri) {
@@ -234,29 +257,45 @@ fn read_image(source: &Source<'_>, uri: &str, out: &mut Materials) -> Option<usi
     };
     match found {
         Ok((path, encoded)) => {
+            let next = out.images.len();
+            let number = *known.entry(encoded.place()).or_insert(next);
+            if number < next {
+                return Some(number);
+            }
+            out.notes
+                .add("textures of other folders", outside_note("The texture", &path));
             out.images.push(Image {
                 name: bare.to_owned(),
-                encoded: encoded.into(),
+                encoded,
+                origin: if stays_inside(&path) {
+                    Origin::Inside
+                } else {
+                    Origin::Outside
+                },
             });
             out.image_paths.push(path);
             Some(out.images.len() - 1)
         }
         Err(reason) => {
             let uri = excerpt(uri.as_bytes());
-            out.notes.push(format!(
-                "The texture {uri} could not be read ({reason}), so its material is drawn plain."
-            ));
+            let note = format!("The texture {uri} could not be read ({reason}), so its material is drawn plain.");
+            out.notes.add("textures", Some(note));
             None
         }
     }
 }
 
+/// A sentence about a neighbour outside the file's folder.
+fn outside_note(what: &str, path: &str) -> Option<String> {
+    (!stays_inside(path)).then(|| format!("{what} {} was read from outside the file's own folder.", quoted(path)))
+}
+
 /// The libraries and textures that an OBJ file in another folder needs beside it, and what stays behind.
 pub(super) fn neighbours(materials: &Materials) -> (Vec<OutputFile>, Vec<String>) {
     let (mut files, mut warnings): (Vec<OutputFile>, Vec<String>) = (Vec::new(), Vec::new());
-    let libraries = materials.libraries.iter().map(|(path, bytes)| (path, bytes.as_slice()));
+    let libraries = materials.libraries.iter().map(|(path, bytes)| (path, &**bytes));
     let images = materials.image_paths.iter().zip(&materials.images);
-    let images = images.map(|(path, image)| (path, image.encoded.as_ref()));
+    let images = images.map(|(path, image)| (path, &*image.encoded));
     for (path, bytes) in libraries.chain(images) {
         if files.iter().any(|file| file.name == *path) {
             continue;

@@ -6,7 +6,8 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::source::Source;
+use crate::objects::short_name;
+use crate::source::{Looks, Source};
 use crate::text::{Cursor, excerpt, malformed_at};
 use crate::{Format, ReadError};
 use glam::DVec3;
@@ -16,9 +17,6 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// Stands where no corner has named a drawn vertex yet; also the limit of every count.
 pub(super) const UNUSED: u32 = NONE - 1;
-
-/// The most characters of an object's name that are shown; the file keeps it all.
-const LONGEST_NAME: usize = 120;
 
 /// One corner of a face: numbers of `v`, `vt` and `vn` lines from 0, the latter two possibly [`NONE`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -87,15 +85,8 @@ impl Highest {
 /// A `v` without three numbers, a face corner that isn't one or names no `v`, and cancellation.
 pub(super) fn parse(source: &Source<'_>) -> Result<Statements, ReadError> {
     let mut reader = Reader::new(source);
-    let mut lines = 0u32;
     while !reader.cursor.is_done() {
-        if lines.is_multiple_of(1 << 16) {
-            source.cancel.check()?;
-            source
-                .progress
-                .set(0.8 * reader.cursor.at() as f32 / source.bytes.len() as f32);
-        }
-        lines = lines.wrapping_add(1);
+        source.pass(&mut reader.looks, reader.cursor.at())?;
         reader.line()?;
         reader.cursor.next_line();
     }
@@ -106,6 +97,7 @@ pub(super) fn parse(source: &Source<'_>) -> Result<Statements, ReadError> {
 struct Reader<'a> {
     source: &'a Source<'a>,
     cursor: Cursor<'a>,
+    looks: Looks,
     found: Statements,
     highest_position: Highest,
     object: String,
@@ -120,6 +112,7 @@ impl<'a> Reader<'a> {
         Self {
             source,
             cursor: Cursor::new(source.bytes, 0),
+            looks: Looks::default(),
             found: Statements::default(),
             highest_position: Highest::default(),
             object: String::new(),
@@ -176,7 +169,7 @@ impl<'a> Reader<'a> {
 
     /// A name that every run of its faces gets a copy of, so it is cut to a length that a person would read.
     fn name(&mut self) -> String {
-        self.rest().chars().take(LONGEST_NAME).collect()
+        short_name(&self.rest())
     }
 
     fn real(&mut self) -> Option<f64> {
@@ -245,6 +238,7 @@ impl<'a> Reader<'a> {
             if self.cursor.is_at_line_end() {
                 break;
             }
+            self.source.pass(&mut self.looks, self.cursor.at())?;
             let corner = self.corner()?;
             self.found.corners.push(corner);
         }

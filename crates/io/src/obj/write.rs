@@ -1,15 +1,19 @@
 //! A new OBJ file from any other kind, with a material library and its textures where the mesh has materials.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 
 use pliant_mesh::Cancelled;
 
 use super::materials;
-use crate::appearance::{AlphaMode, Material};
+use crate::appearance::{AlphaMode, Material, Origin};
 use crate::colour::{srgb_bytes_of_linear, srgb_of_linear};
 use crate::course::Course;
+use crate::gltf::{FROM_OUTSIDE, NO_IMAGE};
+use crate::images::decodes;
 use crate::new_faces::{for_each_face, lost, lost_where};
 use crate::new_mesh::NewMesh;
+use crate::quote::quoted;
 use crate::save::{OutputFile, Saved};
 use crate::text::{push_f32, push_f64};
 use crate::{Appearance, SaveError};
@@ -33,14 +37,16 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
         name: mesh.name.to_owned(),
         bytes: out,
     }];
+    let mut warnings = Vec::new();
     if has_materials {
-        let images = image_files(look, stem);
+        let images = image_files(look, stem, &mut warnings);
         files.push(OutputFile {
             name: format!("{stem}.mtl"),
             bytes: library(look, &names, &images),
         });
+        let mut written = HashSet::new();
         for (image, name) in look.images.iter().zip(images) {
-            if let Some(name) = name {
+            if let Some(name) = name.filter(|name| written.insert(name.clone())) {
                 files.push(OutputFile {
                     name,
                     bytes: image.encoded.to_vec(),
@@ -48,10 +54,8 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
             }
         }
     }
-    Ok(Saved {
-        files,
-        warnings: left_out(look).into_iter().collect(),
-    })
+    warnings.extend(left_out(look));
+    Ok(Saved { files, warnings })
 }
 
 /// What a material library can't say of the materials.
@@ -218,14 +222,16 @@ fn material_names(look: &Appearance) -> Vec<String> {
 }
 
 /// The file that each image is written to; `None` for images that no material shows or whose bytes are missing.
-fn image_files(look: &Appearance, stem: &str) -> Vec<Option<String>> {
-    let is_used = |index| {
-        look.materials
-            .iter()
-            .any(|material| material.base_colour_image == Some(index))
-    };
+fn image_files(look: &Appearance, stem: &str, warnings: &mut Vec<String>) -> Vec<Option<String>> {
+    let used: HashSet<usize> = look
+        .materials
+        .iter()
+        .filter_map(|material| material.base_colour_image)
+        .collect();
+    // One file for images of the same bytes.
+    let mut name_of: HashMap<(usize, Range<usize>), String> = HashMap::new();
     let name = |(index, image): (usize, &crate::Image)| {
-        let extension = match image.encoded.as_ref() {
+        let extension = match &*image.encoded {
             [] => return None,
             [0x89, b'P', b'N', b'G', ..] => "png",
             [0xff, 0xd8, ..] => "jpg",
@@ -234,7 +240,20 @@ fn image_files(look: &Appearance, stem: &str) -> Vec<Option<String>> {
             _ => image.name.rsplit_once('.').map_or("img", |(_, extension)| extension),
         };
         let is_safe = extension.len() <= 8 && extension.bytes().all(|byte| byte.is_ascii_alphanumeric());
-        is_used(index).then(|| format!("{stem}_{index}.{}", if is_safe { extension } else { "img" }))
+        if !used.contains(&index) {
+            return None;
+        }
+        if image.origin == Origin::Outside && !name_of.contains_key(&image.encoded.place()) {
+            let name = quoted(&image.name);
+            // A stranger's file may point at anything there, and would carry it away as an image.
+            if !decodes(&image.encoded) {
+                warnings.push(format!("{name} {NO_IMAGE}"));
+                return None;
+            }
+            warnings.push(format!("{name} {FROM_OUTSIDE}"));
+        }
+        let name = || format!("{stem}_{index}.{}", if is_safe { extension } else { "img" });
+        Some(name_of.entry(image.encoded.place()).or_insert_with(name).clone())
     };
     look.images.iter().enumerate().map(name).collect()
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::header::Header;
-use crate::source::Source;
+use crate::source::{Looks, Source};
 use crate::text::{Cursor, excerpt, malformed_at};
 use crate::{Format, ReadError};
 
@@ -32,16 +32,11 @@ pub(super) struct Records {
 /// A vertex begins on a line of its own; whatever else its line holds is passed over, since plain OFF files carry
 /// colours too. The same goes for a face and its colour.
 pub(super) fn read(source: &Source<'_>, header: &Header, mut cursor: Cursor<'_>) -> Result<Records, ReadError> {
-    let mut records = Records::default();
+    let (mut records, mut looks) = (Records::default(), Looks::default());
     records.positions.reserve_exact(header.vertices);
     records.vertex_at.reserve_exact(header.vertices);
     for vertex in 0..header.vertices {
-        if vertex.is_multiple_of(1 << 16) {
-            source.cancel.check()?;
-            source
-                .progress
-                .set(0.8 * cursor.at() as f32 / source.bytes.len() as f32);
-        }
+        source.pass(&mut looks, cursor.at())?;
         cursor.skip_space_and_comments();
         records.vertex_at.push(cursor.at());
         let position = vector(&mut cursor).ok_or_else(|| no_number(source, &cursor, "vertex", vertex))?;
@@ -56,13 +51,7 @@ pub(super) fn read(source: &Source<'_>, header: &Header, mut cursor: Cursor<'_>)
         cursor.next_line();
     }
     for face in 0..header.faces {
-        if face.is_multiple_of(1 << 16) {
-            source.cancel.check()?;
-            source
-                .progress
-                .set(0.8 * cursor.at() as f32 / source.bytes.len() as f32);
-        }
-        read_face(source, face, &mut cursor, &mut records)?;
+        read_face(source, face, &mut cursor, &mut looks, &mut records)?;
         cursor.next_line();
     }
     Ok(records)
@@ -110,9 +99,11 @@ fn read_face(
     source: &Source<'_>,
     face: usize,
     cursor: &mut Cursor<'_>,
+    looks: &mut Looks,
     records: &mut Records,
 ) -> Result<(), ReadError> {
     cursor.skip_space_and_comments();
+    source.pass(looks, cursor.at())?;
     let at = cursor.at();
     let count = cursor.whole().and_then(|count| u64::try_from(count).ok());
     let count = count.ok_or_else(|| no_number(source, cursor, "face", face))?;
@@ -125,6 +116,7 @@ fn read_face(
     for _ in 0..count {
         cursor.skip_space_and_comments();
         let at = cursor.at();
+        source.pass(looks, at)?;
         let corner = cursor.whole().ok_or_else(|| no_number(source, cursor, "face", face))?;
         match u32::try_from(corner) {
             Ok(corner) if (corner as usize) < records.positions.len() => records.corners.push(corner),

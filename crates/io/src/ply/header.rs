@@ -1,7 +1,7 @@
 //! A PLY file's header: which elements follow, how many, and of what their records are made.
 
 use super::scalar::{Encoding, Scalar};
-use crate::source::Source;
+use crate::source::{Looks, Source};
 use crate::text::{Cursor, excerpt, malformed_at};
 use crate::{Format, ReadError};
 
@@ -73,6 +73,7 @@ pub(super) fn parse(source: &Source<'_>) -> Result<Header, ReadError> {
     let ends_in_return_alone = bytes.get(cursor.at()) == Some(&b'\r') && bytes.get(cursor.at() + 1) != Some(&b'\n');
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
+    let mut looks = Looks::default();
     loop {
         cursor.next_line();
         if cursor.is_done() {
@@ -82,6 +83,7 @@ pub(super) fn parse(source: &Source<'_>) -> Result<Header, ReadError> {
             ));
         }
         let at = cursor.at();
+        source.pass(&mut looks, at)?;
         let line = cursor.clone().rest_of_line();
         let words: Vec<&[u8]> = line
             .split(u8::is_ascii_whitespace)

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::header::{Element, Header, Kind};
 use super::scalar::{Encoding, Walk, decode};
-use crate::source::Source;
-use crate::{Format, ReadError};
+use crate::source::{Looks, Source};
+use crate::{Format, ReadError, quoted};
 
 /// What is read of a vertex, in the order of [`Columns`].
 pub(super) const COLUMN_NAMES: [&[&str]; 12] = [
@@ -124,7 +124,7 @@ fn check_count(source: &Source<'_>, header: &Header, element: &Element, walk: &W
     let reason = format!(
         "the header promises {} records of '{}', but only {} bytes are left for them: the file is cut short",
         element.count,
-        element.name,
+        quoted(&element.name),
         walk.left()
     );
     Err(source.malformed(Format::Ply, reason))
@@ -134,21 +134,26 @@ fn cut_short(source: &Source<'_>, element: &Element, record: u64, at: usize) -> 
     let reason = if at >= source.bytes.len() || source.bytes[at..].trim_ascii().is_empty() {
         format!(
             "the file ends in record {record} of {} of '{}': it is cut short",
-            element.count, element.name
+            element.count,
+            quoted(&element.name)
         )
     } else {
         format!(
             "record {record} of '{}' is damaged (byte {at}): export the file anew",
-            element.name
+            quoted(&element.name)
         )
     };
     source.malformed(Format::Ply, reason)
 }
 
+/// Items of a list between two looks at whether they are still wanted.
+const ITEMS_BETWEEN_LOOKS: u64 = 1 << 12;
+
 /// Reads one record, giving each scalar with its property's number and each list's items.
 fn read_record(
     element: &Element,
     walk: &mut Walk<'_>,
+    is_wanted: impl Fn() -> bool,
     mut scalar: impl FnMut(usize, f64),
     mut item: impl FnMut(usize, f64),
 ) -> Option<()> {
@@ -160,7 +165,11 @@ fn read_record(
                 if !(count >= 0.0 && count.fract() == 0.0 && count <= walk.left() as f64) {
                     return None;
                 }
-                for _ in 0..count as u64 {
+                for number in 0..count as u64 {
+                    // A list may be as long as the file.
+                    if number.is_multiple_of(ITEMS_BETWEEN_LOOKS) && !is_wanted() {
+                        return None;
+                    }
                     item(index, walk.number(kind)?.0);
                 }
             }
@@ -176,11 +185,11 @@ fn read_all(
     walk: &mut Walk<'_>,
     mut read_one: impl FnMut(&mut Walk<'_>) -> Option<()>,
 ) -> Result<(), ReadError> {
+    let mut looks = Looks::default();
     for record in 0..element.count {
-        if record.is_multiple_of(1 << 16) {
-            source.cancel.check()?;
-        }
+        source.pass(&mut looks, walk.at())?;
         if read_one(walk).is_none() {
+            source.cancel.check()?;
             return Err(cut_short(source, element, record, walk.at()));
         }
     }
@@ -194,7 +203,7 @@ fn pass_over(source: &Source<'_>, header: &Header, element: &Element, walk: &mut
             Ok(())
         }
         _ => read_all(source, element, walk, |walk| {
-            read_record(element, walk, |_, _| (), |_, _| ())
+            read_record(element, walk, || !source.cancel.is_cancelled(), |_, _| (), |_, _| ())
         }),
     }
 }
@@ -257,7 +266,7 @@ fn read_vertices(
         let wanted = wanted_offsets(element, &columns);
         let first = walk.at();
         for vertex in 0..element.count as usize {
-            if vertex.is_multiple_of(1 << 16) {
+            if vertex.is_multiple_of(1 << 13) {
                 source.cancel.check()?;
             }
             for &(slot, offset, scalar) in &wanted {
@@ -284,7 +293,7 @@ fn read_vertices(
                 *target = value;
             }
         };
-        read_record(element, walk, keep, |_, _| ())?;
+        read_record(element, walk, || !source.cancel.is_cancelled(), keep, |_, _| ())?;
         take(&values);
         Some(())
     })?;
@@ -344,7 +353,7 @@ fn read_faces(
                 }));
             }
         };
-        read_record(element, walk, |_, _| (), take)?;
+        read_record(element, walk, || !source.cancel.is_cancelled(), |_, _| (), take)?;
         if records.corners.len() - first < 3 {
             records.corners.truncate(first);
             records.left_out += 1;
@@ -389,7 +398,7 @@ fn read_strips(
                 strange.get_or_insert(value);
             }
         };
-        read_record(element, walk, |_, _| (), take)?;
+        read_record(element, walk, || !source.cancel.is_cancelled(), |_, _| (), take)?;
         u32::try_from(records.corners.len()).ok().map(|_| ())
     })?;
     strange.map_or(Ok(()), |value| Err(no_corner(source, value)))

@@ -100,13 +100,7 @@ fn push_vertices(
                 continue;
             }
             // f32: fine enough here, as `coarse_in_f32` said.
-            let narrow = coordinate as f32;
-            if coordinate.is_finite() && !narrow.is_finite() {
-                return Err(SaveError::NotFinite {
-                    file_vertex: mesh.file_vertex[v].0,
-                });
-            }
-            out.extend_from_slice(&narrow.to_le_bytes());
+            out.extend_from_slice(&(coordinate as f32).to_le_bytes());
         }
         for number in look.normals.iter().flat_map(|normals| normals[v]) {
             out.extend_from_slice(&number.to_le_bytes());

@@ -7,7 +7,7 @@ use super::{changed_facets, facet_normal};
 use crate::course::{Course, STEP};
 use crate::moved::Moved;
 use crate::new_faces::coarse_in_f32;
-use crate::source::Source;
+use crate::source::{Looks, Source};
 use crate::text::{Cursor, Splice, excerpt, malformed_at, push_f32, push_f64};
 use crate::{Format, ReadError};
 
@@ -16,19 +16,16 @@ use crate::{Format, ReadError};
 /// Keywords may be in any case and on any line. A file that ends within its last solid is taken for whole.
 pub(super) fn read(source: &Source<'_>) -> Result<(Vec<DVec3>, Vec<usize>), ReadError> {
     let mut cursor = Cursor::new(source.bytes, 0);
-    let (mut corners, mut facets) = (Vec::new(), Vec::new());
+    let (mut corners, mut facets, mut looks) = (Vec::new(), Vec::new(), Looks::default());
     loop {
         cursor.skip_space();
         if cursor.is_done() {
             return Ok((corners, facets));
         }
         let at = cursor.at();
+        source.pass(&mut looks, at)?;
         let word = cursor.word();
         if word.eq_ignore_ascii_case(b"facet") {
-            if facets.len().is_multiple_of(1 << 16) {
-                source.cancel.check()?;
-                source.progress.set(0.8 * at as f32 / source.bytes.len() as f32);
-            }
             facets.push(at);
             corners.extend(facet(source, &mut cursor)?);
             if corners.len() > u32::MAX as usize - 3 {

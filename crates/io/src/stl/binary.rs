@@ -52,7 +52,7 @@ pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<D
     }
     let mut corners = Vec::with_capacity(3 * count as usize);
     for (number, facet) in bytes[HEADER..].chunks_exact(FACET).take(count as usize).enumerate() {
-        if number.is_multiple_of(1 << 16) {
+        if number.is_multiple_of(1 << 13) {
             source.cancel.check()?;
         }
         for corner in facet[12..48].chunks_exact(12) {

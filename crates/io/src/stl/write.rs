@@ -30,13 +30,6 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
         push(facet_normal(corners));
         corners.into_iter().for_each(&mut push);
         out.extend_from_slice(&[0; 2]);
-        for (corner, position) in triangle.iter().zip(corners) {
-            if position.is_finite() && !position.as_vec3().is_finite() {
-                return Err(SaveError::NotFinite {
-                    file_vertex: mesh.file_vertex[corner.index()].0,
-                });
-            }
-        }
     }
     let mut warnings: Vec<String> = lost(
         "STL",

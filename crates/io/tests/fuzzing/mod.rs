@@ -11,8 +11,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use glam::DVec3;
-use pliant_io::{Format, MorphTarget, Placement, Resolver, Save, decode_image, read};
+use pliant_io::{Bytes, Format, MorphTarget, Placement, Resolver, Save, decode_images, read};
 use pliant_mesh::{Cancel, Progress};
+
+/// What a broken image may take.
+const IMAGE_BUDGET: u64 = 64 << 20;
 
 /// A small generator of even quality (SplitMix64).
 pub struct Chance(pub u64);
@@ -66,7 +69,7 @@ pub fn corpus(folder: &Path) -> Vec<Sound> {
 }
 
 /// A file's neighbours, in memory: whichever is asked for, it has these bytes.
-pub struct Beside(pub Vec<u8>);
+pub struct Beside(pub Bytes);
 
 const LIBRARY: &str = "# looks\nnewmtl red\nKd 0.5 0.25 1e-1\nd 0.75\nTr 0.25\nmap_Kd -s 2 2 1 -o 0.5 0 0 -clamp on skin.png\n\
 newmtl b\nPr 0.5\nPm 1\nNs 96.0\nillum 2\nmap_Kd -bm 1.0 art\\\\my skin.png\n";
@@ -75,19 +78,19 @@ impl Beside {
     /// Neighbours of a run: a library of materials, broken, or a buffer without sense.
     pub fn of(sound: &[Sound], chance: &mut Chance) -> Self {
         if chance.below(2) == 0 {
-            return Self(vec![7; 600]);
+            return Self(vec![7; 600].into());
         }
         let library = Sound {
             name: "library.mtl".to_owned(),
             kind: Kind::Image,
             bytes: LIBRARY.into(),
         };
-        Self(broken(&library, sound, chance))
+        Self(broken(&library, sound, chance).into())
     }
 }
 
 impl Resolver for Beside {
-    fn read(&self, uri: &str) -> Result<Vec<u8>, String> {
+    fn read(&self, uri: &str) -> Result<Bytes, String> {
         match uri.len() % 3 {
             0 => Err("no such file".to_owned()),
             _ => Ok(self.0.clone()),
@@ -117,7 +120,7 @@ const STRANGE: [&str; 20] = [
     "1/2/3//",
     "0.5",
 ];
-const STRANGE_JSON: [&str; 22] = [
+const STRANGE_JSON: [&str; 27] = [
     "null",
     "-1",
     "0",
@@ -134,6 +137,11 @@ const STRANGE_JSON: [&str; 22] = [
     "{}",
     "true",
     "[0,0,0]",
+    "\"./a.bin\"",
+    "\"b/../%61.bin\"",
+    "\"../a.bin\"",
+    "\"/a.bin\"",
+    "\"\\\\\\\\server\\\\a.bin\"",
     "[0,1]",
     "5121",
     "5123",
@@ -173,6 +181,7 @@ pub fn broken(sound: &Sound, others: &[Sound], chance: &mut Chance) -> Vec<u8> {
             break;
         }
         match chance.below(8) {
+            _ if sound.kind == Kind::Image && chance.below(3) == 0 => of_image_size(&mut bytes, chance),
             0 => of_bytes(&mut bytes, chance),
             1 | 2 if is_glb => of_bin(&mut bytes, chance),
             1 | 2 => of_words(&mut bytes, chance),
@@ -237,6 +246,44 @@ fn of_bin(bytes: &mut [u8], chance: &mut Chance) {
         }
         _ => of_words(bin, chance),
     }
+}
+
+/// The size in an image's header becomes another, often a huge one, and the header's sum follows.
+fn of_image_size(bytes: &mut [u8], chance: &mut Chance) {
+    let mut side = |most: u32| match chance.below(3) {
+        0 => most,
+        1 => 1 << chance.below(15),
+        _ => chance.next() as u32 % (most + 1),
+    };
+    let find = |bytes: &[u8], needle: &[u8]| bytes.windows(needle.len()).position(|window| window == needle);
+    if bytes.starts_with(b"\x89PNG") && bytes.len() > 33 {
+        let (width, height) = (side(16384), side(16384));
+        bytes[16..20].copy_from_slice(&width.to_be_bytes());
+        bytes[20..24].copy_from_slice(&height.to_be_bytes());
+        let sum = crc(&bytes[12..29]);
+        bytes[29..33].copy_from_slice(&sum.to_be_bytes());
+    } else if bytes.starts_with(b"\xabKTX 20") && bytes.len() > 28 {
+        bytes[20..24].copy_from_slice(&side(16384).to_le_bytes());
+        bytes[24..28].copy_from_slice(&side(16384).to_le_bytes());
+    } else if let Some(at) = find(bytes, b"VP8 ").filter(|at| at + 18 <= bytes.len()) {
+        bytes[at + 14..at + 16].copy_from_slice(&(side(16383) as u16).to_le_bytes());
+        bytes[at + 16..at + 18].copy_from_slice(&(side(16383) as u16).to_le_bytes());
+    } else if let Some(at) = find(bytes, b"VP8L").filter(|at| at + 13 <= bytes.len()) {
+        let size = side(16383) | side(16383) << 14 | 1 << 28;
+        bytes[at + 9..at + 13].copy_from_slice(&size.to_le_bytes());
+    } else if let Some(at) = find(bytes, &[0xff, 0xc0]).filter(|at| at + 9 <= bytes.len()) {
+        bytes[at + 5..at + 7].copy_from_slice(&(side(16384) as u16).to_be_bytes());
+        bytes[at + 7..at + 9].copy_from_slice(&(side(16384) as u16).to_be_bytes());
+    }
+}
+
+/// PNG's sum of a chunk.
+fn crc(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |sum, &byte| {
+        (0..8).fold(sum ^ u32::from(byte), |sum, _| {
+            sum >> 1 ^ if sum & 1 == 1 { 0xedb8_8320 } else { 0 }
+        })
+    })
 }
 
 fn of_text(bytes: &mut Vec<u8>, chance: &mut Chance) {
@@ -332,9 +379,11 @@ pub enum Outcome {
 pub fn exercise(bytes: &[u8], kind: Kind, other: Format, beside: &Beside, after_reading: impl FnOnce()) -> Outcome {
     let format = match kind {
         Kind::Image => {
-            let decoded = decode_image(bytes);
+            let decoded = decode_images(&[bytes, bytes], IMAGE_BUDGET, &Cancel::new()).unwrap();
             after_reading();
-            return match decoded {
+            let pixels: usize = decoded.iter().flatten().map(|image| image.pixels.pixels.len()).sum();
+            assert!(pixels as u64 <= IMAGE_BUDGET, "{pixels} bytes of pixels");
+            return match decoded.into_iter().next().unwrap().map(|image| image.pixels) {
                 Ok(image) => {
                     assert_eq!(image.pixels.len(), image.width as usize * image.height as usize * 4);
                     Outcome::Read

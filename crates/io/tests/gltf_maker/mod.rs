@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 use base64::Engine as _;
 use glam::{DQuat, DVec3, Vec3};
-use pliant_io::{Format, Opened, Placement, ReadError, Resolver, Save, SaveError, Saved, read};
+use pliant_io::{Bytes, Format, Opened, Placement, ReadError, Resolver, Save, SaveError, Saved, read};
 use pliant_mesh::{Cancel, Progress};
 use serde_json::{Value, json};
 
@@ -20,8 +20,12 @@ use serde_json::{Value, json};
 pub struct Folder(pub BTreeMap<String, Vec<u8>>);
 
 impl Resolver for Folder {
-    fn read(&self, uri: &str) -> Result<Vec<u8>, String> {
-        self.0.get(uri).cloned().ok_or_else(|| "no such file".to_owned())
+    fn read(&self, uri: &str) -> Result<Bytes, String> {
+        self.0
+            .get(uri)
+            .cloned()
+            .map(Bytes::from)
+            .ok_or_else(|| "no such file".to_owned())
     }
 }
 

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use glam::DVec3;
-use pliant_io::{Format, Opened, Placement, ReadError, Resolver, Save, Saved, read};
+use pliant_io::{Bytes, Format, Opened, Placement, ReadError, Resolver, Save, Saved, read};
 use pliant_mesh::{Cancel, Progress};
 
 /// Neighbours in memory.
@@ -18,8 +18,12 @@ use pliant_mesh::{Cancel, Progress};
 pub struct Folder(pub HashMap<String, Vec<u8>>);
 
 impl Resolver for Folder {
-    fn read(&self, uri: &str) -> Result<Vec<u8>, String> {
-        self.0.get(uri).cloned().ok_or_else(|| "no such file".to_owned())
+    fn read(&self, uri: &str) -> Result<Bytes, String> {
+        self.0
+            .get(uri)
+            .cloned()
+            .map(Bytes::from)
+            .ok_or_else(|| "no such file".to_owned())
     }
 }
 

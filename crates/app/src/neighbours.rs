@@ -1,0 +1,202 @@
+//! A file's neighbours on disk: what a glTF or an OBJ names by a path relative to its own folder.
+//!
+//! A stranger's file may name anything. Only ordinary files by relative paths are read, each once however often and in
+//! whatever spelling it is named, and no more in all than a budget allows.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, ErrorKind, Read as _};
+use std::path::{Path, PathBuf};
+
+use pliant_io::{Bytes, Resolver};
+
+use crate::files::{folder_of, reason};
+
+/// What a file's neighbours may take in all, unless the caller says otherwise: 16 GiB, several times what the largest
+/// scans bring.
+pub const NEIGHBOUR_BYTES: u64 = 16 << 30;
+
+/// The neighbours of one file; those that were read are shared by all that name them.
+#[derive(Debug)]
+pub struct Neighbours {
+    folder: PathBuf,
+    budget: u64,
+    known: RefCell<Known>,
+}
+
+/// What was read so far.
+#[derive(Debug, Default)]
+struct Known {
+    by_path: HashMap<String, Bytes>,
+    /// By the place on disk, which several paths may lead to.
+    by_place: HashMap<PathBuf, Bytes>,
+    bytes: u64,
+}
+
+impl Neighbours {
+    /// The neighbours of `file`.
+    pub fn of(file: &Path) -> Self {
+        Self {
+            folder: folder_of(file).to_owned(),
+            budget: NEIGHBOUR_BYTES,
+            known: RefCell::default(),
+        }
+    }
+
+    /// The same with at most so many bytes in all.
+    #[must_use]
+    pub fn within(self, budget: u64) -> Self {
+        Self { budget, ..self }
+    }
+
+    fn read_once(&self, path: &str) -> io::Result<Bytes> {
+        let full = self.folder.join(path);
+        // Files are looked at before they are opened: opening a pipe or a device may wait, or do something.
+        refuse_strange(&fs::metadata(&full)?)?;
+        let place = fs::canonicalize(&full)?;
+        let mut known = self.known.borrow_mut();
+        if let Some(bytes) = known.by_place.get(&place) {
+            return Ok(bytes.clone());
+        }
+        let bytes = self.read_ordinary(&full, self.budget.saturating_sub(known.bytes))?;
+        known.bytes += bytes.len() as u64;
+        let bytes = Bytes::from(bytes);
+        known.by_place.insert(place, bytes.clone());
+        Ok(bytes)
+    }
+
+    /// The bytes of an ordinary file if there are at most `left` of them.
+    fn read_ordinary(&self, path: &Path, left: u64) -> io::Result<Vec<u8>> {
+        let file = open(path)?;
+        let metadata = file.metadata()?;
+        // It may be another one than a moment ago.
+        refuse_strange(&metadata)?;
+        let too_large = || {
+            let budget = self.budget as f64 / f64::from(1 << 30);
+            io::Error::other(format!(
+                "with it the file's neighbours would take more than the {budget} GiB that they may in all"
+            ))
+        };
+        if metadata.len() > left {
+            return Err(too_large());
+        }
+        let mut bytes = Vec::new();
+        bytes
+            .try_reserve_exact(metadata.len() as usize)
+            .map_err(|_| ErrorKind::OutOfMemory)?;
+        // A file may have more than it tells.
+        file.take(left.saturating_add(1)).read_to_end(&mut bytes)?;
+        if bytes.len() as u64 > left {
+            return Err(too_large());
+        }
+        Ok(bytes)
+    }
+}
+
+impl Resolver for Neighbours {
+    fn read(&self, uri: &str) -> Result<Bytes, String> {
+        let path = relative(uri)?;
+        if let Some(bytes) = self.known.borrow().by_path.get(&path) {
+            return Ok(bytes.clone());
+        }
+        let bytes = self.read_once(&path).map_err(|error| reason(&error))?;
+        self.known.borrow_mut().by_path.insert(path, bytes.clone());
+        Ok(bytes)
+    }
+}
+
+/// A path in its shortest form, so that all spellings of one are equal; in words why it is not followed.
+fn relative(uri: &str) -> Result<String, String> {
+    if uri.contains("://") {
+        return Err("it is an address and no path; download it and name it by its path".to_owned());
+    }
+    let is_drive = uri.as_bytes().get(1) == Some(&b':') && uri.as_bytes()[0].is_ascii_alphabetic();
+    if is_drive || uri.starts_with(['/', '\\']) {
+        return Err(
+            "it is an absolute path, and only files by relative paths are read; name it relative to this file"
+                .to_owned(),
+        );
+    }
+    let mut steps: Vec<&str> = Vec::new();
+    for step in uri.split(|letter| letter == '/' || cfg!(windows) && letter == '\\') {
+        match step {
+            "" | "." => {}
+            ".." if steps.last().is_some_and(|last| *last != "..") => drop(steps.pop()),
+            step if is_reserved(step) => return Err(format!("{step} is no file's name on this system")),
+            step => steps.push(step),
+        }
+    }
+    if steps.is_empty() {
+        return Err("it names no file".to_owned());
+    }
+    Ok(steps.join("/"))
+}
+
+/// Whether a name means a device, or a stream within a file, on Windows.
+fn is_reserved(step: &str) -> bool {
+    if !cfg!(windows) {
+        return false;
+    }
+    let stem = step.split('.').next().unwrap_or(step).trim_end().to_ascii_uppercase();
+    let is_port = |name: &str| {
+        let number = stem.strip_prefix(name).map(|rest| rest.chars().collect::<Vec<_>>());
+        number.is_some_and(|rest| matches!(rest[..], ['0'..='9' | '¹' | '²' | '³']))
+    };
+    step.contains(':')
+        || ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$"].contains(&&*stem)
+        || is_port("COM")
+        || is_port("LPT")
+}
+
+fn refuse_strange(metadata: &fs::Metadata) -> io::Result<()> {
+    match metadata {
+        _ if metadata.is_dir() => Err(ErrorKind::IsADirectory.into()),
+        _ if !metadata.is_file() => Err(io::Error::other("it is no ordinary file")),
+        _ => Ok(()),
+    }
+}
+
+/// Opens a file without waiting, should it have become a pipe since it was looked at.
+fn open(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.read(true);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt as _;
+        options.custom_flags(rustix::fs::OFlags::NONBLOCK.bits().cast_signed());
+    }
+    options.open(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_spellings_of_a_path_are_one() {
+        for uri in ["a.bin", "./a.bin", "b/../a.bin", ".//./a.bin", "b/c/../../a.bin"] {
+            assert_eq!(relative(uri).as_deref(), Ok("a.bin"), "{uri}");
+        }
+        assert_eq!(relative("b/../../x/./a.bin").as_deref(), Ok("../x/a.bin"));
+        assert_eq!(relative("../../a").as_deref(), Ok("../../a"));
+    }
+
+    #[test]
+    fn absolute_paths_drives_shares_and_addresses_are_never_followed() {
+        for uri in [
+            "/etc/passwd",
+            "//server/x",
+            "\\\\server\\x",
+            "\\x",
+            "C:\\x",
+            "c:x",
+            "file:///x",
+            "",
+            ".",
+            "a/..",
+        ] {
+            assert!(relative(uri).is_err(), "{uri}");
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! What a person should know of how a file was read: sentences, of which a broken file could give a million.
+
+/// How many sentences of a kind are kept; the others are counted.
+const MOST_OF_A_KIND: usize = 12;
+
+/// Sentences by kind.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Notes {
+    kinds: Vec<(&'static str, Vec<String>, usize)>,
+}
+
+impl Notes {
+    /// Adds a sentence, where there is one, of a kind that is named in the plural.
+    pub fn add(&mut self, kind: &'static str, sentence: Option<String>) {
+        let Some(sentence) = sentence else { return };
+        let known = self.kinds.iter().position(|(other, ..)| *other == kind);
+        let place = known.unwrap_or_else(|| {
+            self.kinds.push((kind, Vec::new(), 0));
+            self.kinds.len() - 1
+        });
+        let (_, sentences, further) = &mut self.kinds[place];
+        if sentences.len() < MOST_OF_A_KIND {
+            sentences.push(sentence);
+        } else {
+            *further += 1;
+        }
+    }
+
+    /// All of them, and how many of each kind are not told.
+    pub fn sentences(self) -> Vec<String> {
+        let mut out = Vec::new();
+        for (kind, sentences, further) in self.kinds {
+            out.extend(sentences);
+            if further > 0 {
+                out.push(format!("The same is true of {further} further {kind}."));
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_million_sentences_become_a_dozen_and_a_count() {
+        let mut notes = Notes::default();
+        notes.add("nodes", None);
+        (0..1_000_000).for_each(|k| notes.add("images", Some(format!("Image {k} is missing."))));
+        notes.add("nodes", Some("Node 1 is flat.".to_owned()));
+        let sentences = notes.sentences();
+        assert_eq!(sentences.len(), MOST_OF_A_KIND + 2);
+        assert_eq!(sentences[MOST_OF_A_KIND], "The same is true of 999988 further images.");
+    }
+}
