@@ -54,11 +54,15 @@ pub(crate) fn header(encoded: &[u8]) -> Result<Header, ImageError> {
     let beside = match format {
         // Every coefficient, in 16 bits and three channels, where they don't come block by block.
         Some(ImageFormat::Jpeg) if !comes_by_blocks(encoded) => 6 * pixels,
-        // The frame, and the canvas of an animation.
-        Some(ImageFormat::WebP) => 8 * pixels,
+        Some(ImageFormat::WebP) => match encoded.get(12..16) {
+            // A plane of the image's size and two of a quarter of that.
+            Some(b"VP8 ") => 2 * pixels,
+            Some(b"VP8L") => 4 * pixels,
+            // A frame, and perhaps its alpha, or the canvas of an animation.
+            _ => 8 * pixels,
+        },
         _ => 0,
     };
-    let beside = if is_plain_webp(encoded) { 2 * pixels } else { beside };
     Ok(Header {
         width,
         height,
@@ -148,11 +152,6 @@ impl From<Rgba8> for DynamicImage {
             .unwrap_or_default()
             .into()
     }
-}
-
-/// Whether a WebP is one lossy frame: two planes of a quarter of its size, and one of its own.
-fn is_plain_webp(encoded: &[u8]) -> bool {
-    mime_type(encoded) == Some("image/webp") && encoded.get(12..16) == Some(b"VP8 ")
 }
 
 /// Whether a JPEG's blocks come one after the other with all of their channels, so that a decoder keeps a row of them:

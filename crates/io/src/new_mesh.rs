@@ -74,9 +74,10 @@ impl<'a> NewMesh<'a> {
         parting: Parting,
         course: &Course<'_>,
     ) -> Result<Self, SaveError> {
+        let (of_check, course) = course.split(0.1);
         // What the file itself says is no number stays so; what is one has to stay one.
         for (v, &position) in moved.positions.iter().enumerate() {
-            course.pass(v, moved.positions.len())?;
+            of_check.pass(v, moved.positions.len())?;
             if position.is_finite() {
                 check_single(position, moved.drawn.file_vertex[v])?;
             }

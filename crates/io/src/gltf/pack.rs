@@ -65,16 +65,6 @@ pub(super) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
             }
             ImageFile::View(_) | ImageFile::Absent => continue,
         };
-        let Some(mime) = mime_type(bytes).map(str::to_owned).or(told.clone()) else {
-            warnings.push(format!("Image {number} is of an unknown kind and was not packed."));
-            continue;
-        };
-        let Some((key, value)) = json
-            .members(at)
-            .find(|&(key, _)| json.string(key).as_deref() == Some("uri"))
-        else {
-            continue;
-        };
         if let ImageFile::Neighbour { path, .. } = &document.images[number]
             && uri::inside(path).is_none()
         {
@@ -86,6 +76,16 @@ pub(super) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
             }
             warnings.push(format!("{} {FROM_OUTSIDE}", quoted(path)));
         }
+        let Some(mime) = mime_type(bytes).map(str::to_owned).or(told.clone()) else {
+            warnings.push(format!("Image {number} is of an unknown kind and was not packed."));
+            continue;
+        };
+        let Some((key, value)) = json
+            .members(at)
+            .find(|&(key, _)| json.string(key).as_deref() == Some("uri"))
+        else {
+            continue;
+        };
         let view = *view_of.entry(bytes.place()).or_insert_with(|| {
             let start = *packed.entry(bytes.place()).or_insert_with(|| append(&mut bin, bytes));
             let length = bytes.len();
