@@ -4,7 +4,6 @@
 //! Each part is a function of its own, so that the window can keep what has not changed; [`apply`] is all of them in a
 //! row with a clock beside them.
 
-use std::hash::Hasher as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -12,13 +11,13 @@ use std::time::Instant;
 use glam::DVec3;
 use pliant_deform::{Bound, Method, Ordering, Problem, SolveError};
 use pliant_editor::{Beginning, Setup};
-use pliant_io::{Format, MorphTarget, Opened, OutputFile, Save, SaveError, Saved, Scene};
+use pliant_io::{Format, MorphTarget, Opened, Scene};
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 
 use crate::AppError;
-use crate::files::{self, Bridge, Staged, Staging};
-use crate::neighbours::Neighbours;
+use crate::files::{self, Destination, Neighbours, NewFile, Staging};
 use crate::report::{Distortion, Energy, FrameTimes, Report, finite_or};
+use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
 
 /// A file, read and welded.
@@ -30,6 +29,16 @@ pub struct Loaded {
     pub scene: Scene,
     /// Its geometry.
     pub model: Arc<Model>,
+    /// The files beside it that were read with it.
+    pub neighbours: Vec<PathBuf>,
+}
+
+impl Loaded {
+    /// Every file that it was read from, each with what it is, for refusals of outputs that would overwrite one.
+    pub fn sources(&self) -> impl Iterator<Item = (&'static str, &Path)> {
+        let neighbours = self.neighbours.iter().map(|path| ("a file that FILE needs", &**path));
+        std::iter::once(("FILE", &*self.path)).chain(neighbours)
+    }
 }
 
 /// Reads and welds a file.
@@ -37,8 +46,7 @@ pub struct Loaded {
 /// # Errors
 /// A file that can't be read; [`AppError::Interrupted`] soon after `cancel` is raised.
 pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
-    let opened = open(path, watch)?;
-    welded(opened, path, weld, watch)
+    load_bytes(read_mesh(path, watch)?, path, weld, watch)
 }
 
 /// Reads a file without welding it.
@@ -46,12 +54,17 @@ pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, Ap
 /// # Errors
 /// As [`load`].
 pub fn open(path: &Path, watch: &Watch) -> Result<Opened, AppError> {
+    open_bytes(read_mesh(path, watch)?, path, &Neighbours::of(path), watch)
+}
+
+/// The bytes of a mesh's file.
+fn read_mesh(path: &Path, watch: &Watch) -> Result<Vec<u8>, AppError> {
     if is_project(path) {
         return Err(AppError::ProjectAsFile(path.to_owned()));
     }
     Format::of_name(&path.to_string_lossy())?;
     watch.begin("reading");
-    open_bytes(files::read(path)?, path, watch)
+    Ok(files::read(path)?)
 }
 
 /// Reads and welds a file's bytes; `path` is where its neighbours stand and what it is called.
@@ -59,15 +72,20 @@ pub fn open(path: &Path, watch: &Watch) -> Result<Opened, AppError> {
 /// # Errors
 /// As [`load`].
 pub fn load_bytes(bytes: Vec<u8>, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
-    let opened = open_bytes(bytes, path, watch)?;
-    welded(opened, path, weld, watch)
+    let neighbours = Neighbours::of(path);
+    let opened = open_bytes(bytes, path, &neighbours, watch)?;
+    let loaded = welded(opened, path, weld, watch)?;
+    Ok(Loaded {
+        neighbours: neighbours.were_read(),
+        ..loaded
+    })
 }
 
-fn open_bytes(bytes: Vec<u8>, path: &Path, watch: &Watch) -> Result<Opened, AppError> {
+fn open_bytes(bytes: Vec<u8>, path: &Path, neighbours: &Neighbours, watch: &Watch) -> Result<Opened, AppError> {
     let name = path.to_string_lossy();
     let format = Format::of_name(&name)?;
     let progress = watch.begin("reading");
-    let opened = pliant_io::read(bytes, format, &name, &Neighbours::of(path), &progress, &watch.cancel);
+    let opened = pliant_io::read(bytes, format, &name, neighbours, &progress, &watch.cancel);
     opened.map_err(AppError::Read)
 }
 
@@ -79,6 +97,7 @@ fn welded(opened: Opened, path: &Path, weld: &WeldOptions, watch: &Watch) -> Res
         path: path.to_owned(),
         scene: opened.scene,
         model: Arc::new(model),
+        neighbours: Vec::new(),
     })
 }
 
@@ -127,99 +146,6 @@ pub fn bind(
         })
 }
 
-/// Prepares a scene's files for `output`: encoded, written beside their targets and synced, to be committed.
-///
-/// # Errors
-/// What the format can't hold, or the disk can't take; [`AppError::Interrupted`] soon after `cancel` is raised. Nothing
-/// is left behind then.
-pub fn stage_save(
-    loaded: &Loaded,
-    positions: &[DVec3],
-    output: &Path,
-    staging: &Staging,
-    progress: &Progress,
-    cancel: &Cancel,
-) -> Result<(Staged, Vec<String>), AppError> {
-    stage_save_as(loaded, positions, None, output, staging, progress, cancel)
-}
-
-/// As [`stage_save`]; with `morph` the shape stays as it was and the new positions are saved as a morph target.
-///
-/// # Errors
-/// As [`stage_save`].
-pub fn stage_save_as(
-    loaded: &Loaded,
-    positions: &[DVec3],
-    morph: Option<&MorphTarget<'_>>,
-    output: &Path,
-    staging: &Staging,
-    progress: &Progress,
-    cancel: &Cancel,
-) -> Result<(Staged, Vec<String>), AppError> {
-    let refuse = |source| match source {
-        SaveError::Cancelled(_) => AppError::Interrupted,
-        source => AppError::Save {
-            file: output.to_owned(),
-            source,
-        },
-    };
-    // Making the bytes takes about as long as a disk takes to keep them.
-    let (of_making, of_writing) = (progress.part(0.0, 0.5), progress.part(0.5, 1.0));
-    let name = output.file_name().unwrap_or_default().to_string_lossy();
-    let drawn = loaded.model.rest();
-    let save = Save {
-        drawn: &drawn,
-        positions,
-        format: Format::of_name(&name)?,
-        name: &name,
-        placement: files::placement(&loaded.path, output),
-    };
-    let saved = match morph {
-        None => loaded.scene.save(&save, &of_making, cancel),
-        Some(morph) => loaded.scene.save_as_morph(&save, morph, &of_making, cancel),
-    };
-    let saved = saved.map_err(refuse)?;
-    // Neighbours first: the file that names them must not stand there without them.
-    let mut names: Vec<(&str, &[u8])> = saved.files.iter().map(|file| (&*file.name, &*file.bytes)).collect();
-    let count = names.len();
-    names.rotate_left(1.min(count));
-    let folder = files::folder_of(output);
-    let passing = passing_names(folder, &saved);
-    let bridged = (output.exists() && !passing.is_empty())
-        .then(|| pliant_io::with_neighbours_renamed(&saved.files[0].bytes, &passing))
-        .flatten();
-    let staged = match &bridged {
-        None => staging.stage_watched(folder, &names, &of_writing, cancel)?,
-        Some(bytes) => staging.stage_bridged(
-            folder,
-            &names,
-            &Bridge {
-                name: &name,
-                bytes,
-                neighbours: &passing,
-            },
-            &of_writing,
-            cancel,
-        )?,
-    };
-    Ok((staged, saved.warnings))
-}
-
-/// The neighbours that stand there with other bytes, each with a name that is its new bytes' own.
-fn passing_names<'a>(folder: &Path, saved: &'a Saved) -> Vec<(&'a str, String)> {
-    let is_replaced = |file: &&OutputFile| {
-        let there = std::fs::read(folder.join(&file.name));
-        there.is_ok_and(|there| there != file.bytes)
-    };
-    let named = saved.files[1..].iter().filter(is_replaced).map(|file| {
-        let mut hasher = std::hash::DefaultHasher::new();
-        hasher.write(&file.bytes);
-        let (stem, extension) = file.name.rsplit_once('.').unwrap_or((&file.name, "bin"));
-        (&*file.name, format!("{stem}.{:016x}.{extension}", hasher.finish()))
-    });
-    named.collect()
-}
-
 /// What [`apply`] is to do.
 #[derive(Clone, Debug)]
 pub struct Apply<'a> {
@@ -244,9 +170,17 @@ pub struct Apply<'a> {
 /// # Errors
 /// Whatever refuses the file, the edit or the result. OUT is as it was then.
 pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Report, AppError> {
+    // What is no file is refused before anything is read.
+    Destination::of(apply.output)?;
+    let report_to = apply.report.map(Destination::of).transpose()?;
     let start = Instant::now();
     let loaded = load(apply.file, &WeldOptions::default(), watch)?;
     let load_ms = ms_since(start);
+    let neighbours = || loaded.sources().skip(1);
+    files::refuse_shared(("--output", apply.output), neighbours())?;
+    if let Some(report) = apply.report {
+        files::refuse_shared(("--report", report), neighbours())?;
+    }
     let model = &loaded.model;
     if model.surface.triangles.is_empty() {
         return Err(AppError::NoTriangles(apply.file.to_owned()));
@@ -267,21 +201,19 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
 
     let progress = watch.begin("saving");
     let start = Instant::now();
-    let (mut staged, save_warnings) = stage_save_as(
-        &loaded,
-        &solution.positions,
-        apply.morph.as_ref(),
-        apply.output,
-        staging,
-        &progress,
-        &watch.cancel,
-    )?;
+    let save = SaveAs {
+        positions: &solution.positions,
+        morph: apply.morph.as_ref(),
+        output: apply.output,
+        beside: report_to.as_ref().map(|report| ("--report", report)),
+    };
+    let mut saved = saving::stage(&loaded, &save, staging, &progress, &watch.cancel)?;
     let save_ms = ms_since(start);
 
     let distortion = pliant_mesh::Distortion::of(&model.surface, &model.topology, &solution.surface_positions);
     let mut warnings = loaded.scene.notes().to_vec();
     warnings.extend(solution.warnings);
-    warnings.extend(save_warnings);
+    warnings.append(&mut saved.warnings);
     let report = Report {
         method: setup.method.name().to_owned(),
         vertices: model.drawn.file_vertex_count(),
@@ -291,6 +223,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
         order_ms: solution.order_ms,
         bind_ms: solution.bind_ms,
         save_ms,
+        check_ms: saved.check_ms,
         frames: solution.frames,
         iterations: solution.iterations,
         converged: solution.converged,
@@ -303,10 +236,14 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
         },
         warnings,
     };
-    if let Some(path) = apply.report {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let mut staged = saved.staged;
+    if let Some(to) = report_to {
         let text = report.to_json();
-        staged = staged.and(staging.stage(files::folder_of(path), [(&*name, text.as_bytes())])?);
+        let file = NewFile {
+            to,
+            bytes: text.as_bytes(),
+        };
+        staged = staged.and(staging.stage_watched(&[file], None, &Progress::new(), &watch.cancel)?);
     }
     if watch.cancel.is_cancelled() {
         return Err(AppError::Interrupted);
@@ -434,6 +371,7 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
     })
 }
 
-fn ms_since(start: Instant) -> f64 {
+/// Milliseconds since `start`.
+pub(crate) fn ms_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::files::FileError;
+use crate::files::{FileError, shown};
 
 /// A refusal. Its text is one line for the person; [`AppError::status`] is the program's exit status.
 #[derive(Debug, thiserror::Error)]
@@ -21,10 +21,10 @@ pub enum AppError {
     #[error(transparent)]
     Read(pliant_io::ReadError),
     /// A file that holds nothing to edit.
-    #[error("{} holds no triangle, so there is nothing to edit: choose a file with a surface", .0.display())]
+    #[error("{} holds no triangle, so there is nothing to edit: choose a file with a surface", shown(.0))]
     NoTriangles(PathBuf),
     /// The edit can't be read, or does not fit the file.
-    #[error("{}: {source}", .edit.display())]
+    #[error("{}: {source}", shown(.edit))]
     Edit {
         /// The edit's file.
         edit: PathBuf,
@@ -33,8 +33,8 @@ pub enum AppError {
     },
     /// A project's mesh is not where it was, or is another one.
     #[error(
-        "{}: its mesh {} is {what}: put the one it was made on there, or beside the project", .project.display(),
-        .mesh.display()
+        "{}: its mesh {} is {what}: put the one it was made on there, or beside the project", shown(.project),
+        shown(.mesh)
     )]
     ProjectMesh {
         /// The project's file.
@@ -45,10 +45,10 @@ pub enum AppError {
         what: &'static str,
     },
     /// A project where a mesh is asked for.
-    #[error("{} is a project, and FILE must be a mesh: give the mesh, and the project as --edit", .0.display())]
+    #[error("{} is a project, and FILE must be a mesh: give the mesh, and the project as --edit", shown(.0))]
     ProjectAsFile(PathBuf),
     /// The problem could not be factored. Its vertices are the file's.
-    #[error("{}: {source}", .file.display())]
+    #[error("{}: {source}", shown(.file))]
     Bind {
         /// The file that was to be bent.
         file: PathBuf,
@@ -56,7 +56,7 @@ pub enum AppError {
         source: pliant_deform::BindError,
     },
     /// A step could not be done. Its vertices are the file's.
-    #[error("{}: {source}", .file.display())]
+    #[error("{}: {source}", shown(.file))]
     Solve {
         /// The file that was to be bent.
         file: PathBuf,
@@ -64,12 +64,23 @@ pub enum AppError {
         source: pliant_deform::SolveError,
     },
     /// The result can't be stored as asked.
-    #[error("{}: {source}", .file.display())]
+    #[error("{}: {source}", shown(.file))]
     Save {
         /// The file that was to be written.
         file: PathBuf,
         /// What stands in the way.
         source: pliant_io::SaveError,
+    },
+    /// What was written can't be read back as it was to be; nothing was replaced.
+    #[error(
+        "{}: what was written does not read back as it was to be saved ({what}), so nothing was replaced: this is a \
+         fault of the program or the disk; save as another kind, and report it with the file", shown(.file)
+    )]
+    ReadBack {
+        /// The file that was to be written.
+        file: PathBuf,
+        /// What differs, or why it can't be read.
+        what: String,
     },
     /// Ctrl-C.
     #[error("stopped before the end, so nothing was written: run the command again for a result")]

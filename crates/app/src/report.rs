@@ -19,8 +19,10 @@ pub struct Report {
     pub order_ms: f64,
     /// From there and the chosen regions to the first solve being possible.
     pub bind_ms: f64,
-    /// From the new positions to synced files.
+    /// From the new positions to synced files that were read back.
     pub save_ms: f64,
+    /// Of that, reading back what was written.
+    pub check_ms: f64,
     /// The frames' times.
     pub frames: FrameTimes,
     /// Mean iterations a frame.

@@ -19,7 +19,7 @@ use crate::images::decodes;
 use crate::new_faces::coarse_in_f32;
 use crate::new_mesh::{NewMesh, Parting};
 use crate::quote::quoted;
-use crate::save::{OutputFile, Saved};
+use crate::save::{OutputFile, Role, Saved, own_stem};
 use crate::{Format, SaveError};
 
 /// The mesh as a GLB.
@@ -27,36 +27,26 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
     let built = build(mesh, Format::Glb, course)?;
     let text = built.root.to_string();
     let bytes = join_glb(text.as_bytes(), &built.bin).ok_or(SaveError::TooLarge { format: Format::Glb })?;
-    let file = OutputFile {
-        name: mesh.name.to_owned(),
-        bytes,
-    };
     Ok(Saved {
-        files: vec![file],
-        warnings: built.warnings,
+        triangles: built.triangles,
+        ..Saved::alone(mesh.name, bytes, built.warnings)
     })
 }
 
 /// The mesh as a `.gltf` and its buffer, which is called as OUT is.
 pub(crate) fn write_new_gltf(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let mut built = build(mesh, Format::Gltf, course)?;
-    let buffer_name = format!("{}.bin", stem(mesh.name));
+    let buffer_name = format!("{}.bin", own_stem(mesh.name));
     built.root["buffers"][0]["uri"] = crate::gltf::encoded_uri(&buffer_name).into();
     let text = format!("{:#}\n", built.root);
-    let files = vec![
-        OutputFile {
-            name: mesh.name.to_owned(),
-            bytes: text.into_bytes(),
-        },
-        OutputFile {
-            name: buffer_name,
-            bytes: built.bin,
-        },
-    ];
-    Ok(Saved {
-        files,
-        warnings: built.warnings,
-    })
+    let mut saved = Saved::alone(mesh.name, text.into_bytes(), built.warnings);
+    saved.triangles = built.triangles;
+    saved.files.push(OutputFile {
+        name: buffer_name,
+        role: Role::Buffer,
+        bytes: built.bin,
+    });
+    Ok(saved)
 }
 
 /// A glTF that is being put together.
@@ -67,6 +57,8 @@ struct Built {
     views: Vec<Value>,
     accessors: Vec<Value>,
     warnings: Vec<String>,
+    /// As [`Saved::triangles`].
+    triangles: Option<Vec<u32>>,
 }
 
 /// More parts than this are joined: viewers draw each by itself.
@@ -106,6 +98,7 @@ fn build(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Buil
             remedy: "save it as the kind it was".to_owned(),
         });
     }
+    out.triangles = order(&parts, mesh.triangles.len());
     let normals = unit_normals(mesh, &of_normals)?;
     let mut looks = Looks::default();
     let mut number = vec![u32::MAX; positions.len()];
@@ -117,7 +110,7 @@ fn build(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Buil
         );
         let vertices = match parts.len() {
             1 => (0..positions.len() as u32).collect(),
-            _ => part.vertices(),
+            _ => part.vertices(mesh),
         };
         for (own, &v) in (0..).zip(&vertices) {
             number[v as usize] = own;
@@ -127,7 +120,8 @@ fn build(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Buil
         let mut primitives = Vec::new();
         for (place, (material, triangles)) in part.triangles.iter().enumerate() {
             course.reach(place, part.triangles.len())?;
-            let corners = triangles.as_flattened().iter().map(|corner| number[corner.index()]);
+            let corner = |k: usize| mesh.triangles[triangles[k / 3] as usize][k % 3];
+            let corners = (0..3 * triangles.len()).map(|k| number[corner(k).index()]);
             let indices = indices(&mut out, corners, vertices.len());
             let mut primitive = json!({ "attributes": attributes, "indices": indices });
             if let Some(known) = mesh.appearance.materials.get(*material) {
@@ -165,19 +159,31 @@ fn build(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Buil
 /// What becomes a node.
 struct Part<'a> {
     name: &'a str,
-    /// Its triangles by material.
-    triangles: BTreeMap<usize, Vec<[DrawnVertex; 3]>>,
+    /// The numbers of its triangles, by material.
+    triangles: BTreeMap<usize, Vec<u32>>,
 }
 
 impl Part<'_> {
     /// The vertices that it uses, ascending.
-    fn vertices(&self) -> Vec<u32> {
-        let corners = self.triangles.values().flatten().flatten();
-        let mut vertices: Vec<u32> = corners.map(|corner| corner.0).collect();
+    fn vertices(&self, mesh: &NewMesh<'_>) -> Vec<u32> {
+        let mut vertices: Vec<u32> = self.corners(mesh).map(|corner| corner.0).collect();
         vertices.sort_unstable();
         vertices.dedup();
         vertices
     }
+
+    /// The corners of its triangles.
+    fn corners<'a>(&'a self, mesh: &'a NewMesh<'_>) -> impl Iterator<Item = DrawnVertex> + 'a {
+        let triangles = self.triangles.values().flatten();
+        triangles.flat_map(|&triangle| mesh.triangles[triangle as usize])
+    }
+}
+
+/// The triangles in the order in which the parts hold them; `None` where that is all of them, as they were.
+fn order(parts: &[Part<'_>], count: usize) -> Option<Vec<u32>> {
+    let written = || parts.iter().flat_map(|part| part.triangles.values().flatten().copied());
+    let is_old = written().eq(0..count as u32);
+    (!is_old).then(|| written().collect())
 }
 
 /// The parts in the order in which the file first names them, triangles with a vertex that glTF can't hold left out.
@@ -234,7 +240,7 @@ fn parts<'a>(
         for (number, triangle) in (start..).zip(&mesh.triangles[start..end]) {
             course.pass(number, mesh.triangles.len())?;
             if triangle.iter().all(|corner| positions[corner.index()].is_finite()) {
-                parts[place].triangles.entry(material).or_default().push(*triangle);
+                parts[place].triangles.entry(material).or_default().push(number as u32);
             } else {
                 left_out += 1;
             }
@@ -248,9 +254,7 @@ fn parts<'a>(
     parts.retain(|part| !part.triangles.is_empty());
     if parts.len() > 1 {
         let mut is_used = vec![false; positions.len()];
-        let corners = parts
-            .iter()
-            .flat_map(|part| part.triangles.values().flatten().flatten());
+        let corners = parts.iter().flat_map(|part| part.corners(mesh));
         corners.for_each(|corner| is_used[corner.index()] = true);
         let unused = is_used.iter().filter(|is_used| !**is_used).count();
         if unused > 0 {

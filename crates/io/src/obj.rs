@@ -8,6 +8,7 @@
 mod corners;
 mod materials;
 mod patch;
+mod rename;
 mod statements;
 mod write;
 
@@ -29,6 +30,7 @@ use crate::{Appearance, ReadError, SaveError};
 use materials::Materials;
 use statements::{NONE, Statements};
 
+pub(crate) use rename::{library_renamed, texture_renamed};
 pub(crate) use write::write_new;
 
 /// An OBJ file as stored.

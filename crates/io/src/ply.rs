@@ -131,6 +131,11 @@ impl Stored {
         self.polygons.clone()
     }
 
+    /// The number nearest to `value` that the column of a coordinate holds.
+    pub(crate) fn nearest(&self, axis: usize, value: f64) -> f64 {
+        patch::nearest(self, axis, value)
+    }
+
     /// The file with the moved vertices' numbers changed, and warnings.
     pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
         patch::patched(self, moved, course)

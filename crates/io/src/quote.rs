@@ -12,7 +12,7 @@ const HEAD: usize = 120;
 /// words can't steer a terminal or rearrange the sentence around them. A longer text keeps its beginning and its end (a
 /// path's last part tells most), with `…` between them. No quotation marks are added.
 pub fn quoted(text: &str) -> String {
-    let shown = |letter: char| if is_steering(letter) { '\u{fffd}' } else { letter };
+    let shown = |letter: char| if steers(letter) { '\u{fffd}' } else { letter };
     // No text has more characters than bytes, so most need no counting.
     let count = if text.len() <= MOST { 0 } else { text.chars().count() };
     if count <= MOST {
@@ -26,8 +26,8 @@ pub fn quoted(text: &str) -> String {
     out
 }
 
-/// Whether a character acts on what shows it instead of being shown.
-fn is_steering(letter: char) -> bool {
+/// Whether a character acts on what shows it (a terminal, a line of text) instead of being shown.
+pub fn steers(letter: char) -> bool {
     letter.is_control()
         || matches!(letter, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
@@ -48,16 +48,13 @@ mod tests {
     #[test]
     fn nothing_that_steers_a_terminal_comes_through() {
         let steering = (0..=0x9f_u32).chain(0x200e..0x2070).chain([0x61c]);
-        for letter in steering
-            .filter_map(char::from_u32)
-            .filter(|&letter| is_steering(letter))
-        {
+        for letter in steering.filter_map(char::from_u32).filter(|&letter| steers(letter)) {
             assert_eq!(quoted(&format!("a{letter}b")), "a\u{fffd}b", "{letter:?}");
         }
         for letter in [
             '\u{1b}', '\n', '\r', '\u{7f}', '\u{9b}', '\u{202e}', '\u{2066}', '\u{2028}',
         ] {
-            assert!(is_steering(letter), "{letter:?}");
+            assert!(steers(letter), "{letter:?}");
         }
     }
 

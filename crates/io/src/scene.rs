@@ -16,7 +16,7 @@ use crate::difference::{self, Difference};
 use crate::moved::Moved;
 use crate::new_faces::{lost, lost_where};
 use crate::new_mesh::{NewMesh, Parting, Polygons};
-use crate::save::{MorphTarget, OutputFile, Placement, Save, Saved};
+use crate::save::{MorphTarget, Placement, Save, Saved};
 use crate::source::{Resolver, Source};
 use crate::summary::Summary;
 use crate::{Appearance, Bytes, Format, ReadError, SaveError, gltf, new_glb, obj, off, ply, stl};
@@ -39,7 +39,7 @@ pub struct Scene {
 }
 
 #[derive(Debug)]
-enum Stored {
+pub(crate) enum Stored {
     Gltf(gltf::Stored),
     Obj(obj::Stored),
     Ply(ply::Stored),
@@ -168,13 +168,7 @@ impl Scene {
     fn save_parted(&self, save: &Save<'_>, parting: Parting, course: &Course<'_>) -> Result<Saved, SaveError> {
         course.reach(0, 1)?;
         let moved = Moved::of(save.drawn, save.positions)?;
-        let own = |(bytes, warnings)| Saved {
-            files: vec![OutputFile {
-                name: save.name.to_owned(),
-                bytes,
-            }],
-            warnings,
-        };
+        let own = |(bytes, warnings)| Saved::alone(save.name, bytes, warnings);
         match (&self.stored, save.format) {
             (Stored::Gltf(stored), Format::Glb | Format::Gltf) => stored.save(save, &moved, course),
             (Stored::Obj(stored), Format::Obj) if save.placement == Placement::OtherFolder => {
@@ -286,6 +280,7 @@ impl Scene {
             &course,
         )?;
         saved.warnings.splice(0..0, rest.warnings);
+        saved.triangles = rest.triangles;
         Ok(saved)
     }
 
@@ -333,8 +328,24 @@ impl Scene {
         out
     }
 
+    /// The file in its own kind.
+    pub(crate) fn stored(&self) -> &Stored {
+        &self.stored
+    }
+
+    /// The number nearest to `value` that the file's kind stores for a coordinate of the given axis. glTF stores them
+    /// in the space of nodes, so that it has none.
+    pub(crate) fn nearest_stored(&self, axis: usize, value: f64) -> f64 {
+        match &self.stored {
+            Stored::Ply(stored) => stored.nearest(axis, value),
+            // f32: STL holds nothing finer, and where its text is finer it holds the value itself.
+            Stored::Stl(_) => f64::from(value as f32),
+            Stored::Gltf(_) | Stored::Obj(_) | Stored::Off(_) => value,
+        }
+    }
+
     /// The file's own polygons over drawn vertices, where it has any that are not triangles.
-    fn polygons(&self) -> Option<Polygons> {
+    pub(crate) fn polygons(&self) -> Option<Polygons> {
         match &self.stored {
             Stored::Gltf(_) | Stored::Stl(_) => None,
             Stored::Obj(stored) => stored.polygons(),

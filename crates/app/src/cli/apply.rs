@@ -25,15 +25,10 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     let output_name = output.to_string_lossy();
     Format::of_name(&output_name).map_err(|error| AppError::Arguments(format!("--output: {error}")))?;
     let method = method.as_deref().map(method_named).transpose()?;
+    files::refuse_shared(("--output", output), [("--edit", &**edit_path)])?;
     if let Some(report) = report {
-        for (other, role) in [(file, "FILE"), (edit_path, "--edit"), (output, "--output")] {
-            if same_file(report, other) {
-                let report = report.display();
-                return Err(AppError::Arguments(format!(
-                    "--report {report} is {role} as well: give it another name"
-                )));
-            }
-        }
+        let others = [("FILE", &**file), ("--edit", edit_path), ("--output", output)];
+        files::refuse_shared(("--report", report), others)?;
     }
     let mut edit = read_edit(edit_path)?;
     if let Some(method) = method {
@@ -80,12 +75,4 @@ fn method_named(name: &str) -> Result<Method, AppError> {
             Method::NAMES.join(", ")
         ))
     })
-}
-
-fn same_file(a: &Path, b: &Path) -> bool {
-    let place = |path: &Path| {
-        let folder = std::fs::canonicalize(files::folder_of(path)).ok()?;
-        Some(std::fs::canonicalize(path).unwrap_or_else(|_| folder.join(path.file_name().unwrap_or_default())))
-    };
-    a == b || place(a).is_some_and(|a| place(b) == Some(a))
 }

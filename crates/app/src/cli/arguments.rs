@@ -84,8 +84,8 @@ pub(crate) struct ApplyArguments {
     /// Use this method with its defaults instead of the edit's
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
-    /// How many threads to use (1 to 1024); without it, all cores. The result is the same whatever their number
-    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=1024))]
+    /// How many threads to use (at most four a core); without it, all cores. The result is the same whatever their number
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=65_536))]
     pub threads: Option<usize>,
 }
 
@@ -261,6 +261,20 @@ fn methods_help() -> String {
     help
 }
 
+/// The most characters of a refusal: it quotes arguments whole, however long they are.
+const LONGEST_LINE: usize = 1000;
+
+fn shortened(line: &str) -> String {
+    let count = line.chars().count();
+    if count <= LONGEST_LINE {
+        return line.to_owned();
+    }
+    let mut out: String = line.chars().take(LONGEST_LINE - 200).collect();
+    out.push('…');
+    out.extend(line.chars().skip(count - 199));
+    out
+}
+
 /// A refusal of arguments as one line.
 pub(crate) fn one_line(error: &clap::Error) -> String {
     let text = error.render().to_string();
@@ -284,7 +298,7 @@ pub(crate) fn one_line(error: &clap::Error) -> String {
             line += part;
         }
     }
-    line + "; see `pliant --help`"
+    shortened(&line) + "; see `pliant --help`"
 }
 
 #[cfg(test)]

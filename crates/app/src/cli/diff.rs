@@ -6,7 +6,7 @@ use pliant_io::{Difference, What};
 use serde_json::{Value, json};
 
 use super::arguments::DiffArguments;
-use super::{Console, on_threads, print};
+use super::{Console, on_threads, print, print_json};
 use crate::{AppError, engine};
 
 pub(super) fn run(arguments: &DiffArguments, console: &mut Console<'_>) -> Result<(), AppError> {
@@ -18,7 +18,7 @@ pub(super) fn run(arguments: &DiffArguments, console: &mut Console<'_>) -> Resul
     })??;
     let text = if arguments.json {
         let all: Vec<Value> = differences.iter().map(as_json).collect();
-        format!("{:#}\n", json!({ "differences": all }))
+        return print_json(console.out, &json!({ "differences": all }));
     } else if differences.is_empty() {
         "no difference\n".to_owned()
     } else {

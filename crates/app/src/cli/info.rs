@@ -8,9 +8,10 @@ use pliant_mesh::{FindingKind, Survey, WeldOptions};
 use serde_json::{Value, json};
 
 use super::arguments::InfoArguments;
-use super::{Console, on_threads, print};
+use super::{Console, on_threads, print, print_json};
 use crate::AppError;
 use crate::engine;
+use crate::files::shown;
 use crate::watch::Watch;
 
 /// How many components are listed one by one.
@@ -19,12 +20,11 @@ const LISTED_COMPONENTS: usize = 12;
 pub(super) fn run(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     let watch = &console.watch;
     let looked_at = on_threads(None, || look_at(&arguments.file, watch))??;
-    let text = if arguments.json {
-        format!("{:#}\n", as_json(&looked_at))
+    if arguments.json {
+        print_json(console.out, &as_json(&looked_at))
     } else {
-        as_text(&looked_at)
-    };
-    print(console.out, &text)
+        print(console.out, &as_text(&looked_at))
+    }
 }
 
 /// A file and its geometry.
@@ -45,7 +45,7 @@ fn look_at<'a>(path: &'a Path, watch: &Watch) -> Result<LookedAt<'a>, AppError> 
 /// What is told of a file, for a person.
 fn as_text(LookedAt { path, scene, survey }: &LookedAt<'_>) -> String {
     let summary = scene.summary();
-    let mut text = format!("{}: {}\n", quoted(&path.to_string_lossy()), scene.format());
+    let mut text = format!("{}: {}\n", shown(path), scene.format());
     let mut line = |what: &str, said: String| {
         // A String takes whatever is written to it.
         let _ = writeln!(text, "  {what:<12}{said}");

@@ -1,4 +1,4 @@
-//! Ctrl-C: a command stops within a second and leaves no file behind.
+//! Ctrl-C, the end of a session and the like: a command stops within a second and leaves no file behind.
 
 use std::io::Write;
 use std::time::Duration;
@@ -10,9 +10,16 @@ use crate::watch::Watch;
 /// How long a command has to stop by itself.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Raises the flag on Ctrl-C. A command that has not ended a little later (a factorisation can't be stopped half-way)
+/// Raises the flag on Ctrl-C (SIGINT), SIGTERM and SIGHUP. A command that has not ended a little later (a factorisation can't be stopped half-way)
 /// is ended here, without its files.
 pub(super) fn listen(watch: &Watch, staging: &Staging) {
+    #[cfg(unix)]
+    {
+        // A file beyond the limit on their size is an error of the write then, which can be told, and no end. Nobody
+        // asks whether it came.
+        let has_come = std::sync::Arc::default();
+        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, has_come);
+    }
     let (cancel, staging) = (watch.cancel.clone(), staging.clone());
     // Without a handler Ctrl-C still ends the program; only a temporary file may stay then.
     let _ = ctrlc::set_handler(move || {

@@ -14,6 +14,8 @@ use std::process::ExitCode;
 
 pub use arguments::{PictureSize, RenderArguments, Shading, Up, View};
 
+use pliant_io::steers;
+
 use crate::AppError;
 use crate::files::Staging;
 use crate::watch::Watch;
@@ -67,14 +69,40 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
         Err(_) if console.watch.cancel.is_cancelled() => AppError::Interrupted,
         Err(error) => error,
     };
-    let line = error.to_string().replace(['\n', '\r'], " ");
+    let line = plain(&error.to_string().replace(['\n', '\r'], " "));
     // Where not even an error can be told, the status tells it.
     let _ = writeln!(console.err, "pliant: {line}");
     error.status()
 }
 
-/// Prints a text. Whoever closed the pipe has read enough.
+/// A line without characters that would steer the terminal. Foreign text in it was cut where it was quoted.
+fn plain(line: &str) -> String {
+    line.chars()
+        .map(|letter| if steers(letter) { '\u{fffd}' } else { letter })
+        .collect()
+}
+
+/// Prints a text. What its lines quote of files steers no terminal.
 fn print(out: &mut dyn Write, text: &str) -> Result<(), AppError> {
+    let lines = text.lines().map(|line| plain(line) + "\n");
+    write_out(out, &lines.collect::<String>())
+}
+
+/// Prints JSON. What would steer a terminal is escaped, which changes nothing of what it says.
+fn print_json(out: &mut dyn Write, value: &serde_json::Value) -> Result<(), AppError> {
+    let mut text = String::new();
+    for letter in format!("{value:#}\n").chars() {
+        if steers(letter) && letter != '\n' {
+            text += &format!("\\u{:04x}", u32::from(letter));
+        } else {
+            text.push(letter);
+        }
+    }
+    write_out(out, &text)
+}
+
+/// Writes to standard output. Whoever closed the pipe has read enough.
+fn write_out(out: &mut dyn Write, text: &str) -> Result<(), AppError> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(AppError::System(format!(
             "standard output can't be written: {error}; check where it goes"
@@ -83,8 +111,18 @@ fn print(out: &mut dyn Write, text: &str) -> Result<(), AppError> {
     }
 }
 
+/// How many threads a core may be asked to run: more cost memory and win nothing.
+const MOST_THREADS_A_CORE: usize = 4;
+
 /// Runs `work` on a pool of its own: `threads` of them, or one a core.
 fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T, AppError> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let most = MOST_THREADS_A_CORE * cores;
+    if let Some(threads) = threads.filter(|&threads| threads > most) {
+        return Err(AppError::Arguments(format!(
+            "--threads {threads} is more than four for each of this machine's cores: give at most {most}"
+        )));
+    }
     let mut builder = rayon::ThreadPoolBuilder::new();
     if let Some(threads) = threads {
         builder = builder.num_threads(threads);

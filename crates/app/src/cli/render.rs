@@ -1,6 +1,7 @@
 //! `pliant render`: a picture of a file, at rest or with an edit applied, as the window shows it.
 
 use std::f64::consts::TAU;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
@@ -13,6 +14,7 @@ use super::arguments::{self, PictureSize, ProjectionName, RenderArguments, Up, V
 use super::{Console, on_threads};
 use crate::drawing::{self, Drawing, Scale};
 use crate::engine::{self, Loaded};
+use crate::files::Destination;
 use crate::watch::Watch;
 use crate::{AppError, files, legend, picture_file};
 
@@ -22,38 +24,41 @@ pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Res
         .extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
     {
-        let output = output.display();
+        let output = files::shown(output);
         return Err(AppError::Arguments(format!(
             "--output {output} is no .png: pictures are written as PNG"
         )));
     }
     let watch = &console.watch;
-    let pngs = on_threads(None, || pictures(arguments, watch))??;
+    let paths = paths(arguments);
+    let given = [("FILE", &*arguments.file)].into_iter();
+    let given = given.chain(arguments.edit.as_deref().map(|edit| ("--edit", edit)));
+    for path in &paths {
+        files::refuse_shared(("--output", path), given.clone())?;
+        // What is no file is refused before anything is drawn.
+        Destination::of(path)?;
+    }
+    let pngs = on_threads(None, || pictures(arguments, &paths, watch))??;
     if watch.cancel.is_cancelled() {
         return Err(AppError::Interrupted);
     }
-    let named = names(arguments).into_iter().zip(&pngs);
-    let files: Vec<(String, &[u8])> = named.map(|(name, png)| (name, png.as_slice())).collect();
-    console
-        .staging
-        .stage(
-            files::folder_of(output),
-            files.iter().map(|(name, png)| (name.as_str(), *png)),
-        )?
-        .commit()?;
+    let files = paths.into_iter().zip(pngs.iter().map(Vec::as_slice));
+    console.staging.stage(files)?.commit()?;
     Ok(())
 }
 
-/// The names of the pictures in their folder.
-fn names(arguments: &RenderArguments) -> Vec<String> {
+/// Where the pictures go.
+fn paths(arguments: &RenderArguments) -> Vec<PathBuf> {
     let output = &arguments.output;
-    match arguments.turntable {
-        None => vec![output.file_name().unwrap_or_default().to_string_lossy().into_owned()],
-        Some(count) => {
-            let stem = output.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            (1..=count).map(|number| format!("{stem}-{number:04}.png")).collect()
-        }
-    }
+    let Some(count) = arguments.turntable else {
+        return vec![output.clone()];
+    };
+    let numbered = |number: u32| {
+        let mut name = output.file_stem().unwrap_or_default().to_owned();
+        name.push(format!("-{number:04}.png"));
+        output.with_file_name(name)
+    };
+    (1..=count).map(numbered).collect()
 }
 
 /// How the arguments want the surface shown.
@@ -80,8 +85,12 @@ fn look(arguments: &RenderArguments) -> Look {
     }
 }
 
-fn pictures(arguments: &RenderArguments, watch: &Watch) -> Result<Vec<Vec<u8>>, AppError> {
+/// The pictures that go to `paths`.
+fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Result<Vec<Vec<u8>>, AppError> {
     let loaded = engine::load(&arguments.file, &WeldOptions::default(), watch)?;
+    for path in paths {
+        files::refuse_shared(("--output", path), loaded.sources())?;
+    }
     let model = &loaded.model;
     let Some(bounds) = model.bounds().filter(|_| !model.surface.triangles.is_empty()) else {
         return Err(AppError::NoTriangles(arguments.file.clone()));
@@ -226,7 +235,10 @@ fn shape(arguments: &RenderArguments, loaded: &Loaded, watch: &Watch) -> Result<
     progress.set(1.0);
     let seen = editor.view();
     if let Some(problem) = seen.problem {
-        return Err(AppError::System(format!("{}: {problem}", arguments.file.display())));
+        return Err(AppError::System(format!(
+            "{}: {problem}",
+            files::shown(&arguments.file)
+        )));
     }
     let displacements = Arc::clone(seen.displacements);
     let mut region_colours = Vec::new();

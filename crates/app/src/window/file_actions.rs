@@ -11,10 +11,11 @@ use super::message::{Purpose, Written, WrittenKind};
 use super::notes::Note;
 use super::palette::Palette;
 use super::recovery;
-use super::session::{KeepOriginal, Source, is_same};
+use super::session::{KeepOriginal, Source};
 use super::theme;
 use super::top_bar::FileCommand;
 use crate::engine::is_project;
+use crate::files::{is_same, shown};
 
 impl Application {
     pub(super) fn file_shortcuts(&mut self, context: &egui::Context) {
@@ -194,7 +195,7 @@ impl Application {
                     self.editor.handle(Event::Saved);
                     self.settings.change(|settings| settings.remember(&written.path));
                 }
-                let mut sentence = format!("Saved {}.", written.path.display());
+                let mut sentence = format!("Saved {}.", shown(&written.path));
                 for warning in &written.warnings {
                     sentence.push(' ');
                     sentence.push_str(warning);

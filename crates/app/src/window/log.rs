@@ -21,6 +21,8 @@ pub struct Log {
 impl Log {
     /// Adds a sentence, unless it is the one that was said last.
     pub fn say(&mut self, sentence: &str) {
+        let sentence: String = sentence.chars().filter(|letter| !pliant_io::steers(*letter)).collect();
+        let sentence = &*sentence;
         let is_again = self.lines.last().is_some_and(|line| line.ends_with(sentence));
         if is_again || sentence.is_empty() {
             return;

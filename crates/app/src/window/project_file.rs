@@ -9,6 +9,7 @@ use super::file_names::{SAMPLE, SAMPLE_NAME, file_name, original_name};
 use crate::AppError;
 use crate::engine::{self, Loaded};
 use crate::files::{self, Staging};
+use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
 
 /// Where a mesh as it was read stands now.
@@ -45,8 +46,7 @@ pub fn write(
             let kept = source_name(path, &loaded.path);
             if !kept.exists() {
                 let at_rest = &loaded.model.rest_positions();
-                let (staged, _) = engine::stage_save(loaded, at_rest, &kept, staging, progress, cancel)?;
-                beside = Some(staged);
+                beside = Some(saving::stage(loaded, &SaveAs::shape(at_rest, &kept), staging, progress, cancel)?.staged);
             }
             Some(file_name(&kept))
         }
@@ -55,7 +55,7 @@ pub fn write(
         path: mesh_path,
         geometry,
     });
-    let staged = staging.stage(folder, [(&*file_name(path), project.to_json().as_bytes())])?;
+    let staged = staging.stage([(path.to_owned(), project.to_json().as_bytes())])?;
     // The mesh first: the project must not stand there without it.
     match beside {
         Some(mesh) => mesh.and(staged).commit()?,

@@ -14,7 +14,7 @@ use pliant_mesh::{Cancel, Progress};
 
 use super::project_file::{self, MeshSource};
 use crate::engine::Loaded;
-use crate::files::Staging;
+use crate::files::{Staging, shown};
 
 /// How often unsaved work is kept. A write takes less than a second even on a large mesh, so no more than twice this
 /// can be lost.
@@ -62,17 +62,13 @@ impl Recovery {
     /// # Errors
     /// Where the folder or the lock can't be made, in a sentence.
     pub fn begin(folder: &Path) -> Result<Self, String> {
-        let refuse = |error: std::io::Error| {
-            format!(
-                "unsaved work can't be kept in {} ({error}): save often",
-                folder.display()
-            )
-        };
-        fs::create_dir_all(folder).map_err(refuse)?;
+        let refuse =
+            |error: std::io::Error| format!("unsaved work can't be kept in {} ({error}): save often", shown(folder));
+        make_private_folder(folder).map_err(refuse)?;
         for number in 0..1000 {
             let name = format!("session-{}-{number}", std::process::id());
             let lock_path = folder.join(&name).with_extension("lock");
-            let lock = File::create(&lock_path).map_err(refuse)?;
+            let lock = private_file(&lock_path).map_err(refuse)?;
             if lock.try_lock().is_ok() && !folder.join(&name).with_extension("pliant").exists() {
                 return Ok(Self {
                     project: folder.join(&name).with_extension("pliant"),
@@ -203,7 +199,7 @@ impl Work {
             &self.loaded,
             &self.source,
             &self.project,
-            &Staging::default(),
+            &Staging::private(),
             &Progress::new(),
             &Cancel::new(),
         )
@@ -216,6 +212,28 @@ pub fn write_latest() -> Option<PathBuf> {
     // Whoever holds it may be the one that panics.
     let work = LATEST.try_lock().ok()?.clone()?;
     work.write().ok().map(|()| work.project)
+}
+
+/// Makes the folder of a user's unsaved work, which is nobody else's business.
+fn make_private_folder(folder: &Path) -> std::io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::{DirBuilderExt, PermissionsExt};
+        fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)?;
+        // One that an earlier version made may be open to all.
+        fs::set_permissions(folder, fs::Permissions::from_mode(0o700))
+    }
+    #[cfg(not(unix))]
+    fs::create_dir_all(folder)
+}
+
+/// Makes or opens a file that only its owner may read.
+fn private_file(path: &Path) -> std::io::Result<File> {
+    let mut options = fs::OpenOptions::new();
+    options.write(true).create(true).truncate(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    options.open(path)
 }
 
 /// Takes a left session away.

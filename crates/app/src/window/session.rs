@@ -16,8 +16,9 @@ use super::workers::Workers;
 use crate::AppError;
 use crate::drawing::Drawing;
 use crate::engine::{self, Loaded};
-use crate::files::{self, Staged, Staging};
+use crate::files::{self, Destination, NewFile, Staged, Staging};
 use crate::picture_file;
+use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
 
 /// The open file and the jobs that read and write it.
@@ -70,6 +71,8 @@ pub enum Source {
 struct SaveRequest {
     path: PathBuf,
     what: What,
+    /// The open file's own files, which nothing else may be saved over.
+    sources: Vec<PathBuf>,
 }
 
 enum What {
@@ -145,7 +148,7 @@ impl Session {
             keep_original,
             source: open.source.clone(),
         };
-        self.write(SaveRequest { path, what }, workers);
+        self.write(path, what, workers);
     }
 
     /// Writes a project, off the window's thread.
@@ -156,24 +159,18 @@ impl Session {
             loaded: Arc::clone(&open.loaded),
             source: open.source.clone(),
         };
-        self.write(SaveRequest { path, what }, workers);
+        self.write(path, what, workers);
     }
 
     /// Writes an edit file, off the window's thread.
     pub fn export(&mut self, path: PathBuf, edit: EditFile, workers: &Workers) {
-        self.write(
-            SaveRequest {
-                path,
-                what: What::Edit(Box::new(edit)),
-            },
-            workers,
-        );
+        self.write(path, What::Edit(Box::new(edit)), workers);
     }
 
     /// Writes a picture as PNG, off the window's thread.
     pub fn save_picture(&mut self, path: PathBuf, image: Image, workers: &Workers) {
         let what = What::Picture(image);
-        self.write(SaveRequest { path, what }, workers);
+        self.write(path, what, workers);
     }
 
     /// Takes a save's end.
@@ -209,9 +206,14 @@ impl Session {
         Revision(self.next)
     }
 
-    fn write(&mut self, request: SaveRequest, workers: &Workers) {
+    fn write(&mut self, path: PathBuf, what: What, workers: &Workers) {
         let stamp = self.stamp();
-        self.saving.request(stamp, request);
+        let of_open = |open: &OpenFile| {
+            let sources = open.loaded.sources().skip(usize::from(open.path.is_none()));
+            sources.map(|(_, path)| path.to_owned()).collect()
+        };
+        let sources = self.open.as_ref().map(of_open).unwrap_or_default();
+        self.saving.request(stamp, SaveRequest { path, what, sources });
         self.start_saving(workers);
     }
 
@@ -325,18 +327,23 @@ fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<W
 }
 
 fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, AppError> {
-    let SaveRequest { path, what } = request;
+    let SaveRequest { path, what, sources } = request;
     let go_on = || cancel.check().map_err(|_| AppError::Interrupted);
     // What has begun shows that it has.
     progress.set(0.02);
     go_on()?;
     let progress = progress.part(0.02, 1.0);
     let staging = Staging::default();
-    let folder = files::folder_of(&path);
+    if !matches!(what, What::Model { .. }) {
+        let sources = sources
+            .iter()
+            .map(|source| ("the open file or one that it needs", &**source));
+        files::refuse_shared(("the file to be saved,", &path), sources)?;
+    }
     match what {
         What::Picture(image) => {
             let png = picture_file::png(image)?;
-            staging.stage(folder, [(&*file_name(&path), &*png)])?.commit()?;
+            staging.stage([(path.clone(), &*png)])?.commit()?;
             Ok(Written {
                 path,
                 what: WrittenKind::Picture,
@@ -345,9 +352,7 @@ fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Canc
         }
         What::Edit(edit) => {
             let text = edit.to_json();
-            staging
-                .stage(folder, [(&*file_name(&path), text.as_bytes())])?
-                .commit()?;
+            staging.stage([(path.clone(), text.as_bytes())])?.commit()?;
             Ok(Written {
                 path,
                 what: WrittenKind::Edit,
@@ -379,8 +384,12 @@ fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Canc
             let keeps = keep_original == KeepOriginal::Yes && !original.exists();
             let split = if keeps { 0.5 } else { 1.0 };
             let (of_save, of_original) = (progress.part(0.0, split), progress.part(split, 1.0));
-            let (mut staged, warnings) = engine::stage_save(&loaded, &positions, &path, &staging, &of_save, cancel)?;
-            let is_source = matches!(&source, MeshSource::File(mesh) if is_same(mesh, &path));
+            let neighbours = loaded.sources().skip(1);
+            files::refuse_shared(("the file to be saved,", &path), neighbours)?;
+            let save = SaveAs::shape(&positions, &path);
+            let saved = saving::stage(&loaded, &save, &staging, &of_save, cancel)?;
+            let (mut staged, warnings) = (saved.staged, saved.warnings);
+            let is_source = matches!(&source, MeshSource::File(mesh) if files::is_same(mesh, &path));
             let mut moved = is_source.then_some(MeshSource::Gone);
             if keeps {
                 // The original first: what replaces it must not stand there without it.
@@ -398,14 +407,6 @@ fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Canc
     }
 }
 
-/// Whether two paths lead to one file.
-pub fn is_same(a: &Path, b: &Path) -> bool {
-    match (std::fs::canonicalize(a), std::fs::canonicalize(b)) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => a == b,
-    }
-}
-
 /// What stands at `path`, to be kept under the name `original`.
 fn stage_original(
     loaded: &Loaded,
@@ -417,11 +418,14 @@ fn stage_original(
 ) -> Result<Staged, AppError> {
     if is_gltf(path) {
         let at_rest = &loaded.model.rest_positions();
-        let (staged, _) = engine::stage_save(loaded, at_rest, original, staging, progress, cancel)?;
+        let staged = saving::stage(loaded, &SaveAs::shape(at_rest, original), staging, progress, cancel)?.staged;
         Ok(staged)
     } else {
         let bytes = files::read(path)?;
-        let name = file_name(original);
-        staging.stage_watched(files::folder_of(path), &[(&*name, &*bytes)], progress, cancel)
+        let file = NewFile {
+            to: Destination::of(original)?,
+            bytes: &bytes,
+        };
+        staging.stage_watched(&[file], None, progress, cancel)
     }
 }

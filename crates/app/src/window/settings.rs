@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::files::{self, Staging};
+use crate::files::{self, Staging, shown};
 
 /// How many files are remembered.
 const RECENT: usize = 10;
@@ -134,7 +134,7 @@ impl Settings {
                 Self::default(),
                 Some(format!(
                     "the settings in {} can't be read ({error}): mend or delete that file; the defaults hold for now",
-                    path.display()
+                    shown(path)
                 )),
             ),
         }
@@ -147,12 +147,11 @@ impl Settings {
     pub fn write(&self, path: &Path) -> Result<(), String> {
         let folder = files::folder_of(path);
         std::fs::create_dir_all(folder)
-            .map_err(|error| format!("{} can't be made ({error}): check its rights", folder.display()))?;
+            .map_err(|error| format!("{} can't be made ({error}): check its rights", shown(folder)))?;
         let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
         text.push('\n');
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
         Staging::default()
-            .stage(folder, [(&*name, text.as_bytes())])
+            .stage([(path.to_owned(), text.as_bytes())])
             .and_then(|staged| Ok(staged.commit()?))
             .map_err(|error| error.to_string())
     }
@@ -167,7 +166,7 @@ impl Settings {
 
     /// Takes the recent file that a refusal names out of the list, if it is not there any more.
     pub fn forget_if_gone(&mut self, refusal: &str) {
-        let is_named = |path: &Path| refusal.starts_with(&path.display().to_string());
+        let is_named = |path: &Path| refusal.starts_with(&shown(path));
         self.recent.retain(|path| !is_named(path) || path.exists());
     }
 }

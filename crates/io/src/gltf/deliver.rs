@@ -5,35 +5,34 @@ use std::collections::BTreeSet;
 
 use super::container;
 use super::document::{Buffer, Document, ImageFile};
-use super::json::{Edits, Json};
+use super::json::{At, Edits, Json};
+use super::neighbours::{self, Gathered, leads_to};
 use super::patch::Patched;
 use super::uri;
-use crate::save::{OutputFile, Placement, Save, Saved};
-use crate::{Format, SaveError};
+use crate::save::{OutputFile, Placement, Role, Save, Saved, own_stem};
+use crate::{Format, SaveError, quoted};
 
 /// The files of a glTF saved as the kind it was read as.
 pub(super) fn in_its_kind(document: &Document, patched: Patched<'_>, save: &Save<'_>) -> Result<Saved, SaveError> {
     let mut edits = Edits::default();
     let is_unchanged = patched.is_unchanged();
     let own_names = own_names(document, save.name);
-    let mut neighbours = Vec::new();
+    let mut gathered = Gathered::of(document);
     let mut warnings = patched.warnings;
-    // The patched text is parsed again only where a buffer's address in it has to change.
-    let buffer_uri = |buffer: usize, json: &Json| {
-        let list = json.member(json.root(), "buffers")?;
-        json.member(json.elements(list).nth(buffer)?, "uri")
-    };
+    // The patched text is parsed again only where it differs from the one that was read.
     let json = match &patched.text {
         Cow::Borrowed(_) => None,
         Cow::Owned(text) => Some(reparsed(text)?),
     };
     let json = json.as_ref().unwrap_or(&document.json);
+    let buffer_uris = neighbours::uris(json, "buffers");
+    let image_uris = neighbours::uris(json, "images");
     for (buffer, bytes) in patched.buffers.iter().enumerate() {
         let is_changed = matches!(bytes, Cow::Owned(_));
         match &document.buffers[buffer] {
             Buffer::Bin(_) | Buffer::Absent | Buffer::Decoded(_) => {}
             Buffer::Data(_) => {
-                if let Some(at) = buffer_uri(buffer, json).filter(|_| is_changed) {
+                if let Some(at) = buffer_uris[buffer].filter(|_| is_changed) {
                     let old = json.string(at).unwrap_or_default();
                     let mime = old
                         .get(5..)
@@ -47,22 +46,40 @@ pub(super) fn in_its_kind(document: &Document, patched: Patched<'_>, save: &Save
                     Placement::SameFile if !is_changed => continue,
                     Placement::SameFolder if is_unchanged => continue,
                     Placement::SameFile | Placement::OtherFolder => inside(path)?,
-                    Placement::SameFolder => {
-                        if let Some(at) = buffer_uri(buffer, json) {
-                            edits.replace(json.span(at), uri::json_uri(&own_names[buffer]));
-                        }
-                        own_names[buffer].clone()
-                    }
+                    Placement::SameFolder => own_names[buffer].clone(),
                 };
-                neighbours.push(OutputFile {
-                    name,
-                    bytes: bytes.to_vec(),
-                });
+                let name = gathered.add(name, Role::Buffer, bytes);
+                if let Some(at) = buffer_uris[buffer].filter(|_| !leads_to(path, &name)) {
+                    edits.replace(json.span(at), uri::json_uri(&name));
+                }
             }
         }
     }
-    if save.placement == Placement::OtherFolder {
-        bring_images(document, &mut neighbours, &mut warnings)?;
+    match save.placement {
+        Placement::OtherFolder => bring_images(document, json, &image_uris, &mut gathered, &mut edits, &mut warnings)?,
+        Placement::SameFile => {
+            // What shares a changed buffer's place, and did not change, gets a place of its own.
+            let buffers = document.buffers.iter().zip(&patched.buffers).zip(&buffer_uris);
+            let buffers = buffers.filter_map(|((buffer, bytes), at)| match (buffer, bytes) {
+                (Buffer::Neighbour { path, .. }, Cow::Borrowed(bytes)) => Some((Role::Buffer, path, *bytes, at)),
+                _ => None,
+            });
+            let images = document.images.iter().zip(&image_uris);
+            let images = images.filter_map(|(image, at)| match image {
+                ImageFile::Neighbour { path, bytes } => Some((Role::Image, path, bytes.as_deref()?, at)),
+                _ => None,
+            });
+            for (role, path, bytes, at) in buffers.chain(images) {
+                let Some(name) = uri::inside(path).filter(|name| gathered.differs(name, bytes)) else {
+                    continue;
+                };
+                let name = gathered.add(name, role, bytes);
+                if let Some(at) = at {
+                    edits.replace(json.span(*at), uri::json_uri(&name));
+                }
+            }
+        }
+        Placement::SameFolder => {}
     }
     let text = if edits.is_empty() {
         patched.text
@@ -86,7 +103,7 @@ pub(super) fn in_its_kind(document: &Document, patched: Patched<'_>, save: &Save
         }
         None => with_mark(document, &text),
     };
-    Ok(saved(save, bytes, neighbours, warnings))
+    Ok(saved(save, bytes, gathered.files, warnings))
 }
 
 /// A `.gltf` and its buffer, of a GLB: the BIN chunk becomes a neighbour of OUT's own name.
@@ -94,7 +111,7 @@ pub(super) fn unpacked(document: &Document, patched: Patched<'_>, save: &Save<'_
     let json = reparsed(&patched.text)?;
     let mut edits = Edits::default();
     let own_names = own_names(document, save.name);
-    let mut neighbours = Vec::new();
+    let mut gathered = Gathered::of(document);
     let mut warnings = patched.warnings;
     let list = json.member(json.root(), "buffers");
     let buffers_at: Vec<_> = list.into_iter().flat_map(|list| json.elements(list)).collect();
@@ -105,10 +122,10 @@ pub(super) fn unpacked(document: &Document, patched: Patched<'_>, save: &Save<'_
             Buffer::Data(_) if matches!(bytes, Cow::Borrowed(_)) => continue,
             Buffer::Absent | Buffer::Decoded(_) => continue,
             Buffer::Neighbour { path, .. } if save.placement == Placement::OtherFolder => {
-                neighbours.push(OutputFile {
-                    name: inside(path)?,
-                    bytes: bytes.to_vec(),
-                });
+                let name = gathered.add(inside(path)?, Role::Buffer, bytes);
+                if !leads_to(path, &name) {
+                    edits.set_member(&json, at, "uri", &uri::json_uri(&name));
+                }
                 continue;
             }
             Buffer::Bin(_) | Buffer::Data(_) | Buffer::Neighbour { .. } => &own_names[buffer],
@@ -122,25 +139,20 @@ pub(super) fn unpacked(document: &Document, patched: Patched<'_>, save: &Save<'_
         let length = told
             .filter(|&told| told <= bytes.len() && bytes.len() - told < 4)
             .unwrap_or(bytes.len());
-        neighbours.push(OutputFile {
-            name: own.clone(),
-            bytes: bytes[..length].to_vec(),
-        });
+        gathered.add(own.clone(), Role::Buffer, &bytes[..length]);
     }
     if save.placement == Placement::OtherFolder {
-        bring_images(document, &mut neighbours, &mut warnings)?;
+        let image_uris = neighbours::uris(&json, "images");
+        bring_images(document, &json, &image_uris, &mut gathered, &mut edits, &mut warnings)?;
     }
     let text = edits.apply(json.text(), 0..json.text().len());
-    Ok(saved(save, without_padding(&text).to_vec(), neighbours, warnings))
+    Ok(saved(save, without_padding(&text).to_vec(), gathered.files, warnings))
 }
 
 pub(super) fn saved(save: &Save<'_>, bytes: Vec<u8>, neighbours: Vec<OutputFile>, warnings: Vec<String>) -> Saved {
-    let mut files = vec![OutputFile {
-        name: save.name.to_owned(),
-        bytes,
-    }];
-    files.extend(neighbours);
-    Saved { files, warnings }
+    let mut saved = Saved::alone(save.name, bytes, warnings);
+    saved.files.extend(neighbours);
+    saved
 }
 
 /// A text that patches made, parsed again.
@@ -170,21 +182,25 @@ fn inside(path: &str) -> Result<String, SaveError> {
 /// The images beside the file, to be written beside OUT.
 fn bring_images(
     document: &Document,
-    neighbours: &mut Vec<OutputFile>,
+    json: &Json,
+    uris: &[Option<At>],
+    gathered: &mut Gathered,
+    edits: &mut Edits,
     warnings: &mut Vec<String>,
 ) -> Result<(), SaveError> {
-    for image in &document.images {
+    for (image, at) in document.images.iter().zip(uris) {
         let ImageFile::Neighbour { path, bytes } = image else {
             continue;
         };
         let name = inside(path)?;
-        match bytes {
-            Some(_) if neighbours.iter().any(|neighbour| neighbour.name == name) => {}
-            Some(bytes) => neighbours.push(OutputFile {
-                name,
-                bytes: bytes.to_vec(),
-            }),
-            None => warnings.push(format!("The image {path} was missing and could not be brought along.")),
+        let Some(bytes) = bytes else {
+            let path = quoted(path);
+            warnings.push(format!("The image {path} was missing and could not be brought along."));
+            continue;
+        };
+        let name = gathered.add(name, Role::Image, bytes);
+        if let Some(at) = at.filter(|_| !leads_to(path, &name)) {
+            edits.replace(json.span(at), uri::json_uri(&name));
         }
     }
     Ok(())
@@ -193,16 +209,8 @@ fn bring_images(
 /// A name for each buffer that is OUT's own: its stem, numbered from the second one on, and none that a neighbour of
 /// the file that was read already has.
 fn own_names(document: &Document, out: &str) -> Vec<String> {
-    let stem = out.rsplit_once('.').map_or(out, |(stem, _)| stem);
-    let of_buffers = document.buffers.iter().filter_map(|buffer| match buffer {
-        Buffer::Neighbour { path, .. } => uri::inside(path),
-        _ => None,
-    });
-    let of_images = document.images.iter().filter_map(|image| match image {
-        ImageFile::Neighbour { path, .. } => uri::inside(path),
-        _ => None,
-    });
-    let mut taken: BTreeSet<String> = of_buffers.chain(of_images).collect();
+    let stem = own_stem(out);
+    let mut taken: BTreeSet<String> = neighbours::paths(document).filter_map(uri::inside).collect();
     let mut names = Vec::new();
     let mut number = 1;
     for _ in &document.buffers {

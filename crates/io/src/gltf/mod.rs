@@ -15,6 +15,7 @@ mod look;
 mod maps;
 mod meshopt;
 mod morph;
+mod neighbours;
 mod overlap;
 mod pack;
 mod patch;
@@ -23,7 +24,12 @@ mod tree;
 mod unpack;
 mod uri;
 
+use std::ops::Range;
+
+use glam::DVec3;
 use pliant_mesh::{Drawn, Object};
+
+pub use neighbours::{is_same_document, neighbours_named, with_neighbours_renamed};
 
 use self::document::Document;
 use self::fault::Fault;
@@ -78,27 +84,6 @@ pub(crate) fn join_glb(json: &[u8], bin: &[u8]) -> Option<Vec<u8>> {
     container::join(json, Some(bin), &[], &[])
 }
 
-/// A `.gltf` with other names for the neighbours that `names` pairs with them, and all else as it is; `None` where it
-/// is no JSON or names none of them.
-pub fn with_neighbours_renamed(gltf: &[u8], names: &[(&str, String)]) -> Option<Vec<u8>> {
-    let json = json::Json::parse(gltf.to_vec()).ok()?;
-    let mut edits = json::Edits::default();
-    for section in ["buffers", "images"] {
-        let list = json.member(json.root(), section);
-        for object in list.into_iter().flat_map(|list| json.elements(list)) {
-            let Some(at) = json.member(object, "uri") else { continue };
-            let Ok(uri::Address::Neighbour(path)) = uri::address(&json.string(at)?) else {
-                continue;
-            };
-            let path = uri::inside(&path);
-            if let Some((_, new)) = names.iter().find(|(old, _)| Some(*old) == path.as_deref()) {
-                edits.replace(json.span(at), uri::json_uri(new));
-            }
-        }
-    }
-    (!edits.is_empty()).then(|| edits.apply(json.text(), 0..gltf.len()))
-}
-
 /// What is said of a neighbour outside the file's folder that a save takes into its result.
 pub(crate) const FROM_OUTSIDE: &str =
     "lies outside the file's own folder and was put into the result: share that only if you mean to share it too.";
@@ -139,6 +124,30 @@ impl Stored {
                 .map(|primitive| primitive.targets.len())
                 .sum(),
         }
+    }
+
+    /// Ranges of drawn vertices, ascending, and how far each of their world coordinates may be off after a save.
+    ///
+    /// Positions are rounded to f32 in the node's space, and nodes that share a mesh keep sharing it where they differ
+    /// by four such roundings of its largest coordinate.
+    pub fn roundings(&self, drawn: &Drawn) -> Vec<(Range<u32>, DVec3)> {
+        let of_part = |part: &geometry::Part| {
+            let vertices = part.vertices.start as usize..part.vertices.end as usize;
+            let positions = || drawn.positions[vertices.clone()].iter().filter(|p| p.is_finite());
+            let node_from_world = part.world_from_node.inverse();
+            let largest = |most: DVec3, p: DVec3| most.max(p.abs());
+            let in_node = positions().map(|p| node_from_world.transform_point3(*p));
+            let in_node = in_node.filter(|p| p.is_finite()).fold(DVec3::ZERO, largest);
+            let in_world = positions().copied().fold(DVec3::ZERO, largest);
+            let matrix = part.world_from_node.matrix3;
+            let by_axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::abs);
+            let of_node = in_node.max_element() * (by_axes[0] + by_axes[1] + by_axes[2]);
+            let within = 16.0 * (f64::from(f32::EPSILON) * of_node + f64::EPSILON * in_world);
+            // Below f32's normal numbers, roundings are no longer relative.
+            let smallest = f64::from(f32::MIN_POSITIVE) * (by_axes[0] + by_axes[1] + by_axes[2]);
+            (part.vertices.clone(), within + smallest)
+        };
+        self.pieces.parts.iter().map(of_part).collect()
     }
 
     /// What differs between this file and another, in the order of this one's text.

@@ -21,9 +21,10 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// What a path may not hold as it is.
+/// What a path may not hold as it is. Before a colon a reader would take the path's beginning for a scheme.
 const ESCAPED: &AsciiSet = &CONTROLS
     .add(b' ')
+    .add(b':')
     .add(b'"')
     .add(b'#')
     .add(b'%')
@@ -139,7 +140,14 @@ mod tests {
 
     #[test]
     fn a_path_survives_its_uri() {
-        for path in ["a b.bin", "ä%.bin", "x/y\"z.bin"] {
+        for path in [
+            "a b.bin",
+            "ä%.bin",
+            "x/y\"z.bin",
+            "12:30.bin",
+            "data:x,y.bin",
+            "https://a.bin",
+        ] {
             let json = json_uri(path);
             let uri: Result<String, _> = serde_json::from_str(&json);
             assert!(

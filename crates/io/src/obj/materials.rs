@@ -11,7 +11,7 @@ use crate::colour::linear_of_srgb;
 use crate::gltf::stays_inside;
 use crate::notes::Notes;
 use crate::quote::quoted;
-use crate::save::OutputFile;
+use crate::save::{OutputFile, Role};
 use crate::source::Source;
 use crate::text::excerpt;
 
@@ -195,7 +195,13 @@ fn dress(material: &mut Material, stored: &tobj::Material) {
 }
 
 /// The file name behind a `map_Kd`'s options, and how it continues beyond its edges.
-fn texture_file(texture: &str) -> (String, Wrap) {
+pub(super) fn texture_file(texture: &str) -> (String, Wrap) {
+    let (file, wrap) = behind_options(texture);
+    (as_uri(file), wrap)
+}
+
+/// As [`texture_file`], the name as it is written.
+pub(super) fn behind_options(texture: &str) -> (&str, Wrap) {
     let mut rest = texture.trim();
     let mut wrap = Wrap::Repeat;
     while let Some(option) = rest.split_whitespace().next().filter(|word| word.starts_with('-')) {
@@ -219,20 +225,20 @@ fn texture_file(texture: &str) -> (String, Wrap) {
                 .map_or("", |(_, behind)| behind.trim_start());
         }
     }
-    (as_uri(rest), wrap)
+    (rest, wrap)
 }
 
 /// A name as a path with `/`.
-fn as_uri(name: &str) -> String {
+pub(super) fn as_uri(name: &str) -> String {
     name.trim().trim_matches('"').replace('\\', "/")
 }
 
 /// Everything before a path's file name, with its `/`.
-fn folder_of(uri: &str) -> &str {
+pub(super) fn folder_of(uri: &str) -> &str {
     uri.rfind('/').map_or("", |end| &uri[..=end])
 }
 
-fn join(folder: &str, file: &str) -> String {
+pub(super) fn join(folder: &str, file: &str) -> String {
     if file.starts_with('/') {
         file.to_owned()
     } else {
@@ -293,16 +299,18 @@ fn outside_note(what: &str, path: &str) -> Option<String> {
 /// The libraries and textures that an OBJ file in another folder needs beside it, and what stays behind.
 pub(super) fn neighbours(materials: &Materials) -> (Vec<OutputFile>, Vec<String>) {
     let (mut files, mut warnings): (Vec<OutputFile>, Vec<String>) = (Vec::new(), Vec::new());
-    let libraries = materials.libraries.iter().map(|(path, bytes)| (path, &**bytes));
+    let libraries = materials.libraries.iter();
+    let libraries = libraries.map(|(path, bytes)| (Role::Library, path, &**bytes));
     let images = materials.image_paths.iter().zip(&materials.images);
-    let images = images.map(|(path, image)| (path, &*image.encoded));
-    for (path, bytes) in libraries.chain(images) {
+    let images = images.map(|(path, image)| (Role::Image, path, &*image.encoded));
+    for (role, path, bytes) in libraries.chain(images) {
         if files.iter().any(|file| file.name == *path) {
             continue;
         }
         if is_inside(path) {
             files.push(OutputFile {
                 name: path.clone(),
+                role,
                 bytes: bytes.to_vec(),
             });
         } else {

@@ -14,7 +14,7 @@ use crate::images::decodes;
 use crate::new_faces::{for_each_face, lost, lost_where};
 use crate::new_mesh::NewMesh;
 use crate::quote::quoted;
-use crate::save::{OutputFile, Saved};
+use crate::save::{OutputFile, Role, Saved, own_stem};
 use crate::text::{push_f32, push_f64};
 use crate::{Appearance, SaveError};
 
@@ -22,7 +22,7 @@ use crate::{Appearance, SaveError};
 /// material.
 pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
-    let stem = mesh.name.rsplit_once('.').map_or(mesh.name, |(stem, _)| stem);
+    let stem = &own_stem(mesh.name);
     let has_materials = look.materials.iter().any(|material| !is_plain(material));
     let names = material_names(look);
     let mut out = Vec::new();
@@ -33,29 +33,27 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
     push_vertices(&mut out, mesh, &of_vertices)?;
     let names_of_faces = has_materials.then_some(names.as_slice());
     push_faces(&mut out, mesh, names_of_faces, &of_faces)?;
-    let mut files = vec![OutputFile {
-        name: mesh.name.to_owned(),
-        bytes: out,
-    }];
-    let mut warnings = Vec::new();
+    let mut saved = Saved::alone(mesh.name, out, Vec::new());
     if has_materials {
-        let images = image_files(look, stem, &mut warnings);
-        files.push(OutputFile {
+        let images = image_files(look, stem, &mut saved.warnings);
+        saved.files.push(OutputFile {
             name: format!("{stem}.mtl"),
+            role: Role::Library,
             bytes: library(look, &names, &images),
         });
         let mut written = HashSet::new();
         for (image, name) in look.images.iter().zip(images) {
             if let Some(name) = name.filter(|name| written.insert(name.clone())) {
-                files.push(OutputFile {
+                saved.files.push(OutputFile {
                     name,
+                    role: Role::Image,
                     bytes: image.encoded.to_vec(),
                 });
             }
         }
     }
-    warnings.extend(left_out(look));
-    Ok(Saved { files, warnings })
+    saved.warnings.extend(left_out(look));
+    Ok(saved)
 }
 
 /// What a material library can't say of the materials.

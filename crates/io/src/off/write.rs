@@ -5,7 +5,7 @@ use crate::colour::srgb_bytes_of_linear;
 use crate::course::Course;
 use crate::new_faces::{face_count, for_each_face, has_materials, lost, lost_where, merged};
 use crate::new_mesh::NewMesh;
-use crate::save::{OutputFile, Saved};
+use crate::save::Saved;
 use crate::text::push_f64;
 
 /// Writes a mesh's positions, colours and faces. Normals are left to the reader: the variants that hold them beside
@@ -51,11 +51,5 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
             ("textures", lost_where(!look.images.is_empty())),
         ],
     );
-    Ok(Saved {
-        files: vec![OutputFile {
-            name: mesh.name.to_owned(),
-            bytes: out,
-        }],
-        warnings: warning.into_iter().collect(),
-    })
+    Ok(Saved::alone(mesh.name, out, warning.into_iter().collect()))
 }

@@ -34,6 +34,13 @@ pub(super) fn patched(
     Ok((bytes, warnings))
 }
 
+/// The number nearest to `value` that the column of a coordinate holds.
+pub(super) fn nearest(stored: &Stored, axis: usize, value: f64) -> f64 {
+    let element = stored.vertex_element.map(|index| &stored.header.elements[index]);
+    let scalar = element.and_then(|element| scalar_of(element, stored.columns[axis]?));
+    scalar.map_or(value, |scalar| scalar.nearest(value))
+}
+
 /// The type of a vertex's property; `None` for lists.
 fn scalar_of(element: &Element, property: usize) -> Option<Scalar> {
     match element.properties[property].kind {

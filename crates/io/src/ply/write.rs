@@ -7,7 +7,7 @@ use crate::colour::srgb_bytes_of_linear;
 use crate::course::Course;
 use crate::new_faces::{coarse_in_f32, face_count, for_each_face, has_materials, lost, lost_where, merged};
 use crate::new_mesh::NewMesh;
-use crate::save::{OutputFile, Saved};
+use crate::save::Saved;
 
 /// Writes a mesh as PLY: positions (as `double` where `float` would round visibly), and normals, texture coordinates
 /// and colours where the mesh has them.
@@ -47,13 +47,7 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
             ("textures", lost_where(!look.images.is_empty())),
         ],
     );
-    Ok(Saved {
-        files: vec![OutputFile {
-            name: mesh.name.to_owned(),
-            bytes: out,
-        }],
-        warnings: warning.into_iter().collect(),
-    })
+    Ok(Saved::alone(mesh.name, out, warning.into_iter().collect()))
 }
 
 fn header(mesh: &NewMesh<'_>, vertex_count: usize, is_double: bool, is_wide: bool) -> String {

@@ -4,7 +4,7 @@ use crate::SaveError;
 use crate::course::Course;
 use crate::new_faces::{coarse_in_f32, has_materials, lost, lost_where};
 use crate::new_mesh::NewMesh;
-use crate::save::{OutputFile, Saved};
+use crate::save::Saved;
 
 use super::facet_normal;
 
@@ -51,11 +51,5 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
             "STL holds 32-bit numbers, which round positions this far from the origin by up to {rounding:.1e}: save as .obj to keep them."
         ));
     }
-    Ok(Saved {
-        files: vec![OutputFile {
-            name: mesh.name.to_owned(),
-            bytes: out,
-        }],
-        warnings,
-    })
+    Ok(Saved::alone(mesh.name, out, warnings))
 }

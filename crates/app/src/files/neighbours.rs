@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 
 use pliant_io::{Bytes, Resolver};
 
-use crate::files::{folder_of, reason};
+use super::error::{in_words, reason};
+use super::{folder_of, follow};
 
 /// What a file's neighbours may take in all, unless the caller says otherwise: 16 GiB, several times what the largest
 /// scans bring.
@@ -21,6 +22,8 @@ pub const NEIGHBOUR_BYTES: u64 = 16 << 30;
 #[derive(Debug)]
 pub struct Neighbours {
     folder: PathBuf,
+    /// Where a link leads to: a save through the link puts the neighbours there.
+    folder_behind: Option<PathBuf>,
     budget: u64,
     known: RefCell<Known>,
 }
@@ -37,8 +40,11 @@ struct Known {
 impl Neighbours {
     /// The neighbours of `file`.
     pub fn of(file: &Path) -> Self {
+        let is_link = fs::symlink_metadata(file).is_ok_and(|metadata| metadata.is_symlink());
+        let behind = is_link.then(|| follow(file).ok()).flatten();
         Self {
             folder: folder_of(file).to_owned(),
+            folder_behind: behind.map(|target| folder_of(&target).to_owned()),
             budget: NEIGHBOUR_BYTES,
             known: RefCell::default(),
         }
@@ -50,8 +56,22 @@ impl Neighbours {
         Self { budget, ..self }
     }
 
+    /// The places on disk of those that were read so far, sorted.
+    pub fn were_read(&self) -> Vec<PathBuf> {
+        let mut places: Vec<PathBuf> = self.known.borrow().by_place.keys().cloned().collect();
+        places.sort();
+        places
+    }
+
     fn read_once(&self, path: &str) -> io::Result<Bytes> {
-        let full = self.folder.join(path);
+        match (self.read_in(&self.folder, path), &self.folder_behind) {
+            (Err(error), Some(behind)) if error.kind() == ErrorKind::NotFound => self.read_in(behind, path),
+            (bytes, _) => bytes,
+        }
+    }
+
+    fn read_in(&self, folder: &Path, path: &str) -> io::Result<Bytes> {
+        let full = folder.join(path);
         // Files are looked at before they are opened: opening a pipe or a device may wait, or do something.
         refuse_strange(&fs::metadata(&full)?)?;
         let place = fs::canonicalize(&full)?;
@@ -74,7 +94,7 @@ impl Neighbours {
         refuse_strange(&metadata)?;
         let too_large = || {
             let budget = self.budget as f64 / f64::from(1 << 30);
-            io::Error::other(format!(
+            in_words(format!(
                 "with it the file's neighbours would take more than the {budget} GiB that they may in all"
             ))
         };
@@ -152,7 +172,7 @@ fn is_reserved(step: &str) -> bool {
 fn refuse_strange(metadata: &fs::Metadata) -> io::Result<()> {
     match metadata {
         _ if metadata.is_dir() => Err(ErrorKind::IsADirectory.into()),
-        _ if !metadata.is_file() => Err(io::Error::other("it is no ordinary file")),
+        _ if !metadata.is_file() => Err(in_words("it is no ordinary file; give the path of one")),
         _ => Ok(()),
     }
 }

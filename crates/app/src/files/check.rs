@@ -1,0 +1,77 @@
+//! Reading back what was written, before anything is replaced by it.
+
+use std::path::{Path, PathBuf};
+
+use pliant_io::{Bytes, Format, MorphTarget, ReadError, Resolver, Save, Scene};
+use pliant_mesh::{Cancel, Progress};
+
+use super::{Destination, Neighbours};
+use crate::AppError;
+
+/// What was written and is not in its place yet.
+pub struct Written<'a> {
+    /// Where OUT goes.
+    pub output: &'a Destination,
+    /// Its bytes on the disk.
+    pub file: &'a Path,
+    /// The neighbours that were written with it, by their names, and theirs.
+    pub neighbours: Vec<(String, &'a Path)>,
+    /// The save's own [`triangles`](pliant_io::Saved::triangles).
+    pub triangles: Option<Vec<u32>>,
+}
+
+/// Reads a save back from the disk, as whoever opens it next will, and compares its shape with the one that was to be
+/// saved. It is the last look before the old file goes.
+///
+/// # Errors
+/// [`AppError::ReadBack`] where it can't be read or shows another shape; [`AppError::Interrupted`] soon after `cancel`
+/// is raised.
+pub fn read_back(
+    written: &Written<'_>,
+    scene: &Scene,
+    save: &Save<'_>,
+    morph: Option<&MorphTarget<'_>>,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<(), AppError> {
+    let refuse = |what: String| AppError::ReadBack {
+        file: written.output.given.clone(),
+        what,
+    };
+    let resolver = AmongWritten {
+        written: written
+            .neighbours
+            .iter()
+            .map(|(name, path)| (name.clone(), path.to_path_buf()))
+            .collect(),
+        beside: Neighbours::of(&written.output.target),
+    };
+    let name = written.output.given.to_string_lossy();
+    let bytes = super::read(written.file)?;
+    let format: Format = save.format;
+    let back = pliant_io::read(bytes, format, &name, &resolver, progress, cancel).map_err(|error| match error {
+        ReadError::Cancelled(_) => AppError::Interrupted,
+        error => refuse(error.to_string()),
+    })?;
+    cancel.check().map_err(|_| AppError::Interrupted)?;
+    scene
+        .check_read_back(save, morph, written.triangles.as_deref(), &back)
+        .map_err(refuse)
+}
+
+/// Neighbours as they will be: those that were written from where they wait, the others from beside OUT.
+struct AmongWritten {
+    written: Vec<(String, PathBuf)>,
+    beside: Neighbours,
+}
+
+impl Resolver for AmongWritten {
+    fn read(&self, uri: &str) -> Result<Bytes, String> {
+        let steps = uri.split('/').filter(|step| !matches!(*step, "" | "."));
+        let plain = steps.collect::<Vec<_>>().join("/");
+        match self.written.iter().find(|(name, _)| *name == plain) {
+            Some((_, path)) => super::read(path).map(Bytes::from).map_err(|error| error.reason()),
+            None => self.beside.read(uri),
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Where a file is to be written, through links, and whether there may be one at all.
+
+use std::ffi::OsStr;
+use std::fs::{self, Metadata};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use super::error::{FileError, in_words};
+use super::{folder_of, follow};
+
+/// The place that a path leads to, looked at without opening anything.
+#[derive(Clone, Debug)]
+pub struct Destination {
+    /// The path as the person gave it, for messages.
+    pub given: PathBuf,
+    /// The file that is written: where links lead to, in a folder's true spelling. The link itself stays.
+    pub target: PathBuf,
+    /// The folder in which it is prepared: its own, or for a neighbour that of the file which names it.
+    pub home: PathBuf,
+    /// For a neighbour, the file that names it: where nothing stands yet, it gets that one's rights.
+    pub(super) namer: Option<PathBuf>,
+}
+
+impl Destination {
+    /// Follows `path` as editors do.
+    ///
+    /// # Errors
+    /// Where its folder is missing, or what stands there is a folder, a device, a pipe or a socket, or may not be
+    /// written.
+    pub fn of(path: &Path) -> Result<Self, FileError> {
+        let target = follow(path).map_err(|error| FileError::writing(path, error))?;
+        let destination = Self {
+            given: path.to_owned(),
+            home: folder_of(&target).to_owned(),
+            target,
+            namer: None,
+        };
+        destination.existing()?;
+        Ok(destination)
+    }
+
+    /// A neighbour of this file at `target`.
+    pub(super) fn neighbour(&self, given: PathBuf, target: PathBuf) -> Self {
+        Self {
+            given,
+            target,
+            home: self.home.clone(),
+            namer: Some(self.target.clone()),
+        }
+    }
+
+    /// The file's name, a link's target's.
+    pub fn name(&self) -> &OsStr {
+        self.target.file_name().unwrap_or_default()
+    }
+
+    /// What stands there, if it is a file that may be replaced.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub fn existing(&self) -> Result<Option<Metadata>, FileError> {
+        let refuse = |error| Err(FileError::writing(&self.given, error));
+        let metadata = match fs::metadata(&self.target) {
+            Ok(metadata) => metadata,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(error) => return refuse(error),
+        };
+        if metadata.is_dir() {
+            return refuse(ErrorKind::IsADirectory.into());
+        }
+        if !metadata.is_file() {
+            return refuse(in_words(
+                "a device, a pipe or a socket stands there; choose another place",
+            ));
+        }
+        // Renaming would replace it all the same; whoever took the right to write meant it.
+        if metadata.permissions().readonly() {
+            return refuse(ErrorKind::PermissionDenied.into());
+        }
+        Ok(Some(metadata))
+    }
+}

@@ -1,0 +1,158 @@
+//! Which file a path leads to, whatever it is called there.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use super::error::in_words;
+use super::{folder_of, shown};
+use crate::AppError;
+
+/// Links that lead on to links, as the system counts them before it gives up.
+const MOST_LINKS: usize = 40;
+
+/// The place that a path leads to through all links, with its folder in its one true spelling. The file itself need
+/// not be there: a link may lead to one that is yet to be made.
+///
+/// # Errors
+/// Where a folder on the way is missing or can't be looked into, or the path ends in no name.
+pub fn follow(path: &Path) -> io::Result<PathBuf> {
+    let mut at = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let name = at.file_name().ok_or(ErrorKind::IsADirectory)?.to_owned();
+        let folder = fs::canonicalize(folder_of(&at))?;
+        if !folder.is_dir() {
+            return Err(ErrorKind::NotADirectory.into());
+        }
+        at = folder.join(name);
+        match fs::symlink_metadata(&at) {
+            Ok(metadata) if metadata.is_symlink() => at = folder.join(fs::read_link(&at)?),
+            Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+            _ => return Ok(at),
+        }
+    }
+    Err(in_words("its links lead in a circle; remove them"))
+}
+
+/// A file as the system knows it.
+#[derive(Clone, PartialEq, Eq, Debug)]
+enum Identity {
+    /// One that is there: hard links share it.
+    #[cfg(unix)]
+    Node { device: u64, number: u64 },
+    /// One by its only place.
+    Place(PathBuf),
+}
+
+fn identity(path: &Path) -> Option<Identity> {
+    let place = follow(path).ok()?;
+    #[cfg(unix)]
+    if let Ok(metadata) = fs::metadata(&place) {
+        use std::os::unix::fs::MetadataExt;
+        return Some(Identity::Node {
+            device: metadata.dev(),
+            number: metadata.ino(),
+        });
+    }
+    if place.exists() {
+        return fs::canonicalize(&place).ok().map(Identity::Place);
+    }
+    let folder = folder_of(&place);
+    let name = place.file_name().unwrap_or_default();
+    Some(Identity::Place(if folds_case(folder) {
+        folder.join(name.to_string_lossy().to_lowercase())
+    } else {
+        place
+    }))
+}
+
+/// Whether two paths lead to one file, by links, hard links or another spelling. Files that are not there yet are one
+/// where they would be.
+pub fn is_same(a: &Path, b: &Path) -> bool {
+    a == b || identity(a).is_some_and(|a| identity(b) == Some(a))
+}
+
+/// Whether a folder's file system takes names that differ in case alone for one: told by the folder's own name.
+fn folds_case(folder: &Path) -> bool {
+    let Some(name) = folder.file_name().and_then(OsStr::to_str) else {
+        return cfg!(any(windows, target_os = "macos"));
+    };
+    let swap = |letter: char| {
+        if letter.is_lowercase() {
+            letter.to_uppercase().next()
+        } else {
+            letter.to_lowercase().next()
+        }
+    };
+    let swapped: String = name.chars().filter_map(swap).collect();
+    if swapped == name {
+        return cfg!(any(windows, target_os = "macos"));
+    }
+    // Both must be there and lead to one folder.
+    let other = fs::canonicalize(folder.with_file_name(swapped));
+    other.is_ok_and(|other| fs::canonicalize(folder).is_ok_and(|folder| is_one_folder(&other, &folder)))
+}
+
+#[cfg(unix)]
+fn is_one_folder(a: &Path, b: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let node = |path: &Path| fs::metadata(path).map(|metadata| (metadata.dev(), metadata.ino())).ok();
+    node(a).is_some_and(|a| node(b) == Some(a))
+}
+
+#[cfg(not(unix))]
+fn is_one_folder(a: &Path, b: &Path) -> bool {
+    a == b
+}
+
+/// Refuses an output that is one of `others`, each with what it is ("FILE", "--edit").
+///
+/// # Errors
+/// [`AppError::Arguments`], naming both.
+pub fn refuse_shared<'a, 'b>(
+    output: (&str, &Path),
+    others: impl IntoIterator<Item = (&'a str, &'b Path)>,
+) -> Result<(), AppError> {
+    let (role, path) = output;
+    for (other_role, other) in others {
+        if is_same(path, other) {
+            return Err(AppError::Arguments(format!(
+                "{role} {} is {other_role} as well: give it another name",
+                shown(path)
+            )));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(all(test, unix))]
+#[expect(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_known_by_every_path_to_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("sub")).unwrap();
+        fs::write(at("a"), "").unwrap();
+        fs::write(at("b"), "").unwrap();
+        fs::hard_link(at("a"), at("hard")).unwrap();
+        std::os::unix::fs::symlink("a", at("soft")).unwrap();
+        std::os::unix::fs::symlink("soft", at("softer")).unwrap();
+        std::os::unix::fs::symlink("../new", at("sub/dangling")).unwrap();
+        std::os::unix::fs::symlink("circle", at("circle")).unwrap();
+        for name in ["./a", "sub/../a", "hard", "soft", "softer"] {
+            assert!(is_same(&at("a"), &at(name)), "{name}");
+            assert!(!is_same(&at("b"), &at(name)), "{name}");
+        }
+        assert!(is_same(&at("new"), &at("sub/dangling")) && is_same(&at("new"), &at("sub/../new")));
+        assert!(!is_same(&at("new"), &at("newer")) && !is_same(&at("new"), &at("none/new")));
+        assert_eq!(
+            follow(&at("sub/dangling")).unwrap(),
+            fs::canonicalize(folder.path()).unwrap().join("new")
+        );
+        assert!(follow(&at("circle")).is_err() && follow(&at("none/x")).is_err());
+    }
+}

@@ -1,0 +1,110 @@
+//! The files that a save makes for a while, and clearing away those that one which was killed has left.
+//!
+//! There are temporary files (`.pliant-XXXXXX.tmp`, and `.old` for what is put back should a save fail half-way), which
+//! nothing names; and neighbours under passing names (`.pliant-` and 16 hex digits and `-` and the name), which a glTF
+//! that was being replaced may name.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::hash::{BuildHasher, Hasher as _, RandomState};
+use std::path::Path;
+
+use super::placement::names_in_folder;
+
+/// What all of them begin with.
+pub(super) const PREFIX: &str = ".pliant-";
+/// What is being written.
+pub(super) const TEMPORARY: &str = ".tmp";
+/// What is being replaced.
+pub(super) const REPLACED: &str = ".old";
+
+/// The longest part of a name that a passing name keeps, in bytes: file systems end names at 255.
+const LONGEST: usize = 200;
+
+/// A passing name for the neighbour `name`, in the folder of the file that names it.
+pub(crate) fn passing_name(name: &str) -> String {
+    let flat = name.replace('%', "%25").replace('/', "%2F");
+    let mut from = flat.len().saturating_sub(LONGEST);
+    while !flat.is_char_boundary(from) {
+        from += 1;
+    }
+    format!(
+        "{PREFIX}{:016x}-{}",
+        RandomState::new().build_hasher().finish(),
+        &flat[from..]
+    )
+}
+
+/// The name of a neighbour whatever its passing name is.
+pub(super) fn real_name(name: &str) -> String {
+    match behind_passing(name) {
+        Some(flat) => flat.replace("%2F", "/").replace("%25", "%"),
+        None => name.to_owned(),
+    }
+}
+
+/// Whether a neighbour goes by a passing name.
+pub(super) fn is_passing(name: &str) -> bool {
+    behind_passing(name).is_some()
+}
+
+fn behind_passing(name: &str) -> Option<&str> {
+    let (digits, flat) = name.strip_prefix(PREFIX)?.split_once('-')?;
+    let is_ours = digits.len() == 16 && digits.bytes().all(|byte| byte.is_ascii_hexdigit()) && !flat.is_empty();
+    is_ours.then_some(flat)
+}
+
+/// Removes what killed saves have left in a folder. To be called by who holds its lock alone.
+pub(super) fn clear(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    let mut passing = Vec::new();
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let Some(name) = name.to_str().filter(|name| name.starts_with(PREFIX)) else {
+            continue;
+        };
+        if !entry.file_type().is_ok_and(|kind| kind.is_file()) {
+            continue;
+        }
+        if name.ends_with(TEMPORARY) || name.ends_with(REPLACED) {
+            // One that can't be removed is a file too many, and no harm.
+            let _ = fs::remove_file(entry.path());
+        } else if is_passing(name) {
+            passing.push(name.to_owned());
+        }
+    }
+    if passing.is_empty() {
+        return;
+    }
+    // A save that was killed half-way has left a glTF that lives on these.
+    let Some(named): Option<BTreeSet<String>> = names_in_folder(folder, None) else {
+        return;
+    };
+    for name in passing.iter().filter(|name| !named.contains(*name)) {
+        let _ = fs::remove_file(folder.join(name));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_passing_name_tells_the_real_one() {
+        for name in ["scene.bin", "textures/a b.png", "100%/50%2F.bin", "漢字.bin"] {
+            let passing = passing_name(name);
+            assert!(is_passing(&passing) && !passing.contains('/'), "{passing}");
+            assert_eq!(real_name(&passing), name);
+            assert_eq!(real_name(name), name);
+        }
+        assert!(passing_name(&"é".repeat(127)).len() <= 255);
+        for name in [
+            ".pliant-abc.tmp",
+            ".pliant-0123456789abcdef-",
+            "scene.bin",
+            ".pliant.lock",
+        ] {
+            assert!(!is_passing(name), "{name}");
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! A lock on a folder that is written to.
+//!
+//! It is an advisory lock of the system on a file in that folder, so that it ends with the process that holds it,
+//! however that ends: nothing stale is ever waited for. A save of several files holds it alone; saves of single files,
+//! which are one rename each, hold it together. Whoever holds it alone knows that no other save is under way there, so
+//! that temporary files which lie about belong to nobody.
+//!
+//! The file itself goes with its last holder. One that a killed process left is taken over by the next save.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use pliant_mesh::Cancel;
+
+use super::error::in_words;
+
+/// The lock's name in its folder.
+const NAME: &str = ".pliant.lock";
+
+/// How long a save waits for another one in the same folder.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// With whom a lock is held.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Share {
+    /// With other saves of single files.
+    Together,
+    /// With nobody.
+    Alone,
+}
+
+/// A held lock.
+#[derive(Debug)]
+pub(super) struct FolderLock {
+    pub folder: PathBuf,
+    pub share: Share,
+    /// `None` where the file system knows no locks: then saves go on without.
+    file: Option<File>,
+}
+
+impl FolderLock {
+    /// Waits for the lock on `folder`. `clear` is called as soon as it is held alone, for a moment at least: if that
+    /// can't be had at once and `share` doesn't ask for it, it is not called.
+    ///
+    /// # Errors
+    /// What the system says; [`ErrorKind::Interrupted`] when `cancel` is raised; a sentence when another save in the
+    /// folder does not end.
+    pub fn take(folder: &Path, share: Share, cancel: &Cancel, clear: impl FnOnce(&Path)) -> io::Result<Self> {
+        let path = folder.join(NAME);
+        let start = Instant::now();
+        let mut pause = Duration::from_millis(2);
+        let mut clear = Some(clear);
+        loop {
+            let file = open(&path)?;
+            let held = match file.try_lock() {
+                Ok(()) => {
+                    if !is_at(&file, &path) {
+                        continue;
+                    }
+                    if let Some(clear) = clear.take() {
+                        clear(folder);
+                    }
+                    match share {
+                        Share::Alone => true,
+                        // The change is not one step: somebody may hold it alone in between.
+                        Share::Together => file.try_lock_shared().is_ok(),
+                    }
+                }
+                Err(TryLockError::WouldBlock) => share == Share::Together && file.try_lock_shared().is_ok(),
+                Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
+                    let _ = fs::remove_file(&path);
+                    return Ok(Self {
+                        folder: folder.to_owned(),
+                        share,
+                        file: None,
+                    });
+                }
+                Err(TryLockError::Error(error)) => return Err(error),
+            };
+            if held && is_at(&file, &path) {
+                return Ok(Self {
+                    folder: folder.to_owned(),
+                    share,
+                    file: Some(file),
+                });
+            }
+            drop(file);
+            if cancel.is_cancelled() {
+                return Err(ErrorKind::Interrupted.into());
+            }
+            if start.elapsed() > PATIENCE {
+                return Err(in_words(
+                    "another save in its folder does not end; wait for it or stop it, and save again",
+                ));
+            }
+            std::thread::sleep(pause);
+            pause = (2 * pause).min(Duration::from_millis(50));
+        }
+    }
+
+    /// Takes the file away unless others hold it, too.
+    pub fn remove_file(&self) {
+        let Some(file) = &self.file else { return };
+        let path = self.folder.join(NAME);
+        let is_last = self.share == Share::Alone || file.try_lock().is_ok();
+        if is_last && is_at(file, &path) {
+            // One that stays is an empty file, which the next save takes over.
+            let _ = fs::remove_file(path);
+        }
+    }
+}
+
+impl Drop for FolderLock {
+    fn drop(&mut self) {
+        self.remove_file();
+    }
+}
+
+/// Opens the lock's file, which is made if need be; never anything but an ordinary file, and never through a link.
+fn open(path: &Path) -> io::Result<File> {
+    let mut last = io::Error::from(ErrorKind::NotFound);
+    // Its last holder may take it away between two looks.
+    for _ in 0..1000 {
+        match fs::symlink_metadata(path) {
+            Ok(metadata) if !metadata.is_file() => {
+                return Err(in_words(format!("{NAME} in its folder is no ordinary file; remove it")));
+            }
+            Ok(_) => match File::open(path) {
+                Err(error) if error.kind() == ErrorKind::NotFound => last = error,
+                opened => return opened,
+            },
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                let mut options = OpenOptions::new();
+                options.read(true).write(true).create_new(true);
+                match options.open(path) {
+                    Err(error) if error.kind() == ErrorKind::AlreadyExists => last = error,
+                    opened => {
+                        let file = opened?;
+                        for_everybody(&file);
+                        return Ok(file);
+                    }
+                }
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Err(last)
+}
+
+/// Lets other users of a shared folder open the lock, whatever the umask: it is empty.
+fn for_everybody(file: &File) {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let _ = file.set_permissions(fs::Permissions::from_mode(0o644));
+    }
+    #[cfg(not(unix))]
+    let _ = file;
+}
+
+/// Whether the open file is the one that stands at the path now.
+fn is_at(file: &File, path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let node = |metadata: io::Result<fs::Metadata>| metadata.map(|found| (found.dev(), found.ino())).ok();
+        node(file.metadata()).is_some_and(|held| node(fs::symlink_metadata(path)) == Some(held))
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = file;
+        path.exists()
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    fn take(folder: &Path, share: Share, cancel: &Cancel) -> io::Result<(FolderLock, bool)> {
+        let mut was_alone = false;
+        let lock = FolderLock::take(folder, share, cancel, |_| was_alone = true)?;
+        Ok((lock, was_alone))
+    }
+
+    #[test]
+    fn one_alone_or_many_together_and_no_file_in_the_end() {
+        let folder = tempfile::tempdir().unwrap();
+        let (go_on, stopped) = (Cancel::new(), Cancel::new());
+        stopped.cancel();
+        // What a killed process left is taken over.
+        fs::write(folder.path().join(NAME), "").unwrap();
+        let (first, was_alone) = take(folder.path(), Share::Together, &go_on).unwrap();
+        assert!(was_alone);
+        let (second, was_alone) = take(folder.path(), Share::Together, &go_on).unwrap();
+        assert!(!was_alone, "the first is still there");
+        assert!(take(folder.path(), Share::Alone, &stopped).is_err());
+        drop(first);
+        assert!(take(folder.path(), Share::Alone, &stopped).is_err());
+        drop(second);
+        let (alone, was_alone) = take(folder.path(), Share::Alone, &go_on).unwrap();
+        assert!(was_alone);
+        assert!(take(folder.path(), Share::Together, &stopped).is_err());
+        drop(alone);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn who_waits_comes_in_when_the_other_is_done() {
+        let folder = tempfile::tempdir().unwrap();
+        let inside = std::sync::atomic::AtomicUsize::new(0);
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| {
+                    for _ in 0..25 {
+                        let lock = take(folder.path(), Share::Alone, &Cancel::new()).unwrap();
+                        assert_eq!(inside.fetch_add(1, std::sync::atomic::Ordering::SeqCst), 0);
+                        inside.fetch_sub(1, std::sync::atomic::Ordering::SeqCst);
+                        drop(lock);
+                    }
+                });
+            }
+        });
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,310 @@
+//! Names for the neighbours that a save writes, under which nothing is lost that somebody else may need.
+//!
+//! **The rule.** A neighbour gets the name that the file gives it, unless something stands there already. What stands
+//! there is shared if it holds the very same bytes (a buffer only if no other file names it, since buffers are edited).
+//! It is replaced only if it is this document's own: OUT is there and is a save of this very document (the same to the
+//! letter in all that no save changes), OUT names the neighbour, and no other glTF in the folder does. In every other
+//! case, a link that leads out of the folder among them, the neighbour gets another name (`scene-2.bin`), and the
+//! person is told.
+//!
+//! So an edit applied again and again writes the same files each time, a file that is saved over itself keeps its
+//! names, and of two downloads whose buffers are both `scene.bin` both keep their shape. The rule asks only what lies
+//! in the folder; it needs no notes of our own there or elsewhere.
+
+use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use pliant_io::{Format, Placement, Role, Saved, is_same_document, neighbours_named, numbered, quoted};
+
+use super::leftovers::{is_passing, real_name};
+use super::{Destination, FileError, folder_of, follow, is_same};
+use crate::AppError;
+
+/// Where `output` stands as seen from `source`.
+pub fn placement(source: &Path, output: &Destination) -> Placement {
+    let folder = fs::canonicalize(folder_of(source)).ok();
+    if folder.as_deref() != Some(&*output.home) {
+        Placement::OtherFolder
+    } else if is_same(source, &output.target) {
+        Placement::SameFile
+    } else {
+        Placement::SameFolder
+    }
+}
+
+/// What becomes of one neighbour.
+#[derive(Clone, Debug)]
+pub struct Settled {
+    /// Its place among the save's files.
+    pub file: usize,
+    /// Where it stands.
+    pub at: Destination,
+    /// Whether it is written.
+    pub action: Action,
+}
+
+/// Whether a neighbour is written.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Action {
+    /// It is.
+    Write,
+    /// The same bytes stand there already.
+    Share,
+}
+
+/// Gives each neighbour of `saved` the name that it is written under, in the texts that name it, too. What was renamed
+/// is told among the save's warnings.
+///
+/// The folder must be locked: what stands there may not change until the files are in their places.
+///
+/// # Errors
+/// Where a neighbour can't be called otherwise, or a thousand names are taken.
+pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result<Vec<Settled>, AppError> {
+    adopt_passing(saved, output)?;
+    let mut folder = Folder::of(output, &saved.files[0].bytes, format);
+    let mut settled = Vec::new();
+    // Textures come behind the libraries that name them, whose bytes change with those names.
+    for place in (1..saved.files.len()).rev() {
+        let old = saved.files[place].name.clone();
+        let wanted = real_name(&old);
+        // Where a folder of its path can't be, it goes beside OUT.
+        let flat = wanted.rsplit_once('/').map(|(_, flat)| flat);
+        let candidates = [Some(&*wanted), flat].into_iter().flatten().flat_map(|name| {
+            (1..1000).map(move |number| match number {
+                1 => name.to_owned(),
+                _ => numbered(name, number),
+            })
+        });
+        let file = &saved.files[place];
+        let found = candidates
+            .map(|name| (folder.look_at(&name, &file.bytes, file.role), name))
+            .find(|(there, _)| !matches!(there, There::Taken));
+        let Some((there, name)) = found else {
+            return Err(AppError::System(format!(
+                "{}: no name is free for {}: choose another folder",
+                super::shown(&output.given),
+                quoted(&wanted)
+            )));
+        };
+        if name != old {
+            saved.rename(place, &name, format).map_err(|source| AppError::Save {
+                file: output.given.clone(),
+                source,
+            })?;
+        }
+        if name != wanted {
+            saved.warnings.push(format!(
+                "{} was written as {}: another file of that name is there, which is not this document's.",
+                quoted(&wanted),
+                quoted(&name)
+            ));
+        }
+        let given = folder_of(&output.given).join(&name);
+        let (action, target) = match there {
+            There::Nothing(target) | There::Own(target) => (Action::Write, target),
+            There::Same(target) => (Action::Share, target),
+            // It was not looked for.
+            There::Taken => continue,
+        };
+        if action == Action::Write {
+            folder.taken.push(target.clone());
+        }
+        settled.push(Settled {
+            file: place,
+            at: output.neighbour(given, target),
+            action,
+        });
+    }
+    settled.reverse();
+    Ok(settled)
+}
+
+/// Takes along the neighbours that OUT names by passing names and leaves as they are: a save of it was cut off, and this
+/// one gives them their own names back.
+fn adopt_passing(saved: &mut Saved, output: &Destination) -> Result<(), FileError> {
+    let Some(named) = neighbours_named(&saved.files[0].bytes) else {
+        return Ok(());
+    };
+    for name in named.into_iter().filter(|name| is_passing(name)) {
+        if saved.files.iter().any(|file| file.name == name) {
+            continue;
+        }
+        let bytes = super::read(&output.home.join(&name))?;
+        saved.files.push(pliant_io::OutputFile {
+            name,
+            role: Role::Buffer,
+            bytes,
+        });
+    }
+    Ok(())
+}
+
+/// What stands at a neighbour's place.
+enum There {
+    /// Nothing: it can be written there.
+    Nothing(PathBuf),
+    /// This document's own neighbour, by an earlier save.
+    Own(PathBuf),
+    /// The very same bytes.
+    Same(PathBuf),
+    /// Something that must stay.
+    Taken,
+}
+
+/// OUT's folder, looked at as far as it is asked for.
+struct Folder<'a> {
+    output: &'a Destination,
+    /// The neighbours that the existing OUT names, if it is a save of the same document.
+    own: Vec<String>,
+    /// The neighbours that other files in the folder name; `None` until somebody asks.
+    others: Option<Others>,
+    /// Places that this save writes.
+    taken: Vec<PathBuf>,
+}
+
+/// What other glTF in the folder name; `None` where one of them is too large to be looked through.
+type Others = Option<BTreeSet<String>>;
+
+impl<'a> Folder<'a> {
+    fn of(output: &'a Destination, new: &[u8], format: Format) -> Self {
+        let is_gltf = matches!(format, Format::Glb | Format::Gltf);
+        let existing = is_gltf.then(|| super::read(&output.target).ok()).flatten();
+        let existing = existing.filter(|existing| is_same_document(existing, new));
+        let own = existing
+            .and_then(|existing| neighbours_named(&existing))
+            .unwrap_or_default();
+        Self {
+            output,
+            own: own.iter().map(|name| real_name(name)).collect(),
+            others: None,
+            taken: vec![output.target.clone()],
+        }
+    }
+
+    fn look_at(&mut self, name: &str, bytes: &[u8], role: Role) -> There {
+        let home = &self.output.home;
+        let path = home.join(name);
+        // Its folder may lead elsewhere, or be no folder.
+        let mut parent = home.clone();
+        let steps: Vec<&str> = name.split('/').collect();
+        for step in &steps[..steps.len() - 1] {
+            parent.push(step);
+            match fs::symlink_metadata(&parent) {
+                Ok(metadata) if metadata.is_dir() => {}
+                Ok(metadata) if metadata.is_symlink() && parent.is_dir() => {}
+                Err(error) if error.kind() == io::ErrorKind::NotFound => break,
+                _ => return There::Taken,
+            }
+        }
+        let Ok(target) = follow_to_new(&path) else {
+            return There::Taken;
+        };
+        let is_inside = target.starts_with(home);
+        if self.taken.iter().any(|taken| is_same(taken, &target)) {
+            return There::Taken;
+        }
+        let metadata = match fs::metadata(&target) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                let is_link = fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_symlink());
+                // A link that leads nowhere is somebody's, who may bring the file back.
+                return if is_inside && !is_link {
+                    There::Nothing(target)
+                } else {
+                    There::Taken
+                };
+            }
+            Ok(metadata) if metadata.is_file() => metadata,
+            _ => return There::Taken,
+        };
+        let is_equal = metadata.len() == bytes.len() as u64 && holds(&target, bytes);
+        let is_own = is_inside && self.own.iter().any(|own| own == name) && !self.is_named_by_others(name);
+        match (is_equal, is_own, role) {
+            (true, true, _) => There::Same(target),
+            (true, false, Role::Buffer) if self.is_named_by_others(name) => There::Taken,
+            (true, false, _) => There::Same(target),
+            (false, true, _) => There::Own(target),
+            (false, false, _) => There::Taken,
+        }
+    }
+
+    fn is_named_by_others(&mut self, name: &str) -> bool {
+        let output = self.output;
+        let others = self
+            .others
+            .get_or_insert_with(|| names_in_folder(&output.home, Some(&output.target)));
+        others.as_ref().is_none_or(|others| others.contains(name))
+    }
+}
+
+/// As [`follow`], where folders on the way may be missing.
+fn follow_to_new(path: &Path) -> io::Result<PathBuf> {
+    if folder_of(path).exists() {
+        return follow(path);
+    }
+    let name = path.file_name().ok_or(io::ErrorKind::NotFound)?;
+    Ok(follow_to_new(folder_of(path))?.join(name))
+}
+
+/// Whether a file holds these bytes and no others.
+fn holds(path: &Path, bytes: &[u8]) -> bool {
+    let Ok(mut file) = File::open(path) else { return false };
+    let mut block = vec![0; 1 << 16];
+    let mut left = bytes;
+    loop {
+        match file.read(&mut block) {
+            Ok(0) => return left.is_empty(),
+            Ok(count) => match left.strip_prefix(&block[..count]) {
+                Some(behind) => left = behind,
+                None => return false,
+            },
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(_) => return false,
+        }
+    }
+}
+
+/// A glTF's text beyond this size is not looked through.
+const LONGEST_TEXT: u64 = 256 << 20;
+
+/// What the glTF in a folder name, but for one of them; `None` where one is too large to be looked through. Those that
+/// can't be read name nothing that anybody could follow.
+pub(super) fn names_in_folder(folder: &Path, except: Option<&Path>) -> Option<BTreeSet<String>> {
+    let mut names = BTreeSet::new();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        let is_kind = |kind: &str| {
+            path.extension()
+                .is_some_and(|extension| extension.eq_ignore_ascii_case(kind))
+        };
+        let is_file = fs::metadata(&path).is_ok_and(|metadata| metadata.is_file());
+        if !is_file || !(is_kind("gltf") || is_kind("glb")) || except.is_some_and(|except| is_same(except, &path)) {
+            continue;
+        }
+        match text_of(&path) {
+            Ok(Some(text)) => names.extend(neighbours_named(&text).into_iter().flatten()),
+            Ok(None) => return None,
+            Err(_) => {}
+        }
+    }
+    Some(names)
+}
+
+/// The text of a glTF, of a GLB the JSON chunk alone; `None` where it is too long.
+fn text_of(path: &Path) -> io::Result<Option<Vec<u8>>> {
+    let mut file = File::open(path)?;
+    let mut length = file.metadata()?.len();
+    let mut head = Vec::new();
+    Read::by_ref(&mut file).take(20).read_to_end(&mut head)?;
+    if let [b'g', b'l', b'T', b'F', _, _, _, _, _, _, _, _, a, b, c, d, ..] = head[..] {
+        length = u64::from(u32::from_le_bytes([a, b, c, d]));
+        head.clear();
+    }
+    if length > LONGEST_TEXT {
+        return Ok(None);
+    }
+    let left = length.saturating_sub(head.len() as u64);
+    file.take(left).read_to_end(&mut head)?;
+    Ok(Some(head))
+}

@@ -1,0 +1,174 @@
+//! A model into files: encoded, put under names where nothing is lost, written beside their places and read back.
+
+use std::path::Path;
+use std::time::Instant;
+
+use glam::DVec3;
+use pliant_io::{Format, MorphTarget, Role, Save, SaveError, Saved, with_neighbours_renamed};
+use pliant_mesh::{Cancel, Progress};
+
+use crate::AppError;
+use crate::engine::{Loaded, ms_since};
+use crate::files::check::{self, Written};
+use crate::files::placement::{self, Action, Settled};
+use crate::files::{self, Bridge, Destination, NewFile, Share, Staged, Staging};
+
+/// What is saved, and where.
+#[derive(Clone, Copy, Debug)]
+pub struct SaveAs<'a> {
+    /// The new world position of each drawn vertex.
+    pub positions: &'a [DVec3],
+    /// Saves the edit as a morph target beside the shape as it was.
+    pub morph: Option<&'a MorphTarget<'a>>,
+    /// The file to be written.
+    pub output: &'a Path,
+    /// A file that is written along with it, and what it is: no neighbour may be the same.
+    pub beside: Option<(&'a str, &'a Destination)>,
+}
+
+impl<'a> SaveAs<'a> {
+    /// A shape alone.
+    pub fn shape(positions: &'a [DVec3], output: &'a Path) -> Self {
+        Self {
+            positions,
+            morph: None,
+            output,
+            beside: None,
+        }
+    }
+}
+
+/// A save that is ready to be committed.
+#[derive(Debug)]
+pub struct StagedSave {
+    /// Its files.
+    pub staged: Staged,
+    /// What a person should know, as sentences.
+    pub warnings: Vec<String>,
+    /// How long reading back took, in milliseconds.
+    pub check_ms: f64,
+}
+
+/// Prepares a model's files: encoded, written beside their targets, synced and read back, to be committed.
+///
+/// # Errors
+/// What the format can't hold, or the disk can't take; [`AppError::ReadBack`] where what was written shows another
+/// shape; [`AppError::Interrupted`] soon after `cancel` is raised. Nothing is left behind then.
+pub fn stage(
+    loaded: &Loaded,
+    what: &SaveAs<'_>,
+    staging: &Staging,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<StagedSave, AppError> {
+    let to = Destination::of(what.output)?;
+    let refuse = |source| match source {
+        SaveError::Cancelled(_) => AppError::Interrupted,
+        source => AppError::Save {
+            file: what.output.to_owned(),
+            source,
+        },
+    };
+    // Making the bytes takes about as long as a disk takes to keep them; reading them back takes less.
+    let (of_making, of_writing) = (progress.part(0.0, 0.4), progress.part(0.4, 0.8));
+    let of_check = progress.part(0.8, 1.0);
+    let name = to.name().to_string_lossy();
+    let drawn = loaded.model.rest();
+    let save = Save {
+        drawn: &drawn,
+        positions: what.positions,
+        format: Format::of_name(&what.output.to_string_lossy())?,
+        name: &name,
+        placement: placement::placement(&loaded.path, &to),
+    };
+    let saved = match what.morph {
+        None => loaded.scene.save(&save, &of_making, cancel),
+        Some(morph) => loaded.scene.save_as_morph(&save, morph, &of_making, cancel),
+    };
+    let mut saved = saved.map_err(refuse)?;
+
+    // Files that name each other must be written while nobody else writes there.
+    let is_alone = saved.files.len() > 1 || save.format == Format::Gltf;
+    let share = if is_alone { Share::Alone } else { Share::Together };
+    let beside = what.beside.map(|(_, beside)| (beside, Share::Together));
+    let _held = staging.hold([(&to, share)].into_iter().chain(beside), cancel)?;
+    let settled = placement::settle(&mut saved, save.format, &to)?;
+    if let Some((role, beside)) = what.beside {
+        let neighbours = settled
+            .iter()
+            .map(|settled| ("a file that OUT needs", &*settled.at.target));
+        files::refuse_shared((role, &beside.given), neighbours)?;
+    }
+    let (staged, names) = write(&saved, &settled, &to, staging, &of_writing, cancel)?;
+    let Saved {
+        files,
+        mut warnings,
+        triangles,
+    } = saved;
+    // The bytes are on the disk; there they are read from now.
+    drop(files);
+    warnings.extend(staged.notes());
+
+    let start = Instant::now();
+    let last = names.len();
+    let neighbours = names.into_iter().enumerate();
+    let written = Written {
+        output: &to,
+        file: staged.temporary(last),
+        neighbours: neighbours.map(|(file, name)| (name, staged.temporary(file))).collect(),
+        triangles,
+    };
+    check::read_back(&written, &loaded.scene, &save, what.morph, &of_check, cancel)?;
+    Ok(StagedSave {
+        staged,
+        warnings,
+        check_ms: ms_since(start),
+    })
+}
+
+/// Writes OUT's neighbours and then OUT beside their places. Also the names of the neighbours that are written.
+fn write(
+    saved: &Saved,
+    settled: &[Settled],
+    to: &Destination,
+    staging: &Staging,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<(Staged, Vec<String>), AppError> {
+    // Neighbours first: the file that names them must not stand there without them.
+    let neighbours: Vec<&Settled> = settled
+        .iter()
+        .filter(|settled| settled.action == Action::Write)
+        .collect();
+    let names: Vec<String> = neighbours
+        .iter()
+        .map(|settled| saved.files[settled.file].name.clone())
+        .collect();
+    let mut files: Vec<NewFile<'_>> = neighbours
+        .iter()
+        .map(|settled| NewFile {
+            to: settled.at.clone(),
+            bytes: &saved.files[settled.file].bytes,
+        })
+        .collect();
+    files.push(NewFile {
+        to: to.clone(),
+        bytes: &saved.files[0].bytes,
+    });
+    // Only what a glTF names can be edited or be this document's own, and so be replaced.
+    let is_bridged = neighbours
+        .iter()
+        .all(|settled| saved.files[settled.file].role != Role::Library);
+    let passing: Vec<String> = names.iter().map(|name| files::passing_name(name)).collect();
+    let renamed: Vec<(&str, String)> = names.iter().map(String::as_str).zip(passing.iter().cloned()).collect();
+    let bytes = is_bridged
+        .then(|| with_neighbours_renamed(&saved.files[0].bytes, &renamed))
+        .flatten();
+    let bridge = bytes.as_deref().map(|bytes| Bridge {
+        file: names.len(),
+        bytes,
+        neighbours: passing.into_iter().enumerate().collect(),
+    });
+    let staged = staging.stage_watched(&files, bridge.as_ref(), progress, cancel)?;
+    Ok((staged, names))
+}

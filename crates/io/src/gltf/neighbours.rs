@@ -1,0 +1,189 @@
+//! The files that a glTF names: gathered for a save, each name once, and what a text says of them.
+
+use std::collections::BTreeSet;
+
+use super::container;
+use super::deliver::without_padding;
+use super::document::{Buffer, Document, ImageFile};
+use super::json::{At, Edits, Json};
+use super::uri::{self, Address};
+use crate::save::{OutputFile, Role, numbered};
+
+/// The neighbours that a save writes, while they are gathered.
+pub(super) struct Gathered {
+    pub files: Vec<OutputFile>,
+    /// Names that are not free for a neighbour which needs another one.
+    taken: BTreeSet<String>,
+}
+
+impl Gathered {
+    /// None yet; the names of those that were read are taken.
+    pub fn of(document: &Document) -> Self {
+        Self {
+            files: Vec::new(),
+            taken: paths(document).filter_map(uri::inside).collect(),
+        }
+    }
+
+    /// Adds a neighbour and gives its name: `name`, or another where a neighbour with other bytes has that one.
+    ///
+    /// Two buffers of a file may name one place. As long as they say the same they keep it; each gets a place of its
+    /// own as soon as an edit tells them apart.
+    pub fn add(&mut self, name: String, role: Role, bytes: &[u8]) -> String {
+        let known = self.files.iter().find(|file| file.name == name);
+        let name = match known {
+            Some(known) if known.bytes == bytes => return name,
+            Some(_) => self.free_name(&name),
+            None => name,
+        };
+        self.taken.insert(name.clone());
+        self.files.push(OutputFile {
+            name: name.clone(),
+            role,
+            bytes: bytes.to_vec(),
+        });
+        name
+    }
+
+    /// Whether the neighbour `name` is written with other bytes than these.
+    pub fn differs(&self, name: &str, bytes: &[u8]) -> bool {
+        self.files.iter().any(|file| file.name == name && file.bytes != bytes)
+    }
+
+    /// `name` with the first number that makes it free.
+    fn free_name(&self, name: &str) -> String {
+        let free = (2..).map(|number| numbered(name, number));
+        let mut free = free.filter(|name| !self.taken.contains(name));
+        free.next().unwrap_or_default()
+    }
+}
+
+/// The paths by which the file that was read names its neighbours.
+pub(super) fn paths(document: &Document) -> impl Iterator<Item = &str> {
+    let of_buffers = document.buffers.iter().filter_map(|buffer| match buffer {
+        Buffer::Neighbour { path, .. } => Some(path.as_str()),
+        _ => None,
+    });
+    let of_images = document.images.iter().filter_map(|image| match image {
+        ImageFile::Neighbour { path, .. } => Some(path.as_str()),
+        _ => None,
+    });
+    of_buffers.chain(of_images)
+}
+
+/// Whether a reader that follows `path` step by step arrives at the file `name`. One that goes through a folder and
+/// back (`b/../a.bin`) needs that folder, which OUT's may lack.
+pub(super) fn leads_to(path: &str, name: &str) -> bool {
+    let steps = path.split('/').filter(|step| !matches!(*step, "" | "."));
+    steps.eq(name.split('/'))
+}
+
+/// The `uri` of each element of a section that has one.
+pub(super) fn uris(json: &Json, section: &str) -> Vec<Option<At>> {
+    let list = json.member(json.root(), section);
+    let elements = list.into_iter().flat_map(|list| json.elements(list));
+    elements.map(|element| json.member(element, "uri")).collect()
+}
+
+/// The path in its shortest form that a `uri` member names, if it names one inside of the folder.
+fn path_at(json: &Json, at: At) -> Option<String> {
+    match uri::address(&json.string(at)?) {
+        Ok(Address::Neighbour(path)) => uri::inside(&path),
+        _ => None,
+    }
+}
+
+/// The sections whose elements name neighbours.
+const SECTIONS: [&str; 2] = ["buffers", "images"];
+
+/// The files inside of its own folder that a glTF names, in their shortest form; `None` where it is no glTF. `file` is
+/// a `.gltf`, a GLB, or a GLB's JSON alone.
+pub fn neighbours_named(file: &[u8]) -> Option<Vec<String>> {
+    let json = Json::parse(text_of(file)?.to_vec()).ok()?;
+    let named = SECTIONS.iter().flat_map(|section| uris(&json, section)).flatten();
+    Some(named.filter_map(|at| path_at(&json, at)).collect())
+}
+
+/// A glTF with other names for the neighbours that `names` pairs with them, and all else as it is; `None` where it is
+/// no glTF or names none of them.
+pub fn with_neighbours_renamed(file: &[u8], names: &[(&str, String)]) -> Option<Vec<u8>> {
+    let json = Json::parse(text_of(file)?.to_vec()).ok()?;
+    let mut edits = Edits::default();
+    for at in SECTIONS.iter().flat_map(|section| uris(&json, section)).flatten() {
+        let path = path_at(&json, at);
+        if let Some((_, new)) = names.iter().find(|(old, _)| Some(*old) == path.as_deref()) {
+            edits.replace(json.span(at), uri::json_uri(new));
+        }
+    }
+    if edits.is_empty() {
+        return None;
+    }
+    let text = edits.apply(json.text(), 0..json.text().len());
+    if !container::is_glb(file) {
+        let mark = &file[..file.len() - json.text().len()];
+        return Some([mark, &text].concat());
+    }
+    let parts = container::split(file).ok()?;
+    let bin = parts.bin.map(|range| &file[range]);
+    let (further, trailing) = (&file[parts.further_chunks], &file[parts.trailing]);
+    container::join(without_padding(&text), bin, further, trailing)
+}
+
+/// Whether two glTF are saves of one document: equal, to the letter, in all that no save changes.
+///
+/// A save changes numbers in buffers and what describes them (accessors, views, buffers), clones meshes, adds morph
+/// targets, writes compressed ones out plainly and gives neighbours other names. It never changes how many elements an
+/// accessor has, nor scenes, materials, textures, skins, cameras, extras, or what nodes are called and how many there are.
+pub fn is_same_document(a: &[u8], b: &[u8]) -> bool {
+    let parsed = |file: &[u8]| Json::parse(text_of(file)?.to_vec()).ok();
+    let (Some(a), Some(b)) = (parsed(a), parsed(b)) else {
+        return false;
+    };
+    const CHANGED: [&str; 9] = [
+        "accessors",
+        "animations",
+        "bufferViews",
+        "buffers",
+        "extensionsRequired",
+        "extensionsUsed",
+        "images",
+        "meshes",
+        "nodes",
+    ];
+    let kept = |json: &Json| -> Vec<(Vec<u8>, Vec<u8>)> {
+        let members = json.members(json.root());
+        let kept = members.filter(|&(key, _)| json.string(key).is_none_or(|key| !CHANGED.contains(&&*key)));
+        kept.map(|(key, value)| (json.raw(key).to_vec(), json.raw(value).to_vec()))
+            .collect()
+    };
+    kept(&a) == kept(&b)
+        && said(&a, "nodes", &["name"]) == said(&b, "nodes", &["name"])
+        && said(&a, "images", &["name", "mimeType"]) == said(&b, "images", &["name", "mimeType"])
+        && said(&a, "buffers", &["name"]) == said(&b, "buffers", &["name"])
+        // Both begin with those that were read.
+        && said(&a, "accessors", &["count", "type"])
+            .iter()
+            .zip(&said(&b, "accessors", &["count", "type"]))
+            .all(|(a, b)| a == b)
+}
+
+/// What the elements of a section say by `keys`, as written.
+fn said(json: &Json, section: &str, keys: &[&str]) -> Vec<Vec<Option<Vec<u8>>>> {
+    let list = json.member(json.root(), section);
+    let elements = list.into_iter().flat_map(|list| json.elements(list));
+    let by_keys = |element| {
+        keys.iter()
+            .map(move |key| Some(json.raw(json.member(element, key)?).to_vec()))
+    };
+    elements.map(|element| by_keys(element).collect()).collect()
+}
+
+/// The JSON of a glTF, without a byte-order mark.
+fn text_of(file: &[u8]) -> Option<&[u8]> {
+    let text = if container::is_glb(file) {
+        &file[container::split(file).ok()?.json]
+    } else {
+        file
+    };
+    Some(text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text))
+}
