@@ -5,13 +5,13 @@ use std::sync::Arc;
 use glam::DVec2;
 use pliant_mesh::Model;
 
-use crate::brush::Brush;
-use crate::camera_history::CameraHistory;
 use crate::document::Document;
+use crate::document::{HISTORY_BYTES, History};
 use crate::editor::Editor;
-use crate::engine::{Arrival, Finality};
-use crate::history::{HISTORY_BYTES, History};
+use crate::jobs::{Arrival, Finality};
 use crate::tool::Tool;
+use crate::tool::brush::Brush;
+use crate::view::CameraHistory;
 use crate::{Beginning, Button, Event, JobDone, JobKind, Key, Modifiers};
 
 impl Editor {

@@ -7,19 +7,19 @@ use glam::{DVec2, DVec3};
 use pliant_deform::Role;
 use pliant_mesh::{Model, SurfaceVertex};
 
-use crate::access::Masks;
-use crate::brush::{Brush, BrushSize};
-use crate::camera_history::CameraHistory;
+use crate::document::Masks;
+use crate::document::Transaction;
+use crate::document::means;
 use crate::document::{Document, HandleId};
-use crate::engine::{Engine, moved_alone};
-use crate::history::{HISTORY_BYTES, History};
-use crate::mirror::Mirroring;
-use crate::overlay::Overlay;
-use crate::picking::{Pick, Picking};
-use crate::recolouring::Recolouring;
+use crate::document::{HISTORY_BYTES, History};
+use crate::jobs::{Jobs, moved_alone};
+use crate::tool::brush::{Brush, BrushSize};
+use crate::tool::overlay::Overlay;
 use crate::tool::{Tool, ToolMode};
-use crate::transaction::Transaction;
-use crate::turn::means;
+use crate::view::CameraHistory;
+use crate::view::{Pick, Picking};
+use crate::workspace::DirtyColours;
+use crate::workspace::Mirroring;
 use crate::{
     Access, BRUSH_RADIUS_PX, BrushMetric, Camera, Command, Cursor, Depth, Descent, Event, Executor, GizmoMode,
     GizmoOrientation, HandleTransform, JobKind, KeyMap, Look, Orbit, Pointer, Readout, Revision, SceneView, Shortcut,
@@ -28,7 +28,7 @@ use crate::{
 
 /// The program without a window.
 pub struct Editor {
-    pub(crate) engine: Engine,
+    pub(crate) engine: Jobs,
     pub(crate) document: Document,
     pub(crate) history: History,
     pub(crate) file_name: String,
@@ -43,7 +43,7 @@ pub struct Editor {
     pub(crate) repainted: bool,
     /// Whether the stroke that ended has said of every vertex that it recoloured it.
     pub(crate) has_filed_paint: bool,
-    pub(crate) recolouring: Recolouring,
+    pub(crate) recolouring: DirtyColours,
     pub(crate) regions_revision: u64,
     pub(crate) rims_revision: u64,
     pub(crate) camera_revision: u64,
@@ -98,7 +98,7 @@ impl Editor {
     pub fn new(executor: Box<dyn Executor>) -> Self {
         let document = Document::new(0);
         Self {
-            engine: Engine::new(executor),
+            engine: Jobs::new(executor),
             history: History::new(Arc::clone(&document.from_rest), HISTORY_BYTES),
             known: document.clone(),
             known_roles: Arc::default(),
@@ -108,7 +108,7 @@ impl Editor {
             showed_stiffness: false,
             repainted: false,
             has_filed_paint: false,
-            recolouring: Recolouring::default(),
+            recolouring: DirtyColours::default(),
             document,
             file_name: String::new(),
             regions_revision: 0,

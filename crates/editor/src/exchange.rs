@@ -6,13 +6,13 @@ use pliant_deform::{CONTINUITY_RANGE, Role};
 use pliant_mesh::Model;
 
 use crate::command::Reach;
+use crate::document::followed;
 use crate::document::{Document, Handle, HandleId, Paint, PivotPlace};
 use crate::edit_file::{EditFile, HandleEntry};
 use crate::editor::Editor;
-use crate::engine::region_input;
 use crate::field_form::FieldEntry;
-use crate::region::Region;
-use crate::turn::followed;
+use crate::jobs::Region;
+use crate::jobs::region_input;
 use crate::{EditError, HandleTransform, Selector};
 
 /// Why a document can't be said as an edit.

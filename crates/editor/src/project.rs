@@ -20,15 +20,15 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
+use crate::document::bits_equal;
 use crate::document::{Document, Handle, HandleId, Paint};
 use crate::edit_error::EditError;
 use crate::edit_node::Node;
-use crate::engine::region_input;
 use crate::exchange::with_pivot;
-use crate::history::bits_equal;
+use crate::jobs::region_input;
+use crate::jobs::{Region, displaced};
 use crate::method_form::{method_to_value, read_method};
 use crate::project_field::{Field, Ranges, for_each_drawn, ranges_where};
-use crate::region::{Region, displaced};
 use crate::{Camera, HandleSetup, Rest, STIFFNESS_RANGE, Setup};
 use camera::StoredCamera;
 use handle::StoredHandle;

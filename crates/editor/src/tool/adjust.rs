@@ -2,8 +2,8 @@
 
 use super::Tool;
 use crate::Command;
+use crate::document::Transaction;
 use crate::editor::Editor;
-use crate::transaction::Transaction;
 
 /// The step that the widget's commands make.
 #[derive(Debug)]

@@ -7,10 +7,10 @@ use pliant_mesh::{Cancel, Cancelled, Model, Progress, SurfaceVertex};
 use rayon::prelude::*;
 
 use super::Depth;
-use crate::camera::Camera;
 use crate::editor::Editor;
-use crate::job::Pickable;
-use crate::picking::Picking;
+use crate::jobs::Pickable;
+use crate::view::Camera;
+use crate::view::Picking;
 
 /// How many vertices are asked between two looks at the progress.
 const BATCH: usize = 16_384;

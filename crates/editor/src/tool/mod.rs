@@ -4,9 +4,13 @@
 //! is aborted leaves no trace.
 
 mod adjust;
+pub(crate) mod brush;
+pub(crate) mod constraint;
 mod enclosed;
 mod navigate;
+pub(crate) mod number_entry;
 mod outline;
+pub(crate) mod overlay;
 mod paint;
 mod stiffness;
 mod transform;
@@ -15,6 +19,8 @@ mod widen;
 use glam::DVec2;
 
 pub(crate) use adjust::Adjust;
+pub use brush::{BRUSH_RADIUS_PX, BrushMetric};
+pub use constraint::Constraint;
 pub(crate) use navigate::Navigate;
 pub(crate) use outline::OutlineStroke;
 pub use outline::{Depth, StrokeShape};
@@ -24,11 +30,10 @@ pub use stiffness::{StiffnessAction, StiffnessBrush};
 pub(crate) use transform::{TransformDrag, TransformKind};
 pub(crate) use widen::Widen;
 
-use crate::constraint::Constraint;
 use crate::document::Paint;
 use crate::editor::Editor;
-use crate::engine::Activity;
-use crate::gizmo::GizmoPart;
+use crate::jobs::Activity;
+use crate::view::GizmoPart;
 use crate::{Button, Key, Modifiers, Pointer};
 
 /// What the left button does on the surface.

@@ -3,8 +3,8 @@
 use glam::{DVec2, DVec3};
 
 use super::Tool;
-use crate::camera::Camera;
 use crate::editor::Editor;
+use crate::view::Camera;
 use crate::{Button, Pointer};
 
 /// The camera follows the pointer.

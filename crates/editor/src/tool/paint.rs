@@ -9,10 +9,10 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::{Model, SurfaceVertex};
 
 use super::{Tool, ToolMode};
+use crate::document::Transaction;
 use crate::document::{Document, HandleId, Paint, PivotPlace};
 use crate::editor::Editor;
-use crate::engine::Activity;
-use crate::transaction::Transaction;
+use crate::jobs::Activity;
 use crate::{Button, Pointer};
 
 /// What is said where paint does not take.

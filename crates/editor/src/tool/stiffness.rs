@@ -10,8 +10,8 @@ use glam::DVec2;
 use pliant_mesh::SurfaceVertex;
 
 use super::Tool;
+use crate::document::Transaction;
 use crate::editor::Editor;
-use crate::transaction::Transaction;
 use crate::{Button, Pointer, STIFFNESS_RANGE};
 
 /// What the stiffness brush does.

@@ -7,15 +7,15 @@
 use glam::{DQuat, DVec2, DVec3};
 
 use super::Tool;
-use crate::constraint::{
+use crate::document::HandleId;
+use crate::document::Transaction;
+use crate::document::accumulated;
+use crate::editor::Editor;
+use crate::tool::constraint::{
     Constraint, along_axis, angle_about_axis_rad, axis_vector, on_plane, rotation, screen_angle_rad, short_turn_rad,
 };
-use crate::document::HandleId;
-use crate::editor::Editor;
-use crate::gizmo::GizmoPart;
-use crate::number_entry::NumberEntry;
-use crate::transaction::Transaction;
-use crate::turn::accumulated;
+use crate::tool::number_entry::NumberEntry;
+use crate::view::GizmoPart;
 use crate::{Button, HandleTransform, Key, Modifiers, Pointer, Readout};
 
 /// A held button must move the pointer this far before a handle follows.

@@ -3,10 +3,10 @@
 use glam::DVec2;
 
 use super::Tool;
+use crate::document::Transaction;
 use crate::document::{HandleId, Paint};
 use crate::editor::Editor;
-use crate::region::reach_length;
-use crate::transaction::Transaction;
+use crate::jobs::reach_length;
 use crate::{Button, Key, Pointer, Reach};
 use pliant_mesh::SurfaceVertex;
 

@@ -1,0 +1,126 @@
+//! What the left button does on the surface, and with what.
+
+use super::table::{Listed, character, listed};
+use crate::{BrushMetric, Command, Depth, StrokeShape, ToolMode};
+
+pub(super) const LISTED: &[Listed] = &[
+    listed(
+        Command::SetTool(ToolMode::PaintHandle),
+        "Paint handle",
+        "Paints what you want to move; around it a region follows along.",
+        "brush control",
+        &[character('1')],
+    ),
+    listed(
+        Command::SetTool(ToolMode::PaintFree),
+        "Paint region",
+        "Paints what may bend along with the handles.",
+        "brush free roi region of influence",
+        &[character('2')],
+    ),
+    listed(
+        Command::SetTool(ToolMode::PaintFixed),
+        "Paint fixed",
+        "Paints what is held still.",
+        "brush pin anchor hold",
+        &[character('3')],
+    ),
+    listed(
+        Command::SetTool(ToolMode::Erase),
+        "Erase",
+        "Takes paint away.",
+        "unpaint rubber",
+        &[character('4')],
+    ),
+    listed(
+        Command::SetTool(ToolMode::Select),
+        "Select",
+        "Click a handle to select it; drag it to move it in the plane of the screen.",
+        "pick cursor arrow",
+        &[character('5')],
+    ),
+    listed(
+        Command::SetTool(ToolMode::PaintStiffness),
+        "Paint stiffness",
+        "Paints how firmly the surface keeps its shape.",
+        "brush rigidity material",
+        &[character('6')],
+    ),
+    listed(
+        Command::SetStrokeShape(StrokeShape::Brush),
+        "Brush",
+        "Paints with a round brush.",
+        "",
+        &[character('b')],
+    ),
+    listed(
+        Command::SetStrokeShape(StrokeShape::Lasso),
+        "Lasso",
+        "Paints what a line drawn freely encloses.",
+        "freehand select",
+        &[character('l')],
+    ),
+    listed(
+        Command::SetStrokeShape(StrokeShape::Box),
+        "Box",
+        "Paints what a box encloses.",
+        "rectangle border select",
+        &[character('k')],
+    ),
+    listed(
+        Command::SetStrokeShape(StrokeShape::Component),
+        "Whole part",
+        "Paints the whole part of the surface that is clicked.",
+        "component connected linked",
+        &[character('j')],
+    ),
+    listed(
+        Command::SetBrushMetric(BrushMetric::Screen),
+        "Brush as seen",
+        "The brush takes what its disc on the screen covers and faces you.",
+        "screen",
+        &[],
+    ),
+    listed(
+        Command::SetBrushMetric(BrushMetric::Surface),
+        "Brush along the surface",
+        "The brush takes what is near along the surface: into folds and round edges, seen or not.",
+        "geodesic",
+        &[],
+    ),
+    listed(
+        Command::SetBrushMetric(BrushMetric::Through),
+        "Brush through",
+        "The brush takes everything that its disc on the screen covers, however far behind.",
+        "x-ray occluded",
+        &[],
+    ),
+    listed(
+        Command::SetDepth(Depth::Visible),
+        "Lasso what is seen",
+        "A lasso or a box takes only what faces you and is hidden by nothing.",
+        "",
+        &[],
+    ),
+    listed(
+        Command::SetDepth(Depth::Through),
+        "Lasso through",
+        "A lasso or a box takes everything inside, to the back of the model.",
+        "",
+        &[],
+    ),
+    listed(
+        Command::GrowBrush,
+        "Larger brush",
+        "Makes the brush larger.",
+        "radius size",
+        &[character(']')],
+    ),
+    listed(
+        Command::ShrinkBrush,
+        "Smaller brush",
+        "Makes the brush smaller.",
+        "radius size",
+        &[character('[')],
+    ),
+];

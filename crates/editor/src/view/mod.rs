@@ -1,0 +1,17 @@
+//! Where one looks from, what is seen there, and how it is shown.
+
+mod camera;
+mod camera_history;
+mod camera_motion;
+mod framing;
+mod gizmo;
+mod look;
+mod picking;
+mod sight;
+
+pub use camera::{Camera, NamedView, Orbit, Projection, Ray, UpAxis};
+pub(crate) use camera_history::{CameraHistory, CameraStep};
+pub use gizmo::{GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, gizmo_shapes, hit_gizmo};
+pub use look::{Clay, Look, Shading};
+pub use picking::Pick;
+pub(crate) use picking::Picking;

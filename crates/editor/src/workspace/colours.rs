@@ -1,0 +1,81 @@
+//! The colours of regions and handles on the surface, and the lines between them.
+
+use pliant_deform::Role;
+use pliant_mesh::{ContourLine, SurfaceVertex};
+
+use crate::document::{HandleId, Paint};
+use crate::editor::Editor;
+use crate::jobs::{Rim, bounded};
+
+/// The colour of a stiffness, sRGB with alpha: blue where it gives way (0.001), grey at 1, red where it is firm (1000).
+pub fn stiffness_colour(stiffness: f64) -> [u8; 4] {
+    const SOFT: [f64; 3] = [58.0, 118.0, 214.0];
+    const PLAIN: [f64; 3] = [196.0, 196.0, 192.0];
+    const FIRM: [f64; 3] = [206.0, 66.0, 44.0];
+    let decades = stiffness.max(f64::MIN_POSITIVE).log10() / 3.0;
+    // What is near 1 is told apart, too.
+    let share = decades.abs().min(1.0).sqrt();
+    let end = if decades < 0.0 { SOFT } else { FIRM };
+    let [r, g, b] = std::array::from_fn(|i| (PLAIN[i] + (end[i] - PLAIN[i]) * share).round() as u8);
+    [r, g, b, 255]
+}
+
+impl Editor {
+    /// The colour of each surface vertex by what it does, sRGB with alpha, replacing `out`: handles in their own
+    /// colours, the free region blue, what was painted to be held still dark grey, and nothing (alpha 0) on what rests
+    /// by itself.
+    ///
+    /// To be fetched again when [`SceneView::regions_revision`](crate::SceneView::regions_revision) has grown.
+    pub fn region_colours(&self, out: &mut Vec<[u8; 4]>) {
+        out.clear();
+        let colour = self.region_colour();
+        out.extend((0..self.document.paint.len() as u32).map(|vertex| colour(SurfaceVertex(vertex))));
+    }
+
+    /// The vertices whose colour may have changed since a revision of the regions; `None`: all of them.
+    pub fn recoloured_since(&self, regions_revision: u64) -> Option<&[SurfaceVertex]> {
+        self.recolouring.since(regions_revision)
+    }
+
+    /// What tells the colour of a vertex: see [`Editor::region_colours`].
+    pub fn region_colour(&self) -> impl Fn(SurfaceVertex) -> [u8; 4] {
+        const FREE: [u8; 4] = [96, 150, 222, 255];
+        // The clay or the material as it is: a share of any grey would wash it out.
+        const STILL: [u8; 4] = [0; 4];
+        const FIXED: [u8; 4] = [112, 112, 116, 255];
+        let handles = &self.document.handles;
+        let largest = handles.iter().map(|handle| usize::from(handle.id.0) + 1).max();
+        let mut of_handle = vec![STILL; largest.unwrap_or(0)];
+        for handle in handles.iter().filter(|handle| handle.visible) {
+            of_handle[usize::from(handle.id.0)] = handle.colour;
+        }
+        let shows_stiffness = self.mode == crate::ToolMode::PaintStiffness;
+        move |vertex| {
+            if shows_stiffness {
+                let field = self.document.stiffness.as_ref();
+                return stiffness_colour(field.map_or(1.0, |field| field[vertex.index()]));
+            }
+            match self.document.paint[vertex.index()] {
+                Paint::Fixed => FIXED,
+                Paint::Free => FREE,
+                Paint::Handle(HandleId(id)) => of_handle.get(usize::from(id)).copied().unwrap_or(STILL),
+                Paint::Bare => match self.engine.region.roles.get(vertex.index()) {
+                    Some(Role::Free) => FREE,
+                    _ => STILL,
+                },
+            }
+        }
+    }
+
+    /// The lines between the regions as they were last measured, each with what it bounds; those of hidden handles are
+    /// left out. To be fetched again when [`SceneView::rims_revision`](crate::SceneView::rims_revision) has grown.
+    pub fn rims(&self) -> impl Iterator<Item = (&ContourLine, Rim)> {
+        let region = &self.engine.region;
+        let is_seen = |rim: &Rim| match rim {
+            Rim::Held => true,
+            Rim::Handle(id) => self.document.handle(*id).is_some_and(|handle| handle.visible),
+        };
+        let lines = region.rims.iter().filter(|line| self.is_triangle_shown(line.triangle));
+        lines.filter_map(move |line| Some((line, bounded(line.label, &region.handles).filter(is_seen)?)))
+    }
+}
