@@ -1,199 +1,496 @@
-//! The program's whole state, and what is to be shown of it.
+//! The program without a window: its parts, and the one function through which everything changes.
 
+use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
-use pliant_deform::Role;
-use pliant_mesh::{Model, SurfaceVertex};
+use glam::DVec2;
+use pliant_deform::{Method, Role};
+use pliant_mesh::{ContourLine, Model, SurfaceVertex};
 
-use crate::document::Masks;
-use crate::document::Transaction;
-use crate::document::means;
-use crate::document::{Document, HandleId};
-use crate::document::{HISTORY_BYTES, History};
-use crate::jobs::{Jobs, moved_alone};
-use crate::tool::brush::{Brush, BrushSize};
-use crate::tool::overlay::Overlay;
-use crate::tool::{Tool, ToolMode};
-use crate::view::CameraHistory;
-use crate::view::{Pick, Picking};
-use crate::workspace::DirtyColours;
-use crate::workspace::Mirroring;
-use crate::{
-    Access, BRUSH_RADIUS_PX, BrushMetric, Camera, Command, Cursor, Depth, Descent, Event, Executor, GizmoMode,
-    GizmoOrientation, HandleTransform, JobKind, KeyMap, Look, Orbit, Pointer, Readout, Revision, SceneView, Shortcut,
-    StiffnessBrush, StrokeShape,
-};
+use crate::beginning::Beginning;
+use crate::command::{Command, KeyMap, Scope, Shortcut, State, frame_all};
+use crate::document::{Document, History};
+use crate::edit_file::EditFile;
+use crate::event::Event;
+use crate::exchange::{ExportError, export};
+use crate::input::{Button, Key, Modifiers, Pointer};
+use crate::jobs::{Activity, Arrival, Executor, JobDone, JobKind, Revision, Rim};
+use crate::project::{MeshReference, geometry_hash};
+use crate::scene_view::{Cursor, SceneView};
+use crate::snapshot::Snapshot;
+use crate::status::status;
+use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin};
+use crate::view::{Pick, View};
+use crate::workspace::{ColouredBy, SnapshotKey, Workspace, WorkspaceSnapshot, region_colour, rims, take_mirrored};
 
 /// The program without a window.
 pub struct Editor {
-    pub(crate) engine: Jobs,
-    pub(crate) document: Document,
-    pub(crate) history: History,
-    pub(crate) file_name: String,
-    /// What the present revisions belong to.
-    pub(crate) known: Document,
-    pub(crate) known_roles: Arc<Vec<Role>>,
-    pub(crate) known_selected: Option<HandleId>,
-    pub(crate) known_camera: Camera,
-    pub(crate) known_stiffness: Option<Arc<Vec<f64>>>,
-    pub(crate) showed_stiffness: bool,
-    /// Whether paint has changed during the stroke that goes on.
-    pub(crate) repainted: bool,
-    /// Whether the stroke that ended has said of every vertex that it recoloured it.
-    pub(crate) has_filed_paint: bool,
-    pub(crate) recolouring: DirtyColours,
-    pub(crate) regions_revision: u64,
-    pub(crate) rims_revision: u64,
-    pub(crate) camera_revision: u64,
-    pub(crate) camera: Camera,
-    pub(crate) camera_history: CameraHistory,
-    pub(crate) viewport_px: DVec2,
-    /// Whether nobody has moved the camera since everything was framed.
-    pub(crate) is_framed: bool,
-    pub(crate) tool: Tool,
-    pub(crate) mode: ToolMode,
-    pub(crate) pointer: Option<Pointer>,
-    pub(crate) brush: Brush,
-    pub(crate) brush_radius_px: f64,
-    pub(crate) gizmo_mode: GizmoMode,
-    pub(crate) orientation: GizmoOrientation,
-    pub(crate) stroke_shape: StrokeShape,
-    pub(crate) depth: Depth,
-    pub(crate) brush_metric: BrushMetric,
-    pub(crate) stiffness_brush: StiffnessBrush,
-    /// How hard a pen presses; 1 for a mouse.
-    pub(crate) pressure: f64,
-    pub(crate) reports_pressure: bool,
-    /// Whether the next click puts the selected handle's pivot.
-    pub(crate) wants_pivot: bool,
-    /// Handles that are selected along with `selected`.
-    pub(crate) companions: Vec<HandleId>,
-    pub(crate) selected: Option<HandleId>,
-    pub(crate) wants_new_handle: bool,
-    pub(crate) look: Look,
-    pub(crate) orbit: Orbit,
-    pub(crate) key_map: KeyMap,
-    pub(crate) problem: Option<String>,
-    /// How far the shape's descent is, where its method takes steps.
-    pub(crate) descent: Option<Descent>,
-    /// The step that a widget is adjusting, while a command is added to it.
-    pub(crate) open_step: Option<Transaction>,
-    pub(crate) overlay: Overlay,
-    /// What follows from what is hidden and locked, and what that was on which model.
-    pub(crate) masks: Masks,
-    pub(crate) masked: Option<(Arc<Model>, Arc<Access>)>,
-    /// The document of another editor as this one has taken it over.
-    pub(crate) followed: Option<Document>,
-    /// The mirror image that is being looked for.
-    pub(crate) mirroring: Option<Mirroring>,
+    workspace: Workspace,
+    view: View,
+    settings: ToolSettings,
+    brush: Brush,
+    overlay: Overlay,
+    /// What the pointer is doing.
+    gesture: Option<Box<dyn Gesture>>,
+    pointer: Option<Pointer>,
+    key_map: KeyMap,
     /// Events that wait until rays can be answered from what is drawn.
-    pub(crate) held: VecDeque<Event>,
-    pub(crate) shape_counter: u64,
+    waiting: VecDeque<Event>,
 }
 
+/// What goes in.
 impl Editor {
     /// An editor without a file. Jobs go to `executor`.
     pub fn new(executor: Box<dyn Executor>) -> Self {
-        let document = Document::new(0);
         Self {
-            engine: Jobs::new(executor),
-            history: History::new(Arc::clone(&document.from_rest), HISTORY_BYTES),
-            known: document.clone(),
-            known_roles: Arc::default(),
-            known_selected: None,
-            known_camera: Camera::default(),
-            known_stiffness: None,
-            showed_stiffness: false,
-            repainted: false,
-            has_filed_paint: false,
-            recolouring: DirtyColours::default(),
-            document,
-            file_name: String::new(),
-            regions_revision: 0,
-            rims_revision: 0,
-            camera_revision: 0,
-            camera: Camera::default(),
-            camera_history: CameraHistory::default(),
-            viewport_px: DVec2::new(1280.0, 800.0),
-            is_framed: true,
-            tool: Tool::Idle,
-            mode: ToolMode::default(),
-            pointer: None,
+            workspace: Workspace::new(executor),
+            view: View::default(),
+            settings: ToolSettings::default(),
             brush: Brush::default(),
-            brush_radius_px: 30.0,
-            gizmo_mode: GizmoMode::default(),
-            orientation: GizmoOrientation::default(),
-            stroke_shape: StrokeShape::default(),
-            depth: Depth::default(),
-            brush_metric: BrushMetric::default(),
-            stiffness_brush: StiffnessBrush::default(),
-            pressure: 1.0,
-            reports_pressure: false,
-            wants_pivot: false,
-            companions: Vec::new(),
-            selected: None,
-            wants_new_handle: false,
-            look: Look::default(),
-            orbit: Orbit::default(),
-            key_map: KeyMap::default(),
-            problem: None,
-            descent: None,
-            open_step: None,
             overlay: Overlay::default(),
-            masks: Masks::default(),
-            masked: None,
-            mirroring: None,
-            followed: None,
-            held: VecDeque::new(),
-            shape_counter: 0,
+            gesture: None,
+            pointer: None,
+            key_map: KeyMap::default(),
+            waiting: VecDeque::new(),
         }
     }
 
+    /// The one function through which everything changes.
+    pub fn handle(&mut self, event: Event) {
+        let picked = matches!(&event, Event::JobDone(done) if done.kind == JobKind::Pick);
+        if self.must_wait(&event) {
+            self.waiting.push_back(event);
+        } else {
+            self.dispatch(event);
+        }
+        self.conclude();
+        let jobs = &self.workspace.jobs;
+        let answers = picked || jobs.is_picking_current() || !jobs.is_busy(JobKind::Pick);
+        if !self.waiting.is_empty() && answers {
+            for event in std::mem::take(&mut self.waiting) {
+                if self.is_looking() {
+                    self.waiting.push_back(event);
+                } else {
+                    self.dispatch(event);
+                    self.conclude();
+                }
+            }
+        }
+        let lit = self.gesture.as_ref().map_or(Lit::Pointed, |gesture| gesture.lit());
+        let pointer_px = self.pointer.map(|pointer| pointer.position_px);
+        self.overlay
+            .renew(lit, &self.workspace, &self.view, &self.settings, pointer_px);
+    }
+
+    fn dispatch(&mut self, event: Event) {
+        match event {
+            Event::Viewport { size_px } => self.resize(size_px),
+            Event::PointerMoved(pointer) => {
+                self.pointer = Some(pointer);
+                self.ask_gesture(|gesture, context| gesture.moved(context, pointer));
+            }
+            Event::PointerLeft => {
+                if self.gesture.is_none() {
+                    self.pointer = None;
+                }
+            }
+            Event::PointerPressed(pointer, button) => self.press(pointer, button),
+            Event::PointerReleased(pointer, button) => {
+                self.pointer = Some(pointer);
+                self.ask_gesture(|gesture, context| gesture.released(context, pointer, button));
+            }
+            Event::Wheel { pointer, lines } => self.zoom(pointer, |view, anchor| {
+                view.travel(|camera| camera.zoom_lines(lines, anchor));
+            }),
+            Event::Pinch { pointer, factor } => {
+                if factor.is_finite() && factor > 0.0 {
+                    self.zoom(pointer, |view, anchor| {
+                        view.travel(|camera| camera.zoom(factor, anchor))
+                    });
+                }
+            }
+            Event::Pressure(pressure) => self.settings.set_pressure(pressure),
+            Event::Key(key, modifiers) => self.key(key, modifiers),
+            Event::Command(command) => self.execute(command),
+            Event::Keys(key_map) => self.key_map = key_map,
+            Event::Adjust(command) => self.adjust(command),
+            Event::Adjusted => {
+                if self.workspace.is_adjusting() {
+                    self.workspace.commit_adjusting();
+                    self.gesture = None;
+                }
+            }
+            Event::JobDone(done) => self.job_done(done),
+            Event::Opened { model, name, beginning } => self.open(model, name, beginning),
+            Event::Follow { leader, method } => self.follow(&leader, &method),
+            Event::Recovered => self.workspace.history.mark_unsaved(),
+            Event::Saved => {
+                let Workspace { history, document, .. } = &mut self.workspace;
+                history.sync(document);
+                history.mark_saved();
+            }
+        }
+    }
+
+    /// Draws the conclusions from what an event changed: jobs, colours, the way back of the camera.
+    fn conclude(&mut self) {
+        let gesture = self.gesture.as_deref();
+        let activity = gesture.map_or(Activity::Still, Gesture::activity);
+        let by = match self.settings.mode {
+            ToolMode::PaintStiffness => ColouredBy::Stiffness,
+            _ => ColouredBy::Region,
+        };
+        self.workspace.conclude(activity, by);
+        if !gesture.is_some_and(Gesture::moves_camera) {
+            self.view.rest();
+        }
+    }
+
+    /// The gesture that goes on, and apart from it all that it may touch.
+    fn parts(&mut self) -> (&mut Option<Box<dyn Gesture>>, Context<'_>) {
+        let context = Context {
+            workspace: &mut self.workspace,
+            view: &mut self.view,
+            settings: &mut self.settings,
+            brush: &mut self.brush,
+            overlay: &self.overlay,
+            pointer: self.pointer,
+        };
+        (&mut self.gesture, context)
+    }
+
+    /// Tells the gesture of an event, if one goes on; what it says comes next.
+    fn ask_gesture(&mut self, ask: impl FnOnce(&mut dyn Gesture, &mut Context<'_>) -> Next) -> Option<Next> {
+        let (gesture, mut context) = self.parts();
+        let next = ask(gesture.as_deref_mut()?, &mut context);
+        if next != Next::Stay {
+            *gesture = None;
+        }
+        Some(next)
+    }
+
+    /// Ends the gesture without a trace.
+    fn abort_gesture(&mut self) {
+        self.ask_gesture(|gesture, context| {
+            gesture.abort(context);
+            Next::End
+        });
+    }
+
+    fn press(&mut self, pointer: Pointer, button: Button) {
+        self.pointer = Some(pointer);
+        let next = self.ask_gesture(|gesture, context| gesture.pressed(context, pointer, button));
+        if matches!(next, None | Some(Next::EndBefore)) {
+            let (gesture, mut context) = self.parts();
+            *gesture = begin(&mut context, pointer, button);
+        }
+    }
+
+    fn key(&mut self, key: Key, modifiers: Modifiers) {
+        let mut is_taken = false;
+        self.ask_gesture(|gesture, context| {
+            let next = gesture.key(context, key, modifiers);
+            is_taken = next.is_some();
+            next.unwrap_or(Next::Stay)
+        });
+        if is_taken {
+            return;
+        }
+        if key == Key::Escape {
+            self.workspace.refusal = None;
+            self.workspace.selection.wants_new_handle = false;
+            self.settings.wants_pivot = false;
+        } else if let Some(command) = self.key_map.command(key, modifiers) {
+            self.execute(command);
+        }
+    }
+
+    /// Does what the command says; a command that can't be done now is ignored.
+    fn execute(&mut self, command: Command) {
+        if !self.is_enabled(&command) {
+            return;
+        }
+        let scope = command.scope();
+        let had_gesture = self.gesture.is_some();
+        if scope != Scope::View {
+            self.abort_gesture();
+        }
+        if !matches!(scope, Scope::View | Scope::Tool) {
+            self.workspace.refusal = None;
+        }
+        // Undo during a drag takes back the drag, and nothing before it.
+        if !(had_gesture && scope == Scope::History) {
+            self.act(command);
+        }
+    }
+
+    fn act(&mut self, command: Command) {
+        let (gesture, mut context) = self.parts();
+        if let Some(begun) = command.act(&mut context) {
+            *gesture = Some(begun);
+        }
+    }
+
+    /// Adds a command to the step that a widget is adjusting; the first begins it.
+    fn adjust(&mut self, command: Command) {
+        // Steps and gestures of their own have no place within a step.
+        if matches!(command.scope(), Scope::History | Scope::Gesture) {
+            return;
+        }
+        if !self.workspace.is_adjusting() {
+            self.abort_gesture();
+            self.gesture = Some(Box::new(Adjust::begin(&mut self.workspace)));
+        }
+        if self.is_enabled(&command) {
+            self.act(command);
+        }
+    }
+
+    fn zoom(&mut self, pointer: Pointer, zoom: impl FnOnce(&mut View, glam::DVec3)) {
+        if !self.gesture.as_ref().is_some_and(|gesture| gesture.holds_camera()) {
+            let anchor = self.workspace.anchor(&self.view, pointer.position_px);
+            zoom(&mut self.view, anchor);
+        }
+    }
+
+    fn resize(&mut self, size_px: DVec2) {
+        if self.view.resize(size_px) && self.view.is_framed() {
+            frame_all(&self.workspace, &mut self.view);
+        }
+    }
+
+    fn job_done(&mut self, done: JobDone) {
+        let kind = done.kind;
+        let arrival = self.workspace.jobs.accept(done);
+        match self.workspace.take_arrival(arrival) {
+            Some(Arrival::Enclosed(inside)) => {
+                self.ask_gesture(|gesture, context| gesture.found(context, inside));
+            }
+            Some(Arrival::Mirrored(image)) => take_mirrored(&mut self.workspace, image, self.gesture.is_none()),
+            _ => {}
+        }
+        // Nobody looks any more, and nothing was found: it was stopped, or it failed.
+        if kind == JobKind::Enclose && self.is_looking() && !self.workspace.jobs.is_busy(kind) {
+            self.abort_gesture();
+        }
+    }
+
+    fn open(&mut self, model: Arc<Model>, name: String, beginning: Option<Beginning>) {
+        let count = model.surface.positions.len();
+        let begun = beginning.as_ref().map(|beginning| beginning.document(&model));
+        let (document, refusal) = match begun {
+            None => (Document::new(count), None),
+            Some(Ok(document)) => (document, None),
+            Some(Err(error)) => (Document::new(count), Some(error.to_string())),
+        };
+        let bounds = model.bounds();
+        self.begin_file(bounds.map(|bounds| bounds.diagonal()), |workspace| {
+            workspace.open(model, name, document);
+            workspace.refusal = refusal;
+        });
+        if let Some(camera) = beginning.as_ref().and_then(Beginning::camera) {
+            self.view.travel(|present| *present = camera);
+        }
+    }
+
+    /// Takes another file into the workspace, and shows all of it.
+    fn begin_file(&mut self, size: Option<f64>, open: impl FnOnce(&mut Workspace)) {
+        self.abort_gesture();
+        self.waiting.clear();
+        self.settings.wants_pivot = false;
+        self.brush = Brush::default();
+        open(&mut self.workspace);
+        self.view.open(size.map(|size| if size > 0.0 { size } else { 1.0 }));
+        frame_all(&self.workspace, &mut self.view);
+    }
+
+    fn follow(&mut self, leader: &Snapshot, method: &Method) {
+        self.abort_gesture();
+        self.workspace.follow(&leader.work, method);
+        self.settings = leader.settings.clone();
+        self.view.look = leader.look;
+        self.view.travel(|camera| *camera = leader.camera);
+    }
+
+    fn is_looking(&self) -> bool {
+        self.gesture.as_ref().is_some_and(|gesture| gesture.is_looking())
+    }
+
+    /// Whether the event must wait for rays that answer from what is drawn, for what an outline holds, or for those
+    /// that wait already.
+    fn must_wait(&mut self, event: &Event) -> bool {
+        let waits = !self.waiting.is_empty() || self.is_looking();
+        match event {
+            Event::Key(Key::Escape, _) | Event::PointerLeft => {
+                self.waiting.clear();
+                false
+            }
+            Event::PointerMoved(_) | Event::PointerReleased(..) | Event::Wheel { .. } | Event::Key(..) => waits,
+            Event::PointerPressed(pointer, button) => {
+                let asks = *button == Button::Primary && !pointer.modifiers.alt && self.gesture.is_none();
+                let jobs = &self.workspace.jobs;
+                let is_late = asks && jobs.is_busy(JobKind::Pick) && !jobs.is_picking_current();
+                waits || (is_late && self.overlay.hit(pointer.position_px, &self.view).is_none())
+            }
+            _ => false,
+        }
+    }
+}
+
+/// What is to be seen.
+impl Editor {
     /// What the window must show now.
     pub fn view(&self) -> SceneView<'_> {
+        let (workspace, view, settings) = (&self.workspace, &self.view, &self.settings);
+        let gesture = self.gesture.as_deref();
+        let document = &workspace.document;
         SceneView {
-            model: self.engine.model.as_ref(),
-            camera: &self.camera,
-            viewport_px: self.viewport_px,
-            shape_revision: self.shape_counter,
-            displacements: &self.document.from_file,
-            regions_revision: self.regions_revision,
-            rims_revision: self.rims_revision,
+            model: workspace.model(),
+            camera: view.camera(),
+            viewport_px: view.viewport_px(),
+            shape_revision: workspace.shape_revision(),
+            displacements: document.from_file(),
+            regions_revision: workspace.colours().regions_revision(),
+            rims_revision: workspace.colours().rims_revision(),
             overlay_revision: self.overlay.revision,
-            camera_revision: self.camera_revision,
+            camera_revision: view.revision(),
             brush_ring: &self.overlay.ring,
             gizmo: &self.overlay.gizmo,
-            look: self.look,
-            orbit: self.orbit,
-            readout: self.readout(),
-            tool: self.mode,
+            look: view.look,
+            orbit: view.orbit(),
+            readout: gesture.and_then(|gesture| gesture.readout(workspace, view)),
+            tool: settings.mode,
             cursor: self.cursor(),
-            outline_px: match &self.tool {
-                Tool::Outline(outline) => outline.outline_px(),
-                _ => Vec::new(),
-            },
-            stroke_shape: self.stroke_shape,
-            depth: self.depth,
-            brush_metric: self.brush_metric,
-            stiffness_brush: self.stiffness_brush,
-            pressure: self.reports_pressure.then_some(self.pressure),
-            orientation: self.orientation,
-            wants_pivot: self.wants_pivot,
-            brush_radius_px: self.brush_radius_px,
-            handles: &self.document.handles,
-            selected: self.selected,
-            companions: &self.companions,
-            status: self.status(),
-            problem: self.problem.as_deref(),
-            jobs: self.engine.running(),
-            counts: self.engine.region.counts,
-            undo: self.history.undo_name(),
-            redo: self.history.redo_name(),
-            unsaved: self.history.is_unsaved(),
+            outline_px: gesture.map_or(Vec::new(), Gesture::outline_px),
+            stroke_shape: settings.stroke_shape,
+            depth: settings.depth,
+            brush_metric: settings.brush.metric,
+            stiffness_brush: settings.stiffness_brush,
+            pressure: settings.pressure,
+            orientation: settings.orientation,
+            wants_pivot: settings.wants_pivot,
+            brush_radius_px: settings.brush.radius_px,
+            handles: document.handles(),
+            selected: workspace.selection.selected(),
+            companions: workspace.selection.companions(),
+            status: status(gesture, workspace, view, settings),
+            problem: workspace.refusal.as_deref(),
+            jobs: workspace.jobs.running(),
+            counts: workspace.computed().region.counts,
+            undo: workspace.history.undo_name(),
+            redo: workspace.history.redo_name(),
+            unsaved: workspace.history.is_unsaved(),
             settled: self.is_settled(),
         }
+    }
+
+    fn cursor(&self) -> Cursor {
+        match &self.gesture {
+            Some(gesture) => gesture.cursor(),
+            None if self.overlay.hovered.is_some() => Cursor::Grab,
+            None if self.overlay.is_over_surface && self.settings.mode != ToolMode::Select => Cursor::Brush,
+            None => Cursor::Arrow,
+        }
+    }
+
+    /// The document.
+    pub fn document(&self) -> &Document {
+        &self.workspace.document
+    }
+
+    /// The steps that can be undone and redone.
+    pub fn history(&self) -> &History {
+        &self.workspace.history
+    }
+
+    /// The open file's name; empty before the first.
+    pub fn file_name(&self) -> &str {
+        &self.workspace.file_name
+    }
+
+    /// What each surface vertex does, as of the last measured region.
+    pub fn roles(&self) -> &[Role] {
+        &self.workspace.computed().region.roles
+    }
+
+    /// The connected parts that nothing holds within some handle's reach, and those that were told what to do, by
+    /// their component's number, as of the last measured region.
+    pub fn loose_components(&self) -> &[u32] {
+        &self.workspace.computed().region.loose
+    }
+
+    /// Sentences about the present factorisation: what loose parts do, what was repaired.
+    pub fn warnings(&self) -> &[String] {
+        &self.workspace.computed().warnings
+    }
+
+    /// Which of [`pliant_mesh::Drawn::triangles`] are shown; `None` is all of them. Another allocation when it changed.
+    pub fn shown_triangles(&self) -> Option<&Arc<Vec<bool>>> {
+        self.workspace.vertex_access.drawn.as_ref()
+    }
+
+    /// The colour of each surface vertex by what it does, sRGB with alpha, replacing `out`: handles in their own
+    /// colours, the free region blue, what was painted to be held still dark grey, and nothing (alpha 0) on what rests
+    /// by itself.
+    ///
+    /// To be fetched again when [`SceneView::regions_revision`] has grown.
+    pub fn region_colours(&self, out: &mut Vec<[u8; 4]>) {
+        out.clear();
+        let colour = self.region_colour();
+        out.extend((0..self.document().paint().len() as u32).map(|vertex| colour(SurfaceVertex(vertex))));
+    }
+
+    /// The vertices whose colour may have changed since a revision of the regions; `None`: all of them.
+    pub fn recoloured_since(&self, regions_revision: u64) -> Option<&[SurfaceVertex]> {
+        self.workspace.colours().since(regions_revision)
+    }
+
+    /// What tells the colour of a vertex: see [`Editor::region_colours`].
+    pub fn region_colour(&self) -> impl Fn(SurfaceVertex) -> [u8; 4] {
+        region_colour(&self.workspace)
+    }
+
+    /// The lines between the regions as they were last measured, each with what it bounds; those of hidden handles are
+    /// left out. To be fetched again when [`SceneView::rims_revision`] has grown.
+    pub fn rims(&self) -> impl Iterator<Item = (&ContourLine, Rim)> {
+        rims(&self.workspace)
+    }
+
+    /// What lies under a point of the view, in points; answered from the last shape that rays can be answered from.
+    pub fn pick(&self, position_px: DVec2) -> Option<Pick> {
+        self.workspace.pick(&self.view, position_px)
+    }
+
+    /// The document as it stands, with what is being dragged; `None` before the first file.
+    pub fn snapshot(&self) -> Option<Snapshot> {
+        Some(Snapshot {
+            work: WorkspaceSnapshot::of(&self.workspace)?,
+            camera: *self.view.camera(),
+            look: self.view.look,
+            settings: self.settings.clone(),
+        })
+    }
+
+    /// Another value for every other state of the document.
+    pub fn snapshot_key(&self) -> SnapshotKey {
+        SnapshotKey::of(&self.workspace)
+    }
+
+    /// A digest of the document, to tell whether two are the same to the bit; `None` before the first file.
+    pub fn document_hash(&self) -> Option<String> {
+        let snapshot = self.snapshot()?;
+        let geometry = geometry_hash(snapshot.model());
+        Some(snapshot.project(MeshReference { path: None, geometry }).document_hash())
+    }
+
+    /// The document as an edit of the open file: `pliant apply` makes the same positions of it.
+    ///
+    /// # Errors
+    /// No file is open, a shape was applied, or a vertex that two nodes show has two roles.
+    pub fn edit_file(&self) -> Result<EditFile, ExportError> {
+        let model = self.workspace.model().ok_or(ExportError::NoFile)?;
+        export(self.document(), model)
     }
 
     /// The keys that send a listed command; the first is shown.
@@ -201,40 +498,23 @@ impl Editor {
         self.key_map.shortcuts(command)
     }
 
-    /// The document.
-    pub fn document(&self) -> &Document {
-        &self.document
+    /// Whether the command would do anything now.
+    pub fn is_enabled(&self, command: &Command) -> bool {
+        self.unavailable_because(command).is_none()
     }
 
-    /// The steps that can be undone and redone.
-    pub fn history(&self) -> &History {
-        &self.history
+    /// Why a command can't be done now, as a sentence with the remedy where there is one; `None` where it can.
+    pub fn unavailable_because(&self, command: &Command) -> Option<Cow<'static, str>> {
+        command.unavailable(&State {
+            workspace: &self.workspace,
+            view: &self.view,
+            settings: &self.settings,
+        })
     }
 
-    /// What each surface vertex does, as of the last measured region.
-    pub fn roles(&self) -> &[Role] {
-        &self.engine.region.roles
-    }
-
-    /// The connected parts that nothing holds within some handle's reach, and those that were told what to do, by
-    /// their component's number, as of the last measured region.
-    pub fn loose_components(&self) -> &[u32] {
-        &self.engine.region.loose
-    }
-
-    /// Sentences about the present factorisation: what loose parts do, what was repaired.
-    pub fn warnings(&self) -> &[String] {
-        &self.engine.warnings
-    }
-
-    /// The open file's name; empty before the first.
-    pub fn file_name(&self) -> &str {
-        &self.file_name
-    }
-
-    /// What lies under a point of the view, in points; answered from the last shape that rays can be answered from.
-    pub fn pick(&self, position_px: DVec2) -> Option<Pick> {
-        self.picking()?.at(position_px)
+    /// Whether a tool is in the middle of something that Esc ends: a stroke, a drag, a pivot to be picked.
+    pub fn is_acting(&self) -> bool {
+        self.gesture.is_some() || self.settings.wants_pivot
     }
 
     /// Whether shape and regions are final: nothing is being dragged or painted, and no job runs but those that get
@@ -242,169 +522,25 @@ impl Editor {
     pub fn is_settled(&self) -> bool {
         let awaited = |kind| match kind {
             JobKind::Pick => false,
-            JobKind::Order => self.document.is_displaced(),
+            JobKind::Order => self.document().is_displaced(),
             JobKind::Region | JobKind::Bind | JobKind::Solve | JobKind::Mirror | JobKind::Enclose => true,
         };
-        let is_idle = matches!(self.tool, Tool::Idle) && self.held.is_empty();
-        is_idle
-            && !JobKind::ALL
-                .into_iter()
-                .any(|kind| awaited(kind) && self.engine.is_busy(kind))
-    }
-
-    pub(crate) fn picking(&self) -> Option<Picking<'_>> {
-        Some(Picking::of(
-            self.engine.model.as_deref()?,
-            &self.document.from_file,
-            self.engine.pickable.as_ref()?,
-            (&self.camera, self.viewport_px),
-            self.engine.is_picking_current(),
-        ))
-    }
-
-    /// Begins a step of the document.
-    pub(crate) fn begin(&mut self, name: impl Into<String>) -> Transaction {
-        Transaction::begin(name, &self.document, &mut self.history)
-    }
-
-    /// Changes the document in one named step; false if that changed nothing.
-    pub(crate) fn change(&mut self, name: impl Into<String>, change: impl FnOnce(&mut Document)) -> bool {
-        self.step(name, |editor| {
-            let shape = Arc::clone(&editor.document.from_rest);
-            change(&mut editor.document);
-            if !Arc::ptr_eq(&shape, &editor.document.from_rest) {
-                editor.engine.drop_solves();
-            }
-        })
-    }
-
-    /// Does something to the document in one named step, or in the step that is being adjusted; false if that changed
-    /// nothing.
-    pub(crate) fn step(&mut self, name: impl Into<String>, act: impl FnOnce(&mut Self)) -> bool {
-        if let Some(open) = &mut self.open_step {
-            open.rename(name);
-            act(self);
-            return true;
-        }
-        let transaction = self.begin(name);
-        act(self);
-        transaction.commit(&self.document, &mut self.history)
-    }
-
-    fn readout(&self) -> Option<Readout> {
-        match &self.tool {
-            Tool::Transform(drag) => drag.readout(self),
-            _ => None,
-        }
-    }
-
-    /// Puts a handle somewhere, in the document as it stands: the surface follows as soon as it can.
-    pub(crate) fn put_handle(&mut self, id: HandleId, transform: HandleTransform) {
-        if let Some(why) = self.held_because(id) {
-            self.problem = Some(why);
-            return;
-        }
-        let Some(handle) = self.document.handle_mut(id) else {
-            return;
-        };
-        if handle.transform == transform {
-            return;
-        }
-        let twin = handle.twin;
-        handle.put(transform);
-        self.document.settled = false;
-        if !self.engine.is_bound()
-            && let Some(model) = self.engine.model.clone()
-        {
-            moved_alone(&mut self.document, &model, &self.masks, id);
-        }
-        if let Some(twin) = twin
-            && self.held_because(twin.handle).is_none()
-            && let Some(other) = self.document.handle_mut(twin.handle)
-        {
-            other.put(twin.plane.mirrored_transform(transform));
-            if !self.engine.is_bound()
-                && let Some(model) = self.engine.model.clone()
-            {
-                moved_alone(&mut self.document, &model, &self.masks, twin.handle);
-            }
-        }
-    }
-
-    /// Says how a handle's turn is counted, if that means its rotation.
-    pub(crate) fn count_turn(&mut self, id: HandleId, turn_deg: DVec3) {
-        if let Some(handle) = self.document.handle_mut(id)
-            && let HandleTransform::Trs { rotation, .. } = handle.transform
-            && means(turn_deg, rotation)
-        {
-            handle.turn_deg = turn_deg;
-        }
-    }
-
-    /// Ends what the tool is doing without a trace.
-    pub(crate) fn abort_tool(&mut self) {
-        let tool = std::mem::take(&mut self.tool);
-        tool.abort(self);
-    }
-
-    /// The point that zooming keeps in place: on the surface under the pointer, or at the target's depth.
-    pub(crate) fn anchor(&self, position_px: DVec2) -> DVec3 {
-        match self.pick(position_px) {
-            Some(pick) => pick.point,
-            None => {
-                let ray = self.camera.ray(position_px, self.viewport_px);
-                ray.origin + ray.direction * (self.camera.distance / ray.direction.dot(self.camera.forward()))
-            }
-        }
-    }
-
-    pub(crate) fn brush_size(&self) -> BrushSize {
-        BrushSize {
-            radius_px: self.brush_radius_px,
-            metric: self.brush_metric,
-        }
-    }
-
-    /// Every vertex that hangs together with this one.
-    pub(crate) fn part_of(&self, vertex: SurfaceVertex) -> Vec<SurfaceVertex> {
-        let Some(model) = &self.engine.model else {
-            return Vec::new();
-        };
-        let part = model.topology.component(vertex);
-        (0..self.document.paint.len() as u32)
-            .map(SurfaceVertex)
-            .filter(|&vertex| model.topology.component(vertex) == part)
-            .collect()
-    }
-
-    pub(crate) fn set_brush_radius(&mut self, radius_px: f64) {
-        if radius_px.is_finite() {
-            self.brush_radius_px = radius_px.clamp(*BRUSH_RADIUS_PX.start(), *BRUSH_RADIUS_PX.end());
-        }
-    }
-
-    fn cursor(&self) -> Cursor {
-        match &self.tool {
-            Tool::Navigate(_) => Cursor::Grabbing,
-            Tool::Transform(_) | Tool::Widen(_) => Cursor::Move,
-            Tool::Paint(_) | Tool::Stiffness(_) | Tool::Outline(_) => Cursor::Brush,
-            Tool::Idle if self.overlay.hovered.is_some() => Cursor::Grab,
-            Tool::Idle if self.overlay.is_over_surface && self.mode != ToolMode::Select => Cursor::Brush,
-            Tool::Idle | Tool::Adjust(_) => Cursor::Arrow,
-        }
+        let jobs = &self.workspace.jobs;
+        let is_busy = || JobKind::ALL.into_iter().any(|kind| awaited(kind) && jobs.is_busy(kind));
+        self.gesture.is_none() && self.waiting.is_empty() && !is_busy()
     }
 
     /// The revision of the shape that jobs are stamped with, for tests of lateness.
     pub fn shape_stamp(&self) -> Revision {
-        self.engine.shape_revision
+        self.workspace.jobs.shape_revision
     }
 }
 
 impl std::fmt::Debug for Editor {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Editor")
-            .field("file_name", &self.file_name)
-            .field("mode", &self.mode)
+            .field("file_name", &self.file_name())
+            .field("mode", &self.settings.mode)
             .finish_non_exhaustive()
     }
 }

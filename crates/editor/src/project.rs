@@ -21,7 +21,7 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 use crate::document::bits_equal;
-use crate::document::{Document, Handle, HandleId, Paint};
+use crate::document::{Content, Document, Handle, HandleId, Paint};
 use crate::edit_error::EditError;
 use crate::edit_node::Node;
 use crate::exchange::with_pivot;
@@ -279,7 +279,7 @@ impl Project {
                 expected: shortened(&self.mesh.geometry),
             });
         }
-        let mut document = Document::new(model.surface.positions.len());
+        let mut document = Content::new(model.surface.positions.len());
         document.method = read_method(&Node::new(&self.method, "method"))?;
         document.loose = self.loose.into();
         document.loose_parts = Arc::new(
@@ -355,9 +355,8 @@ impl Project {
         if let Some(shape) = displacements(&self.shape, "shape")? {
             document.from_rest = shape;
         }
-        document.refresh_from_file();
         document.settled = self.settled || !document.handles.iter().any(Handle::is_displaced);
-        Ok(document)
+        Ok(document.into())
     }
 
     /// What the solver needs: the document's regions, from its own rest shape.

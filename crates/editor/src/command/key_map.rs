@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::{Command, Key, Modifiers, Shortcut};
+use super::shortcut::Shortcut;
+use super::table::Command;
+use crate::input::{Key, Modifiers};
 
 /// A person's choice of keys for some of the listed commands.
 #[derive(Clone, PartialEq, Debug, Default)]

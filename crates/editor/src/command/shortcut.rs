@@ -1,6 +1,6 @@
 //! A key with its modifiers, written and read as "Ctrl+Shift+Z".
 
-use crate::{Key, Modifiers};
+use crate::input::{Key, Modifiers};
 
 /// A key with the modifiers that must be held.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

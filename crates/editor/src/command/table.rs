@@ -1,7 +1,18 @@
-//! The commands that need no argument, as menus, the palette and the list of keys show them: a file for each room.
+//! The table of commands.
 
+use std::borrow::Cow;
+use std::sync::LazyLock;
+
+use glam::DVec3;
+use pliant_deform::{Loose, Method};
+
+use super::entry::{Action, Entry, Reason, Scope, State};
+use super::shortcut::Shortcut;
 use super::{document, handle, look, object, paint, region, view};
-use crate::{Command, Key, Modifiers, Shortcut};
+use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach};
+use crate::tool::{BrushMetric, Context, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
+use crate::view::{Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
+use crate::workspace::RegionAction;
 
 /// A command as a menu or the palette lists it.
 #[derive(Clone, PartialEq, Debug)]
@@ -18,82 +29,261 @@ pub struct Listed {
     pub shortcuts: &'static [Shortcut],
 }
 
-/// The commands of one room, in the order of a menu.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct CommandGroup {
-    /// What the room is called.
-    pub name: &'static str,
-    /// Its commands.
-    pub commands: &'static [Listed],
+/// What is asked of the entry of whichever command is at hand, given its values.
+trait Asked {
+    type Answer;
+
+    fn ask<V: 'static>(self, entry: &Entry<V>, values: V) -> Self::Answer;
+}
+
+/// The values that a command carries, as its entry takes them: none, one, or a tuple.
+macro_rules! values {
+    () => { () };
+    ($one:ident) => { $one };
+    ($($several:ident)+) => { ($($several),+) };
+}
+
+/// Makes the enum of all commands, and the ways from each to its entry and back.
+macro_rules! commands {
+    ($($(#[$doc:meta])* $variant:ident $(($($value:ident: $kind:ty),+))? = $entry:path;)+) => {
+        /// Something to be done, with all it needs to know.
+        #[derive(Clone, PartialEq, Debug)]
+        pub enum Command {
+            $($(#[$doc])* $variant $(($($kind),+))?,)+
+        }
+
+        impl Command {
+            /// Asks the command's entry.
+            fn ask<A: Asked>(self, asked: A) -> A::Answer {
+                match self {
+                    $(Self::$variant $(($($value),+))? => asked.ask(&$entry, values!($($($value)+)?)),)+
+                }
+            }
+
+            /// Every command as menus list it, in the order of the table.
+            fn list() -> Vec<Listed> {
+                let mut list = Vec::new();
+                $(for item in $entry.listed {
+                    let values!($($($value)+)?) = item.values.clone();
+                    list.push(Listed {
+                        command: Self::$variant $(($($value),+))?,
+                        name: item.name,
+                        tooltip: item.tooltip,
+                        keywords: item.keywords,
+                        shortcuts: item.shortcuts,
+                    });
+                })+
+                list
+            }
+        }
+    };
+}
+
+commands! {
+    /// Takes back the last step.
+    Undo = document::UNDO;
+    /// Does the last taken-back step again.
+    Redo = document::REDO;
+    /// Goes back or forth to the state after so many steps of the history.
+    GoToStep(value: usize) = document::GO_TO_STEP;
+    /// Makes the present shape the new rest shape: every handle's transform returns to the identity.
+    Apply = document::APPLY;
+    /// Takes the rest shape and every handle back to the file's shape.
+    ResetShape = document::RESET_SHAPE;
+    /// Holds everything still again: no handle, no region.
+    ClearRegions = document::CLEAR_REGIONS;
+    /// Chooses the method and its options.
+    SetMethod(value: Method) = document::SET_METHOD;
+    /// Chooses what components that nothing holds do, all of them.
+    SetLoose(value: Loose) = document::SET_LOOSE;
+    /// Chooses what one of them does, by its component's number; `None` is what all do.
+    SetLoosePart(first: u32, second: Option<Loose>) = document::SET_LOOSE_PART;
+    /// Stops the jobs that run; what needs them starts them again.
+    CancelJobs = document::CANCEL_JOBS;
+    /// Chooses what the left button does on the surface.
+    SetTool(value: ToolMode) = paint::SET_TOOL;
+    /// How the left button takes vertices.
+    SetStrokeShape(value: StrokeShape) = paint::SET_STROKE_SHAPE;
+    /// How the brush measures its radius.
+    SetBrushMetric(value: BrushMetric) = paint::SET_BRUSH_METRIC;
+    /// How deep a lasso or a box goes.
+    SetDepth(value: Depth) = paint::SET_DEPTH;
+    /// Sets the brush's radius in points, clamped to what the brush allows.
+    SetBrushRadius(value: f64) = paint::SET_BRUSH_RADIUS;
+    /// A larger brush.
+    GrowBrush = paint::GROW_BRUSH;
+    /// A smaller brush.
+    ShrinkBrush = paint::SHRINK_BRUSH;
+    /// The stiffness brush's action and numbers, clamped to what they may be.
+    SetStiffnessBrush(value: StiffnessBrush) = paint::SET_STIFFNESS_BRUSH;
+    /// Widens the selected handle's reach with the pointer.
+    Widen = handle::WIDEN;
+    /// What the gizmo offers.
+    SetGizmo(value: GizmoMode) = handle::SET_GIZMO;
+    /// Along which axes the gizmo stands.
+    SetOrientation(value: GizmoOrientation) = handle::SET_ORIENTATION;
+    /// The next click on the surface puts the selected handle's pivot there.
+    PickPivot = handle::PICK_PIVOT;
+    /// Puts a handle's pivot at a point of the present shape. The surface stays as it is.
+    SetPivot(first: HandleId, second: DVec3) = handle::SET_PIVOT;
+    /// Chooses where a handle's pivot stands. The surface stays as it is.
+    SetPivotPlace(first: HandleId, second: PivotPlace) = handle::SET_PIVOT_PLACE;
+    /// Splits the selected handle in two across its longest side: a vertex can only be in one.
+    DuplicateHandle = handle::DUPLICATE_HANDLE;
+    /// Makes the selected handle's mirror image a handle that does the same, across axis 0, 1, 2 for x, y, z.
+    MakeTwin(value: usize) = handle::MAKE_TWIN;
+    /// Lets the selected handle and its twin go their own ways.
+    Untwin = handle::UNTWIN;
+    /// Takes the selected handle's vertices and its region back to the file's shape.
+    ResetRegion = handle::RESET_REGION;
+    /// The next stroke of the handle brush makes a handle of its own.
+    NewHandle = handle::NEW_HANDLE;
+    /// Selects a handle; its gizmo is shown.
+    SelectHandle(value: HandleId) = handle::SELECT_HANDLE;
+    /// Adds a handle to those that are selected, or takes it from them.
+    ToggleSelected(value: HandleId) = handle::TOGGLE_SELECTED;
+    /// Selects the next handle of the list.
+    NextHandle = handle::NEXT_HANDLE;
+    /// Selects no handle.
+    Deselect = handle::DESELECT;
+    /// Deletes the selected handle; its vertices are held still.
+    DeleteHandle = handle::DELETE_HANDLE;
+    /// Starts moving the selected handle with the pointer.
+    Move = handle::MOVE;
+    /// Starts turning the selected handle with the pointer.
+    Turn = handle::TURN;
+    /// Starts scaling the selected handle with the pointer.
+    Scale = handle::SCALE;
+    /// Takes the selected handle back to where it rests.
+    ResetHandle = handle::RESET_HANDLE;
+    /// Names a handle.
+    RenameHandle(first: HandleId, second: String) = handle::RENAME_HANDLE;
+    /// Gives a handle a colour, sRGB with alpha.
+    SetHandleColour(first: HandleId, second: [u8; 4]) = handle::SET_HANDLE_COLOUR;
+    /// Shows or hides a handle's colour and gizmo.
+    ToggleHandleVisible(value: HandleId) = handle::TOGGLE_HANDLE_VISIBLE;
+    /// Keeps a handle from being moved, painted and deleted, or lets it.
+    ToggleHandleLocked(value: HandleId) = handle::TOGGLE_HANDLE_LOCKED;
+    /// Puts a handle where the transform says, about the handle's own pivot.
+    SetHandleTransform(first: HandleId, second: HandleTransform) = handle::SET_HANDLE_TRANSFORM;
+    /// Turns a handle to these angles about x, y and z in degrees, full turns included.
+    SetTurn(first: HandleId, second: DVec3) = handle::SET_TURN;
+    /// How far along the surface a handle takes the surface along.
+    SetReach(first: HandleId, second: Reach) = handle::SET_REACH;
+    /// Gives a handle a weight ([`SOFT_RANGE`](crate::SOFT_RANGE)), so that it only pulls; `None` makes it hard.
+    SetSoft(first: HandleId, second: Option<f64>) = handle::SET_SOFT;
+    /// With which continuity ([`pliant_deform::CONTINUITY_RANGE`]) the surface joins a handle; `None` is the smoothest.
+    SetContinuity(first: HandleId, second: Option<f64>) = handle::SET_CONTINUITY;
+    /// Changes the region in hand as a whole.
+    Region(value: RegionAction) = region::REGION;
+    /// Makes the whole surface equally stiff.
+    ClearStiffness = region::CLEAR_STIFFNESS;
+    /// Sets the stiffness (0.001 to 1000; 1 is a vertex left alone) of every vertex.
+    SetStiffness(value: Vec<f64>) = region::SET_STIFFNESS;
+    /// The same with the object under the pointer.
+    ObjectHere(value: ObjectAction) = object::OBJECT_HERE;
+    /// Hides, shows or locks objects, by their numbers in [`pliant_mesh::Model::all_objects`].
+    Objects(first: ObjectAction, second: Vec<u32>) = object::OBJECTS;
+    /// Shows nothing but the connected part under the pointer; once more shows the others again.
+    Isolate = object::ISOLATE;
+    /// Shows everything that is hidden.
+    ShowEverything = object::SHOW_EVERYTHING;
+    /// Frames everything.
+    FrameAll = view::FRAME_ALL;
+    /// Frames the selected handle and its region.
+    FrameSelected = view::FRAME_SELECTED;
+    /// Comes close to a connected part, by its component's number.
+    FramePart(value: u32) = view::FRAME_PART;
+    /// Comes close to a vertex, by the file's number.
+    FrameFileVertex(value: u32) = view::FRAME_FILE_VERTEX;
+    /// Looks from where one looked before.
+    CameraBack = view::CAMERA_BACK;
+    /// Looks from where one looked before going back.
+    CameraForth = view::CAMERA_FORTH;
+    /// Which axis points up on the screen.
+    SetUp(value: UpAxis) = view::SET_UP;
+    /// Changes between perspective and orthographic.
+    ToggleProjection = view::TOGGLE_PROJECTION;
+    /// What dragging the view does.
+    SetOrbit(value: Orbit) = view::SET_ORBIT;
+    /// Turns the view by steps of 15 degrees, to the right and down.
+    StepView(value: [i8; 2]) = view::STEP_VIEW;
+    /// Looks from the other side.
+    TurnAround = view::TURN_AROUND;
+    /// Looks from a named side.
+    View(value: NamedView) = view::VIEW;
+    /// Shades the surface like this clay.
+    SetClay(value: Clay) = look::SET_CLAY;
+    /// How the surface is shaded.
+    SetShading(value: Shading) = look::SET_SHADING;
+    /// Shows each triangle flat, or normals interpolated.
+    ToggleFlat = look::TOGGLE_FLAT;
+    /// Marks edges that a closed surface lacks, or not.
+    ToggleBorders = look::TOGGLE_BORDERS;
+    /// Shows or hides the handles' outlines and the border of what is held.
+    ToggleOutlines = look::TOGGLE_OUTLINES;
+    /// Shows or hides the ground's grid.
+    ToggleGrid = look::TOGGLE_GRID;
+    /// Shows or hides the regions' colours over clay and material.
+    ToggleRegions = look::TOGGLE_REGIONS;
+    /// Shows or hides the wireframe.
+    ToggleWireframe = look::TOGGLE_WIREFRAME;
 }
 
 impl Command {
-    /// Every command that needs no argument, by rooms.
-    pub const GROUPS: &'static [CommandGroup] = &[
-        group("Document", document::LISTED),
-        group("Painting", paint::LISTED),
-        group("Handles", handle::LISTED),
-        group("Regions", region::LISTED),
-        group("Objects", object::LISTED),
-        group("View", view::LISTED),
-        group("Shading", look::LISTED),
-    ];
-
-    /// Every command that needs no argument, in the order of the rooms.
+    /// Every command that menus list, room by room.
     pub fn all_listed() -> impl Iterator<Item = &'static Listed> {
-        Self::GROUPS.iter().flat_map(|group| group.commands)
+        static LIST: LazyLock<Vec<Listed>> = LazyLock::new(Command::list);
+        LIST.iter()
     }
 
-    /// How this command is listed, if it needs no argument.
+    /// How this command is listed, if it is.
     pub fn listed(&self) -> Option<&'static Listed> {
         Self::all_listed().find(|listed| listed.command == *self)
     }
-}
 
-pub(super) const fn group(name: &'static str, commands: &'static [Listed]) -> CommandGroup {
-    CommandGroup { name, commands }
-}
+    /// What it concerns.
+    pub(crate) fn scope(&self) -> Scope {
+        struct Ask;
+        impl Asked for Ask {
+            type Answer = Scope;
 
-pub(super) const fn listed(
-    command: Command,
-    name: &'static str,
-    tooltip: &'static str,
-    keywords: &'static str,
-    shortcuts: &'static [Shortcut],
-) -> Listed {
-    Listed {
-        command,
-        name,
-        tooltip,
-        keywords,
-        shortcuts,
+            fn ask<V: 'static>(self, entry: &Entry<V>, _: V) -> Scope {
+                entry.scope
+            }
+        }
+        self.clone().ask(Ask)
     }
-}
 
-pub(super) const fn plain(key: Key) -> Shortcut {
-    Shortcut::with(Modifiers::NONE, key)
-}
+    /// Why it can't be done now; `None` where it can.
+    pub(crate) fn unavailable(&self, state: &State<'_>) -> Option<Cow<'static, str>> {
+        struct Ask<'a>(&'a State<'a>);
+        impl Asked for Ask<'_> {
+            type Answer = Option<Reason>;
 
-pub(super) const fn character(character: char) -> Shortcut {
-    plain(Key::Character(character))
-}
+            fn ask<V: 'static>(self, entry: &Entry<V>, values: V) -> Option<Reason> {
+                (entry.unavailable)(self.0, &values)
+            }
+        }
+        self.clone().ask(Ask(state))
+    }
 
-pub(super) const fn ctrl(character: char) -> Shortcut {
-    Shortcut::with(Modifiers::CTRL, Key::Character(character))
-}
+    /// Does it; the gesture that it begins, if it does.
+    pub(crate) fn act(self, context: &mut Context<'_>) -> Option<Box<dyn Gesture>> {
+        struct Ask<'a, 'b>(&'a mut Context<'b>);
+        impl Asked for Ask<'_, '_> {
+            type Answer = Option<Box<dyn Gesture>>;
 
-pub(super) const fn shift(character: char) -> Shortcut {
-    Shortcut::with(Modifiers::SHIFT, Key::Character(character))
-}
-
-pub(super) const fn alt(character: char) -> Shortcut {
-    Shortcut::with(Modifiers::ALT, Key::Character(character))
-}
-
-pub(super) const fn numpad(digit: u8) -> Shortcut {
-    plain(Key::Numpad(digit))
-}
-
-pub(super) const fn ctrl_numpad(digit: u8) -> Shortcut {
-    Shortcut::with(Modifiers::CTRL, Key::Numpad(digit))
+            fn ask<V: 'static>(self, entry: &Entry<V>, values: V) -> Self::Answer {
+                match entry.action {
+                    Action::Do(act) => {
+                        act(self.0, values);
+                        None
+                    }
+                    Action::Begin(begin) => begin(self.0, values),
+                }
+            }
+        }
+        self.ask(Ask(context))
+    }
 }

@@ -4,7 +4,6 @@
 //! painted on it, and its paint stays. Both belong to the document.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use pliant_mesh::Model;
 
@@ -75,7 +74,7 @@ impl Access {
     }
 
     /// Which of [`pliant_mesh::Drawn::triangles`] are shown; `None` is all of them.
-    fn shown_triangles(&self, model: &Model) -> Option<Vec<bool>> {
+    pub(super) fn shown_triangles(&self, model: &Model) -> Option<Vec<bool>> {
         if self.shows_all() {
             return None;
         }
@@ -96,61 +95,6 @@ impl Access {
         }
         let chosen = model.triangles_of_objects(|object| self.locked.contains(&(object as u32)));
         Some(model.vertices_of_triangles(&chosen))
-    }
-}
-
-/// What follows from an [`Access`] on a model; `None` where it changes nothing.
-#[derive(Debug, Default)]
-pub(crate) struct Masks {
-    /// Of each drawn triangle, whether it is shown.
-    pub(crate) drawn: Option<Arc<Vec<bool>>>,
-    /// The surface's triangles that are shown, ascending.
-    pub(crate) triangles: Option<Arc<Vec<u32>>>,
-    /// Of each surface vertex, whether some triangle shows it.
-    shown: Option<Vec<bool>>,
-    /// Of each surface vertex, whether a lock holds it.
-    locked: Option<Vec<bool>>,
-}
-
-impl Masks {
-    pub(crate) fn of(access: &Access, model: &Model) -> Self {
-        let drawn = access.shown_triangles(model);
-        let triangles = drawn.as_ref().map(|drawn| {
-            let of_surface = model.drawn.triangle_of_surface().iter().zip(0..);
-            let shown = of_surface.filter(|(triangle, _)| drawn[**triangle as usize]);
-            Arc::new(shown.map(|(_, number)| number).collect::<Vec<u32>>())
-        });
-        Self {
-            shown: drawn.as_ref().map(|drawn| model.vertices_of_triangles(drawn)),
-            locked: access.locked_vertices(model),
-            triangles,
-            drawn: drawn.map(Arc::new),
-        }
-    }
-
-    /// Whether a vertex is to be seen.
-    pub(crate) fn is_shown(&self, vertex: usize) -> bool {
-        self.shown.as_ref().is_none_or(|shown| shown[vertex])
-    }
-
-    /// Whether any vertex is locked.
-    pub(crate) fn lock_some(&self) -> bool {
-        self.locked.is_some()
-    }
-
-    /// Whether a lock holds a vertex.
-    pub(crate) fn is_locked(&self, vertex: usize) -> bool {
-        self.locked.as_ref().is_some_and(|locked| locked[vertex])
-    }
-
-    /// Whether a vertex may be painted.
-    pub(crate) fn may_be_painted(&self, vertex: usize) -> bool {
-        self.is_shown(vertex) && !self.is_locked(vertex)
-    }
-
-    /// Whether every vertex may be.
-    pub(crate) fn are_open(&self) -> bool {
-        self.shown.is_none() && self.locked.is_none()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-use crate::HandleTransform;
+use super::handle_transform::HandleTransform;
 
 impl HandleTransform {
     /// Further by `translation`, in world units.
@@ -80,7 +80,7 @@ fn with_linear(map: DAffine3, linear: DMat3, pivot: DVec3) -> DAffine3 {
 mod tests {
     use glam::{DAffine3, DQuat, DVec3};
 
-    use crate::HandleTransform;
+    use super::super::handle_transform::HandleTransform;
 
     #[test]
     fn turning_and_scaling_leave_the_pivot_where_it_is_in_either_form() {

@@ -13,8 +13,11 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_deform::{Loose, Method};
 
-use crate::Access;
-use crate::document::{Document, Handle, Paint};
+use super::access::Access;
+use super::handle::Handle;
+use super::sparse::Sparse;
+use super::state::{Document, Paint};
+use super::version::{Aspect, Version};
 
 /// How many bytes of deltas are kept before the oldest steps are forgotten.
 pub const HISTORY_BYTES: usize = 256 << 20;
@@ -38,54 +41,6 @@ pub(crate) enum Change {
     Access(Arc<Access>),
     /// Whether the shape is final for the handles' transforms.
     Settled(bool),
-}
-
-/// A few elements of a vector, by ascending index.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Sparse<T> {
-    pub(crate) indices: Vec<u32>,
-    pub(crate) values: Vec<T>,
-}
-
-impl<T: Copy> Sparse<T> {
-    /// Exchanges the elements with those of `whole`.
-    fn swap(&mut self, whole: &mut [T]) {
-        for (&index, value) in self.indices.iter().zip(&mut self.values) {
-            std::mem::swap(&mut whole[index as usize], value);
-        }
-    }
-
-    fn bytes(&self) -> usize {
-        self.indices.len() * size_of::<u32>() + self.values.len() * size_of::<T>()
-    }
-}
-
-impl Sparse<DVec3> {
-    /// The elements of `other` whose bits differ from those of `present`.
-    pub(crate) fn difference(present: &[DVec3], other: &[DVec3]) -> Self {
-        let mut difference = Self::default();
-        for (index, (here, there)) in present.iter().zip(other).enumerate() {
-            if !bits_equal(*here, *there) {
-                difference.indices.push(index as u32);
-                difference.values.push(*there);
-            }
-        }
-        difference
-    }
-
-    /// `present` with the elements put in.
-    fn applied(&self, present: &[DVec3]) -> Vec<DVec3> {
-        let mut whole = present.to_vec();
-        for (&index, &value) in self.indices.iter().zip(&self.values) {
-            whole[index as usize] = value;
-        }
-        whole
-    }
-}
-
-/// Whether two vectors are the same bits: −0 is not 0 here, since undo gives back what was there.
-pub(crate) fn bits_equal(a: DVec3, b: DVec3) -> bool {
-    a.to_array().map(f64::to_bits) == b.to_array().map(f64::to_bits)
 }
 
 /// A named step.
@@ -125,6 +80,8 @@ pub struct History {
     undone: Vec<Step>,
     /// The shape that the neighbouring steps' deltas are relative to.
     shape: Arc<Vec<DVec3>>,
+    /// Which version of the document's shape that is.
+    shape_version: Version,
     cap_bytes: usize,
     /// How many steps lie behind the state that was saved; `None` when that state was forgotten.
     saved_at: Option<usize>,
@@ -134,11 +91,12 @@ pub struct History {
 
 impl History {
     /// An empty history of a document that shows `shape`.
-    pub(crate) fn new(shape: Arc<Vec<DVec3>>, cap_bytes: usize) -> Self {
+    pub(crate) fn new(document: &Document, cap_bytes: usize) -> Self {
         Self {
             done: VecDeque::new(),
             undone: Vec::new(),
-            shape,
+            shape: Arc::clone(&document.from_rest),
+            shape_version: document.versions().of(Aspect::Shape),
             cap_bytes,
             saved_at: Some(0),
             revision: 0,
@@ -186,21 +144,26 @@ impl History {
 
     /// Makes the neighbouring steps relative to the shape that the document shows.
     pub(crate) fn sync(&mut self, document: &Document) {
-        if Arc::ptr_eq(&self.shape, &document.from_rest) {
+        if self.shape_version == document.versions().of(Aspect::Shape) {
             return;
         }
         for step in self.done.back_mut().into_iter().chain(self.undone.last_mut()) {
             let other = step.shape.applied(&self.shape);
             step.shape = Sparse::difference(&document.from_rest, &other);
         }
-        self.shape = Arc::clone(&document.from_rest);
+        self.keep_shape_of(document);
         self.forget_oldest();
     }
 
-    /// Adds a step with what the document had before it; `shape` is what was shown when it began.
+    fn keep_shape_of(&mut self, document: &Document) {
+        self.shape = Arc::clone(&document.from_rest);
+        self.shape_version = document.versions().of(Aspect::Shape);
+    }
+
+    /// Adds a step with what the document had before it; `before` is the document as it was.
     ///
     /// What was undone can't be done again after this.
-    pub(crate) fn push(&mut self, name: String, changes: Vec<Change>, shape: Arc<Vec<DVec3>>) {
+    pub(crate) fn push(&mut self, name: String, changes: Vec<Change>, before: &Document) {
         if self.saved_at.is_some_and(|saved_at| saved_at > self.done.len()) {
             self.saved_at = None;
         }
@@ -213,7 +176,7 @@ impl History {
         });
         // The step's own shape delta is empty relative to what was shown when it began: `sync` makes it the
         // difference to what came of it.
-        self.shape = shape;
+        self.keep_shape_of(before);
     }
 
     /// Takes back the last step; its name, or `None` if there is none.
@@ -246,14 +209,10 @@ impl History {
         for change in &mut step.changes {
             swap(change, document);
         }
-        let is_reshaped = !step.shape.indices.is_empty();
-        if is_reshaped {
-            step.shape.swap(Arc::make_mut(&mut document.from_rest).as_mut_slice());
+        if !step.shape.is_empty() {
+            document.swap_shape(&mut step.shape);
         }
-        if is_reshaped || step.changes.iter().any(|change| matches!(change, Change::Rest(..))) {
-            document.refresh_from_file();
-        }
-        self.shape = Arc::clone(&document.from_rest);
+        self.keep_shape_of(document);
     }
 
     fn forget_oldest(&mut self) {
@@ -270,32 +229,13 @@ impl History {
 /// Exchanges what the change holds with what the document has.
 fn swap(change: &mut Change, document: &mut Document) {
     match change {
-        Change::Paint(sparse) => sparse.swap(Arc::make_mut(&mut document.paint).as_mut_slice()),
-        Change::Handles(handles, next_handle) => {
-            std::mem::swap(handles, &mut document.handles);
-            std::mem::swap(next_handle, &mut document.next_handle);
-        }
-        Change::Stiffness(sparse, is_field) => {
-            let was_field = document.stiffness.is_some();
-            let count = document.paint.len();
-            let field = document.stiffness.get_or_insert_with(|| Arc::new(vec![1.0; count]));
-            sparse.swap(Arc::make_mut(field).as_mut_slice());
-            if !*is_field {
-                document.stiffness = None;
-            }
-            *is_field = was_field;
-        }
-        Change::Continuity(continuity) => std::mem::swap(continuity, &mut document.continuity),
-        Change::Options(method, loose, parts) => {
-            std::mem::swap(method, &mut document.method);
-            std::mem::swap(parts, &mut document.loose_parts);
-            std::mem::swap(loose, &mut document.loose);
-        }
-        Change::Rest(sparse, applied) => {
-            sparse.swap(Arc::make_mut(&mut document.rest).as_mut_slice());
-            std::mem::swap(applied, &mut document.applied);
-        }
-        Change::Access(access) => std::mem::swap(access, &mut document.access),
-        Change::Settled(settled) => std::mem::swap(settled, &mut document.settled),
+        Change::Paint(sparse) => document.swap_paint(sparse),
+        Change::Handles(handles, next_handle) => document.swap_handles(handles, next_handle),
+        Change::Stiffness(sparse, is_field) => document.swap_stiffness(sparse, is_field),
+        Change::Continuity(continuity) => document.swap_continuity(continuity),
+        Change::Options(method, loose, parts) => document.swap_options(method, loose, parts),
+        Change::Rest(sparse, applied) => document.swap_rest(sparse, applied),
+        Change::Access(access) => document.swap_access(access),
+        Change::Settled(settled) => document.swap_settled(settled),
     }
 }

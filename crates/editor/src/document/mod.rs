@@ -1,22 +1,30 @@
 //! What a person edits, and how it is undone: paint, handles, options, the shape they have brought about.
 
 mod access;
+mod handle;
 mod handle_colour;
 mod handle_motion;
 mod handle_transform;
 mod history;
+mod mirror_plane;
 mod polar;
+mod sparse;
 mod state;
 mod transaction;
 mod turn;
+mod version;
+mod vertex_access;
 
-pub(crate) use access::Masks;
 pub use access::{Access, ObjectAction, object_name};
+pub use handle::{Handle, HandleId, PivotPlace, Reach, Twin};
 pub use handle_colour::HANDLE_COLOURS;
 pub use handle_transform::HandleTransform;
-pub(crate) use history::{Change, Sparse, bits_equal};
 pub use history::{HISTORY_BYTES, History};
-pub(crate) use state::sum_of_shapes;
-pub use state::{Document, Handle, HandleId, MirrorPlane, Paint, PivotPlace, Twin};
+pub use mirror_plane::MirrorPlane;
+pub(crate) use sparse::bits_equal;
+pub use state::{Content, Document, Paint};
+pub(crate) use state::{Repainted, sum_of_shapes};
 pub(crate) use transaction::Transaction;
 pub(crate) use turn::{accumulated, followed, means, rotation_of};
+pub(crate) use version::{Aspect, Version, Versions};
+pub(crate) use vertex_access::VertexAccess;

@@ -3,21 +3,22 @@
 //! The [`Document`] holds what a person has said and what has come of it. What follows from it alone, and can be
 //! computed again at any time (the region around the handles, the factorisation), is not in it.
 //!
-//! Cloning is cheap: the long vectors are shared until one side changes.
+//! Everybody may read a document's [`Content`]; only the functions here change it, and each says what it has changed
+//! ([`Versions`]), undo and redo included. Cloning is cheap: the long vectors are shared until one side changes.
 
 use std::collections::BTreeMap;
+use std::ops::Deref;
 use std::sync::Arc;
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::DVec3;
 use pliant_deform::{Arap, CONTINUITY_RANGE, Loose, Method};
+use pliant_mesh::SurfaceVertex;
 
-use super::handle_colour::handle_colour;
-use crate::document::followed;
-use crate::{Access, HandleTransform, Reach};
-
-/// A handle's number for as long as the document lives.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub struct HandleId(pub u16);
+use super::access::Access;
+use super::handle::{Handle, HandleId};
+use super::handle_transform::HandleTransform;
+use super::sparse::Sparse;
+use super::version::{Aspect, Marks, Versions};
 
 /// What was painted on a vertex.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
@@ -33,165 +34,9 @@ pub enum Paint {
     Handle(HandleId),
 }
 
-/// A handle: a part of the surface that is moved as a whole.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Handle {
-    /// Its number.
-    pub id: HandleId,
-    /// Its name, for a person.
-    pub name: String,
-    /// Its colour, sRGB with alpha.
-    pub colour: [u8; 4],
-    /// Where it was put, from the rest shape, about its pivot.
-    pub transform: HandleTransform,
-    /// Its turn as a person counts it, in degrees about x, y and z: full turns included. It means the rotation of the
-    /// transform.
-    pub turn_deg: DVec3,
-    /// The point that its turns and scales leave alone, on the rest shape, in world space.
-    pub pivot: DVec3,
-    /// Where the pivot stands when the handle's vertices change.
-    pub pivot_place: PivotPlace,
-    /// How far along the surface it takes the surface along.
-    pub reach: Reach,
-    /// Its weight, in [`crate::SOFT_RANGE`], if it only pulls at its vertices.
-    pub soft: Option<f64>,
-    /// Whether its colour and its gizmo are shown.
-    pub visible: bool,
-    /// Whether it is kept from being moved, painted and deleted.
-    pub locked: bool,
-    /// With which continuity the surface joins it, in [`pliant_deform::CONTINUITY_RANGE`]; `None` is what the document
-    /// says of its vertices.
-    pub continuity: Option<f64>,
-    /// The handle that does the same on the other side of a plane.
-    pub twin: Option<Twin>,
-}
-
-/// Where a handle's pivot stands.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
-pub enum PivotPlace {
-    /// At the mean of its vertices.
-    #[default]
-    Centroid,
-    /// At the middle of its border with the rest of the surface: an arm turns about its shoulder.
-    Border,
-    /// Where a person put it.
-    Picked,
-}
-
-/// A handle's other half.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Twin {
-    /// The handle.
-    pub handle: HandleId,
-    /// The plane between both.
-    pub plane: MirrorPlane,
-}
-
-/// A plane across an axis of the world.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct MirrorPlane {
-    /// 0, 1, 2 for x, y, z.
-    pub axis: usize,
-    /// Where it crosses the axis, in world units.
-    pub at: f64,
-}
-
-impl MirrorPlane {
-    /// What a handle on the other side does when one on this side does `transform`.
-    pub(crate) fn mirrored_transform(&self, transform: HandleTransform) -> HandleTransform {
-        let mut flip = DVec3::ONE;
-        flip[self.axis] = -1.0;
-        match transform {
-            HandleTransform::Trs {
-                translation,
-                rotation,
-                scale,
-                pivot,
-            } => {
-                // A rotation's axis turns the other way round in a mirror.
-                let axis = -(rotation.xyz() * flip);
-                let rotation = if rotation.xyz() == DVec3::ZERO {
-                    rotation
-                } else {
-                    DQuat::from_xyzw(axis.x, axis.y, axis.z, rotation.w)
-                };
-                HandleTransform::Trs {
-                    translation: translation * flip,
-                    rotation,
-                    scale,
-                    pivot: pivot.map(|pivot| self.mirrored(pivot)),
-                }
-            }
-            HandleTransform::Matrix(matrix) => {
-                let mut shift = DVec3::ZERO;
-                shift[self.axis] = 2.0 * self.at;
-                let mirror = DAffine3 {
-                    matrix3: DMat3::from_diagonal(flip),
-                    translation: shift,
-                };
-                HandleTransform::Matrix(mirror * matrix * mirror)
-            }
-        }
-    }
-
-    /// The point on the other side.
-    pub fn mirrored(&self, point: DVec3) -> DVec3 {
-        let mut other = point;
-        other[self.axis] = 2.0 * self.at - point[self.axis];
-        other
-    }
-}
-
-impl Handle {
-    /// A handle without vertices yet, at rest.
-    pub(crate) fn new(id: HandleId, name: String) -> Self {
-        Self {
-            id,
-            name,
-            colour: handle_colour(id.0),
-            transform: HandleTransform::IDENTITY,
-            turn_deg: DVec3::ZERO,
-            pivot: DVec3::ZERO,
-            pivot_place: PivotPlace::default(),
-            reach: Reach::default(),
-            soft: None,
-            visible: true,
-            locked: false,
-            continuity: None,
-            twin: None,
-        }
-    }
-
-    /// The transform as a map of world positions of the rest shape.
-    pub fn affine(&self) -> DAffine3 {
-        self.transform.affine(self.pivot)
-    }
-
-    /// Puts it somewhere, and counts its turn on from where it was.
-    pub(crate) fn put(&mut self, transform: HandleTransform) {
-        self.turn_deg = match transform {
-            // Back at rest it has not turned at all.
-            _ if transform.is_identity() => DVec3::ZERO,
-            HandleTransform::Trs { rotation, .. } => followed(self.turn_deg, rotation),
-            HandleTransform::Matrix(_) => DVec3::ZERO,
-        };
-        self.transform = transform;
-    }
-
-    /// Whether it is anywhere else than where it rests.
-    pub fn is_displaced(&self) -> bool {
-        !self.transform.is_identity()
-    }
-
-    /// Where its pivot is now, in world space.
-    pub fn centre(&self) -> DVec3 {
-        self.affine().transform_point3(self.pivot)
-    }
-}
-
-/// The edited state of one mesh. Every vector has one element per surface vertex.
+/// What a document holds. Every vector has one element per surface vertex.
 #[derive(Clone, Debug)]
-pub struct Document {
+pub struct Content {
     pub(crate) paint: Arc<Vec<Paint>>,
     pub(crate) handles: Vec<Handle>,
     /// The next handle's number.
@@ -218,9 +63,9 @@ pub struct Document {
     pub(crate) settled: bool,
 }
 
-impl Document {
-    /// A fresh document: everything is held still. It bends by ARAP, which turns and moves at once.
-    pub fn new(vertex_count: usize) -> Self {
+impl Content {
+    /// What a fresh document holds: everything is held still. It bends by ARAP, which turns and moves at once.
+    pub(crate) fn new(vertex_count: usize) -> Self {
         let zero = Arc::new(vec![DVec3::ZERO; vertex_count]);
         Self {
             paint: Arc::new(vec![Paint::Bare; vertex_count]),
@@ -240,139 +85,509 @@ impl Document {
         }
     }
 
+    fn sum_shapes(&mut self) {
+        self.from_file = sum_of_shapes(self.applied.then_some(&self.rest), &self.from_rest);
+    }
+}
+
+/// The edited state of one mesh.
+#[derive(Clone, Debug)]
+pub struct Document {
+    content: Content,
+    marks: Marks,
+    repainted: Repainted,
+}
+
+/// On which vertices paint or stiffness has changed since somebody asked.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) enum Repainted {
+    /// On these, with repeats.
+    Vertices(Vec<SurfaceVertex>),
+    /// Perhaps on all.
+    All,
+}
+
+impl Default for Repainted {
+    fn default() -> Self {
+        Self::Vertices(Vec::new())
+    }
+}
+
+impl Deref for Document {
+    type Target = Content;
+
+    fn deref(&self) -> &Content {
+        &self.content
+    }
+}
+
+impl From<Content> for Document {
+    fn from(mut content: Content) -> Self {
+        content.sum_shapes();
+        Self {
+            content,
+            marks: Marks::default(),
+            repainted: Repainted::All,
+        }
+    }
+}
+
+/// What a document says of itself.
+impl Document {
+    /// A fresh document: everything is held still. It bends by ARAP, which turns and moves at once.
+    pub fn new(vertex_count: usize) -> Self {
+        Content::new(vertex_count).into()
+    }
+
     /// What was painted on each surface vertex.
     pub fn paint(&self) -> &[Paint] {
-        &self.paint
+        &self.content.paint
     }
 
     /// The handles, in the order in which they were made.
     pub fn handles(&self) -> &[Handle] {
-        &self.handles
+        &self.content.handles
     }
 
     /// The handle with this number.
     pub fn handle(&self, id: HandleId) -> Option<&Handle> {
-        self.handles.iter().find(|handle| handle.id == id)
-    }
-
-    /// A new handle without vertices, the last of the list.
-    pub(crate) fn add_handle(&mut self) -> HandleId {
-        let id = HandleId(self.next_handle);
-        self.next_handle = self.next_handle.saturating_add(1);
-        self.handles
-            .push(Handle::new(id, format!("handle {}", u32::from(id.0) + 1)));
-        id
-    }
-
-    pub(crate) fn handle_mut(&mut self, id: HandleId) -> Option<&mut Handle> {
-        self.handles.iter_mut().find(|handle| handle.id == id)
+        self.content.handles.iter().find(|handle| handle.id == id)
     }
 
     /// Painted stiffness per surface vertex; `None` is 1 everywhere.
     pub fn stiffness(&self) -> Option<&[f64]> {
-        self.stiffness.as_ref().map(|field| field.as_slice())
+        self.content.stiffness.as_ref().map(|field| field.as_slice())
     }
 
     /// With which continuity the surface joins what holds it, per surface vertex; `None` is the highest everywhere.
     pub fn continuity(&self) -> Option<&[f64]> {
-        self.continuity.as_ref().map(|field| field.as_slice())
+        self.content.continuity.as_ref().map(|field| field.as_slice())
     }
 
     /// The method and its options.
     pub fn method(&self) -> &Method {
-        &self.method
+        &self.content.method
     }
 
     /// What components that nothing holds do.
     pub fn loose(&self) -> Loose {
-        self.loose
+        self.content.loose
     }
 
     /// What single components do that nothing holds, in place of [`Document::loose`].
     pub fn loose_parts(&self) -> &BTreeMap<u32, Loose> {
-        &self.loose_parts
+        &self.content.loose_parts
     }
 
     /// The continuity per surface vertex, with that of handles which say one of their own; `None` is the highest
     /// everywhere.
     pub fn joints(&self) -> Option<Vec<f64>> {
-        let own: BTreeMap<HandleId, f64> = self
-            .handles
-            .iter()
+        let handles = self.content.handles.iter();
+        let own: BTreeMap<HandleId, f64> = handles
             .filter_map(|handle| Some((handle.id, handle.continuity?)))
             .collect();
+        let painted = self.content.continuity.as_ref();
         if own.is_empty() {
-            return self.continuity.as_ref().map(|field| field.to_vec());
+            return painted.map(|field| field.to_vec());
         }
         let highest = *CONTINUITY_RANGE.end();
-        let painted = self.paint.iter().enumerate();
         let joint = |(vertex, paint): (usize, &Paint)| match paint {
             Paint::Handle(id) if own.contains_key(id) => own[id],
-            _ => self.continuity.as_ref().map_or(highest, |field| field[vertex]),
+            _ => painted.map_or(highest, |field| field[vertex]),
         };
-        Some(painted.map(joint).collect())
+        Some(self.content.paint.iter().enumerate().map(joint).collect())
     }
 
     /// What of the file is hidden and locked.
     pub fn access(&self) -> &Access {
-        &self.access
+        &self.content.access
     }
 
     /// The rest shape's displacements from the file's shape, per surface vertex.
     pub fn rest(&self) -> &[DVec3] {
-        &self.rest
+        &self.content.rest
     }
 
     /// The present shape's displacements from the rest shape, per surface vertex.
     pub fn from_rest(&self) -> &[DVec3] {
-        &self.from_rest
+        &self.content.from_rest
     }
 
     /// The present shape's displacements from the file's shape, per surface vertex: what is drawn.
     pub fn from_file(&self) -> &Arc<Vec<DVec3>> {
-        &self.from_file
+        &self.content.from_file
     }
 
     /// Whether a shape was applied, so that the rest shape is another than the file's.
     pub fn is_applied(&self) -> bool {
-        self.applied
+        self.content.applied
     }
 
     /// Whether the shape is final for the handles' transforms.
     pub fn is_settled(&self) -> bool {
-        self.settled
+        self.content.settled
     }
 
     /// Whether the present shape is another than the rest shape.
     pub fn is_displaced(&self) -> bool {
-        !self.settled || self.handles.iter().any(Handle::is_displaced)
+        !self.content.settled || self.content.handles.iter().any(Handle::is_displaced)
     }
 
+    /// Which state of each aspect this is.
+    pub(crate) fn versions(&self) -> &Versions {
+        self.marks.versions()
+    }
+
+    /// The vertices whose paint or stiffness changed since this was asked last.
+    pub(crate) fn take_repainted(&mut self) -> Repainted {
+        std::mem::take(&mut self.repainted)
+    }
+}
+
+/// What is painted.
+impl Document {
+    /// Paints vertices.
+    pub(crate) fn paint_vertices(&mut self, changes: impl IntoIterator<Item = (SurfaceVertex, Paint)>) {
+        let mut changes = changes.into_iter().peekable();
+        if changes.peek().is_none() {
+            return;
+        }
+        self.marks.mark(&[Aspect::Paint]);
+        let painted = Arc::make_mut(&mut self.content.paint);
+        for (vertex, paint) in changes {
+            painted[vertex.index()] = paint;
+            note(&mut self.repainted, [vertex]);
+        }
+    }
+
+    /// Takes all paint and every handle away.
+    pub(crate) fn clear_paint(&mut self) {
+        self.marks.mark(&[Aspect::Paint]);
+        self.repainted = Repainted::All;
+        self.content.paint = Arc::new(vec![Paint::Bare; self.content.paint.len()]);
+        self.change_handles(Vec::clear);
+    }
+
+    /// Sets the stiffness of every vertex; `None` is 1 everywhere.
+    pub(crate) fn set_stiffness(&mut self, stiffness: Option<Vec<f64>>) {
+        self.marks.mark(&[Aspect::Stiffness]);
+        self.repainted = Repainted::All;
+        self.content.stiffness = stiffness.map(Arc::new);
+    }
+
+    /// Changes the stiffness of some vertices, those that `change` gives back.
+    pub(crate) fn stiffen(&mut self, change: impl FnOnce(&mut [f64]) -> Vec<SurfaceVertex>) {
+        let count = self.content.paint.len();
+        let field = self.content.stiffness.get_or_insert_with(|| Arc::new(vec![1.0; count]));
+        let changed = change(Arc::make_mut(field).as_mut_slice());
+        self.marks.mark(&[Aspect::Stiffness]);
+        note(&mut self.repainted, changed);
+    }
+
+    /// Forgets a field of stiffness that is 1 everywhere.
+    pub(crate) fn drop_plain_stiffness(&mut self) {
+        let field = self.content.stiffness.as_ref();
+        if field.is_some_and(|field| field.iter().all(|&value| value == 1.0)) {
+            self.content.stiffness = None;
+            self.marks.mark(&[Aspect::Stiffness]);
+        }
+    }
+}
+
+/// The handles.
+impl Document {
+    /// A new handle without vertices, the last of the list.
+    pub(crate) fn add_handle(&mut self) -> HandleId {
+        let id = HandleId(self.content.next_handle);
+        self.content.next_handle = self.content.next_handle.saturating_add(1);
+        let name = format!("handle {}", u32::from(id.0) + 1);
+        self.change_handles(|handles| handles.push(Handle::new(id, name)));
+        id
+    }
+
+    /// Takes away the handles that were made since `before`; their numbers are given again.
+    pub(crate) fn drop_handles_made_since(&mut self, before: &Self) {
+        self.change_handles(|handles| handles.retain(|handle| before.handle(handle.id).is_some()));
+        self.content.next_handle = before.content.next_handle;
+        if self.content.handles == before.content.handles {
+            for aspect in [Aspect::Handles, Aspect::Holds, Aspect::Targets, Aspect::Appearance] {
+                self.marks.go_back(before.versions(), aspect);
+            }
+        }
+    }
+
+    /// Changes one handle; `None` if it is gone.
+    pub(crate) fn change_handle<R>(&mut self, id: HandleId, change: impl FnOnce(&mut Handle) -> R) -> Option<R> {
+        self.change_handles(|handles| handles.iter_mut().find(|handle| handle.id == id).map(change))
+    }
+
+    /// Changes the list of handles.
+    pub(crate) fn change_handles<R>(&mut self, change: impl FnOnce(&mut Vec<Handle>) -> R) -> R {
+        let before = self.content.handles.clone();
+        let result = change(&mut self.content.handles);
+        self.mark_handles(&before);
+        result
+    }
+
+    /// Marks what about the handles is another than `before`.
+    fn mark_handles(&mut self, before: &[Handle]) {
+        let after = &self.content.handles;
+        if before == after {
+            return;
+        }
+        let mut changed = vec![Aspect::Handles];
+        if !are_same(before, after, |h| (h.id, h.reach, h.soft, h.continuity)) {
+            changed.push(Aspect::Holds);
+        }
+        if !are_same(before, after, Handle::affine) {
+            changed.push(Aspect::Targets);
+        }
+        if !are_same(before, after, |h| (h.id, h.colour, h.visible)) {
+            changed.push(Aspect::Appearance);
+        }
+        self.marks.mark(&changed);
+    }
+}
+
+/// Options and access.
+impl Document {
+    /// Chooses the method and its options.
+    pub(crate) fn set_method(&mut self, method: Method) {
+        if self.content.method != method {
+            self.content.method = method;
+            self.marks.mark(&[Aspect::Method]);
+        }
+    }
+
+    /// Chooses what loose parts do: all, and single ones in place of that.
+    pub(crate) fn set_loose(&mut self, loose: Loose, parts: BTreeMap<u32, Loose>) {
+        if self.content.loose != loose || *self.content.loose_parts != parts {
+            (self.content.loose, self.content.loose_parts) = (loose, Arc::new(parts));
+            self.marks.mark(&[Aspect::Loose]);
+        }
+    }
+
+    /// Chooses what is hidden and locked.
+    pub(crate) fn set_access(&mut self, mut access: Arc<Access>) {
+        self.swap_access(&mut access);
+    }
+}
+
+/// The shapes.
+impl Document {
     /// Makes the present shape the rest shape. No drawn vertex moves; the handles' pivots go along.
     pub(crate) fn apply_shape(&mut self) {
         if !self.is_displaced() {
             return;
         }
-        self.rest = Arc::clone(&self.from_file);
-        self.applied = true;
-        self.from_rest = Arc::new(vec![DVec3::ZERO; self.rest.len()]);
-        self.settled = true;
-        for handle in &mut self.handles {
-            handle.pivot = handle.centre();
-            handle.put(HandleTransform::IDENTITY);
+        let content = &mut self.content;
+        content.rest = Arc::clone(&content.from_file);
+        content.applied = true;
+        content.from_rest = Arc::new(vec![DVec3::ZERO; content.rest.len()]);
+        content.settled = true;
+        self.marks.mark(&[Aspect::Rest, Aspect::Shape]);
+        self.change_handles(|handles| {
+            for handle in handles {
+                handle.pivot = handle.centre();
+                handle.put(HandleTransform::IDENTITY);
+            }
+        });
+    }
+
+    /// Shows a shape that the handles have brought about; `from_file` is its sum with the rest shape.
+    pub(crate) fn show(&mut self, from_rest: Arc<Vec<DVec3>>, from_file: Arc<Vec<DVec3>>) {
+        (self.content.from_rest, self.content.from_file) = (from_rest, from_file);
+        self.marks.mark(&[Aspect::Shape, Aspect::Drawn]);
+    }
+
+    /// Shows a shape by its displacements from the rest shape.
+    pub(crate) fn bend(&mut self, from_rest: Vec<DVec3>) {
+        self.content.from_rest = Arc::new(from_rest);
+        self.content.sum_shapes();
+        self.marks.mark(&[Aspect::Shape, Aspect::Drawn]);
+    }
+
+    /// Shows the rest shape, which is final.
+    pub(crate) fn unbend(&mut self) {
+        self.bend(vec![DVec3::ZERO; self.content.from_rest.len()]);
+        self.settle();
+    }
+
+    /// Takes the rest shape and the present one back to the file's; handles stay where they are put.
+    pub(crate) fn forget_shapes(&mut self) {
+        let content = &mut self.content;
+        content.applied = false;
+        content.rest = Arc::new(vec![DVec3::ZERO; content.paint.len()]);
+        content.from_rest = Arc::clone(&content.rest);
+        content.from_file = Arc::clone(&content.rest);
+        content.settled = true;
+        self.marks.mark(&[Aspect::Rest, Aspect::Shape, Aspect::Drawn]);
+    }
+
+    /// Takes some vertices of the rest shape back to the file's.
+    pub(crate) fn forget_rest_at(&mut self, is_taken: &[bool]) {
+        let rest = Arc::make_mut(&mut self.content.rest);
+        for (displacement, _) in rest.iter_mut().zip(is_taken).filter(|(_, taken)| **taken) {
+            *displacement = DVec3::ZERO;
+        }
+        self.content.sum_shapes();
+        self.marks.mark(&[Aspect::Rest, Aspect::Drawn]);
+    }
+
+    /// The shape is final for the handles' transforms.
+    pub(crate) fn settle(&mut self) {
+        self.content.settled = true;
+    }
+
+    /// The shape is not final: there is something to be solved.
+    pub(crate) fn unsettle(&mut self) {
+        self.swap_settled(&mut false);
+    }
+
+    /// The same, if any handle is elsewhere than where it rests.
+    pub(crate) fn unsettle_if_displaced(&mut self) {
+        if self.is_displaced() {
+            self.unsettle();
+        }
+    }
+}
+
+/// Taking back, and taking over.
+impl Document {
+    /// Takes everything back to how it was, versions included.
+    pub(crate) fn go_back_to(&mut self, before: Self) {
+        let is_same = |aspect| !self.versions().differ(before.versions(), aspect);
+        if !(is_same(Aspect::Paint) && is_same(Aspect::Stiffness)) {
+            self.repainted = Repainted::All;
+        }
+        self.marks.go_back_to(before.versions());
+        self.content = before.content;
+    }
+
+    /// Takes the place of another document, of which nothing remains.
+    pub(crate) fn replace(&mut self, mut by: Self) {
+        by.marks.count_on_from(&self.marks);
+        by.marks.mark(&Aspect::ALL);
+        *self = by;
+    }
+
+    /// Takes over what another document has, but for the method. `known` are its versions when that was done last. The
+    /// shape stays what this document's method has made, as long as the rest shape does, and is to be solved anew.
+    pub(crate) fn follow(&mut self, leader: &Self, known: Option<&Versions>, method: &Method) {
+        let is_new = |aspect| known.is_none_or(|known| leader.versions().differ(known, aspect));
+        let is_own = |aspect| matches!(aspect, Aspect::Method | Aspect::Shape | Aspect::Drawn);
+        let theirs = Aspect::ALL
+            .into_iter()
+            .filter(|&aspect| !is_own(aspect) && is_new(aspect));
+        let mut changed: Vec<Aspect> = theirs.collect();
+        if self.content.method != *method {
+            changed.push(Aspect::Method);
+        }
+        let own = std::mem::replace(&mut self.content, leader.content.clone());
+        self.content.method = method.clone();
+        if is_new(Aspect::Rest) {
+            self.content.sum_shapes();
+            changed.extend([Aspect::Shape, Aspect::Drawn]);
+        } else {
+            (self.content.from_rest, self.content.from_file) = (own.from_rest, own.from_file);
+        }
+        self.marks.mark(&changed);
+        self.repainted = Repainted::All;
+        self.content.settled = true;
+        self.unsettle();
+    }
+
+    pub(super) fn swap_paint(&mut self, paint: &mut Sparse<Paint>) {
+        paint.swap(Arc::make_mut(&mut self.content.paint).as_mut_slice());
+        self.marks.mark(&[Aspect::Paint]);
+        note(&mut self.repainted, paint.indices.iter().copied().map(SurfaceVertex));
+    }
+
+    pub(super) fn swap_handles(&mut self, handles: &mut Vec<Handle>, next_handle: &mut u16) {
+        std::mem::swap(handles, &mut self.content.handles);
+        std::mem::swap(next_handle, &mut self.content.next_handle);
+        self.mark_handles(handles);
+    }
+
+    /// `is_field` tells whether there is a field at all on the other side: without, it is 1 everywhere.
+    pub(super) fn swap_stiffness(&mut self, stiffness: &mut Sparse<f64>, is_field: &mut bool) {
+        let was_field = self.content.stiffness.is_some();
+        let count = self.content.paint.len();
+        let field = self.content.stiffness.get_or_insert_with(|| Arc::new(vec![1.0; count]));
+        stiffness.swap(Arc::make_mut(field).as_mut_slice());
+        if !*is_field {
+            self.content.stiffness = None;
+        }
+        *is_field = was_field;
+        self.marks.mark(&[Aspect::Stiffness]);
+        note(
+            &mut self.repainted,
+            stiffness.indices.iter().copied().map(SurfaceVertex),
+        );
+    }
+
+    pub(super) fn swap_continuity(&mut self, continuity: &mut Option<Arc<Vec<f64>>>) {
+        std::mem::swap(continuity, &mut self.content.continuity);
+        self.marks.mark(&[Aspect::Continuity]);
+    }
+
+    pub(super) fn swap_options(
+        &mut self,
+        method: &mut Method,
+        loose: &mut Loose,
+        parts: &mut Arc<BTreeMap<u32, Loose>>,
+    ) {
+        let before = std::mem::replace(method, self.content.method.clone());
+        self.set_method(before);
+        let (former, former_parts) = (self.content.loose, Arc::clone(&self.content.loose_parts));
+        self.set_loose(*loose, (**parts).clone());
+        (*loose, *parts) = (former, former_parts);
+    }
+
+    pub(super) fn swap_rest(&mut self, rest: &mut Sparse<DVec3>, applied: &mut bool) {
+        rest.swap(Arc::make_mut(&mut self.content.rest).as_mut_slice());
+        std::mem::swap(applied, &mut self.content.applied);
+        self.content.sum_shapes();
+        self.marks.mark(&[Aspect::Rest, Aspect::Drawn]);
+    }
+
+    pub(super) fn swap_access(&mut self, access: &mut Arc<Access>) {
+        if self.content.access.locked != access.locked {
+            self.marks.mark(&[Aspect::Locks]);
+        }
+        std::mem::swap(access, &mut self.content.access);
+        self.marks.mark(&[Aspect::Access]);
+    }
+
+    pub(super) fn swap_settled(&mut self, settled: &mut bool) {
+        std::mem::swap(settled, &mut self.content.settled);
+        // Solves that ended before are no answer any more.
+        if *settled && !self.content.settled {
+            self.marks.mark(&[Aspect::Targets]);
         }
     }
 
-    /// Shows a shape that the handles have brought about.
-    pub(crate) fn show(&mut self, from_rest: Arc<Vec<DVec3>>, from_file: Arc<Vec<DVec3>>) {
-        self.from_rest = from_rest;
-        self.from_file = from_file;
+    pub(super) fn swap_shape(&mut self, shape: &mut Sparse<DVec3>) {
+        shape.swap(Arc::make_mut(&mut self.content.from_rest).as_mut_slice());
+        self.content.sum_shapes();
+        self.marks.mark(&[Aspect::Shape, Aspect::Drawn]);
     }
+}
 
-    /// Computes what is drawn from the rest shape and the displacements from it.
-    pub(crate) fn refresh_from_file(&mut self) {
-        self.from_file = sum_of_shapes(self.applied.then_some(&self.rest), &self.from_rest);
+/// Above so many vertices all count as repainted: to tell them apart would cost more than it saves.
+const MOST_TOLD: usize = 1 << 19;
+
+fn note(repainted: &mut Repainted, vertices: impl IntoIterator<Item = SurfaceVertex>) {
+    if let Repainted::Vertices(told) = repainted {
+        told.extend(vertices);
+        if told.len() > MOST_TOLD {
+            *repainted = Repainted::All;
+        }
     }
+}
+
+fn are_same<K: PartialEq>(a: &[Handle], b: &[Handle], key: impl Fn(&Handle) -> K) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| key(a) == key(b))
 }
 
 /// What is drawn: the rest shape's displacements, if there are any, plus those from it.

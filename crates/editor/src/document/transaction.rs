@@ -8,8 +8,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::document::{Change, History, Sparse};
-use crate::document::{Document, Paint};
+use super::history::{Change, History};
+use super::sparse::Sparse;
+use super::state::{Document, Paint};
+use super::version::Aspect;
 
 /// A change of the document that is under way.
 #[derive(Debug)]
@@ -39,50 +41,44 @@ impl Transaction {
     }
 
     /// Leaves everything as it was.
-    pub(crate) fn abort(self, document: &mut Document) {
-        *document = self.before;
+    pub(crate) fn abort(&self, document: &mut Document) {
+        document.go_back_to(self.before.clone());
     }
 
     /// Enters the differences into the history; false if there are none.
-    pub(crate) fn commit(self, document: &Document, history: &mut History) -> bool {
+    pub(crate) fn commit(&self, document: &Document, history: &mut History) -> bool {
         let Self { name, before } = self;
-        let changes = differences(&before, document);
-        let same_shape = Arc::ptr_eq(&before.from_rest, &document.from_rest)
-            || Sparse::difference(&document.from_rest, &before.from_rest)
-                .indices
-                .is_empty();
+        let changes = differences(before, document);
+        let same_shape = !before.versions().differ(document.versions(), Aspect::Shape)
+            || Sparse::difference(&document.from_rest, &before.from_rest).is_empty();
         if changes.iter().all(|change| matches!(change, Change::Settled(_))) && same_shape {
             return false;
         }
-        history.push(name, changes, before.from_rest);
+        history.push(name.clone(), changes, before);
         true
     }
 }
 
 /// What `before` has that `after` has not.
 fn differences(before: &Document, after: &Document) -> Vec<Change> {
+    let differ = |aspect| before.versions().differ(after.versions(), aspect);
     let mut changes = Vec::new();
-    if !Arc::ptr_eq(&before.paint, &after.paint) {
+    if differ(Aspect::Paint) {
         let sparse = painted(&before.paint, &after.paint);
-        if !sparse.indices.is_empty() {
+        if !sparse.is_empty() {
             changes.push(Change::Paint(sparse));
         }
     }
     if before.handles != after.handles {
         changes.push(Change::Handles(before.handles.clone(), before.next_handle));
     }
-    let is_same_field = match (&before.stiffness, &after.stiffness) {
-        (Some(before), Some(after)) => Arc::ptr_eq(before, after),
-        (None, None) => true,
-        _ => false,
-    };
-    if !is_same_field {
+    if differ(Aspect::Stiffness) {
         let sparse = stiffened(before, after);
-        if !sparse.indices.is_empty() || before.stiffness.is_some() != after.stiffness.is_some() {
+        if !sparse.is_empty() || before.stiffness.is_some() != after.stiffness.is_some() {
             changes.push(Change::Stiffness(sparse, before.stiffness.is_some()));
         }
     }
-    if before.continuity != after.continuity {
+    if differ(Aspect::Continuity) {
         changes.push(Change::Continuity(before.continuity.clone()));
     }
     let loose = |document: &Document| (document.loose, Arc::clone(&document.loose_parts));
@@ -93,9 +89,9 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
     if before.access != after.access {
         changes.push(Change::Access(Arc::clone(&before.access)));
     }
-    if before.applied != after.applied || !Arc::ptr_eq(&before.rest, &after.rest) {
+    if differ(Aspect::Rest) {
         let sparse = Sparse::<DVec3>::difference(&after.rest, &before.rest);
-        if before.applied != after.applied || !sparse.indices.is_empty() {
+        if before.applied != after.applied || !sparse.is_empty() {
             changes.push(Change::Rest(sparse, before.applied));
         }
     }
@@ -112,8 +108,7 @@ fn stiffened(before: &Document, after: &Document) -> Sparse<f64> {
     for vertex in 0..before.paint.len() {
         let old = at(before, vertex);
         if old.to_bits() != at(after, vertex).to_bits() {
-            sparse.indices.push(vertex as u32);
-            sparse.values.push(old);
+            sparse.push(vertex, old);
         }
     }
     sparse
@@ -123,8 +118,7 @@ fn painted(before: &[Paint], after: &[Paint]) -> Sparse<Paint> {
     let mut sparse = Sparse::default();
     for (index, (before, after)) in before.iter().zip(after).enumerate() {
         if before != after {
-            sparse.indices.push(index as u32);
-            sparse.values.push(*before);
+            sparse.push(index, *before);
         }
     }
     sparse

@@ -7,7 +7,7 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use crate::{Executor, Job, JobDone, JobKind};
+use super::job::{Executor, Job, JobDone, JobKind};
 
 /// A list of jobs that wait. Clones share the list: one goes to the editor, one stays with the caller.
 #[derive(Clone, Debug, Default)]

@@ -10,7 +10,7 @@ use glam::DVec3;
 use pliant_deform::{Bound, Ordering};
 use pliant_mesh::{Bvh, Cancel, Progress, SurfaceVertex};
 
-use crate::Region;
+use super::region::Region;
 
 /// The jobs the editor hands out, by what they make.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -60,6 +60,9 @@ impl JobKind {
 /// The number of the state that a job was made for. Numbers only grow; none is used twice.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
 pub struct Revision(pub u64);
+
+/// What a job does, given where to tell its way and what stops it.
+pub(crate) type Work = Box<dyn FnOnce(&Progress, &Cancel) -> JobOutcome + Send>;
 
 /// A piece of work for the executor. `work` is to be called once, off the window's thread, and its outcome sent back
 /// as [`Event::JobDone`](crate::Event::JobDone) with the same kind and stamp, whatever the outcome.

@@ -2,7 +2,7 @@
 
 use pliant_mesh::{Cancel, Progress};
 
-use crate::Revision;
+use super::job::Revision;
 
 /// One kind's queue. `W` is what is needed to start the work; the queue starts nothing itself, its owner starts what
 /// [`JobQueue::start_next`] hands out.

@@ -13,9 +13,8 @@ use glam::DVec3;
 use pliant_deform::{Loose, Role};
 use pliant_mesh::{Cancel, Cancelled, ContourLine, DistanceSearch, Model, Surface, SurfaceVertex, Topology, face_area};
 
-use crate::document::{HandleId, Paint};
-use crate::jobs::rims;
-use crate::{Access, Counts, Reach};
+use super::rim::rims;
+use crate::document::{Access, HandleId, Paint, Reach};
 
 /// What the region follows from; shared with the job that measures it.
 #[derive(Clone, Debug)]
@@ -45,6 +44,17 @@ pub struct Region {
     pub loose: Arc<Vec<u32>>,
     /// The rest shape, where it is another than the file's.
     pub(crate) rest_surface: Option<Arc<Surface>>,
+}
+
+/// Numbers of surface vertices by role.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Counts {
+    /// Held still.
+    pub fixed: usize,
+    /// Free to bend.
+    pub free: usize,
+    /// In a handle.
+    pub handle: usize,
 }
 
 impl Region {

@@ -1,27 +1,21 @@
-//! What follows from the document and is computed by jobs: the picking structure, the ordering, the region, the
+//! Which jobs are asked for, and their last results: the picking structure, the ordering, the region, the
 //! factorisation, the shape.
 //!
 //! [`Jobs::pump`] compares what there is with what the present revisions need and asks for what is missing; it is
-//! called after every event, so no event has to know what it makes stale. Revisions come from one counter:
+//! called after every event, so no event has to know which jobs it makes necessary. Revisions come from one counter:
 //! *model* (another file), *problem* (paint, reach, rest shape, stiffness, options), *targets* (handles' transforms)
 //! and *shape* (what is drawn).
 
 use std::sync::{Arc, Mutex};
 
-use glam::DVec3;
-use pliant_deform::{Bound, Ordering, Remains};
-use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex};
+use pliant_mesh::{Model, SurfaceVertex};
 
-use crate::document::Masks;
-use crate::document::{Document, HandleId};
-use crate::jobs::Pickable;
-use crate::jobs::Region;
-use crate::jobs::{JobQueue, Running};
-use crate::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
-
-use super::work::{order_work, region_input, region_work};
-
-pub(crate) type Work = Box<dyn FnOnce(&Progress, &Cancel) -> JobOutcome + Send>;
+use super::computed::Computed;
+use super::job::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved, Work};
+use super::job_queue::{JobQueue, Running};
+use super::region::Region;
+use super::work::{bind_work, order_work, pick_work, region_input, region_work, solve_work};
+use crate::document::Document;
 
 /// What the person is doing, as far as jobs care.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -41,28 +35,20 @@ pub(crate) struct Jobs {
     /// For each kind the revision that failed or was stopped by the person: it is not tried again.
     given_up: [Option<Revision>; JobKind::ALL.len()],
     counter: u64,
-    pub(crate) model: Option<Arc<Model>>,
-    model_revision: Revision,
-    pub(super) problem_revision: Revision,
+    pub(crate) computed: Computed,
+    pub(crate) model_revision: Revision,
+    problem_revision: Revision,
     target_revision: Revision,
     pub(crate) shape_revision: Revision,
     /// Solves that were asked for before this are dropped.
     solve_floor: Revision,
-    pub(crate) pickable: Option<Pickable>,
-    /// The triangles that are shown; `None` is all of them.
-    pub(super) shown: Option<Arc<Vec<u32>>>,
     bvh_revision: Revision,
-    /// One a power of the Laplacian that a method has asked for.
-    orderings: Vec<Arc<Ordering>>,
-    pub(crate) region: Region,
     region_revision: Revision,
-    pub(super) bound: Option<Arc<Mutex<Bound>>>,
-    /// What the next binding can take over of the last one.
-    pub(super) remains: Option<Remains>,
+    /// Another one for every region that was measured.
+    pub(crate) roles_revision: Revision,
     bound_revision: Revision,
     mirror_revision: Revision,
     enclose_revision: Revision,
-    pub(crate) warnings: Vec<String>,
 }
 
 /// What a job's result means for the editor.
@@ -97,29 +83,23 @@ impl Jobs {
             queues: std::array::from_fn(|_| JobQueue::default()),
             given_up: [None; JobKind::ALL.len()],
             counter: 0,
-            model: None,
+            computed: Computed::default(),
             model_revision: Revision(0),
             problem_revision: Revision(0),
             target_revision: Revision(0),
             shape_revision: Revision(0),
             solve_floor: Revision(0),
-            pickable: None,
-            shown: None,
             bvh_revision: Revision(0),
-            orderings: Vec::new(),
-            region: Region::still(0),
             region_revision: Revision(0),
-            bound: None,
-            remains: None,
+            roles_revision: Revision(0),
             bound_revision: Revision(0),
             mirror_revision: Revision(0),
             enclose_revision: Revision(0),
-            warnings: Vec::new(),
         }
     }
 
     /// A revision that was never used.
-    pub(crate) fn next_revision(&mut self) -> Revision {
+    fn next_revision(&mut self) -> Revision {
         self.counter += 1;
         Revision(self.counter)
     }
@@ -129,13 +109,13 @@ impl Jobs {
         for kind in JobKind::ALL {
             self.queues[kind as usize].cancel();
         }
-        self.region = Region::still(model.surface.positions.len());
-        self.model = Some(model);
+        self.computed = Computed {
+            region: Region::still(model.surface.positions.len()),
+            model: Some(model),
+            ..Computed::default()
+        };
         self.model_revision = self.next_revision();
-        (self.pickable, self.shown) = (None, None);
-        (self.bound, self.remains) = (None, None);
-        self.orderings.clear();
-        self.warnings.clear();
+        self.roles_revision = self.next_revision();
         self.problem_changed();
         self.region_revision = Revision(0);
         self.shape_changed();
@@ -176,7 +156,7 @@ impl Jobs {
 
     /// Rays are to meet these triangles alone.
     pub(crate) fn show_triangles(&mut self, shown: Option<Arc<Vec<u32>>>) {
-        self.shown = shown;
+        self.computed.shown = shown;
         self.shape_changed();
     }
 
@@ -218,7 +198,7 @@ impl Jobs {
 
     /// Whether rays are answered from what is drawn.
     pub(crate) fn is_picking_current(&self) -> bool {
-        self.pickable.is_some() && self.bvh_revision == self.shape_revision
+        self.computed.pickable.is_some() && self.bvh_revision == self.shape_revision
     }
 
     /// Whether the region belongs to the present paint.
@@ -228,7 +208,7 @@ impl Jobs {
 
     /// Whether the factorisation belongs to the present problem.
     pub(crate) fn is_bound(&self) -> bool {
-        self.bound.is_some() && self.bound_revision == self.problem_revision
+        self.computed.bound.is_some() && self.bound_revision == self.problem_revision
     }
 
     /// Whether a job of this kind runs or waits.
@@ -249,26 +229,31 @@ impl Jobs {
 
     /// Asks for whatever is missing, and starts what can start.
     pub(crate) fn pump(&mut self, document: &Document, activity: Activity) {
-        let Some(model) = self.model.clone() else { return };
+        let Some(model) = self.computed.model.clone() else {
+            return;
+        };
         if model.surface.triangles.is_empty() {
             return;
         }
         if activity != Activity::Dragging && !self.is_picking_current() {
-            self.want(JobKind::Pick, |engine| engine.pick_work(&model, document));
+            self.want(JobKind::Pick, |computed| pick_work(computed, &model, document));
         }
         let power = document.method.operator_power();
-        let has_ordering = self.ordering(power).is_some();
+        let has_ordering = self.computed.ordering(power).is_some();
         if !has_ordering {
             self.want(JobKind::Order, |_| order_work(&model, power));
         }
         if activity != Activity::Painting {
             if !self.is_region_current() {
                 self.want(JobKind::Region, |_| region_work(region_input(&model, document)));
-            } else if has_ordering && !self.is_bound() && !self.region.handles.is_empty() {
-                self.want(JobKind::Bind, |engine| engine.bind_work(&model, document));
+            } else if has_ordering && !self.is_bound() && !self.computed.region.handles.is_empty() {
+                let revision = self.problem_revision.0;
+                self.want(JobKind::Bind, |computed| {
+                    bind_work(computed, &model, document, revision)
+                });
             }
             if self.is_bound() && !document.settled {
-                self.want(JobKind::Solve, |engine| engine.solve_work(document));
+                self.want(JobKind::Solve, |computed| solve_work(computed, document));
             }
         }
         self.start();
@@ -291,19 +276,20 @@ impl Jobs {
                 }
             }
             JobOutcome::Pick(pickable) if wanted => {
-                self.pickable = Some(pickable);
+                self.computed.pickable = Some(pickable);
                 self.bvh_revision = stamp;
                 return Arrival::Picking;
             }
-            JobOutcome::Ordered(ordering) if stamp == self.model_revision => self.orderings.push(ordering),
+            JobOutcome::Ordered(ordering) if stamp == self.model_revision => self.computed.orderings.push(ordering),
             JobOutcome::Region(region) if stamp == self.problem_revision => {
-                self.region = region;
+                self.computed.region = region;
+                self.roles_revision = self.next_revision();
                 self.region_revision = stamp;
             }
             JobOutcome::Bound(bound) if stamp == self.problem_revision => {
-                self.warnings = bound.warnings().to_vec();
-                self.remains = bound.remains();
-                self.bound = Some(Arc::new(Mutex::new(*bound)));
+                self.computed.warnings = bound.warnings().to_vec();
+                self.computed.remains = bound.remains();
+                self.computed.bound = Some(Arc::new(Mutex::new(*bound)));
                 self.bound_revision = stamp;
             }
             JobOutcome::Mirrored(image) if stamp == self.mirror_revision => return Arrival::Mirrored(image),
@@ -315,14 +301,6 @@ impl Jobs {
             _ => {}
         }
         Arrival::Nothing
-    }
-
-    /// The ordering for a power of the Laplacian, if it was made.
-    pub(super) fn ordering(&self, power: u32) -> Option<Arc<Ordering>> {
-        self.orderings
-            .iter()
-            .find(|ordering| ordering.power() == power)
-            .cloned()
     }
 
     /// The revision that a job of this kind would be made for now.
@@ -337,12 +315,12 @@ impl Jobs {
         }
     }
 
-    fn want(&mut self, kind: JobKind, work: impl FnOnce(&Self) -> Option<Work>) {
+    fn want(&mut self, kind: JobKind, work: impl FnOnce(&Computed) -> Option<Work>) {
         let stamp = self.stamp(kind);
         if self.queues[kind as usize].wants(stamp) || self.given_up[kind as usize] == Some(stamp) {
             return;
         }
-        if let Some(work) = work(self) {
+        if let Some(work) = work(&self.computed) {
             self.queues[kind as usize].request(stamp, work);
         }
     }
@@ -370,26 +348,4 @@ impl Jobs {
             }
         }
     }
-}
-
-/// What a handle does before the factorisation is ready: its own vertices follow it, the rest stays.
-pub(crate) fn moved_alone(document: &mut Document, model: &Model, masks: &Masks, handle: HandleId) {
-    let Some(affine) = document.handle(handle).map(|handle| handle.affine()) else {
-        return;
-    };
-    let paint = Arc::clone(&document.paint);
-    let mut from_rest: Vec<DVec3> = document.from_rest.to_vec();
-    for (vertex, paint) in paint.iter().enumerate() {
-        if *paint == crate::Paint::Handle(handle) && !masks.is_locked(vertex) {
-            let rest = model.surface.positions[vertex]
-                + if document.applied {
-                    document.rest[vertex]
-                } else {
-                    DVec3::ZERO
-                };
-            from_rest[vertex] = affine.transform_point3(rest) - rest;
-        }
-    }
-    document.from_rest = Arc::new(from_rest);
-    document.refresh_from_file();
 }

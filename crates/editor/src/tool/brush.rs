@@ -36,6 +36,15 @@ pub(crate) struct BrushSize {
     pub(crate) metric: BrushMetric,
 }
 
+impl Default for BrushSize {
+    fn default() -> Self {
+        Self {
+            radius_px: 30.0,
+            metric: BrushMetric::default(),
+        }
+    }
+}
+
 /// Finds the vertices under the brush; keeps its memory between dabs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Brush {

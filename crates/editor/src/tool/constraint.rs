@@ -33,11 +33,6 @@ impl Constraint {
     }
 }
 
-/// The unit vector of axis 0, 1 or 2.
-pub(crate) fn axis_vector(axis: usize) -> DVec3 {
-    DVec3::AXES[axis.min(2)]
-}
-
 /// Where on the line through `origin` along the unit vector `axis` the ray passes closest, as a length from `origin`.
 ///
 /// `None` where the ray runs nearly along the line, so that a small movement would mean a huge one.

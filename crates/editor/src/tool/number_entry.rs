@@ -1,6 +1,6 @@
 //! A number typed during a transform: digits, a point and a sign, taken back with Backspace.
 
-use crate::Key;
+use crate::input::Key;
 
 /// What was typed so far.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
@@ -44,7 +44,7 @@ impl NumberEntry {
 #[cfg(test)]
 mod tests {
     use super::NumberEntry;
-    use crate::Key;
+    use crate::input::Key;
 
     #[test]
     fn typed_characters_make_the_number() {

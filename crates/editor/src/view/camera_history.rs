@@ -2,9 +2,7 @@
 //!
 //! A place counts once the camera has left it: a gesture of the pointer is one way, however many events it has.
 
-use crate::Camera;
-use crate::editor::Editor;
-use crate::tool::Tool;
+use super::camera::Camera;
 
 /// How many places are kept.
 const MOST: usize = 64;
@@ -12,8 +10,8 @@ const MOST: usize = 64;
 /// Places behind and ahead of the present one.
 #[derive(Debug, Default)]
 pub(crate) struct CameraHistory {
-    pub(crate) behind: Vec<Camera>,
-    pub(crate) ahead: Vec<Camera>,
+    behind: Vec<Camera>,
+    ahead: Vec<Camera>,
     /// Where the camera stood when it last came to rest.
     resting: Option<Camera>,
 }
@@ -25,36 +23,38 @@ pub(crate) enum CameraStep {
     Forth,
 }
 
-impl Editor {
-    /// Takes note of the camera when no gesture moves it.
-    pub(crate) fn note_camera(&mut self) {
-        if matches!(self.tool, Tool::Navigate(_)) {
-            return;
-        }
-        let history = &mut self.camera_history;
-        let Some(resting) = history.resting.replace(self.camera) else {
+impl CameraHistory {
+    /// Takes note of where the camera rests.
+    pub(super) fn rest(&mut self, camera: Camera) {
+        let Some(resting) = self.resting.replace(camera) else {
             return;
         };
-        if resting != self.camera {
-            history.ahead.clear();
-            history.behind.push(resting);
-            if history.behind.len() > MOST {
-                history.behind.remove(0);
+        if resting != camera {
+            self.ahead.clear();
+            self.behind.push(resting);
+            if self.behind.len() > MOST {
+                self.behind.remove(0);
             }
         }
     }
 
-    pub(crate) fn camera_step(&mut self, step: CameraStep) {
-        let history = &mut self.camera_history;
+    /// Where a step leads from `camera`; `None` where there is no such place.
+    pub(super) fn step(&mut self, step: CameraStep, camera: Camera) -> Option<Camera> {
         let (from, to) = match step {
-            CameraStep::Back => (&mut history.behind, &mut history.ahead),
-            CameraStep::Forth => (&mut history.ahead, &mut history.behind),
+            CameraStep::Back => (&mut self.behind, &mut self.ahead),
+            CameraStep::Forth => (&mut self.ahead, &mut self.behind),
         };
-        if let Some(camera) = from.pop() {
-            to.push(self.camera);
-            self.camera = camera;
-            history.resting = Some(camera);
-            self.is_framed = false;
+        let next = from.pop()?;
+        to.push(camera);
+        self.resting = Some(next);
+        Some(next)
+    }
+
+    /// Whether there is a place that way.
+    pub(crate) fn has(&self, step: CameraStep) -> bool {
+        match step {
+            CameraStep::Back => !self.behind.is_empty(),
+            CameraStep::Forth => !self.ahead.is_empty(),
         }
     }
 }

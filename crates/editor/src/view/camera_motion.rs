@@ -140,8 +140,8 @@ impl Camera {
 mod tests {
     use glam::{DVec2, DVec3};
 
-    use crate::view::tests::{VIEWPORT_PX, cameras};
-    use crate::view::{Camera, NamedView, Orbit, UpAxis};
+    use super::super::camera::tests::{VIEWPORT_PX, cameras};
+    use super::super::camera::{Camera, NamedView, Orbit, UpAxis};
 
     #[test]
     fn zoom_keeps_the_anchor_where_it_appears() {

@@ -6,8 +6,8 @@ use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec2, DVec3};
 
-use crate::tool::constraint::axis_vector;
-use crate::view::Camera;
+use super::camera::Camera;
+use crate::document::HandleTransform;
 
 /// What the gizmo offers.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
@@ -50,6 +50,22 @@ impl GizmoAxes {
         basis: DQuat::IDENTITY,
         own: DQuat::IDENTITY,
     };
+
+    /// Those of a handle that was put somewhere.
+    pub(crate) fn of(transform: &HandleTransform, orientation: GizmoOrientation, camera: &Camera) -> Self {
+        let own = match *transform {
+            HandleTransform::Trs { rotation, .. } => rotation,
+            HandleTransform::Matrix(_) => DQuat::IDENTITY,
+        };
+        Self {
+            own,
+            basis: match orientation {
+                GizmoOrientation::World => DQuat::IDENTITY,
+                GizmoOrientation::Local => own,
+                GizmoOrientation::View => DQuat::from_mat3(&camera.axes()),
+            },
+        }
+    }
 }
 
 /// What can be grabbed.
@@ -80,6 +96,11 @@ pub struct GizmoShape {
     pub lines: Vec<[DVec3; 2]>,
     /// Filled triangles.
     pub triangles: Vec<[DVec3; 3]>,
+}
+
+/// The unit vector of axis 0, 1 or 2.
+pub(crate) fn axis_vector(axis: usize) -> DVec3 {
+    DVec3::AXES[axis.min(2)]
 }
 
 const ARROW_PX: f64 = 96.0;
@@ -323,8 +344,8 @@ fn distance_to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
 mod tests {
     use glam::{DVec2, DVec3};
 
+    use super::camera::Camera;
     use super::{GizmoAxes, GizmoMode, GizmoPart, gizmo_shapes, hit_gizmo};
-    use crate::view::Camera;
 
     const VIEWPORT_PX: DVec2 = DVec2::new(900.0, 700.0);
 

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use pliant_mesh::{Bvh, Model, SurfaceVertex};
 
+use super::camera::{Camera, Ray};
 use super::sight::Sight;
 use crate::jobs::Pickable;
-use crate::view::{Camera, Ray};
 
 /// A point of the surface under the pointer.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use crate::view::{Camera, Projection};
+use super::camera::{Camera, Projection};
 
 /// How a camera sees points in a viewport of some size.
 #[derive(Clone, Copy, Debug)]

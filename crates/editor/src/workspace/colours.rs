@@ -3,9 +3,10 @@
 use pliant_deform::Role;
 use pliant_mesh::{ContourLine, SurfaceVertex};
 
-use crate::document::{HandleId, Paint};
-use crate::editor::Editor;
-use crate::jobs::{Rim, bounded};
+use super::dirty_colours::DirtyColours;
+use super::state::Workspace;
+use crate::document::{HandleId, Paint, Repainted, Version};
+use crate::jobs::{Revision, Rim, bounded};
 
 /// The colour of a stiffness, sRGB with alpha: blue where it gives way (0.001), grey at 1, red where it is firm (1000).
 pub fn stiffness_colour(stiffness: f64) -> [u8; 4] {
@@ -20,62 +21,129 @@ pub fn stiffness_colour(stiffness: f64) -> [u8; 4] {
     [r, g, b, 255]
 }
 
-impl Editor {
-    /// The colour of each surface vertex by what it does, sRGB with alpha, replacing `out`: handles in their own
-    /// colours, the free region blue, what was painted to be held still dark grey, and nothing (alpha 0) on what rests
-    /// by itself.
-    ///
-    /// To be fetched again when [`SceneView::regions_revision`](crate::SceneView::regions_revision) has grown.
-    pub fn region_colours(&self, out: &mut Vec<[u8; 4]>) {
-        out.clear();
-        let colour = self.region_colour();
-        out.extend((0..self.document.paint.len() as u32).map(|vertex| colour(SurfaceVertex(vertex))));
+/// What the surface's colours tell.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(crate) enum ColouredBy {
+    /// What each vertex does.
+    #[default]
+    Region,
+    /// How stiff it was painted.
+    Stiffness,
+}
+
+/// What the colours of regions and the lines between them are made from, but for paint and stiffness.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub(super) struct Sources {
+    /// How handles look.
+    pub(super) appearance: Version,
+    /// What is shown.
+    pub(super) access: Version,
+    /// The region that was measured last.
+    pub(super) roles: Revision,
+    pub(super) by: ColouredBy,
+    pub(super) selected: Option<HandleId>,
+}
+
+/// The revisions of the regions' colours and of the lines between them.
+#[derive(Debug, Default)]
+pub(crate) struct Colours {
+    /// Grows when a vertex has another colour.
+    regions_revision: u64,
+    /// Grows when the lines have changed, or what is told apart by them.
+    rims_revision: u64,
+    dirty: DirtyColours,
+    sources: Sources,
+}
+
+impl Colours {
+    pub(crate) fn regions_revision(&self) -> u64 {
+        self.regions_revision
     }
 
-    /// The vertices whose colour may have changed since a revision of the regions; `None`: all of them.
-    pub fn recoloured_since(&self, regions_revision: u64) -> Option<&[SurfaceVertex]> {
-        self.recolouring.since(regions_revision)
+    pub(crate) fn rims_revision(&self) -> u64 {
+        self.rims_revision
     }
 
-    /// What tells the colour of a vertex: see [`Editor::region_colours`].
-    pub fn region_colour(&self) -> impl Fn(SurfaceVertex) -> [u8; 4] {
-        const FREE: [u8; 4] = [96, 150, 222, 255];
-        // The clay or the material as it is: a share of any grey would wash it out.
-        const STILL: [u8; 4] = [0; 4];
-        const FIXED: [u8; 4] = [112, 112, 116, 255];
-        let handles = &self.document.handles;
-        let largest = handles.iter().map(|handle| usize::from(handle.id.0) + 1).max();
-        let mut of_handle = vec![STILL; largest.unwrap_or(0)];
-        for handle in handles.iter().filter(|handle| handle.visible) {
-            of_handle[usize::from(handle.id.0)] = handle.colour;
+    /// The colour that `by` tells has become what is shown.
+    pub(crate) fn by(&self) -> ColouredBy {
+        self.sources.by
+    }
+
+    /// The vertices whose colour may have changed since a revision; `None`: all of them.
+    pub(crate) fn since(&self, regions_revision: u64) -> Option<&[SurfaceVertex]> {
+        self.dirty.since(regions_revision)
+    }
+
+    /// Everything is another.
+    pub(super) fn change_all(&mut self) {
+        self.regions_revision += 1;
+        self.dirty.whole(self.regions_revision);
+        self.rims_revision += 1;
+    }
+
+    /// Follows what colours and lines are made from.
+    pub(super) fn follow(&mut self, sources: Sources, repainted: Repainted) {
+        let before = std::mem::replace(&mut self.sources, sources);
+        let line_sources = |s: &Sources| (s.appearance, s.access, s.roles, s.selected);
+        if line_sources(&before) != line_sources(&sources) {
+            self.rims_revision += 1;
         }
-        let shows_stiffness = self.mode == crate::ToolMode::PaintStiffness;
-        move |vertex| {
-            if shows_stiffness {
-                let field = self.document.stiffness.as_ref();
-                return stiffness_colour(field.map_or(1.0, |field| field[vertex.index()]));
+        let colour_sources = |s: &Sources| (s.appearance, s.roles, s.by);
+        match repainted {
+            Repainted::Vertices(vertices) if colour_sources(&before) == colour_sources(&sources) => {
+                self.dirty.add(&vertices);
+                if self.dirty.is_pending() {
+                    self.regions_revision += 1;
+                    self.dirty.part(self.regions_revision);
+                }
             }
-            match self.document.paint[vertex.index()] {
-                Paint::Fixed => FIXED,
-                Paint::Free => FREE,
-                Paint::Handle(HandleId(id)) => of_handle.get(usize::from(id)).copied().unwrap_or(STILL),
-                Paint::Bare => match self.engine.region.roles.get(vertex.index()) {
-                    Some(Role::Free) => FREE,
-                    _ => STILL,
-                },
+            _ => {
+                self.regions_revision += 1;
+                self.dirty.whole(self.regions_revision);
             }
         }
     }
+}
 
-    /// The lines between the regions as they were last measured, each with what it bounds; those of hidden handles are
-    /// left out. To be fetched again when [`SceneView::rims_revision`](crate::SceneView::rims_revision) has grown.
-    pub fn rims(&self) -> impl Iterator<Item = (&ContourLine, Rim)> {
-        let region = &self.engine.region;
-        let is_seen = |rim: &Rim| match rim {
-            Rim::Held => true,
-            Rim::Handle(id) => self.document.handle(*id).is_some_and(|handle| handle.visible),
-        };
-        let lines = region.rims.iter().filter(|line| self.is_triangle_shown(line.triangle));
-        lines.filter_map(move |line| Some((line, bounded(line.label, &region.handles).filter(is_seen)?)))
+/// What tells the colour of a vertex, sRGB with alpha.
+pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> [u8; 4] {
+    const FREE: [u8; 4] = [96, 150, 222, 255];
+    // The clay or the material as it is: a share of any grey would wash it out.
+    const STILL: [u8; 4] = [0; 4];
+    const FIXED: [u8; 4] = [112, 112, 116, 255];
+    let document = &workspace.document;
+    let handles = document.handles();
+    let largest = handles.iter().map(|handle| usize::from(handle.id.0) + 1).max();
+    let mut of_handle = vec![STILL; largest.unwrap_or(0)];
+    for handle in handles.iter().filter(|handle| handle.visible) {
+        of_handle[usize::from(handle.id.0)] = handle.colour;
     }
+    let by = workspace.colours.by();
+    move |vertex| {
+        if by == ColouredBy::Stiffness {
+            return stiffness_colour(document.stiffness().map_or(1.0, |field| field[vertex.index()]));
+        }
+        match document.paint[vertex.index()] {
+            Paint::Fixed => FIXED,
+            Paint::Free => FREE,
+            Paint::Handle(HandleId(id)) => of_handle.get(usize::from(id)).copied().unwrap_or(STILL),
+            Paint::Bare => match workspace.computed().region.roles.get(vertex.index()) {
+                Some(Role::Free) => FREE,
+                _ => STILL,
+            },
+        }
+    }
+}
+
+/// The lines between the regions as they were last measured, each with what it bounds; those of hidden handles and on
+/// hidden triangles are left out.
+pub(crate) fn rims(workspace: &Workspace) -> impl Iterator<Item = (&ContourLine, Rim)> {
+    let region = &workspace.computed().region;
+    let is_seen = |rim: &Rim| match rim {
+        Rim::Held => true,
+        Rim::Handle(id) => workspace.document.handle(*id).is_some_and(|handle| handle.visible),
+    };
+    let lines = region.rims.iter();
+    let shown = lines.filter(|line| workspace.vertex_access.shows_triangle(line.triangle));
+    shown.filter_map(move |line| Some((line, bounded(line.label, &region.handles).filter(is_seen)?)))
 }

@@ -1,4 +1,4 @@
-//! Which vertices changed colour of late: a dab on a mesh of millions recolours what it met, not everything.
+//! Which vertices changed colour since a revision: a dab on a mesh of millions recolours what it met, not everything.
 
 use pliant_mesh::SurfaceVertex;
 
@@ -62,25 +62,25 @@ mod tests {
     #[test]
     fn what_changed_since_a_revision_is_what_was_filed_after_it() {
         let [a, b, c] = [1, 2, 3].map(SurfaceVertex);
-        let mut recolouring = DirtyColours::default();
-        recolouring.whole(4);
-        recolouring.add(&[a, b]);
-        assert!(recolouring.is_pending());
-        recolouring.part(5);
-        recolouring.add(&[c]);
+        let mut dirty = DirtyColours::default();
+        dirty.whole(4);
+        dirty.add(&[a, b]);
+        assert!(dirty.is_pending());
+        dirty.part(5);
+        dirty.add(&[c]);
         assert_eq!(
-            recolouring.since(4),
+            dirty.since(4),
             Some([a, b].as_slice()),
             "what has no revision is not seen yet"
         );
-        recolouring.part(6);
-        assert!(!recolouring.is_pending());
-        assert_eq!(recolouring.since(3), None);
-        assert_eq!(recolouring.since(4), Some([a, b, c].as_slice()));
-        assert_eq!(recolouring.since(5), Some([c].as_slice()));
-        assert_eq!(recolouring.since(6), Some([].as_slice()));
-        recolouring.add(&[a]);
-        recolouring.whole(7);
-        assert!(!recolouring.is_pending() && recolouring.since(6).is_none());
+        dirty.part(6);
+        assert!(!dirty.is_pending());
+        assert_eq!(dirty.since(3), None);
+        assert_eq!(dirty.since(4), Some([a, b, c].as_slice()));
+        assert_eq!(dirty.since(5), Some([c].as_slice()));
+        assert_eq!(dirty.since(6), Some([].as_slice()));
+        dirty.add(&[a]);
+        dirty.whole(7);
+        assert!(!dirty.is_pending() && dirty.since(6).is_none());
     }
 }

@@ -3,103 +3,102 @@
 
 use pliant_deform::CONTINUITY_RANGE;
 
-use crate::command::Reach;
-use crate::document::HandleId;
-use crate::document::rotation_of;
-use crate::editor::Editor;
-use crate::{HandleTransform, SOFT_RANGE};
+use super::handles::{count_turn, put_handle};
+use super::state::Workspace;
+use crate::SOFT_RANGE;
+use crate::document::{HandleId, HandleTransform, Reach, rotation_of};
 
-impl Editor {
-    pub(crate) fn transform_handle(&mut self, verb: &str, id: HandleId, transform: HandleTransform) {
-        let Some(name) = self.document.handle(id).map(|handle| handle.name.clone()) else {
-            return;
-        };
-        self.step(format!("{verb} {name}"), |editor| editor.put_handle(id, transform));
-    }
+/// Puts a handle somewhere in a step of its own.
+pub(crate) fn transform_handle(workspace: &mut Workspace, verb: &str, id: HandleId, transform: HandleTransform) {
+    let Some(name) = workspace.document.handle(id).map(|handle| handle.name.clone()) else {
+        return;
+    };
+    workspace.step(format!("{verb} {name}"), |workspace| {
+        put_handle(workspace, id, transform)
+    });
+}
 
-    pub(crate) fn set_turn(&mut self, id: HandleId, turn_deg: glam::DVec3) {
-        if !turn_deg.is_finite() {
-            self.problem = Some("The handle's turn is not finite: enter other numbers.".to_owned());
-            return;
-        }
-        let Some(handle) = self.document.handle(id) else { return };
-        let HandleTransform::Trs {
-            translation,
-            scale,
-            pivot,
-            ..
-        } = handle.transform
-        else {
-            self.problem = Some(format!(
-                "{} is moved by a matrix: reset it to turn it by angles.",
-                handle.name
-            ));
-            return;
-        };
-        let turned = HandleTransform::Trs {
-            translation,
-            rotation: rotation_of(turn_deg),
-            scale,
-            pivot,
-        };
-        self.step(format!("Turn {}", handle.name.clone()), |editor| {
-            editor.put_handle(id, turned);
-            editor.count_turn(id, turn_deg);
-        });
+/// Turns a handle to these angles about x, y and z in degrees, full turns included.
+pub(crate) fn set_turn(workspace: &mut Workspace, id: HandleId, turn_deg: glam::DVec3) {
+    if !turn_deg.is_finite() {
+        workspace.refuse("The handle's turn is not finite: enter other numbers.");
+        return;
     }
+    let Some(handle) = workspace.document.handle(id) else {
+        return;
+    };
+    let HandleTransform::Trs {
+        translation,
+        scale,
+        pivot,
+        ..
+    } = handle.transform
+    else {
+        workspace.refuse(format!(
+            "{} is moved by a matrix: reset it to turn it by angles.",
+            handle.name
+        ));
+        return;
+    };
+    let turned = HandleTransform::Trs {
+        translation,
+        rotation: rotation_of(turn_deg),
+        scale,
+        pivot,
+    };
+    workspace.step(format!("Turn {}", handle.name.clone()), |workspace| {
+        put_handle(workspace, id, turned);
+        count_turn(workspace, id, turn_deg);
+    });
+}
 
-    /// Widening the region changes roles: the present shape becomes the rest shape first.
-    pub(crate) fn set_reach(&mut self, id: HandleId, reach: Reach) {
-        let (Reach::Radii(size) | Reach::Length(size)) = reach;
-        if !(size.is_finite() && size >= 0.0) {
-            self.problem = Some("A reach is a length of at least 0: enter another number.".to_owned());
-            return;
-        }
-        if self.document.handle(id).is_none_or(|handle| handle.reach == reach) {
-            return;
-        }
-        self.engine.drop_solves();
-        self.change("Change reach", |document| {
-            document.apply_shape();
-            if let Some(handle) = document.handle_mut(id) {
-                handle.reach = reach;
-            }
-        });
+/// Widening the region changes roles: the present shape becomes the rest shape first.
+pub(crate) fn set_reach(workspace: &mut Workspace, id: HandleId, reach: Reach) {
+    let (Reach::Radii(size) | Reach::Length(size)) = reach;
+    if !(size.is_finite() && size >= 0.0) {
+        workspace.refuse("A reach is a length of at least 0: enter another number.");
+        return;
     }
+    if workspace.document.handle(id).is_none_or(|handle| handle.reach == reach) {
+        return;
+    }
+    workspace.jobs.drop_solves();
+    workspace.change("Change reach", |document| {
+        document.apply_shape();
+        document.change_handle(id, |handle| handle.reach = reach);
+    });
+}
 
-    pub(crate) fn set_continuity(&mut self, id: HandleId, continuity: Option<f64>) {
-        if continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value)) {
-            self.problem = Some("A continuity is from 0 (a hinge) to 2 (smooth): enter another number.".to_owned());
-            return;
-        }
-        self.change("Change continuity", |document| {
-            if document
-                .handle(id)
-                .is_some_and(|handle| handle.continuity != continuity)
-            {
-                document.settled &= !document.is_displaced();
-                if let Some(handle) = document.handle_mut(id) {
-                    handle.continuity = continuity;
-                }
-            }
-        });
+/// With which continuity the surface joins a handle; `None` is what is painted.
+pub(crate) fn set_continuity(workspace: &mut Workspace, id: HandleId, continuity: Option<f64>) {
+    if continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value)) {
+        workspace.refuse("A continuity is from 0 (a hinge) to 2 (smooth): enter another number.");
+        return;
     }
+    workspace.change("Change continuity", |document| {
+        if document
+            .handle(id)
+            .is_some_and(|handle| handle.continuity != continuity)
+        {
+            document.unsettle_if_displaced();
+            document.change_handle(id, |handle| handle.continuity = continuity);
+        }
+    });
+}
 
-    pub(crate) fn set_soft(&mut self, id: HandleId, soft: Option<f64>) {
-        if soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight)) {
-            let (least, most) = (SOFT_RANGE.start(), SOFT_RANGE.end());
-            self.problem = Some(format!(
-                "A soft handle's weight is from {least} to {most}: enter another number."
-            ));
-            return;
-        }
-        self.change("Change softness", |document| {
-            if document.handle(id).is_some_and(|handle| handle.soft != soft) {
-                document.settled &= !document.is_displaced();
-                if let Some(handle) = document.handle_mut(id) {
-                    handle.soft = soft;
-                }
-            }
-        });
+/// Gives a handle a weight, so that it only pulls; `None` makes it hard.
+pub(crate) fn set_soft(workspace: &mut Workspace, id: HandleId, soft: Option<f64>) {
+    if soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight)) {
+        let (least, most) = (SOFT_RANGE.start(), SOFT_RANGE.end());
+        workspace.refuse(format!(
+            "A soft handle's weight is from {least} to {most}: enter another number."
+        ));
+        return;
     }
+    workspace.change("Change softness", |document| {
+        if document.handle(id).is_some_and(|handle| handle.soft != soft) {
+            document.unsettle_if_displaced();
+            document.change_handle(id, |handle| handle.soft = soft);
+        }
+    });
 }

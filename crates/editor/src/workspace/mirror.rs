@@ -3,13 +3,13 @@
 //! What is done with the image waits meanwhile. If the paint has changed when it comes, nothing is done, and that is
 //! said.
 
-use std::sync::Arc;
-
-use pliant_mesh::{Bvh, Cancel, Cancelled, Model, Progress};
+use pliant_mesh::{Bvh, Cancel, Cancelled, Model, Progress, SurfaceVertex};
 use rayon::prelude::*;
 
-use crate::document::{HandleId, MirrorPlane, Paint};
-use crate::editor::Editor;
+use super::painting::{members_of, name_of, repaint};
+use super::state::Workspace;
+use crate::document::{Aspect, HandleId, MirrorPlane, Paint, PivotPlace, Twin, Version};
+use crate::jobs::JobOutcome;
 
 /// How many vertices are asked between two looks at the progress.
 const BATCH: usize = 16_384;
@@ -29,64 +29,109 @@ pub(crate) struct Mirroring {
     purpose: Purpose,
     plane: MirrorPlane,
     /// The paint that it was asked of.
-    paint: Arc<Vec<Paint>>,
+    paint: Version,
 }
 
-impl Editor {
-    /// Has the mirror image of a role's vertices looked for.
-    pub(crate) fn mirror(&mut self, purpose: Purpose, axis: usize) {
-        let (Some(model), Some(plane)) = (self.engine.model.clone(), self.mirror_plane(axis)) else {
-            return;
-        };
-        let role = match purpose {
-            Purpose::Region(role) => role,
-            Purpose::Twin(id) => Paint::Handle(id),
-        };
-        let is_member = self.members_of(role);
-        let is_as_in_file = !self.document.applied && !self.document.is_displaced();
-        let ready = self.engine.pickable.as_ref();
-        let bvh = ready
-            .filter(|pickable| is_as_in_file && pickable.triangles.is_none() && self.engine.is_picking_current())
-            .map(|pickable| pickable.bvh.clone());
-        self.mirroring = Some(Mirroring {
-            purpose,
-            plane,
-            paint: Arc::clone(&self.document.paint),
+/// Has the mirror image of a role's vertices looked for.
+pub(crate) fn mirror(workspace: &mut Workspace, purpose: Purpose, axis: usize) {
+    let (Some(model), Some(plane)) = (workspace.model().cloned(), mirror_plane(workspace, axis)) else {
+        return;
+    };
+    let role = match purpose {
+        Purpose::Region(role) => role,
+        Purpose::Twin(id) => Paint::Handle(id),
+    };
+    let is_member = members_of(workspace, role);
+    let is_as_in_file = !workspace.document.applied && !workspace.document.is_displaced();
+    let ready = workspace.computed().pickable.as_ref();
+    let bvh = ready
+        .filter(|pickable| is_as_in_file && pickable.triangles.is_none() && workspace.jobs.is_picking_current())
+        .map(|pickable| pickable.bvh.clone());
+    workspace.mirroring = Some(Mirroring {
+        purpose,
+        plane,
+        paint: workspace.document.versions().of(Aspect::Paint),
+    });
+    workspace.jobs.mirror(Box::new(move |progress, cancel| {
+        let bvh = bvh.unwrap_or_else(|| Bvh::build(&model.surface.positions, &model.surface.triangles));
+        match mirrored(&model, &bvh, &is_member, plane, progress, cancel) {
+            Ok(image) => JobOutcome::Mirrored(image),
+            Err(_) => JobOutcome::Cancelled,
+        }
+    }));
+}
+
+/// Does what an image was wanted for, if no gesture goes on and the paint is what it was.
+pub(crate) fn take_mirrored(workspace: &mut Workspace, image: Vec<usize>, is_idle: bool) {
+    let Some(Mirroring { purpose, plane, paint }) = workspace.mirroring.take() else {
+        return;
+    };
+    let is_other = workspace.document.versions().of(Aspect::Paint) != paint;
+    if is_other || !is_idle {
+        workspace.refuse("The regions have changed while the mirror image was looked for: mirror again.");
+        return;
+    }
+    match purpose {
+        Purpose::Region(role) => mirror_region(workspace, role, image),
+        Purpose::Twin(id) => twin_of(workspace, id, &image, plane),
+    }
+}
+
+/// Takes a region's mirror image in.
+fn mirror_region(workspace: &mut Workspace, role: Paint, image: Vec<usize>) {
+    let changes = image.into_iter().map(|vertex| (vertex, role)).collect();
+    repaint(
+        workspace,
+        format!("Mirror {}", name_of(workspace, role)),
+        role,
+        role,
+        changes,
+    );
+}
+
+/// Makes an image of a handle's vertices its twin.
+fn twin_of(workspace: &mut Workspace, id: HandleId, image: &[usize], plane: MirrorPlane) {
+    let image: Vec<usize> = image
+        .iter()
+        .copied()
+        .filter(|&vertex| workspace.vertex_access.may_be_painted(vertex))
+        .filter(|&vertex| !matches!(workspace.document.paint[vertex], Paint::Handle(_)))
+        .collect();
+    if image.is_empty() {
+        workspace
+            .refuse("The handle has no mirror image on the surface that is free: choose another axis, or paint it.");
+        return;
+    }
+    workspace.jobs.drop_solves();
+    workspace.change("Make twin", |document| {
+        document.apply_shape();
+        let other = document.add_handle();
+        let painted = image.iter().map(|&vertex| SurfaceVertex(vertex as u32));
+        document.paint_vertices(painted.map(|vertex| (vertex, Paint::Handle(other))));
+        let first = document.change_handle(id, |first| {
+            first.twin = Some(Twin { handle: other, plane });
+            first.clone()
         });
-        self.engine.mirror(Box::new(move |progress, cancel| {
-            let bvh = bvh.unwrap_or_else(|| Bvh::build(&model.surface.positions, &model.surface.triangles));
-            match mirrored(&model, &bvh, &is_member, plane, progress, cancel) {
-                Ok(image) => crate::JobOutcome::Mirrored(image),
-                Err(_) => crate::JobOutcome::Cancelled,
-            }
-        }));
-    }
+        let Some(first) = first else { return };
+        document.change_handle(other, |second| {
+            second.name = format!("{} twin", first.name);
+            second.reach = first.reach;
+            second.pivot = plane.mirrored(first.pivot);
+            // Mirrored motion needs mirrored pivots.
+            second.pivot_place = PivotPlace::Picked;
+            second.twin = Some(Twin { handle: id, plane });
+        });
+    });
+}
 
-    /// Does what an image was wanted for.
-    pub(crate) fn take_mirrored(&mut self, image: Vec<usize>) {
-        let Some(Mirroring { purpose, plane, paint }) = self.mirroring.take() else {
-            return;
-        };
-        if !Arc::ptr_eq(&paint, &self.document.paint) || !matches!(self.tool, crate::tool::Tool::Idle) {
-            self.problem =
-                Some("The regions have changed while the mirror image was looked for: mirror again.".to_owned());
-            return;
-        }
-        match purpose {
-            Purpose::Region(role) => self.mirror_region(role, image),
-            Purpose::Twin(id) => self.twin_of(id, &image, plane),
-        }
-    }
-
-    /// The plane through the middle of the model's rest shape, across an axis.
-    fn mirror_plane(&self, axis: usize) -> Option<MirrorPlane> {
-        let axis = axis.min(2);
-        let bounds = self.engine.model.as_ref()?.bounds()?;
-        Some(MirrorPlane {
-            axis,
-            at: bounds.centre()[axis],
-        })
-    }
+/// The plane through the middle of the model's rest shape, across an axis.
+fn mirror_plane(workspace: &Workspace, axis: usize) -> Option<MirrorPlane> {
+    let axis = axis.min(2);
+    let bounds = workspace.model()?.bounds()?;
+    Some(MirrorPlane {
+        axis,
+        at: bounds.centre()[axis],
+    })
 }
 
 /// The vertices whose mirror image on the file's shape is nearest to a member and no farther from it than its longest

@@ -1,4 +1,4 @@
-//! What is done to the document, and what follows from it.
+//! What a person works on, what is done to it, and what follows from that.
 
 mod colours;
 mod consequences;
@@ -8,12 +8,28 @@ mod handle_values;
 mod handles;
 mod mirror;
 mod objects;
+mod options;
+mod painting;
 mod regions;
+mod selection;
 mod snapshot;
+mod state;
 
 pub use colours::stiffness_colour;
-pub(crate) use consequences::is_other_problem;
-pub(crate) use dirty_colours::DirtyColours;
-pub(crate) use mirror::{Mirroring, Purpose};
+pub(crate) use colours::{ColouredBy, region_colour, rims};
+pub(crate) use handle_values::{set_continuity, set_reach, set_soft, set_turn, transform_handle};
+pub(crate) use handles::{
+    change_handle, count_turn, delete_selected, held_because, put_handle, reset_region, set_pivot, set_pivot_place,
+    split_selected, untwin,
+};
+pub(crate) use mirror::{Purpose, mirror, take_mirrored};
+pub(crate) use objects::{act_on_object_here, act_on_objects, isolate, show_everything};
+pub(crate) use options::{
+    apply_shape, clear_regions, clear_stiffness, reset_shape, set_loose, set_loose_part, set_method, set_stiffness,
+};
+pub(crate) use painting::{members, tidy_handles};
 pub use regions::RegionAction;
-pub use snapshot::{Snapshot, SnapshotKey};
+pub(crate) use regions::act_on_region;
+pub use snapshot::SnapshotKey;
+pub(crate) use snapshot::WorkspaceSnapshot;
+pub(crate) use state::Workspace;

@@ -3,13 +3,12 @@
 //!
 //! Each is a pure function from the region's vertices to the vertices that change; other handles' vertices never do.
 
-use pliant_deform::Role;
 use pliant_mesh::{Model, SurfaceVertex};
 
+use super::mirror::{Purpose, mirror};
+use super::painting::{members_of, name_of, repaint};
+use super::state::Workspace;
 use crate::document::{HandleId, Paint};
-use crate::editor::Editor;
-use crate::tool::{ToolMode, tidy_handles};
-use crate::workspace::Purpose;
 
 /// Something to do to the region in hand: that of the tool, or of the selected handle.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
@@ -54,154 +53,77 @@ impl RegionAction {
     }
 }
 
-impl Editor {
-    /// The role that region commands speak of: the tool's, else the selected handle's.
-    pub(crate) fn role_in_hand(&self) -> Option<Paint> {
-        match self.mode {
-            ToolMode::PaintFree => Some(Paint::Free),
-            ToolMode::PaintFixed => Some(Paint::Fixed),
-            _ => self.selected.map(Paint::Handle),
+/// Changes the region of a role as a whole.
+pub(crate) fn act_on_region(workspace: &mut Workspace, role: Paint, action: RegionAction) {
+    let Some(model) = workspace.model().cloned() else {
+        return;
+    };
+    let is_member = members_of(workspace, role);
+    if !is_member.contains(&true) {
+        workspace.refuse("There is nothing painted to do this with: paint first.");
+        return;
+    }
+    let what = name_of(workspace, role);
+    let removed = |vertex: usize| match role {
+        // What a reach frees would be free again.
+        Paint::Free if workspace.document.paint[vertex] == Paint::Bare => Paint::Fixed,
+        _ => Paint::Bare,
+    };
+    let mut changes: Vec<(usize, Paint)> = Vec::new();
+    let target = match action {
+        RegionAction::Grow => {
+            changes.extend(grown(&model, &is_member).map(|vertex| (vertex, role)));
+            role
         }
-    }
-
-    pub(crate) fn act_on_region(&mut self, action: RegionAction) {
-        let (Some(role), Some(model)) = (self.role_in_hand(), self.engine.model.clone()) else {
-            return;
-        };
-        let is_member = self.members_of(role);
-        if !is_member.contains(&true) {
-            self.problem = Some("There is nothing painted to do this with: paint first.".to_owned());
-            return;
+        RegionAction::Shrink => {
+            changes.extend(rim(&model, &is_member).map(|vertex| (vertex, removed(vertex))));
+            role
         }
-        let what = self.name_of(role);
-        let removed = |vertex: usize| match role {
-            // What a reach frees would be free again.
-            Paint::Free if self.document.paint[vertex] == Paint::Bare => Paint::Fixed,
-            _ => Paint::Bare,
-        };
-        let mut changes: Vec<(usize, Paint)> = Vec::new();
-        let target = match action {
-            RegionAction::Grow => {
-                changes.extend(grown(&model, &is_member).map(|vertex| (vertex, role)));
-                role
+        RegionAction::SmoothBorder => {
+            for (vertex, joins) in smoothed(&model, &is_member) {
+                changes.push((vertex, if joins { role } else { removed(vertex) }));
             }
-            RegionAction::Shrink => {
-                changes.extend(rim(&model, &is_member).map(|vertex| (vertex, removed(vertex))));
-                role
-            }
-            RegionAction::SmoothBorder => {
-                for (vertex, joins) in smoothed(&model, &is_member) {
-                    changes.push((vertex, if joins { role } else { removed(vertex) }));
-                }
-                role
-            }
-            RegionAction::Invert => {
-                for (vertex, &is_member) in is_member.iter().enumerate() {
-                    changes.push((vertex, if is_member { removed(vertex) } else { role }));
-                }
-                role
-            }
-            RegionAction::EverythingBut => {
-                let other = if role == Paint::Fixed {
-                    Paint::Free
-                } else {
-                    Paint::Fixed
-                };
-                changes.extend(
-                    (0..is_member.len())
-                        .filter(|&vertex| !is_member[vertex])
-                        .map(|vertex| (vertex, other)),
-                );
-                role
-            }
-            RegionAction::FillParts => {
-                changes.extend(filled(&model, &is_member).map(|vertex| (vertex, role)));
-                role
-            }
-            RegionAction::Mirror(axis) => return self.mirror(Purpose::Region(role), axis),
-            RegionAction::ToFree | RegionAction::ToFixed | RegionAction::ToHandle => {
-                let target = match action {
-                    RegionAction::ToFree => Paint::Free,
-                    RegionAction::ToFixed => Paint::Fixed,
-                    _ => Paint::Handle(HandleId(self.document.next_handle)),
-                };
-                changes.extend(
-                    (0..is_member.len())
-                        .filter(|&vertex| is_member[vertex])
-                        .map(|vertex| (vertex, target)),
-                );
-                target
-            }
-        };
-        self.repaint(format!("{} {what}", action.name()), role, target, changes);
-    }
-
-    /// What a role's region is called.
-    fn name_of(&self, role: Paint) -> String {
-        match role {
-            Paint::Handle(id) => {
-                let handle = self.document.handle(id);
-                handle.map_or(String::new(), |handle| handle.name.clone())
-            }
-            Paint::Free => "region".to_owned(),
-            Paint::Fixed => "what is fixed".to_owned(),
-            Paint::Bare => "what is bare".to_owned(),
+            role
         }
-    }
-
-    /// Paints vertices in one step; vertices of handles other than `role`'s stay as they are. `target` may be a handle
-    /// that is not there yet.
-    pub(crate) fn repaint(&mut self, name: String, role: Paint, target: Paint, changes: Vec<(usize, Paint)>) {
-        let document = &self.document;
-        let changes: Vec<(usize, Paint)> = changes
-            .into_iter()
-            .filter(|&(vertex, paint)| {
-                let present = document.paint[vertex];
-                present != paint
-                    && self.masks.may_be_painted(vertex)
-                    && (present == role || !matches!(present, Paint::Handle(_)))
-            })
-            .collect();
-        if changes.is_empty() {
-            return;
-        }
-        self.engine.drop_solves();
-        let mut made = None;
-        self.step(name, |editor| {
-            let before = editor.document.clone();
-            editor.document.apply_shape();
-            if let Paint::Handle(id) = target
-                && editor.document.handle(id).is_none()
-            {
-                made = Some(editor.document.add_handle());
+        RegionAction::Invert => {
+            for (vertex, &is_member) in is_member.iter().enumerate() {
+                changes.push((vertex, if is_member { removed(vertex) } else { role }));
             }
-            let painted = std::sync::Arc::make_mut(&mut editor.document.paint);
-            for (vertex, paint) in changes {
-                painted[vertex] = paint;
-            }
-            tidy_handles(editor, &before);
-        });
-        if made.is_some() {
-            self.selected = made;
+            role
         }
-        self.repainted = true;
-    }
-
-    /// Which vertices have a role; for the free region those that a reach has freed, too.
-    pub(crate) fn members_of(&self, role: Paint) -> Vec<bool> {
-        let roles = &self.engine.region.roles;
-        let is_member = |(vertex, &paint): (usize, &Paint)| {
-            paint == role
-                || (role == Paint::Free && paint == Paint::Bare && roles.get(vertex).is_some_and(|r| *r == Role::Free))
-        };
-        self.document.paint.iter().enumerate().map(is_member).collect()
-    }
-
-    /// Takes a region's mirror image in.
-    pub(crate) fn mirror_region(&mut self, role: Paint, image: Vec<usize>) {
-        let changes = image.into_iter().map(|vertex| (vertex, role)).collect();
-        self.repaint(format!("Mirror {}", self.name_of(role)), role, role, changes);
-    }
+        RegionAction::EverythingBut => {
+            let other = if role == Paint::Fixed {
+                Paint::Free
+            } else {
+                Paint::Fixed
+            };
+            changes.extend(
+                (0..is_member.len())
+                    .filter(|&vertex| !is_member[vertex])
+                    .map(|vertex| (vertex, other)),
+            );
+            role
+        }
+        RegionAction::FillParts => {
+            changes.extend(filled(&model, &is_member).map(|vertex| (vertex, role)));
+            role
+        }
+        RegionAction::Mirror(axis) => return mirror(workspace, Purpose::Region(role), axis),
+        RegionAction::ToFree | RegionAction::ToFixed | RegionAction::ToHandle => {
+            let target = match action {
+                RegionAction::ToFree => Paint::Free,
+                RegionAction::ToFixed => Paint::Fixed,
+                _ => Paint::Handle(HandleId(workspace.document.next_handle)),
+            };
+            changes.extend(
+                (0..is_member.len())
+                    .filter(|&vertex| is_member[vertex])
+                    .map(|vertex| (vertex, target)),
+            );
+            target
+        }
+    };
+    repaint(workspace, format!("{} {what}", action.name()), role, target, changes);
 }
 
 /// Vertices beside members.

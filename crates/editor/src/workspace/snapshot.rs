@@ -1,64 +1,52 @@
-//! The document as it stands, to be written elsewhere while the person goes on.
+//! The document as it stands, for those who write it elsewhere or follow it while the person goes on.
 
 use std::sync::Arc;
 
 use pliant_mesh::Model;
 
-use crate::document::Document;
-use crate::editor::Editor;
-use crate::{Camera, MeshReference, Project, geometry_hash};
+use super::selection::HandleSelection;
+use super::state::Workspace;
+use crate::document::{Document, Versions};
+use crate::jobs::Revision;
 
-/// A document that nobody changes any more. Taking one costs next to nothing: its long vectors are shared.
+/// A workspace that nobody changes any more. Taking one costs next to nothing: its long vectors are shared.
 #[derive(Clone, Debug)]
-pub struct Snapshot {
-    document: Document,
-    model: Arc<Model>,
-    camera: Camera,
+pub(crate) struct WorkspaceSnapshot {
+    pub(crate) document: Document,
+    pub(crate) model: Arc<Model>,
+    pub(super) model_revision: Revision,
+    pub(super) file_name: String,
+    pub(super) selection: HandleSelection,
+}
+
+impl WorkspaceSnapshot {
+    /// What a workspace has; `None` before the first file.
+    pub(crate) fn of(workspace: &Workspace) -> Option<Self> {
+        Some(Self {
+            document: workspace.document.clone(),
+            model: Arc::clone(workspace.model()?),
+            model_revision: workspace.jobs.model_revision,
+            file_name: workspace.file_name.clone(),
+            selection: workspace.selection.clone(),
+        })
+    }
 }
 
 /// What a snapshot differs by: equal states have equal ones within a session.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct SnapshotKey {
     steps: u64,
-    shape: u64,
-    regions: u64,
+    versions: Versions,
+    settled: bool,
 }
 
-impl Snapshot {
-    /// The project of this state. Takes some tens of milliseconds on a large mesh.
-    pub fn project(&self, mesh: MeshReference) -> Project {
-        Project::of(&self.document, &self.model, Some(&self.camera), mesh)
-    }
-
-    /// The mesh.
-    pub fn model(&self) -> &Arc<Model> {
-        &self.model
-    }
-}
-
-impl Editor {
-    /// The document as it stands, with what is being dragged; `None` before the first file.
-    pub fn snapshot(&self) -> Option<Snapshot> {
-        Some(Snapshot {
-            document: self.document.clone(),
-            model: Arc::clone(self.engine.model.as_ref()?),
-            camera: self.camera,
-        })
-    }
-
+impl SnapshotKey {
     /// Another value for every other state of the document.
-    pub fn snapshot_key(&self) -> SnapshotKey {
-        SnapshotKey {
-            steps: self.history.revision(),
-            shape: self.shape_counter,
-            regions: self.regions_revision,
+    pub(crate) fn of(workspace: &Workspace) -> Self {
+        Self {
+            steps: workspace.history.revision(),
+            versions: *workspace.document.versions(),
+            settled: workspace.document.is_settled(),
         }
-    }
-
-    /// A digest of the document, to tell whether two are the same to the bit; `None` before the first file.
-    pub fn document_hash(&self) -> Option<String> {
-        let snapshot = self.snapshot()?;
-        let geometry = geometry_hash(&snapshot.model);
-        Some(snapshot.project(MeshReference { path: None, geometry }).document_hash())
     }
 }
