@@ -32,7 +32,7 @@ use crate::project_field::{Field, Ranges, for_each_drawn, ranges_where};
 use crate::{Camera, HandleSetup, Rest, STIFFNESS_RANGE, Setup};
 use camera::StoredCamera;
 use handle::StoredHandle;
-use objects::{StoredObject, stored_objects};
+use objects::{StoredObject, access, stored_objects};
 
 /// The version of the project format that is read and written.
 const PROJECT_VERSION: u64 = 1;
@@ -315,7 +315,7 @@ impl Project {
             document.handles.push(stored.handle()?);
         }
         document.next_handle = self.next_handle;
-        document.access = Arc::new(self.access(model)?);
+        document.access = Arc::new(access(&self.objects, self.isolated, model)?);
         let count = model.surface.positions.len();
         let numbers = |field: &Option<Field>, name: &str, default: f64, range: RangeInclusive<f64>| {
             let Some(field) = field else { return Ok(None) };

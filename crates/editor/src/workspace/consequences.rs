@@ -3,7 +3,7 @@
 //! The document says what has changed by the versions of its aspects. Each thing that follows from some of them is
 //! renewed when those are others than what it was made from; nobody has to know who follows from a change.
 
-use super::colours::{ColouredBy, Sources};
+use super::colour_revisions::{ColouredBy, Sources};
 use super::state::Workspace;
 use crate::document::{Aspect, Handle, VertexAccess};
 use crate::jobs::{Activity, Arrival, Finality, Solved};

@@ -8,16 +8,8 @@ use std::sync::Arc;
 use pliant_deform::Method;
 
 use super::snapshot::WorkspaceSnapshot;
-use super::state::Workspace;
-use crate::document::{Aspect, Document, Versions};
-use crate::jobs::Revision;
-
-/// What was last taken over.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Followed {
-    model: Revision,
-    versions: Versions,
-}
+use super::state::{Followed, Workspace};
+use crate::document::{Aspect, Document};
 
 impl Workspace {
     /// Takes over what another workspace has, but for the method.

@@ -6,31 +6,14 @@
 use pliant_mesh::{Bvh, Cancel, Cancelled, Model, Progress, SurfaceVertex};
 use rayon::prelude::*;
 
+use super::mirror_request::{Mirroring, Purpose};
 use super::painting::{members_of, name_of, repaint};
 use super::state::Workspace;
-use crate::document::{Aspect, HandleId, MirrorPlane, Paint, PivotPlace, Twin, Version};
+use crate::document::{Aspect, HandleId, MirrorPlane, Paint, PivotPlace, Twin};
 use crate::jobs::JobOutcome;
 
 /// How many vertices are asked between two looks at the progress.
 const BATCH: usize = 16_384;
-
-/// What an image is wanted for.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) enum Purpose {
-    /// To be taken into the region that it is the image of.
-    Region(Paint),
-    /// To become a twin of the handle.
-    Twin(HandleId),
-}
-
-/// An image that is being looked for.
-#[derive(Debug)]
-pub(crate) struct Mirroring {
-    purpose: Purpose,
-    plane: MirrorPlane,
-    /// The paint that it was asked of.
-    paint: Version,
-}
 
 /// Has the mirror image of a role's vertices looked for.
 pub(crate) fn mirror(workspace: &mut Workspace, purpose: Purpose, axis: usize) {

@@ -5,7 +5,8 @@
 
 use pliant_mesh::{Model, SurfaceVertex};
 
-use super::mirror::{Purpose, mirror};
+use super::mirror::mirror;
+use super::mirror_request::Purpose;
 use super::painting::{members_of, name_of, repaint};
 use super::state::Workspace;
 use crate::document::{HandleId, Paint};

@@ -7,9 +7,8 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use pliant_mesh::{Model, SurfaceVertex};
 
-use super::colours::Colours;
-use super::following::Followed;
-use super::mirror::Mirroring;
+use super::colour_revisions::Colours;
+use super::mirror_request::Mirroring;
 use super::selection::HandleSelection;
 use crate::document::{Aspect, Document, HISTORY_BYTES, Handle, History, Transaction, Version, Versions, VertexAccess};
 use crate::jobs::{Computed, Descent, Executor, Jobs, Revision};
@@ -39,6 +38,13 @@ pub(crate) struct Workspace {
     adjusting: Option<Transaction>,
     pub(super) mirroring: Option<Mirroring>,
     pub(super) followed: Option<Followed>,
+}
+
+/// What was last taken over from another workspace.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Followed {
+    pub(super) model: Revision,
+    pub(super) versions: Versions,
 }
 
 impl Workspace {
