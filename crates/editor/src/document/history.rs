@@ -14,9 +14,10 @@ use glam::DVec3;
 use pliant_deform::{Loose, Method};
 
 use super::access::Access;
+use super::content::Paint;
 use super::handle::Handle;
 use super::sparse::Sparse;
-use super::state::{Document, Paint};
+use super::state::Document;
 use super::version::{Aspect, Version};
 
 /// How many bytes of deltas are kept before the oldest steps are forgotten.

@@ -8,9 +8,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::content::Paint;
 use super::history::{Change, History};
 use super::sparse::Sparse;
-use super::state::{Document, Paint};
+use super::state::Document;
 use super::version::Aspect;
 
 /// A change of the document that is under way.

@@ -5,15 +5,15 @@ use std::sync::{Arc, Mutex};
 use pliant_deform::{Bound, Ordering, Remains};
 use pliant_mesh::Model;
 
-use super::job::Pickable;
+use super::job::{Pickable, ShownTriangles};
 use super::region::Region;
 
 /// The last results.
 pub(crate) struct Computed {
     pub(crate) model: Option<Arc<Model>>,
     pub(crate) pickable: Option<Pickable>,
-    /// The triangles that rays are to meet; `None` is all of them.
-    pub(super) shown: Option<Arc<Vec<u32>>>,
+    /// The triangles that rays are to meet.
+    pub(super) shown: ShownTriangles,
     /// One a power of the Laplacian that a method has asked for.
     pub(super) orderings: Vec<Arc<Ordering>>,
     pub(crate) region: Region,
@@ -29,7 +29,7 @@ impl Default for Computed {
         Self {
             model: None,
             pickable: None,
-            shown: None,
+            shown: ShownTriangles::default(),
             orderings: Vec::new(),
             region: Region::still(0),
             bound: None,

@@ -113,7 +113,16 @@ pub trait Executor {
 pub struct Pickable {
     /// The hierarchy over the triangles that are shown, in their shape.
     pub(crate) bvh: Bvh,
-    /// Which of the surface's triangles it is over; `None` is all of them.
+    /// Which of the surface's triangles it is over.
+    pub(crate) shown: ShownTriangles,
+}
+
+/// Triangles of the surface that rays may meet.
+#[derive(Clone, Default)]
+pub(crate) struct ShownTriangles {
+    /// Another one for every other set of triangles.
+    pub(super) revision: Revision,
+    /// Their numbers, ascending; `None` is all of them.
     pub(crate) triangles: Option<Arc<Vec<u32>>>,
 }
 

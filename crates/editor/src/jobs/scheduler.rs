@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex};
 use pliant_mesh::{Model, SurfaceVertex};
 
 use super::computed::Computed;
-use super::job::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved, Work};
+use super::job::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, ShownTriangles, Solved, Work};
 use super::job_queue::{JobQueue, Running};
 use super::region::Region;
 use super::work::{bind_work, order_work, pick_work, region_input, region_work, solve_work};
@@ -156,7 +156,10 @@ impl Jobs {
 
     /// Rays are to meet these triangles alone.
     pub(crate) fn show_triangles(&mut self, shown: Option<Arc<Vec<u32>>>) {
-        self.computed.shown = shown;
+        self.computed.shown = ShownTriangles {
+            revision: self.next_revision(),
+            triangles: shown,
+        };
         self.shape_changed();
     }
 

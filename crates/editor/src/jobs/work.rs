@@ -1,4 +1,4 @@
-//! What each job of the engine does, as a closure that owns all it needs.
+//! What each job does, as a closure that owns all it needs.
 
 use std::sync::{Arc, PoisonError};
 
@@ -44,11 +44,7 @@ pub(super) fn pick_work(computed: &Computed, model: &Arc<Model>, document: &Docu
         Arc::clone(&document.from_file),
         computed.shown.clone(),
     );
-    let is_of_shown = |pickable: &&Pickable| match (&pickable.triangles, &shown) {
-        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-        (None, None) => true,
-        _ => false,
-    };
+    let is_of_shown = |pickable: &&Pickable| pickable.shown.revision == shown.revision;
     let bvh = computed
         .pickable
         .as_ref()
@@ -59,7 +55,7 @@ pub(super) fn pick_work(computed: &Computed, model: &Arc<Model>, document: &Docu
             return JobOutcome::Cancelled;
         }
         let surface = &model.surface;
-        let mut bvh = bvh.unwrap_or_else(|| match &shown {
+        let mut bvh = bvh.unwrap_or_else(|| match &shown.triangles {
             None => Bvh::build(&surface.positions, &surface.triangles),
             Some(shown) => {
                 let triangles = shown.iter().map(|&triangle| surface.triangles[triangle as usize]);
@@ -67,7 +63,7 @@ pub(super) fn pick_work(computed: &Computed, model: &Arc<Model>, document: &Docu
             }
         });
         bvh.refit(|vertex| surface.positions[vertex.index()] + displacements[vertex.index()]);
-        JobOutcome::Pick(Pickable { bvh, triangles: shown })
+        JobOutcome::Pick(Pickable { bvh, shown })
     }))
 }
 

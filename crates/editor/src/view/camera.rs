@@ -293,14 +293,14 @@ impl Camera {
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
-mod tests {
+pub(super) mod tests {
     use glam::{DVec2, DVec3};
 
     use super::{Camera, NamedView, Projection, UpAxis};
 
-    pub(super) const VIEWPORT_PX: DVec2 = DVec2::new(800.0, 500.0);
+    pub(in crate::view) const VIEWPORT_PX: DVec2 = DVec2::new(800.0, 500.0);
 
-    pub(super) fn cameras() -> Vec<Camera> {
+    pub(in crate::view) fn cameras() -> Vec<Camera> {
         let mut cameras = Vec::new();
         let kinds =
             [UpAxis::Y, UpAxis::Z].map(|up| [Projection::Perspective, Projection::Orthographic].map(|p| (up, p)));

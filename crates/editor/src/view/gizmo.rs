@@ -344,7 +344,7 @@ fn distance_to_segment(p: DVec2, a: DVec2, b: DVec2) -> f64 {
 mod tests {
     use glam::{DVec2, DVec3};
 
-    use super::camera::Camera;
+    use super::super::camera::Camera;
     use super::{GizmoAxes, GizmoMode, GizmoPart, gizmo_shapes, hit_gizmo};
 
     const VIEWPORT_PX: DVec2 = DVec2::new(900.0, 700.0);

@@ -54,7 +54,7 @@ impl<'a> Picking<'a> {
             model,
             displacements,
             bvh: &pickable.bvh,
-            triangles: pickable.triangles.as_deref().map(Vec::as_slice),
+            triangles: pickable.shown.triangles.as_deref().map(Vec::as_slice),
             camera,
             viewport_px,
             sight: Sight::of(camera, viewport_px),

@@ -28,7 +28,7 @@ pub(crate) fn mirror(workspace: &mut Workspace, purpose: Purpose, axis: usize) {
     let is_as_in_file = !workspace.document.applied && !workspace.document.is_displaced();
     let ready = workspace.computed().pickable.as_ref();
     let bvh = ready
-        .filter(|pickable| is_as_in_file && pickable.triangles.is_none() && workspace.jobs.is_picking_current())
+        .filter(|pickable| is_as_in_file && pickable.shown.triangles.is_none() && workspace.jobs.is_picking_current())
         .map(|pickable| pickable.bvh.clone());
     workspace.mirroring = Some(Mirroring {
         purpose,
