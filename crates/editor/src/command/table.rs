@@ -85,7 +85,7 @@ commands! {
     /// Does the last taken-back step again.
     Redo = document::REDO;
     /// Goes back or forth to the state after so many steps of the history.
-    GoToStep(value: usize) = document::GO_TO_STEP;
+    GoToStep(steps: usize) = document::GO_TO_STEP;
     /// Makes the present shape the new rest shape: every handle's transform returns to the identity.
     Apply = document::APPLY;
     /// Takes the rest shape and every handle back to the file's shape.
@@ -93,45 +93,45 @@ commands! {
     /// Holds everything still again: no handle, no region.
     ClearRegions = document::CLEAR_REGIONS;
     /// Chooses the method and its options.
-    SetMethod(value: Method) = document::SET_METHOD;
+    SetMethod(method: Method) = document::SET_METHOD;
     /// Chooses what components that nothing holds do, all of them.
-    SetLoose(value: Loose) = document::SET_LOOSE;
+    SetLoose(loose: Loose) = document::SET_LOOSE;
     /// Chooses what one of them does, by its component's number; `None` is what all do.
-    SetLoosePart(first: u32, second: Option<Loose>) = document::SET_LOOSE_PART;
+    SetLoosePart(part: u32, loose: Option<Loose>) = document::SET_LOOSE_PART;
     /// Stops the jobs that run; what needs them starts them again.
     CancelJobs = document::CANCEL_JOBS;
     /// Chooses what the left button does on the surface.
-    SetTool(value: ToolMode) = paint::SET_TOOL;
+    SetTool(mode: ToolMode) = paint::SET_TOOL;
     /// How the left button takes vertices.
-    SetStrokeShape(value: StrokeShape) = paint::SET_STROKE_SHAPE;
+    SetStrokeShape(shape: StrokeShape) = paint::SET_STROKE_SHAPE;
     /// How the brush measures its radius.
-    SetBrushMetric(value: BrushMetric) = paint::SET_BRUSH_METRIC;
+    SetBrushMetric(metric: BrushMetric) = paint::SET_BRUSH_METRIC;
     /// How deep a lasso or a box goes.
-    SetDepth(value: Depth) = paint::SET_DEPTH;
+    SetDepth(depth: Depth) = paint::SET_DEPTH;
     /// Sets the brush's radius in points, clamped to what the brush allows.
-    SetBrushRadius(value: f64) = paint::SET_BRUSH_RADIUS;
+    SetBrushRadius(radius_px: f64) = paint::SET_BRUSH_RADIUS;
     /// A larger brush.
     GrowBrush = paint::GROW_BRUSH;
     /// A smaller brush.
     ShrinkBrush = paint::SHRINK_BRUSH;
     /// The stiffness brush's action and numbers, clamped to what they may be.
-    SetStiffnessBrush(value: StiffnessBrush) = paint::SET_STIFFNESS_BRUSH;
+    SetStiffnessBrush(brush: StiffnessBrush) = paint::SET_STIFFNESS_BRUSH;
     /// Widens the selected handle's reach with the pointer.
     Widen = handle::WIDEN;
     /// What the gizmo offers.
-    SetGizmo(value: GizmoMode) = handle::SET_GIZMO;
+    SetGizmo(mode: GizmoMode) = handle::SET_GIZMO;
     /// Along which axes the gizmo stands.
-    SetOrientation(value: GizmoOrientation) = handle::SET_ORIENTATION;
+    SetOrientation(orientation: GizmoOrientation) = handle::SET_ORIENTATION;
     /// The next click on the surface puts the selected handle's pivot there.
     PickPivot = handle::PICK_PIVOT;
     /// Puts a handle's pivot at a point of the present shape. The surface stays as it is.
-    SetPivot(first: HandleId, second: DVec3) = handle::SET_PIVOT;
+    SetPivot(id: HandleId, point: DVec3) = handle::SET_PIVOT;
     /// Chooses where a handle's pivot stands. The surface stays as it is.
-    SetPivotPlace(first: HandleId, second: PivotPlace) = handle::SET_PIVOT_PLACE;
+    SetPivotPlace(id: HandleId, place: PivotPlace) = handle::SET_PIVOT_PLACE;
     /// Splits the selected handle in two across its longest side: a vertex can only be in one.
     DuplicateHandle = handle::DUPLICATE_HANDLE;
     /// Makes the selected handle's mirror image a handle that does the same, across axis 0, 1, 2 for x, y, z.
-    MakeTwin(value: usize) = handle::MAKE_TWIN;
+    MakeTwin(axis: usize) = handle::MAKE_TWIN;
     /// Lets the selected handle and its twin go their own ways.
     Untwin = handle::UNTWIN;
     /// Takes the selected handle's vertices and its region back to the file's shape.
@@ -139,9 +139,9 @@ commands! {
     /// The next stroke of the handle brush makes a handle of its own.
     NewHandle = handle::NEW_HANDLE;
     /// Selects a handle; its gizmo is shown.
-    SelectHandle(value: HandleId) = handle::SELECT_HANDLE;
+    SelectHandle(id: HandleId) = handle::SELECT_HANDLE;
     /// Adds a handle to those that are selected, or takes it from them.
-    ToggleSelected(value: HandleId) = handle::TOGGLE_SELECTED;
+    ToggleSelected(id: HandleId) = handle::TOGGLE_SELECTED;
     /// Selects the next handle of the list.
     NextHandle = handle::NEXT_HANDLE;
     /// Selects no handle.
@@ -157,33 +157,33 @@ commands! {
     /// Takes the selected handle back to where it rests.
     ResetHandle = handle::RESET_HANDLE;
     /// Names a handle.
-    RenameHandle(first: HandleId, second: String) = handle::RENAME_HANDLE;
+    RenameHandle(id: HandleId, name: String) = handle::RENAME_HANDLE;
     /// Gives a handle a colour, sRGB with alpha.
-    SetHandleColour(first: HandleId, second: [u8; 4]) = handle::SET_HANDLE_COLOUR;
+    SetHandleColour(id: HandleId, colour: [u8; 4]) = handle::SET_HANDLE_COLOUR;
     /// Shows or hides a handle's colour and gizmo.
-    ToggleHandleVisible(value: HandleId) = handle::TOGGLE_HANDLE_VISIBLE;
+    ToggleHandleVisible(id: HandleId) = handle::TOGGLE_HANDLE_VISIBLE;
     /// Keeps a handle from being moved, painted and deleted, or lets it.
-    ToggleHandleLocked(value: HandleId) = handle::TOGGLE_HANDLE_LOCKED;
+    ToggleHandleLocked(id: HandleId) = handle::TOGGLE_HANDLE_LOCKED;
     /// Puts a handle where the transform says, about the handle's own pivot.
-    SetHandleTransform(first: HandleId, second: HandleTransform) = handle::SET_HANDLE_TRANSFORM;
+    SetHandleTransform(id: HandleId, transform: HandleTransform) = handle::SET_HANDLE_TRANSFORM;
     /// Turns a handle to these angles about x, y and z in degrees, full turns included.
-    SetTurn(first: HandleId, second: DVec3) = handle::SET_TURN;
+    SetTurn(id: HandleId, turn_deg: DVec3) = handle::SET_TURN;
     /// How far along the surface a handle takes the surface along.
-    SetReach(first: HandleId, second: Reach) = handle::SET_REACH;
+    SetReach(id: HandleId, reach: Reach) = handle::SET_REACH;
     /// Gives a handle a weight ([`SOFT_RANGE`](crate::SOFT_RANGE)), so that it only pulls; `None` makes it hard.
-    SetSoft(first: HandleId, second: Option<f64>) = handle::SET_SOFT;
+    SetSoft(id: HandleId, soft: Option<f64>) = handle::SET_SOFT;
     /// With which continuity ([`pliant_deform::CONTINUITY_RANGE`]) the surface joins a handle; `None` is the smoothest.
-    SetContinuity(first: HandleId, second: Option<f64>) = handle::SET_CONTINUITY;
+    SetContinuity(id: HandleId, continuity: Option<f64>) = handle::SET_CONTINUITY;
     /// Changes the region in hand as a whole.
-    Region(value: RegionAction) = region::REGION;
+    Region(action: RegionAction) = region::REGION;
     /// Makes the whole surface equally stiff.
     ClearStiffness = region::CLEAR_STIFFNESS;
     /// Sets the stiffness (0.001 to 1000; 1 is a vertex left alone) of every vertex.
-    SetStiffness(value: Vec<f64>) = region::SET_STIFFNESS;
+    SetStiffness(field: Vec<f64>) = region::SET_STIFFNESS;
     /// The same with the object under the pointer.
-    ObjectHere(value: ObjectAction) = object::OBJECT_HERE;
+    ObjectHere(action: ObjectAction) = object::OBJECT_HERE;
     /// Hides, shows or locks objects, by their numbers in [`pliant_mesh::Model::all_objects`].
-    Objects(first: ObjectAction, second: Vec<u32>) = object::OBJECTS;
+    Objects(action: ObjectAction, objects: Vec<u32>) = object::OBJECTS;
     /// Shows nothing but the connected part under the pointer; once more shows the others again.
     Isolate = object::ISOLATE;
     /// Shows everything that is hidden.
@@ -193,29 +193,29 @@ commands! {
     /// Frames the selected handle and its region.
     FrameSelected = view::FRAME_SELECTED;
     /// Comes close to a connected part, by its component's number.
-    FramePart(value: u32) = view::FRAME_PART;
+    FramePart(part: u32) = view::FRAME_PART;
     /// Comes close to a vertex, by the file's number.
-    FrameFileVertex(value: u32) = view::FRAME_FILE_VERTEX;
+    FrameFileVertex(vertex: u32) = view::FRAME_FILE_VERTEX;
     /// Looks from where one looked before.
     CameraBack = view::CAMERA_BACK;
     /// Looks from where one looked before going back.
     CameraForth = view::CAMERA_FORTH;
     /// Which axis points up on the screen.
-    SetUp(value: UpAxis) = view::SET_UP;
+    SetUp(up: UpAxis) = view::SET_UP;
     /// Changes between perspective and orthographic.
     ToggleProjection = view::TOGGLE_PROJECTION;
     /// What dragging the view does.
-    SetOrbit(value: Orbit) = view::SET_ORBIT;
+    SetOrbit(orbit: Orbit) = view::SET_ORBIT;
     /// Turns the view by steps of 15 degrees, to the right and down.
-    StepView(value: [i8; 2]) = view::STEP_VIEW;
+    StepView(steps: [i8; 2]) = view::STEP_VIEW;
     /// Looks from the other side.
     TurnAround = view::TURN_AROUND;
     /// Looks from a named side.
-    View(value: NamedView) = view::VIEW;
+    View(side: NamedView) = view::VIEW;
     /// Shades the surface like this clay.
-    SetClay(value: Clay) = look::SET_CLAY;
+    SetClay(clay: Clay) = look::SET_CLAY;
     /// How the surface is shaded.
-    SetShading(value: Shading) = look::SET_SHADING;
+    SetShading(shading: Shading) = look::SET_SHADING;
     /// Shows each triangle flat, or normals interpolated.
     ToggleFlat = look::TOGGLE_FLAT;
     /// Marks edges that a closed surface lacks, or not.

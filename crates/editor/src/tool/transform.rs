@@ -188,7 +188,7 @@ impl Gesture for TransformDrag {
             "{}{} by {}: x, y, z hold it to an axis, numbers type, {end}, Esc to leave it",
             self.measure.kind.doing(),
             self.measure.constraint.label(),
-            self.measure.measure(view),
+            self.measure.label(view),
         ))
     }
 
@@ -196,7 +196,7 @@ impl Gesture for TransformDrag {
         let at = workspace.document.handle(self.handle)?.centre();
         self.is_armed.then(|| Readout {
             at,
-            text: self.measure.measure(view),
+            text: self.measure.label(view),
         })
     }
 

@@ -88,7 +88,7 @@ impl Measure {
     }
 
     /// How far, by what angle or factor it has come, as typed or as the pointer says.
-    pub(super) fn measure(&self, view: &View) -> String {
+    pub(super) fn label(&self, view: &View) -> String {
         let typed = self.number.text();
         match (typed.is_empty(), self.kind) {
             (false, TransformKind::Turn) => format!("{typed}°"),

@@ -15,8 +15,8 @@ pub(crate) fn held_because(workspace: &Workspace, id: HandleId) -> Option<String
         return Some(format!("{} is locked: unlock it in the list to move it.", handle.name));
     }
     let access = &workspace.vertex_access;
-    let mut members = members(&workspace.document, id).into_iter();
-    let is_held = access.locks_any() && members.all(|vertex| access.is_locked(vertex.index()));
+    let is_locked = |vertex: SurfaceVertex| access.is_locked(vertex.index());
+    let is_held = access.locks_any() && members(&workspace.document, id).into_iter().all(is_locked);
     is_held.then(|| {
         format!(
             "{} lies on a locked object: unlock that in the list of objects to move it.",
