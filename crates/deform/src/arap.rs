@@ -11,6 +11,7 @@
 //! direction and `descent` takes the step.
 //! Of a large surface `clusters` make a small one, whose solver is its `coarse` level and takes the `lead`.
 
+mod bend;
 mod bending;
 mod cells;
 mod clusters;
@@ -25,6 +26,7 @@ mod matrix;
 mod options;
 mod precondition;
 mod rims;
+mod rotation;
 mod shape;
 mod spokes;
 mod springs;

@@ -6,9 +6,14 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use pliant_deform::Method;
 use pliant_mesh::Model;
 
-use crate::{Beginning, Command, JobDone, KeyMap};
+use crate::beginning::Beginning;
+use crate::command::{Command, KeyMap};
+use crate::input::{Button, Key, Modifiers, Pointer};
+use crate::jobs::JobDone;
+use crate::snapshot::Snapshot;
 
 /// One thing that happened. No event carries the time: the editor has no clock.
 #[derive(Debug)]
@@ -64,93 +69,16 @@ pub enum Event {
         /// Regions, handles and transforms to begin with; `None` begins afresh.
         beginning: Option<Beginning>,
     },
+    /// What another editor has is taken over, but for the method: the same handles, bent by `method`. What this one's
+    /// own jobs make of them comes by [`Event::JobDone`].
+    Follow {
+        /// What the other editor has.
+        leader: Box<Snapshot>,
+        /// By which method this one bends.
+        method: Method,
+    },
     /// What was opened was never saved: it comes from a session that ended without.
     Recovered,
     /// The document as it stands was written to a file: there is no unsaved work now.
     Saved,
-}
-
-/// Where the pointer is, and which modifier keys are held.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct Pointer {
-    /// Position within the view in points, x to the right and y down from its upper left corner.
-    pub position_px: DVec2,
-    /// The modifier keys.
-    pub modifiers: Modifiers,
-}
-
-/// The modifier keys that are held.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
-pub struct Modifiers {
-    /// Shift.
-    pub shift: bool,
-    /// Ctrl, or Command on a Mac.
-    pub ctrl: bool,
-    /// Alt, or Option on a Mac.
-    pub alt: bool,
-}
-
-impl Modifiers {
-    /// No modifier key.
-    pub const NONE: Self = Self {
-        shift: false,
-        ctrl: false,
-        alt: false,
-    };
-    /// Shift alone.
-    pub const SHIFT: Self = Self {
-        shift: true,
-        ctrl: false,
-        alt: false,
-    };
-    /// Ctrl (or Command) alone.
-    pub const CTRL: Self = Self {
-        shift: false,
-        ctrl: true,
-        alt: false,
-    };
-    /// Ctrl (or Command) and Shift.
-    pub const CTRL_SHIFT: Self = Self {
-        shift: true,
-        ctrl: true,
-        alt: false,
-    };
-    /// Alt (or Option) alone.
-    pub const ALT: Self = Self {
-        shift: false,
-        ctrl: false,
-        alt: true,
-    };
-}
-
-/// A button of the mouse.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
-pub enum Button {
-    /// The left button: the tool.
-    Primary,
-    /// The middle button: the camera.
-    Middle,
-    /// The right button: aborts what is going on.
-    Secondary,
-}
-
-/// A key that means something to the editor.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
-pub enum Key {
-    /// A key that types a character: letters in lower case, digits, punctuation.
-    Character(char),
-    /// Escape.
-    Escape,
-    /// Enter.
-    Enter,
-    /// Backspace.
-    Backspace,
-    /// Delete.
-    Delete,
-    /// Home.
-    Home,
-    /// Tab.
-    Tab,
-    /// A digit of the numeric pad.
-    Numpad(u8),
 }

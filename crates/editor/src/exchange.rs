@@ -5,14 +5,12 @@ use std::sync::Arc;
 use pliant_deform::{CONTINUITY_RANGE, Role};
 use pliant_mesh::Model;
 
-use crate::command::Reach;
-use crate::document::{Document, Handle, HandleId, Paint, PivotPlace};
+use crate::document::followed;
+use crate::document::{Content, Document, Handle, HandleId, Paint, PivotPlace, Reach};
 use crate::edit_file::{EditFile, HandleEntry};
-use crate::editor::Editor;
-use crate::engine::region_input;
 use crate::field_form::FieldEntry;
-use crate::region::Region;
-use crate::turn::followed;
+use crate::jobs::Region;
+use crate::jobs::region_input;
 use crate::{EditError, HandleTransform, Selector};
 
 /// Why a document can't be said as an edit.
@@ -36,17 +34,6 @@ pub enum ExportError {
     /// What was written can't be read.
     #[error(transparent)]
     Edit(#[from] EditError),
-}
-
-impl Editor {
-    /// The document as an edit of the open file: `pliant apply` makes the same positions of it.
-    ///
-    /// # Errors
-    /// No file is open, a shape was applied, or a vertex that two nodes show has two roles.
-    pub fn edit_file(&self) -> Result<EditFile, ExportError> {
-        let model = self.engine.model.as_ref().ok_or(ExportError::NoFile)?;
-        export(&self.document, model)
-    }
 }
 
 /// The document as an edit of its file.
@@ -116,7 +103,7 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
 /// A document that an edit describes: every vertex's role is painted as the edit says it.
 pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditError> {
     let setup = edit.resolve(model)?;
-    let mut document = Document::new(model.surface.positions.len());
+    let mut document = Content::new(model.surface.positions.len());
     document.paint = Arc::new(
         setup
             .roles
@@ -157,7 +144,7 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
     document.method = setup.method;
     document.loose = setup.loose;
     document.settled = !document.handles.iter().any(Handle::is_displaced);
-    Ok(document)
+    Ok(document.into())
 }
 
 /// The transform without a pivot of its own: within a document the handle has it.

@@ -4,104 +4,63 @@
 //! Everything happens through [`Editor::handle`]: the window, a test and a script send it [`Event`]s. What is to be
 //! shown comes back as a [`SceneView`]; long work goes to the [`Executor`] that the app hands over.
 
-mod access;
 mod beginning;
-mod brush;
-mod camera;
-mod camera_history;
-mod colours;
 mod command;
-mod command_table;
-mod consequences;
-mod constraint;
-mod dispatch;
 mod document;
 mod edit_error;
 mod edit_file;
 mod edit_node;
 mod editor;
-mod engine;
 mod event;
 mod exchange;
-mod execute;
 mod field_form;
-mod following;
-mod framing;
-mod gizmo;
-mod handle_actions;
-mod handle_colour;
-mod handle_motion;
-mod handle_transform;
-mod handle_values;
-mod history;
-mod inline_executor;
-mod job;
-mod job_queue;
-mod key_map;
-mod look;
+mod input;
+mod jobs;
 mod method_form;
-mod mirror;
-mod number_entry;
-mod object_actions;
-mod obstacle;
-mod overlay;
-mod picking;
-mod polar;
 mod project;
 mod project_field;
-mod recolouring;
-mod region;
-mod region_action;
-mod rim;
 mod scene_view;
 mod selection;
 mod selector;
 mod setup;
-mod shortcut;
-mod sight;
 mod snapshot;
 mod status;
 mod tool;
-mod transaction;
-mod turn;
+mod view;
+mod workspace;
 
-pub use access::{Access, ObjectAction, object_name};
 pub use beginning::Beginning;
-pub use brush::{BRUSH_RADIUS_PX, BrushMetric};
-pub use camera::{Camera, NamedView, Orbit, Projection, Ray, UpAxis};
-pub use colours::stiffness_colour;
-pub use command::{Command, Reach};
-pub use command_table::{CommandGroup, Listed};
-pub use constraint::Constraint;
-pub use document::{Document, Handle, HandleId, MirrorPlane, Paint, PivotPlace, Twin};
+pub use command::{Command, KeyMap, Listed, Shortcut};
+pub use document::{
+    Access, Content, Document, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleId, HandleTransform, History, MirrorPlane,
+    ObjectAction, Paint, PivotPlace, Reach, Twin, object_name,
+};
 pub use edit_error::EditError;
 pub use edit_file::{EDIT_VERSION, EditFile, HandleEntry, SOFT_RANGE, STIFFNESS_RANGE};
 pub use editor::Editor;
-pub use event::{Button, Event, Key, Modifiers, Pointer};
+pub use event::Event;
 pub use exchange::ExportError;
 pub use field_form::FieldEntry;
-pub use gizmo::{GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, gizmo_shapes, hit_gizmo};
-pub use handle_colour::HANDLE_COLOURS;
-pub use handle_transform::HandleTransform;
-pub use history::{HISTORY_BYTES, History};
-pub use inline_executor::InlineExecutor;
-pub use job::{Descent, Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
-pub use job_queue::{JobQueue, Running};
-pub use key_map::KeyMap;
-pub use look::{Clay, Look, Shading};
+pub use input::{Button, Key, Modifiers, Pointer};
+pub use jobs::{
+    Counts, Descent, Executor, InlineExecutor, Job, JobDone, JobKind, JobOutcome, JobQueue, Region, Revision, Rim,
+    Running, Solved,
+};
 pub use method_form::{
     MethodOption, OptionKind, method_keywords, method_options, method_title, option_value, when_to_use, with_option,
 };
-pub use picking::Pick;
 pub use project::{MeshReference, Project, geometry_hash};
-pub use region::Region;
-pub use region_action::RegionAction;
-pub use rim::Rim;
-pub use scene_view::{Counts, Cursor, Readout, SceneView};
+pub use scene_view::{Cursor, Readout, SceneView};
 pub use selection::Selection;
 pub use selector::{Axis, Selector};
 pub use setup::{HandleSetup, Rest, Setup};
-pub use shortcut::Shortcut;
-pub use snapshot::{Snapshot, SnapshotKey};
+pub use snapshot::Snapshot;
 pub use status::thousands;
-pub use tool::{Depth, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode};
+pub use tool::{
+    BRUSH_RADIUS_PX, BrushMetric, Constraint, Depth, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
+};
+pub use view::{
+    Camera, Clay, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look, NamedView, Orbit, Pick,
+    Projection, Ray, Shading, UpAxis, gizmo_shapes, hit_gizmo,
+};
+pub use workspace::{RegionAction, SnapshotKey, stiffness_colour};

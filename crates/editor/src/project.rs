@@ -20,19 +20,19 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use crate::document::{Document, Handle, HandleId, Paint};
+use crate::document::bits_equal;
+use crate::document::{Content, Document, Handle, HandleId, Paint};
 use crate::edit_error::EditError;
 use crate::edit_node::Node;
-use crate::engine::region_input;
 use crate::exchange::with_pivot;
-use crate::history::bits_equal;
+use crate::jobs::region_input;
+use crate::jobs::{Region, displaced};
 use crate::method_form::{method_to_value, read_method};
 use crate::project_field::{Field, Ranges, for_each_drawn, ranges_where};
-use crate::region::{Region, displaced};
 use crate::{Camera, HandleSetup, Rest, STIFFNESS_RANGE, Setup};
 use camera::StoredCamera;
 use handle::StoredHandle;
-use objects::{StoredObject, stored_objects};
+use objects::{StoredObject, access, stored_objects};
 
 /// The version of the project format that is read and written.
 const PROJECT_VERSION: u64 = 1;
@@ -279,7 +279,7 @@ impl Project {
                 expected: shortened(&self.mesh.geometry),
             });
         }
-        let mut document = Document::new(model.surface.positions.len());
+        let mut document = Content::new(model.surface.positions.len());
         document.method = read_method(&Node::new(&self.method, "method"))?;
         document.loose = self.loose.into();
         document.loose_parts = Arc::new(
@@ -315,7 +315,7 @@ impl Project {
             document.handles.push(stored.handle()?);
         }
         document.next_handle = self.next_handle;
-        document.access = Arc::new(self.access(model)?);
+        document.access = Arc::new(access(&self.objects, self.isolated, model)?);
         let count = model.surface.positions.len();
         let numbers = |field: &Option<Field>, name: &str, default: f64, range: RangeInclusive<f64>| {
             let Some(field) = field else { return Ok(None) };
@@ -355,9 +355,8 @@ impl Project {
         if let Some(shape) = displacements(&self.shape, "shape")? {
             document.from_rest = shape;
         }
-        document.refresh_from_file();
         document.settled = self.settled || !document.handles.iter().any(Handle::is_displaced);
-        Ok(document)
+        Ok(document.into())
     }
 
     /// What the solver needs: the document's regions, from its own rest shape.

@@ -7,10 +7,10 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use pliant_mesh::Model;
 
-use crate::{
-    BrushMetric, Camera, Depth, GizmoOrientation, GizmoShape, Handle, HandleId, JobKind, Look, Orbit, StiffnessBrush,
-    StrokeShape, ToolMode,
-};
+use crate::document::{Handle, HandleId};
+use crate::jobs::{Counts, JobKind};
+use crate::tool::{BrushMetric, Depth, StiffnessBrush, StrokeShape, ToolMode};
+use crate::view::{Camera, GizmoOrientation, GizmoShape, Look, Orbit};
 
 /// Everything the 3D view and the panels around it show.
 #[derive(Debug)]
@@ -89,17 +89,6 @@ pub struct SceneView<'a> {
     pub unsaved: bool,
     /// Whether shape and regions are final: no job runs that could change them, and nothing is being dragged.
     pub settled: bool,
-}
-
-/// Numbers of surface vertices by role.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub struct Counts {
-    /// Held still.
-    pub fixed: usize,
-    /// Free to bend.
-    pub free: usize,
-    /// In a handle.
-    pub handle: usize,
 }
 
 /// A number to be shown beside what it is about, while something is dragged.

@@ -1,114 +1,95 @@
 //! The status line: what the program is doing, and what one can do next.
 
-use crate::document::Paint;
-use crate::editor::Editor;
-use crate::tool::{Tool, ToolMode};
-use crate::{Counts, JobKind};
+use crate::jobs::{Activity, Counts, JobKind};
+use crate::tool::{Gesture, ToolMode, ToolSettings};
+use crate::view::View;
+use crate::workspace::Workspace;
 
-impl Editor {
-    pub(crate) fn status(&self) -> String {
-        let Some(model) = self.engine.model.as_ref() else {
-            return "Open a mesh, or drop one here".to_owned();
-        };
-        if model.surface.triangles.is_empty() {
-            return "This file holds no triangle: open another".to_owned();
+/// The whole line.
+pub(crate) fn status(
+    gesture: Option<&dyn Gesture>,
+    workspace: &Workspace,
+    view: &View,
+    settings: &ToolSettings,
+) -> String {
+    let Some(model) = workspace.model() else {
+        return "Open a mesh, or drop one here".to_owned();
+    };
+    if model.surface.triangles.is_empty() {
+        return "This file holds no triangle: open another".to_owned();
+    }
+    let now = gesture.and_then(|gesture| gesture.status(workspace, view));
+    let now = now.unwrap_or_else(|| hint(workspace, settings));
+    let is_dragging = gesture.is_some_and(|gesture| gesture.activity() == Activity::Dragging);
+    let parts = [working(workspace, is_dragging), descent(workspace), Some(now)];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
+}
+
+/// How far the shape's descent is, where its method takes steps.
+fn descent(workspace: &Workspace) -> Option<String> {
+    let document = &workspace.document;
+    let descent = workspace.descent.filter(|_| document.is_displaced())?;
+    let energy = format!("energy {:.3e}", descent.energy);
+    Some(if descent.converged && document.is_settled() {
+        format!("Converged, {energy}")
+    } else if descent.finished && document.is_settled() {
+        format!("Stopped at its limit of steps, {energy}")
+    } else {
+        format!("Settling, {energy}")
+    })
+}
+
+/// What can be done while nothing is going on, and how many vertices do what.
+fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
+    let document = &workspace.document;
+    let hint = if document.handles().is_empty() {
+        match settings.mode {
+            ToolMode::PaintHandle => "Paint what you want to move",
+            ToolMode::PaintFree => "Paint what may bend, then a handle (1)",
+            ToolMode::PaintFixed => "Paint what is held still, then a handle (1)",
+            ToolMode::Erase | ToolMode::Select | ToolMode::PaintStiffness => "Press 1 and paint what you want to move",
         }
-        let now = match &self.tool {
-            Tool::Navigate(navigate) => format!("{}: Esc takes it back", navigate.status()),
-            Tool::Paint(stroke) => format!("{}: Esc takes it back", self.painting(stroke.paint())),
-            Tool::Stiffness(_) => "Painting stiffness: Esc takes it back".to_owned(),
-            Tool::Outline(outline) => outline.status(),
-            Tool::Widen(widen) => widen.status(self),
-            Tool::Transform(drag) => drag.status(self),
-            Tool::Idle | Tool::Adjust(_) => self.idle(),
-        };
-        let parts = [self.working(), self.descent(), Some(now)];
-        parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
-    }
+    } else if settings.wants_pivot {
+        "Click the point that the handle turns about"
+    } else if workspace.selection.wants_new_handle {
+        "Paint the new handle"
+    } else if workspace.selection.selected().is_none() {
+        "Press Tab to select a handle, or paint a new one"
+    } else if document.is_displaced() {
+        "Drag the gizmo, paint on from this shape, or save"
+    } else {
+        "Drag the gizmo, or press G, R or S to move, turn or scale"
+    };
+    let Counts { fixed, free, handle } = workspace.computed().region.counts;
+    let [handle, free, fixed] = [handle, free, fixed].map(thousands);
+    format!("{hint} · {handle} handle, {free} free, {fixed} fixed vertices")
+}
 
-    /// How far the shape's descent is, where its method takes steps.
-    fn descent(&self) -> Option<String> {
-        let descent = self.descent.filter(|_| self.document.is_displaced())?;
-        let energy = format!("energy {:.3e}", descent.energy);
-        Some(if descent.converged && self.document.settled {
-            format!("Converged, {energy}")
-        } else if descent.finished && self.document.settled {
-            format!("Stopped at its limit of steps, {energy}")
-        } else {
-            format!("Settling, {energy}")
-        })
+/// What is computed in the background, as far as somebody waits for it.
+fn working(workspace: &Workspace, is_dragging: bool) -> Option<String> {
+    let (jobs, document) = (&workspace.jobs, &workspace.document);
+    let mut needed = [JobKind::Order, JobKind::Region, JobKind::Bind].into_iter();
+    if needed.any(|kind| jobs.has_given_up(kind)) && !document.handles().is_empty() {
+        return Some("Nothing is bound: handles move alone until the regions change".to_owned());
     }
-
-    fn painting(&self, paint: Paint) -> String {
-        match paint {
-            Paint::Bare => "Erasing".to_owned(),
-            Paint::Fixed => "Painting what is held still".to_owned(),
-            Paint::Free => "Painting what may bend".to_owned(),
-            Paint::Handle(id) => {
-                format!(
-                    "Painting {}",
-                    self.document
-                        .handle(id)
-                        .map_or("a handle", |handle| handle.name.as_str())
-                )
-            }
-        }
-    }
-
-    /// What can be done while nothing is going on.
-    fn idle(&self) -> String {
-        let hint = if self.document.handles.is_empty() {
-            match self.mode {
-                ToolMode::PaintHandle => "Paint what you want to move",
-                ToolMode::PaintFree => "Paint what may bend, then a handle (1)",
-                ToolMode::PaintFixed => "Paint what is held still, then a handle (1)",
-                ToolMode::Erase | ToolMode::Select | ToolMode::PaintStiffness => {
-                    "Press 1 and paint what you want to move"
-                }
-            }
-        } else if self.wants_pivot {
-            "Click the point that the handle turns about"
-        } else if self.wants_new_handle {
-            "Paint the new handle"
-        } else if self.selected.is_none() {
-            "Press Tab to select a handle, or paint a new one"
-        } else if self.document.is_displaced() {
-            "Drag the gizmo, paint on from this shape, or save"
-        } else {
-            "Drag the gizmo, or press G, R or S to move, turn or scale"
-        };
-        let Counts { fixed, free, handle } = self.engine.region.counts;
-        let [handle, free, fixed] = [handle, free, fixed].map(thousands);
-        format!("{hint} · {handle} handle, {free} free, {fixed} fixed vertices")
-    }
-
-    /// What is computed in the background, as far as somebody waits for it.
-    fn working(&self) -> Option<String> {
-        let given_up = [JobKind::Order, JobKind::Region, JobKind::Bind]
-            .into_iter()
-            .any(|kind| self.engine.has_given_up(kind));
-        if given_up && !self.document.handles.is_empty() {
-            return Some("Nothing is bound: handles move alone until the regions change".to_owned());
-        }
-        let (kind, fraction) = self.engine.running().into_iter().rfind(|(kind, _)| match kind {
-            JobKind::Solve => false,
-            JobKind::Pick => self.engine.pickable.is_none(),
-            JobKind::Order => !self.document.handles.is_empty(),
-            JobKind::Region | JobKind::Bind | JobKind::Mirror | JobKind::Enclose => true,
-        })?;
-        let doing = kind.doing();
-        let waits = matches!(self.tool, Tool::Transform(_)) || !self.document.settled;
-        let doing = if waits && kind != JobKind::Pick {
-            format!("{doing}, the surface will catch up")
-        } else {
-            doing.to_owned()
-        };
-        Some(if fraction > 0.0 {
-            format!("{doing} {:.0}%", fraction * 100.0)
-        } else {
-            doing
-        })
-    }
+    let (kind, fraction) = jobs.running().into_iter().rfind(|(kind, _)| match kind {
+        JobKind::Solve => false,
+        JobKind::Pick => workspace.computed().pickable.is_none(),
+        JobKind::Order => !document.handles().is_empty(),
+        JobKind::Region | JobKind::Bind | JobKind::Mirror | JobKind::Enclose => true,
+    })?;
+    let doing = kind.doing();
+    let waits = is_dragging || !document.is_settled();
+    let doing = if waits && kind != JobKind::Pick {
+        format!("{doing}, the surface will catch up")
+    } else {
+        doing.to_owned()
+    };
+    Some(if fraction > 0.0 {
+        format!("{doing} {:.0}%", fraction * 100.0)
+    } else {
+        doing
+    })
 }
 
 /// A count with its thousands apart: 48 485.

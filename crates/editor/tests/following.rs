@@ -45,7 +45,10 @@ fn the_follower_shows_its_own_methods_shape_of_the_leaders_handles() {
             alone.command(Command::SetMethod(rigid.clone()));
             alone.drain();
         }
-        follower.follow(&leader.editor, &rigid);
+        follower.handle(Event::Follow {
+            leader: Box::new(leader.editor.snapshot().unwrap()),
+            method: rigid.clone(),
+        });
         drain(&mut follower, &jobs);
         assert!(follower.is_settled() && follower.document().is_settled(), "{number}");
         assert_eq!(follower.document().handles(), leader.editor.document().handles());

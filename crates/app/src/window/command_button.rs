@@ -12,7 +12,7 @@ pub fn command_button(ui: &mut egui::Ui, editor: &Editor, command: &Command) -> 
     if let Some(shortcut) = editor.shortcuts(command).first() {
         button = button.shortcut_text(shortcut.label());
     }
-    enabled_unless(ui, editor.obstacle(command), button)
+    enabled_unless(ui, editor.unavailable_because(command), button)
         .on_hover_text(listed.tooltip)
         .clicked()
 }
@@ -25,7 +25,7 @@ pub fn command_choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, cho
         None => listed.tooltip.to_owned(),
     };
     let button = Button::selectable(chosen, listed.name);
-    enabled_unless(ui, editor.obstacle(command), button)
+    enabled_unless(ui, editor.unavailable_because(command), button)
         .on_hover_text(tooltip)
         .clicked()
 }

@@ -72,7 +72,12 @@ impl Compare {
         while let Ok(message) = self.messages.try_recv() {
             self.take(message);
         }
-        self.editor.follow(leader, &self.method);
+        if let Some(leader) = leader.snapshot() {
+            self.editor.handle(Event::Follow {
+                leader: Box::new(leader),
+                method: self.method.clone(),
+            });
+        }
         self.upload(stage);
         self.set_materials(first, stage);
         self.request_pose(stage);

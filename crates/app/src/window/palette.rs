@@ -137,7 +137,7 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
             .map(|s| s.label())
             .unwrap_or_default(),
         found: Found::Editor(listed.command.clone()),
-        obstacle: editor.obstacle(&listed.command).map(Cow::into_owned),
+        obstacle: editor.unavailable_because(&listed.command).map(Cow::into_owned),
     });
     let files = FileCommand::LISTED.iter().map(|command| Entry {
         name: command.name().trim_end_matches('…').to_owned(),
@@ -159,7 +159,7 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
             shortcut: String::new(),
             obstacle: match editor.document().method().name() == *name {
                 true => Some("The surface bends by this method already.".to_owned()),
-                false => editor.obstacle(&command).map(Cow::into_owned),
+                false => editor.unavailable_because(&command).map(Cow::into_owned),
             },
             found: Found::Editor(command),
         })

@@ -29,7 +29,8 @@ use glam::{DMat3, DVec3};
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
 use rayon::prelude::*;
 
-use super::cells::{Cells, Quad};
+use super::bend::Bend;
+use super::cells::Cells;
 use super::domain::Domain;
 use crate::operators::CHUNK;
 use crate::operators::eigen::eigenvectors;
@@ -37,58 +38,6 @@ use crate::operators::eigen::eigenvectors;
 /// ν. Without it a bent cylinder flattens, its curvature hidden in affine maps; with 0.1 a little, and with 10 or 100 its
 /// shape is that of 1, but bumpy cells turn at a cost again: a scan of 43k vertices takes 26 and 42 steps instead of 15.
 const NORMAL: f64 = 1.0;
-
-/// A cell's matrices; symmetric ones are xx, xy, xz, yy, yz, zz.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Bend {
-    /// β K.
-    pub hold: [f64; 6],
-    /// 1 + ν K N: R is fitted to S⁰ + B times this.
-    pub gain: [f64; 6],
-    /// 1 / (1 + β).
-    pub share: f64,
-}
-
-impl Bend {
-    /// B β K and half its product with B, which the energy is less by; B becomes what R is fitted to.
-    #[inline(always)]
-    pub fn bear(&self, b: &mut [Quad; 3]) -> ([Quad; 3], f64) {
-        let forces = times(b, &self.hold);
-        let mut products = [0.0; 4];
-        for (force, b) in forces.iter().zip(b.iter()) {
-            for row in 0..4 {
-                products[row] += force[row] * b[row];
-            }
-        }
-        *b = times(b, &self.gain);
-        (forces, 0.5 * (products[0] + products[1] + products[2]))
-    }
-
-    /// Z = −dE/dB / (1 + β), of R − 1 and what `bear` found: where all turns alike it is R − 1 again, whatever β is.
-    #[inline(always)]
-    pub fn pull(&self, turn: &[Quad; 3], forces: &[Quad; 3]) -> [Quad; 3] {
-        let mut pull = times(turn, &self.gain);
-        for (pull, force) in pull.iter_mut().zip(forces) {
-            for row in 0..4 {
-                pull[row] = (pull[row] + force[row]) * self.share;
-            }
-        }
-        pull
-    }
-}
-
-/// m a, by columns. Plain loops: a closure would be compiled apart from the vectors that the pass runs on.
-#[inline(always)]
-fn times(m: &[Quad; 3], &[xx, xy, xz, yy, yz, zz]: &[f64; 6]) -> [Quad; 3] {
-    let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let mut product = [[0.0; 4]; 3];
-    for (own, [x, y, z]) in product.iter_mut().zip(columns) {
-        for row in 0..4 {
-            own[row] = m[0][row] * x + m[1][row] * y + m[2][row] * z;
-        }
-    }
-    product
-}
 
 /// κ A for cells on this domain.
 pub(crate) fn stiffness(surface: &Surface, domain: &Domain, smoothness: f64) -> f64 {

@@ -16,10 +16,8 @@
 
 use glam::DVec3;
 
-use super::bending::Bend;
-
-/// Four numbers: a vector and one more.
-pub(crate) type Quad = [f64; 4];
+use super::bend::Bend;
+pub(crate) use super::bend::Quad;
 
 /// The stencils of a domain's cells.
 #[derive(Debug, Default)]

@@ -7,7 +7,7 @@ use pulp::{Simd, WithSimd};
 
 use super::cells::{Cells, Quad, minus};
 use super::gradient_pass::{Turn, times_turn};
-use super::shape::Rotation;
+use super::rotation::Rotation;
 use crate::lanes::{Fits, LANES};
 use crate::prefetch::Prefetch;
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 use pulp::{Simd, WithSimd};
 
 use super::cells::{Cells, Quad, minus};
-use super::shape::Rotation;
+use super::rotation::Rotation;
 use crate::prefetch::Prefetch;
 
 /// Entries between those that are gathered and those that are asked for: some cells'.

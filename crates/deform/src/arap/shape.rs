@@ -4,7 +4,6 @@
 //! at once, and sums the energy; the second gathers the ring's turns into the gradient, which a shape that new targets
 //! leave behind does without (see `fit_pass` and `gradient_pass`).
 
-use glam::DQuat;
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -12,6 +11,7 @@ use super::cells::{Cells, Quad, minus};
 use super::fit_pass::{FitPass, Out, Turning};
 use super::gradient_pass::{GradientPass, Laplacians, Turn, turn_of};
 use super::history::Field;
+pub(crate) use super::rotation::{IDENTITY, Rotation, narrow, wide};
 use crate::operators::CHUNK;
 
 /// A shape; rotations and energy belong to the displacements once they were measured, the gradient once that was found.
@@ -39,9 +39,6 @@ pub(crate) struct Scratch {
     laplacians: Vec<[f32; 4]>,
 }
 
-/// A quaternion: x, y, z, w.
-pub(crate) type Rotation = [f32; 4];
-
 /// Where a fit starts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Guesses<'a> {
@@ -62,19 +59,6 @@ impl Shape {
         }
     }
 }
-
-/// A rotation, to compute with.
-pub(crate) fn wide(rotation: Rotation) -> DQuat {
-    DQuat::from_array(rotation.map(f64::from)).normalize()
-}
-
-/// A rotation, to keep.
-pub(crate) fn narrow(rotation: DQuat) -> Rotation {
-    rotation.to_array().map(|value| value as f32)
-}
-
-/// The quaternion that turns nothing.
-pub(crate) const IDENTITY: Rotation = [0.0, 0.0, 0.0, 1.0];
 
 impl Cells {
     /// Fits the rotations to the displacements, and finds energy and gradient.

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::document::{Handle, HandleId, MirrorPlane, PivotPlace, Twin};
+use crate::document::{followed, means};
 use crate::edit_error::EditError;
 use crate::edit_node::Node;
 use crate::project_field::Ranges;
-use crate::turn::{followed, means};
 use crate::{HandleTransform, Reach, SOFT_RANGE};
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]

@@ -3,7 +3,6 @@
 use pliant_mesh::Model;
 use serde::{Deserialize, Serialize};
 
-use super::Project;
 use crate::Access;
 use crate::edit_error::EditError;
 
@@ -37,31 +36,30 @@ pub(super) fn stored_objects(access: &Access, model: &Model) -> Vec<StoredObject
         .collect()
 }
 
-impl Project {
-    pub(super) fn access(&self, model: &Model) -> Result<Access, EditError> {
-        let refused = |what: &str, number: u32, count: usize| {
-            EditError::Project(format!(
-                "`{what}` names number {number}, and the mesh has {count}: save it again"
-            ))
-        };
-        let count = model.all_objects().len();
-        let mut access = Access::default();
-        for stored in &self.objects {
-            if stored.object as usize >= count {
-                return Err(refused("objects", stored.object, count));
-            }
-            if stored.hidden {
-                access.hidden.insert(stored.object);
-            }
-            if stored.locked {
-                access.locked.insert(stored.object);
-            }
+/// What a project says of objects and of the part that is isolated, on its mesh.
+pub(super) fn access(objects: &[StoredObject], isolated: Option<u32>, model: &Model) -> Result<Access, EditError> {
+    let refused = |what: &str, number: u32, count: usize| {
+        EditError::Project(format!(
+            "`{what}` names number {number}, and the mesh has {count}: save it again"
+        ))
+    };
+    let count = model.all_objects().len();
+    let mut access = Access::default();
+    for stored in objects {
+        if stored.object as usize >= count {
+            return Err(refused("objects", stored.object, count));
         }
-        let parts = model.topology.components().len();
-        if let Some(part) = self.isolated.filter(|&part| part as usize >= parts) {
-            return Err(refused("isolated", part, parts));
+        if stored.hidden {
+            access.hidden.insert(stored.object);
         }
-        access.isolated = self.isolated;
-        Ok(access)
+        if stored.locked {
+            access.locked.insert(stored.object);
+        }
     }
+    let parts = model.topology.components().len();
+    if let Some(part) = isolated.filter(|&part| part as usize >= parts) {
+        return Err(refused("isolated", part, parts));
+    }
+    access.isolated = isolated;
+    Ok(access)
 }

@@ -1,55 +1,45 @@
-//! A widget that is being dragged: whatever its commands change is shown at once and becomes one step at the end.
+//! A widget that is being dragged: whatever its commands change is shown at once and becomes one step at the end. The
+//! step itself is the workspace's, since commands add to it.
 
-use super::Tool;
-use crate::Command;
-use crate::editor::Editor;
-use crate::transaction::Transaction;
+use super::context::Context;
+use super::gesture::{Gesture, Next};
+use super::overlay::Lit;
+use crate::input::{Button, Pointer};
+use crate::scene_view::Cursor;
+use crate::view::View;
+use crate::workspace::Workspace;
 
-/// The step that the widget's commands make.
+/// The widget's step is open.
 #[derive(Debug)]
-pub(crate) struct Adjust(Transaction);
+pub(crate) struct Adjust;
 
 impl Adjust {
-    pub(crate) fn commit(self, editor: &mut Editor) {
-        self.0.commit(&editor.document, &mut editor.history);
-    }
-
-    pub(crate) fn abort(self, editor: &mut Editor) {
-        self.0.abort(&mut editor.document);
-        editor.engine.drop_solves();
-        editor.repainted = true;
+    /// Opens the step.
+    pub(crate) fn begin(workspace: &mut Workspace) -> Self {
+        workspace.begin_adjusting();
+        Self
     }
 }
 
-impl Editor {
-    /// Adds a command to the step that is being adjusted; the first begins it.
-    pub(crate) fn adjust(&mut self, command: Command) {
-        // Steps and gestures of their own have no place within a step.
-        if matches!(
-            command,
-            Command::Undo | Command::Redo | Command::Move | Command::Turn | Command::Scale
-        ) {
-            return;
-        }
-        let step = match std::mem::take(&mut self.tool) {
-            Tool::Adjust(adjust) => adjust.0,
-            other => {
-                other.abort(self);
-                self.begin("Adjust")
-            }
-        };
-        self.open_step = Some(step);
-        self.execute(command);
-        if let Some(step) = self.open_step.take() {
-            self.tool = Tool::Adjust(Box::new(Adjust(step)));
-        }
+impl Gesture for Adjust {
+    fn cursor(&self) -> Cursor {
+        Cursor::Arrow
     }
 
-    /// Ends the step.
-    pub(crate) fn adjusted(&mut self) {
-        match std::mem::take(&mut self.tool) {
-            Tool::Adjust(adjust) => adjust.commit(self),
-            other => self.tool = other,
-        }
+    fn lit(&self) -> Lit {
+        Lit::Gizmo(None)
+    }
+
+    fn status(&self, _: &Workspace, _: &View) -> Option<String> {
+        None
+    }
+
+    fn pressed(&mut self, context: &mut Context<'_>, _: Pointer, _: Button) -> Next {
+        context.workspace.commit_adjusting();
+        Next::EndBefore
+    }
+
+    fn abort(&mut self, context: &mut Context<'_>) {
+        context.workspace.abort_adjusting();
     }
 }

@@ -6,11 +6,10 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::{Cancel, Cancelled, Model, Progress, SurfaceVertex};
 use rayon::prelude::*;
 
-use super::Depth;
-use crate::camera::Camera;
-use crate::editor::Editor;
-use crate::job::Pickable;
-use crate::picking::Picking;
+use super::mode::Depth;
+use crate::jobs::Pickable;
+use crate::view::{Camera, Picking, View};
+use crate::workspace::Workspace;
 
 /// How many vertices are asked between two looks at the progress.
 const BATCH: usize = 16_384;
@@ -30,15 +29,15 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// A search in what the editor shows; `None` while rays can't be answered, or for a line without inside.
-    pub(super) fn of(editor: &Editor, corners_px: &[DVec2], depth: Depth) -> Option<Self> {
+    /// A search in what is shown; `None` while rays can't be answered, or for a line without inside.
+    pub(super) fn of(workspace: &Workspace, view: &View, corners_px: &[DVec2], depth: Depth) -> Option<Self> {
         Some(Self {
-            model: Arc::clone(editor.engine.model.as_ref()?),
-            displacements: Arc::clone(&editor.document.from_file),
-            pickable: editor.engine.pickable.clone()?,
-            camera: editor.camera,
-            viewport_px: editor.viewport_px,
-            is_current: editor.engine.is_picking_current(),
+            model: Arc::clone(workspace.model()?),
+            displacements: Arc::clone(workspace.document.from_file()),
+            pickable: workspace.computed().pickable.clone()?,
+            camera: *view.camera(),
+            viewport_px: view.viewport_px(),
+            is_current: workspace.jobs.is_picking_current(),
             line: ClosedLine::of(corners_px)?,
             depth,
         })

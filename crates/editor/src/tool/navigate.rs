@@ -2,10 +2,13 @@
 
 use glam::{DVec2, DVec3};
 
-use super::Tool;
-use crate::camera::Camera;
-use crate::editor::Editor;
-use crate::{Button, Pointer};
+use super::context::Context;
+use super::gesture::{Gesture, Next};
+use super::overlay::Lit;
+use crate::input::{Button, Pointer};
+use crate::scene_view::Cursor;
+use crate::view::{Camera, View};
+use crate::workspace::Workspace;
 
 /// The camera follows the pointer.
 #[derive(Debug)]
@@ -24,9 +27,9 @@ enum Way {
 }
 
 impl Navigate {
-    pub(crate) fn begin(editor: &Editor, pointer: Pointer, button: Button) -> Self {
+    pub(super) fn begin(workspace: &Workspace, view: &View, pointer: Pointer, button: Button) -> Self {
         let way = if pointer.modifiers.shift {
-            Way::Pan(editor.anchor(pointer.position_px))
+            Way::Pan(workspace.anchor(view, pointer.position_px))
         } else {
             Way::Orbit
         };
@@ -34,37 +37,50 @@ impl Navigate {
             button,
             way,
             last_px: pointer.position_px,
-            before: editor.camera,
+            before: *view.camera(),
         }
     }
+}
 
-    pub(crate) fn moved(mut self, editor: &mut Editor, pointer: Pointer) -> Tool {
-        let delta_px = pointer.position_px - self.last_px;
-        self.last_px = pointer.position_px;
-        match self.way {
-            Way::Orbit => editor.camera.orbit(editor.orbit, delta_px),
-            Way::Pan(anchor) => editor.camera.pan(delta_px, anchor, editor.viewport_px),
-        }
-        editor.is_framed &= delta_px == DVec2::ZERO;
-        Tool::Navigate(self)
+impl Gesture for Navigate {
+    fn cursor(&self) -> Cursor {
+        Cursor::Grabbing
     }
 
-    pub(crate) fn released(self, button: Button) -> Tool {
-        if button == self.button {
-            Tool::Idle
-        } else {
-            Tool::Navigate(self)
-        }
+    fn lit(&self) -> Lit {
+        Lit::Gizmo(None)
     }
 
-    pub(crate) fn abort(self, editor: &mut Editor) {
-        editor.camera = self.before;
-    }
-
-    pub(crate) fn status(&self) -> &'static str {
-        match self.way {
+    fn status(&self, _: &Workspace, _: &View) -> Option<String> {
+        let doing = match self.way {
             Way::Orbit => "Turning the view",
             Way::Pan(_) => "Moving the view",
+        };
+        Some(format!("{doing}: Esc takes it back"))
+    }
+
+    fn moves_camera(&self) -> bool {
+        true
+    }
+
+    fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) -> Next {
+        let delta_px = pointer.position_px - self.last_px;
+        self.last_px = pointer.position_px;
+        if delta_px != DVec2::ZERO {
+            let (orbit, viewport_px) = (context.view.orbit(), context.view.viewport_px());
+            context.view.travel(|camera| match self.way {
+                Way::Orbit => camera.orbit(orbit, delta_px),
+                Way::Pan(anchor) => camera.pan(delta_px, anchor, viewport_px),
+            });
         }
+        Next::Stay
+    }
+
+    fn released(&mut self, _: &mut Context<'_>, _: Pointer, button: Button) -> Next {
+        if button == self.button { Next::End } else { Next::Stay }
+    }
+
+    fn abort(&mut self, context: &mut Context<'_>) {
+        context.view.adjust(|camera| *camera = self.before);
     }
 }

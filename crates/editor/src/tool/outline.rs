@@ -3,35 +3,17 @@
 use glam::DVec2;
 use pliant_mesh::SurfaceVertex;
 
-use super::Tool;
+use super::context::Context;
 use super::enclosed::Search;
+use super::gesture::{Gesture, Next};
+use super::mode::StrokeShape;
+use super::overlay::Lit;
 use super::paint::PaintStroke;
-use crate::editor::Editor;
-use crate::{Button, JobOutcome, Pointer};
-
-/// How the left button takes vertices.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
-pub enum StrokeShape {
-    /// With the brush.
-    #[default]
-    Brush,
-    /// Within a line drawn freely around them.
-    Lasso,
-    /// Within a box.
-    Box,
-    /// All that hang together with the one under the pointer.
-    Component,
-}
-
-/// How deep a lasso or a box goes.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
-pub enum Depth {
-    /// Only what is seen.
-    #[default]
-    Visible,
-    /// Through the surface to its back.
-    Through,
-}
+use crate::input::{Button, Pointer};
+use crate::jobs::{Activity, JobOutcome};
+use crate::scene_view::Cursor;
+use crate::view::View;
+use crate::workspace::Workspace;
 
 /// An outline that is being drawn.
 #[derive(Debug)]
@@ -53,8 +35,8 @@ enum Phase {
 }
 
 impl OutlineStroke {
-    pub(crate) fn begin(editor: &mut Editor, pointer: Pointer, shape: StrokeShape) -> Option<Self> {
-        let stroke = PaintStroke::begin_without_dab(editor, pointer)?;
+    pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer, shape: StrokeShape) -> Option<Self> {
+        let stroke = PaintStroke::begin_without_dab(context.workspace, context.settings, pointer)?;
         Some(Self {
             shape,
             points_px: vec![pointer.position_px],
@@ -62,71 +44,77 @@ impl OutlineStroke {
             phase: Phase::Drawing,
         })
     }
+}
 
-    /// The closed line as it is drawn.
-    pub(crate) fn outline_px(&self) -> Vec<DVec2> {
+impl Gesture for OutlineStroke {
+    fn activity(&self) -> Activity {
+        Activity::Painting
+    }
+
+    fn cursor(&self) -> Cursor {
+        Cursor::Brush
+    }
+
+    fn lit(&self) -> Lit {
+        Lit::Ring
+    }
+
+    fn status(&self, _: &Workspace, _: &View) -> Option<String> {
+        let shape = if self.shape == StrokeShape::Box { "box" } else { "lasso" };
+        Some(match self.phase {
+            Phase::Drawing => format!("Drawing a {shape}: let go to paint what is inside, Esc to leave it"),
+            Phase::Looking => format!("Looking for what is in the {shape}: Esc to leave it"),
+        })
+    }
+
+    fn outline_px(&self) -> Vec<DVec2> {
         match (self.shape, self.points_px.as_slice()) {
             (StrokeShape::Box, [from, .., to]) => vec![*from, DVec2::new(to.x, from.y), *to, DVec2::new(from.x, to.y)],
             _ => self.points_px.clone(),
         }
     }
 
-    pub(crate) fn is_looking(&self) -> bool {
+    fn is_looking(&self) -> bool {
         self.phase == Phase::Looking
     }
 
-    pub(crate) fn status(&self) -> String {
-        let shape = if self.shape == StrokeShape::Box { "box" } else { "lasso" };
-        match self.phase {
-            Phase::Drawing => format!("Drawing a {shape}: let go to paint what is inside, Esc to leave it"),
-            Phase::Looking => format!("Looking for what is in the {shape}: Esc to leave it"),
-        }
-    }
-
-    pub(crate) fn moved(mut self: Box<Self>, pointer: Pointer) -> Tool {
+    fn moved(&mut self, _: &mut Context<'_>, pointer: Pointer) -> Next {
         // Not every pixel is a corner.
-        if self.phase == Phase::Drawing
-            && self
-                .points_px
-                .last()
-                .is_none_or(|last| last.distance(pointer.position_px) >= 2.0)
-        {
+        let is_far = |last: &DVec2| last.distance(pointer.position_px) >= 2.0;
+        if self.phase == Phase::Drawing && self.points_px.last().is_none_or(is_far) {
             if self.shape == StrokeShape::Box {
                 self.points_px.truncate(1);
             }
             self.points_px.push(pointer.position_px);
         }
-        Tool::Outline(self)
+        Next::Stay
     }
 
-    pub(crate) fn released(self: Box<Self>, editor: &mut Editor, pointer: Pointer, button: Button) -> Tool {
+    fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
         if button != Button::Primary || self.is_looking() {
-            return Tool::Outline(self);
+            return Next::Stay;
         }
-        let Tool::Outline(mut outline) = self.moved(pointer) else {
-            return Tool::Idle;
+        self.moved(context, pointer);
+        let (outline_px, depth) = (self.outline_px(), context.settings.depth);
+        let Some(search) = Search::of(context.workspace, context.view, &outline_px, depth) else {
+            return self.found(context, Vec::new());
         };
-        let Some(search) = Search::of(editor, &outline.outline_px(), editor.depth) else {
-            outline.take(editor, Vec::new());
-            return Tool::Idle;
-        };
-        editor
-            .engine
-            .enclose(Box::new(move |progress, cancel| match search.run(progress, cancel) {
-                Ok(vertices) => JobOutcome::Enclosed(vertices),
-                Err(_) => JobOutcome::Cancelled,
-            }));
-        outline.phase = Phase::Looking;
-        Tool::Outline(outline)
+        let work = Box::new(move |progress: &_, cancel: &_| match search.run(progress, cancel) {
+            Ok(vertices) => JobOutcome::Enclosed(vertices),
+            Err(_) => JobOutcome::Cancelled,
+        });
+        context.workspace.jobs.enclose(work);
+        self.phase = Phase::Looking;
+        Next::Stay
     }
 
-    /// Paints the vertices inside, and ends.
-    pub(crate) fn take(self, editor: &mut Editor, inside: Vec<SurfaceVertex>) {
-        self.stroke.finish_with(editor, inside);
+    fn found(&mut self, context: &mut Context<'_>, inside: Vec<SurfaceVertex>) -> Next {
+        self.stroke.finish_with(context.workspace, inside);
+        Next::End
     }
 
-    pub(crate) fn abort(self, editor: &mut Editor) {
-        editor.engine.stop_enclosing();
-        self.stroke.abort(editor);
+    fn abort(&mut self, context: &mut Context<'_>) {
+        context.workspace.jobs.stop_enclosing();
+        self.stroke.take_back(context.workspace);
     }
 }

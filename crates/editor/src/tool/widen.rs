@@ -2,13 +2,15 @@
 
 use glam::DVec2;
 
-use super::Tool;
-use crate::document::{HandleId, Paint};
-use crate::editor::Editor;
-use crate::region::reach_length;
-use crate::transaction::Transaction;
-use crate::{Button, Key, Pointer, Reach};
-use pliant_mesh::SurfaceVertex;
+use super::context::Context;
+use super::gesture::{Gesture, Next};
+use super::overlay::Lit;
+use crate::document::{HandleId, Reach, Transaction};
+use crate::input::{Button, Key, Modifiers, Pointer};
+use crate::jobs::reach_length;
+use crate::scene_view::Cursor;
+use crate::view::View;
+use crate::workspace::{Workspace, members};
 
 /// A reach that follows the pointer; a click keeps it.
 #[derive(Debug)]
@@ -22,87 +24,87 @@ pub(crate) struct Widen {
 
 impl Widen {
     /// Begins with the selected handle; `None` if none is selected, or it is not in front of the eye.
-    pub(crate) fn begin(editor: &mut Editor) -> Option<Self> {
-        let handle = editor.document.handle(editor.selected?)?.clone();
-        let model = editor.engine.model.clone()?;
-        let members: Vec<SurfaceVertex> = (0..editor.document.paint.len() as u32)
-            .map(SurfaceVertex)
-            .filter(|vertex| editor.document.paint[vertex.index()] == Paint::Handle(handle.id))
-            .collect();
+    pub(crate) fn begin(workspace: &mut Workspace, view: &View, pointer: Option<Pointer>) -> Option<Self> {
+        let handle = workspace.selected()?.clone();
+        let model = workspace.model()?;
+        let members = members(&workspace.document, handle.id);
         let start_length = reach_length(handle.reach, &model.surface, &model.topology, &members);
-        let centre_px = editor.camera.project(handle.centre(), editor.viewport_px)?;
-        let pointer_px = editor
-            .pointer
-            .map_or(centre_px + DVec2::X * 60.0, |pointer| pointer.position_px);
+        let (camera, viewport_px) = (view.camera(), view.viewport_px());
+        let centre_px = camera.project(handle.centre(), viewport_px)?;
+        let pointer_px = pointer.map_or(centre_px + DVec2::X * 60.0, |pointer| pointer.position_px);
         // What lies on the screen under the pointer is where the reach begins to be measured.
-        let px = editor.camera.world_per_px(handle.centre(), editor.viewport_px);
-        let transaction = editor.begin(format!("Reach of {}", handle.name));
+        let px = camera.world_per_px(handle.centre(), viewport_px);
         Some(Self {
-            transaction,
+            transaction: workspace.begin(format!("Reach of {}", handle.name)),
             handle: handle.id,
             start_length: start_length.max(px),
             start_px: pointer_px.distance(centre_px).max(8.0),
             centre_px,
         })
     }
+}
 
-    pub(crate) fn moved(self, editor: &mut Editor, pointer: Pointer) -> Tool {
+impl Gesture for Widen {
+    fn cursor(&self) -> Cursor {
+        Cursor::Move
+    }
+
+    fn lit(&self) -> Lit {
+        Lit::Gizmo(None)
+    }
+
+    fn status(&self, workspace: &Workspace, _: &View) -> Option<String> {
+        let length = match workspace.document.handle(self.handle).map(|handle| handle.reach) {
+            Some(Reach::Length(length)) => length,
+            _ => self.start_length,
+        };
+        Some(format!(
+            "Reach {length:.4}: move away from the handle to widen it, click to keep it, Esc to leave it"
+        ))
+    }
+
+    fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) -> Next {
         let factor = pointer.position_px.distance(self.centre_px).max(1.0) / self.start_px;
         let reach = Reach::Length(self.start_length * factor);
-        if editor
+        let workspace = &mut *context.workspace;
+        if workspace
             .document
             .handle(self.handle)
             .is_some_and(|handle| handle.reach != reach)
         {
-            editor.engine.drop_solves();
-            editor.document.apply_shape();
-            if let Some(handle) = editor.document.handle_mut(self.handle) {
-                handle.reach = reach;
-            }
+            workspace.jobs.drop_solves();
+            workspace.document.apply_shape();
+            workspace
+                .document
+                .change_handle(self.handle, |handle| handle.reach = reach);
         }
-        Tool::Widen(Box::new(self))
+        Next::Stay
     }
 
-    pub(crate) fn pressed(self, editor: &mut Editor, pointer: Pointer, button: Button) -> Tool {
+    fn pressed(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
         match button {
             Button::Primary => {
-                if let Tool::Widen(widen) = self.moved(editor, pointer) {
-                    widen.transaction.commit(&editor.document, &mut editor.history);
-                }
-                Tool::Idle
+                self.moved(context, pointer);
+                context.workspace.commit(&self.transaction);
             }
-            Button::Secondary => {
-                self.abort(editor);
-                Tool::Idle
-            }
-            Button::Middle => Tool::Widen(Box::new(self)),
+            Button::Secondary => self.abort(context),
+            Button::Middle => return Next::Stay,
         }
+        Next::End
     }
 
-    pub(crate) fn key(self, editor: &mut Editor, key: Key) -> Tool {
+    fn key(&mut self, context: &mut Context<'_>, key: Key, _: Modifiers) -> Option<Next> {
         match key {
-            Key::Escape => {
-                self.abort(editor);
-                Tool::Idle
-            }
+            Key::Escape => self.abort(context),
             Key::Enter => {
-                self.transaction.commit(&editor.document, &mut editor.history);
-                Tool::Idle
+                context.workspace.commit(&self.transaction);
             }
-            _ => Tool::Widen(Box::new(self)),
+            _ => return Some(Next::Stay),
         }
+        Some(Next::End)
     }
 
-    pub(crate) fn abort(self, editor: &mut Editor) {
-        self.transaction.abort(&mut editor.document);
-        editor.engine.drop_solves();
-    }
-
-    pub(crate) fn status(&self, editor: &Editor) -> String {
-        let length = match editor.document.handle(self.handle).map(|handle| handle.reach) {
-            Some(Reach::Length(length)) => length,
-            _ => self.start_length,
-        };
-        format!("Reach {length:.4}: move away from the handle to widen it, click to keep it, Esc to leave it")
+    fn abort(&mut self, context: &mut Context<'_>) {
+        context.workspace.abort(&self.transaction);
     }
 }

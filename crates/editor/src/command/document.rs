@@ -1,0 +1,141 @@
+//! What is done to the document as a whole.
+
+use super::entry::{Action, Entry, Scope, ctrl, item, unless, when_open};
+use super::shortcut::Shortcut;
+use crate::document::Paint;
+use crate::input::{Key, Modifiers};
+use crate::jobs::JobKind;
+use crate::workspace::{apply_shape, clear_regions, reset_shape, set_loose, set_loose_part, set_method};
+use pliant_deform::{Loose, Method};
+
+/// Takes back the last step.
+pub(super) const UNDO: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Undo",
+        "Takes back the last step.",
+        "back revert",
+        &[ctrl('z')],
+    )],
+    scope: Scope::History,
+    unavailable: |state, ()| {
+        let undo = state.workspace.history.undo_name();
+        unless(undo.is_some(), "Nothing was done that could be taken back.")
+    },
+    action: Action::Do(|context, ()| context.workspace.undo()),
+};
+
+/// Does the last taken-back step again.
+pub(super) const REDO: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Redo",
+        "Does the step that was taken back again.",
+        "again forth",
+        &[Shortcut::with(Modifiers::CTRL_SHIFT, Key::Character('z')), ctrl('y')],
+    )],
+    scope: Scope::History,
+    unavailable: |state, ()| {
+        let redo = state.workspace.history.redo_name();
+        unless(redo.is_some(), "Nothing was taken back that could be done again.")
+    },
+    action: Action::Do(|context, ()| context.workspace.redo()),
+};
+
+/// Goes back or forth to the state after so many steps of the history.
+pub(super) const GO_TO_STEP: Entry<usize> = Entry {
+    listed: &[],
+    scope: Scope::History,
+    unavailable: |state, steps| {
+        let is_there = *steps <= state.workspace.history.names().0.len();
+        unless(is_there, "The history has no such step any more.")
+    },
+    action: Action::Do(|context, steps| context.workspace.go_to_step(steps)),
+};
+
+/// Makes the present shape the new rest shape: every handle's transform returns to the identity.
+pub(super) const APPLY: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Apply shape",
+        "Makes the present shape the new rest shape.",
+        "bake freeze rest shape",
+        &[Shortcut::with(Modifiers::CTRL, Key::Enter)],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| {
+        let is_bent = state.workspace.document.is_displaced();
+        unless(is_bent, "Nothing is bent that could be applied: move a handle first.")
+    },
+    action: Action::Do(|context, ()| apply_shape(context.workspace)),
+};
+
+/// Takes the rest shape and every handle back to the file's shape.
+pub(super) const RESET_SHAPE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Reset shape",
+        "Takes the surface back to the file's shape.",
+        "original revert",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| {
+        let document = &state.workspace.document;
+        let is_other = document.is_displaced() || document.is_applied();
+        unless(is_other, "The shape is as in the file already.")
+    },
+    action: Action::Do(|context, ()| reset_shape(context.workspace)),
+};
+
+/// Holds everything still again: no handle, no region.
+pub(super) const CLEAR_REGIONS: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Clear regions",
+        "Removes all handles and regions; the shape stays as it is.",
+        "remove delete all handles",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| {
+        let mut paint = state.workspace.document.paint().iter();
+        unless(paint.any(|paint| *paint != Paint::Bare), "Nothing is painted.")
+    },
+    action: Action::Do(|context, ()| clear_regions(context.workspace)),
+};
+
+/// Chooses the method and its options.
+pub(super) const SET_METHOD: Entry<Method> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: when_open,
+    action: Action::Do(|context, method| set_method(context.workspace, method)),
+};
+
+/// Chooses what components that nothing holds do, all of them.
+pub(super) const SET_LOOSE: Entry<Loose> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: when_open,
+    action: Action::Do(|context, loose| set_loose(context.workspace, loose)),
+};
+
+/// Chooses what one of them does, by its component's number; `None` is what all do.
+pub(super) const SET_LOOSE_PART: Entry<(u32, Option<Loose>)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: when_open,
+    action: Action::Do(|context, (part, loose)| set_loose_part(context.workspace, part, loose)),
+};
+
+/// Stops the jobs that run; what needs them starts them again.
+pub(super) const CANCEL_JOBS: Entry<()> = Entry {
+    listed: &[item((), "Stop", "Stops what is being computed.", "cancel abort", &[])],
+    scope: Scope::View,
+    unavailable: |state, ()| {
+        let mut running = state.workspace.jobs.running().into_iter();
+        unless(running.any(|(kind, _)| kind != JobKind::Pick), "Nothing is under way.")
+    },
+    action: Action::Do(|context, ()| context.workspace.jobs.give_up()),
+};

@@ -1,0 +1,170 @@
+//! What the table says of a command: everything, in one place.
+
+use std::borrow::Cow;
+
+use crate::document::{Handle, HandleId};
+use crate::input::{Key, Modifiers};
+use crate::tool::{Context, Gesture, ToolSettings};
+use crate::view::View;
+use crate::workspace::Workspace;
+
+use super::shortcut::Shortcut;
+
+/// Why a command can't be done now, as a sentence with the remedy where there is one.
+pub(super) type Reason = Cow<'static, str>;
+
+/// A command of the table. `V` are the values that it carries: `()` for none, one, or a tuple.
+pub(super) struct Entry<V: 'static> {
+    /// How menus, the palette and the list of keys show it, once for each value that they offer.
+    pub(super) listed: &'static [Item<V>],
+    pub(super) scope: Scope,
+    /// Why it can't be done now; `None` where it can.
+    pub(super) unavailable: fn(&State<'_>, &V) -> Option<Reason>,
+    pub(super) action: Action<V>,
+}
+
+/// A command with its values, as a menu or the palette shows it.
+#[derive(Debug)]
+pub(super) struct Item<V> {
+    pub(super) values: V,
+    /// Its name in a menu.
+    pub(super) name: &'static str,
+    /// One sentence that says what it does.
+    pub(super) tooltip: &'static str,
+    /// What else people call it, in lower case.
+    pub(super) keywords: &'static str,
+    /// Its own keys; the first is shown.
+    pub(super) shortcuts: &'static [Shortcut],
+}
+
+/// What a command concerns, and so what becomes of the gesture that goes on.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Scope {
+    /// View, look or brush: the gesture goes on.
+    View,
+    /// The tool: the gesture is aborted.
+    Tool,
+    /// The document or the selection: the gesture is aborted, and the last refusal is forgotten.
+    Document,
+    /// The history: a gesture that goes on is taken back, and nothing before it.
+    History,
+    /// As the document, with a gesture of its own.
+    Gesture,
+}
+
+/// What a command does.
+pub(super) enum Action<V> {
+    /// Something at once.
+    Do(fn(&mut Context<'_>, V)),
+    /// It begins a gesture, if it can.
+    Begin(fn(&mut Context<'_>, V) -> Option<Box<dyn Gesture>>),
+}
+
+/// What commands look at to tell whether they can be done.
+#[derive(Clone, Copy)]
+pub(crate) struct State<'a> {
+    pub(crate) workspace: &'a Workspace,
+    pub(crate) view: &'a View,
+    pub(crate) settings: &'a ToolSettings,
+}
+
+impl State<'_> {
+    /// The reason where no file is open.
+    pub(super) fn unopened(&self) -> Option<Reason> {
+        unless(self.workspace.model().is_some(), "Nothing is open: open a file first.")
+    }
+
+    /// The selected handle.
+    pub(super) fn selected(&self) -> Result<&Handle, Reason> {
+        let none = "No handle is selected: select one in the list, or paint one.";
+        self.workspace.selected().ok_or(none.into())
+    }
+
+    /// The selected handle, if it may be changed.
+    pub(super) fn unlocked(&self) -> Result<&Handle, Reason> {
+        self.selected().and_then(unlocked)
+    }
+
+    /// The reason where a handle is gone.
+    pub(super) fn gone(&self, id: HandleId) -> Option<Reason> {
+        let handle = self.workspace.document.handle(id);
+        unless(handle.is_some(), "That handle is not there any more.")
+    }
+}
+
+/// The handle, if it may be changed.
+pub(super) fn unlocked(handle: &Handle) -> Result<&Handle, Reason> {
+    if handle.locked {
+        return Err(format!("{} is locked: unlock it in the list first.", handle.name).into());
+    }
+    Ok(handle)
+}
+
+/// The reason, unless it can be done.
+pub(super) fn unless(can_be_done: bool, reason: &'static str) -> Option<Reason> {
+    (!can_be_done).then_some(Cow::Borrowed(reason))
+}
+
+/// What can be done always.
+pub(super) fn always<V>(_: &State<'_>, _: &V) -> Option<Reason> {
+    None
+}
+
+/// What can be done once a file is open.
+pub(super) fn when_open<V>(state: &State<'_>, _: &V) -> Option<Reason> {
+    state.unopened()
+}
+
+/// What can be done with a selected handle that is not locked.
+pub(super) fn with_unlocked<V>(state: &State<'_>, _: &V) -> Option<Reason> {
+    state.unlocked().err()
+}
+
+/// What can be done with a selected handle.
+pub(super) fn with_selected<V>(state: &State<'_>, _: &V) -> Option<Reason> {
+    state.selected().err()
+}
+
+pub(super) const fn item<V>(
+    values: V,
+    name: &'static str,
+    tooltip: &'static str,
+    keywords: &'static str,
+    shortcuts: &'static [Shortcut],
+) -> Item<V> {
+    Item {
+        values,
+        name,
+        tooltip,
+        keywords,
+        shortcuts,
+    }
+}
+
+pub(super) const fn plain(key: Key) -> Shortcut {
+    Shortcut::with(Modifiers::NONE, key)
+}
+
+pub(super) const fn character(character: char) -> Shortcut {
+    plain(Key::Character(character))
+}
+
+pub(super) const fn ctrl(character: char) -> Shortcut {
+    Shortcut::with(Modifiers::CTRL, Key::Character(character))
+}
+
+pub(super) const fn shift(character: char) -> Shortcut {
+    Shortcut::with(Modifiers::SHIFT, Key::Character(character))
+}
+
+pub(super) const fn alt(character: char) -> Shortcut {
+    Shortcut::with(Modifiers::ALT, Key::Character(character))
+}
+
+pub(super) const fn numpad(digit: u8) -> Shortcut {
+    plain(Key::Numpad(digit))
+}
+
+pub(super) const fn ctrl_numpad(digit: u8) -> Shortcut {
+    Shortcut::with(Modifiers::CTRL, Key::Numpad(digit))
+}

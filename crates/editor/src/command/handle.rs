@@ -1,0 +1,426 @@
+//! Making, choosing and moving handles.
+
+use glam::{DVec2, DVec3};
+
+use super::entry::{
+    Action, Entry, Scope, alt, always, character, item, plain, shift, unless, when_open, with_selected, with_unlocked,
+};
+use crate::document::{HandleId, HandleTransform, PivotPlace, Reach};
+use crate::exchange::without_pivot;
+use crate::input::Key;
+use crate::tool::{Constraint, Context, Gesture, ToolMode, TransformDrag, TransformKind, Widen};
+use crate::view::{GizmoMode, GizmoOrientation};
+use crate::workspace::{
+    Purpose, change_handle, delete_selected, mirror, reset_region, set_continuity, set_pivot, set_pivot_place,
+    set_reach, set_soft, set_turn, split_selected, transform_handle, untwin,
+};
+
+/// Widens the selected handle's reach with the pointer.
+pub(super) const WIDEN: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Widen reach",
+        "Follows the pointer: how far the surface comes along with the selected handle.",
+        "region of influence roi falloff radius distance",
+        &[character('e')],
+    )],
+    scope: Scope::Gesture,
+    unavailable: with_unlocked,
+    action: Action::Begin(|context, ()| {
+        let widen = Widen::begin(context.workspace, context.view, context.pointer)?;
+        Some(Box::new(widen))
+    }),
+};
+
+/// What the gizmo offers.
+pub(super) const SET_GIZMO: Entry<GizmoMode> = Entry {
+    listed: &[],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, mode| context.settings.gizmo_mode = mode),
+};
+
+/// Along which axes the gizmo stands.
+pub(super) const SET_ORIENTATION: Entry<GizmoOrientation> = Entry {
+    listed: &[
+        item(
+            GizmoOrientation::World,
+            "World axes",
+            "The gizmo stands along the world's axes.",
+            "global orientation",
+            &[],
+        ),
+        item(
+            GizmoOrientation::Local,
+            "Own axes",
+            "The gizmo turns along with its handle.",
+            "local orientation",
+            &[],
+        ),
+        item(
+            GizmoOrientation::View,
+            "Screen axes",
+            "The gizmo stands along the screen.",
+            "view orientation",
+            &[],
+        ),
+    ],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, orientation| context.settings.orientation = orientation),
+};
+
+/// The next click on the surface puts the selected handle's pivot there.
+pub(super) const PICK_PIVOT: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Pick pivot",
+        "The next click on the surface is the point that the handle turns about.",
+        "origin centre center",
+        &[shift('p')],
+    )],
+    scope: Scope::Document,
+    unavailable: with_unlocked,
+    action: Action::Do(|context, ()| context.settings.wants_pivot = true),
+};
+
+/// Puts a handle's pivot at a point of the present shape. The surface stays as it is.
+pub(super) const SET_PIVOT: Entry<(HandleId, DVec3)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (id, _)| state.gone(*id),
+    action: Action::Do(|context, (id, point)| set_pivot(context.workspace, id, point)),
+};
+
+/// Chooses where a handle's pivot stands. The surface stays as it is.
+pub(super) const SET_PIVOT_PLACE: Entry<(HandleId, PivotPlace)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (id, _)| state.gone(*id),
+    action: Action::Do(|context, (id, place)| set_pivot_place(context.workspace, id, place)),
+};
+
+/// Splits the selected handle in two across its longest side: a vertex can only be in one.
+pub(super) const DUPLICATE_HANDLE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Duplicate handle",
+        "Splits the selected handle in two along its longest side.",
+        "copy split",
+        &[shift('d')],
+    )],
+    scope: Scope::Document,
+    unavailable: with_unlocked,
+    action: Action::Do(|context, ()| split_selected(context.workspace)),
+};
+
+/// Makes the selected handle's mirror image a handle that does the same, across axis 0, 1, 2 for x, y, z.
+pub(super) const MAKE_TWIN: Entry<usize> = Entry {
+    listed: &[
+        item(
+            0,
+            "Twin across x",
+            "Makes the handle's mirror image a handle that does the same: drag left, right follows.",
+            "mirror symmetry",
+            &[shift('m')],
+        ),
+        item(
+            1,
+            "Twin across y",
+            "Makes the handle's mirror image, above and below, a handle that does the same.",
+            "mirror symmetry",
+            &[],
+        ),
+        item(
+            2,
+            "Twin across z",
+            "Makes the handle's mirror image, before and behind, a handle that does the same.",
+            "mirror symmetry",
+            &[],
+        ),
+    ],
+    scope: Scope::Document,
+    unavailable: |state, _| match state.unlocked() {
+        Err(reason) => Some(reason),
+        Ok(handle) if handle.twin.is_some() => {
+            Some(format!("{} has a twin already: part them first.", handle.name).into())
+        }
+        Ok(_) => None,
+    },
+    action: Action::Do(|context, axis| {
+        if let Some(id) = context.workspace.selection.selected() {
+            mirror(context.workspace, Purpose::Twin(id), axis);
+        }
+    }),
+};
+
+/// Lets the selected handle and its twin go their own ways.
+pub(super) const UNTWIN: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Part twins",
+        "Lets the selected handle and its twin go their own ways.",
+        "unlink mirror symmetry",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| match state.selected() {
+        Err(reason) => Some(reason),
+        Ok(handle) if handle.twin.is_none() => Some(format!("{} has no twin.", handle.name).into()),
+        Ok(_) => None,
+    },
+    action: Action::Do(|context, ()| untwin(context.workspace)),
+};
+
+/// Takes the selected handle's vertices and its region back to the file's shape.
+pub(super) const RESET_REGION: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Reset region",
+        "Takes the selected handle and its region back to the file's shape, and nothing else.",
+        "original revert",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: with_unlocked,
+    action: Action::Do(|context, ()| reset_region(context.workspace)),
+};
+
+/// The next stroke of the handle brush makes a handle of its own.
+pub(super) const NEW_HANDLE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "New handle",
+        "The next stroke of the handle brush makes a handle of its own.",
+        "add create",
+        &[character('n')],
+    )],
+    scope: Scope::Document,
+    unavailable: when_open,
+    action: Action::Do(|context, ()| {
+        context.settings.mode = ToolMode::PaintHandle;
+        context.workspace.selection.wants_new_handle = true;
+        context.workspace.selection.put(None);
+    }),
+};
+
+/// Selects a handle; its gizmo is shown.
+pub(super) const SELECT_HANDLE: Entry<HandleId> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, id| state.gone(*id),
+    action: Action::Do(|context, id| context.workspace.selection.put_alone(Some(id))),
+};
+
+/// Adds a handle to those that are selected, or takes it from them.
+pub(super) const TOGGLE_SELECTED: Entry<HandleId> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, id| state.gone(*id),
+    action: Action::Do(|context, id| context.workspace.selection.toggle(id)),
+};
+
+/// Selects the next handle of the list.
+pub(super) const NEXT_HANDLE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Next handle",
+        "Selects the next handle.",
+        "cycle",
+        &[plain(Key::Tab)],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| {
+        let is_any = !state.workspace.document.handles().is_empty();
+        unless(is_any, "There is no handle yet: paint one on the surface.")
+    },
+    action: Action::Do(|context, ()| {
+        let workspace = &mut *context.workspace;
+        workspace.selection.put_next(&workspace.document);
+    }),
+};
+
+/// Selects no handle.
+pub(super) const DESELECT: Entry<()> = Entry {
+    listed: &[item((), "Deselect", "Selects no handle.", "unselect none", &[alt('a')])],
+    scope: Scope::Document,
+    unavailable: with_selected,
+    action: Action::Do(|context, ()| context.workspace.selection.put_alone(None)),
+};
+
+/// Deletes the selected handle; its vertices are held still.
+pub(super) const DELETE_HANDLE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Delete handle",
+        "Deletes the selected handle; the shape stays as it is.",
+        "remove",
+        &[plain(Key::Delete), character('x')],
+    )],
+    scope: Scope::Document,
+    unavailable: with_unlocked,
+    action: Action::Do(|context, ()| delete_selected(context.workspace)),
+};
+
+/// Starts moving the selected handle with the pointer.
+pub(super) const MOVE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Move",
+        "Moves the selected handle with the pointer.",
+        "translate grab drag",
+        &[character('g')],
+    )],
+    scope: Scope::Gesture,
+    unavailable: with_selected,
+    action: Action::Begin(|context, ()| transform(context, TransformKind::Move)),
+};
+
+/// Starts turning the selected handle with the pointer.
+pub(super) const TURN: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Turn",
+        "Turns the selected handle with the pointer.",
+        "rotate spin",
+        &[character('r')],
+    )],
+    scope: Scope::Gesture,
+    unavailable: with_selected,
+    action: Action::Begin(|context, ()| transform(context, TransformKind::Turn)),
+};
+
+/// Starts scaling the selected handle with the pointer.
+pub(super) const SCALE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Scale",
+        "Scales the selected handle with the pointer.",
+        "size grow shrink",
+        &[character('s')],
+    )],
+    scope: Scope::Gesture,
+    unavailable: with_selected,
+    action: Action::Begin(|context, ()| transform(context, TransformKind::Scale)),
+};
+
+/// Takes the selected handle back to where it rests.
+pub(super) const RESET_HANDLE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Reset handle",
+        "Takes the selected handle back to where it rests.",
+        "clear transform",
+        &[alt('g')],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| match state.selected() {
+        Err(reason) => Some(reason),
+        Ok(handle) if !handle.is_displaced() => Some(format!("{} stands where it was painted.", handle.name).into()),
+        Ok(_) => None,
+    },
+    action: Action::Do(|context, ()| {
+        if let Some(id) = context.workspace.selection.selected() {
+            transform_handle(context.workspace, "Reset", id, HandleTransform::IDENTITY);
+        }
+    }),
+};
+
+/// Names a handle.
+pub(super) const RENAME_HANDLE: Entry<(HandleId, String)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (id, _)| state.gone(*id),
+    action: Action::Do(|context, (id, name)| {
+        change_handle(context.workspace, "Rename handle", id, |handle| handle.name = name)
+    }),
+};
+
+/// Gives a handle a colour, sRGB with alpha.
+pub(super) const SET_HANDLE_COLOUR: Entry<(HandleId, [u8; 4])> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (id, _)| state.gone(*id),
+    action: Action::Do(|context, (id, colour)| {
+        change_handle(context.workspace, "Change colour", id, |handle| handle.colour = colour)
+    }),
+};
+
+/// Shows or hides a handle's colour and gizmo.
+pub(super) const TOGGLE_HANDLE_VISIBLE: Entry<HandleId> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, id| state.gone(*id),
+    action: Action::Do(|context, id| {
+        change_handle(context.workspace, "Show or hide handle", id, |handle| {
+            handle.visible = !handle.visible
+        })
+    }),
+};
+
+/// Keeps a handle from being moved, painted and deleted, or lets it.
+pub(super) const TOGGLE_HANDLE_LOCKED: Entry<HandleId> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, id| state.gone(*id),
+    action: Action::Do(|context, id| {
+        change_handle(context.workspace, "Lock or unlock handle", id, |handle| {
+            handle.locked = !handle.locked
+        })
+    }),
+};
+
+/// Puts a handle where the transform says, about the handle's own pivot.
+pub(super) const SET_HANDLE_TRANSFORM: Entry<(HandleId, HandleTransform)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (id, _)| state.gone(*id),
+    action: Action::Do(|context, (id, transform)| {
+        if transform.affine(DVec3::ZERO).is_finite() {
+            transform_handle(context.workspace, "Move", id, without_pivot(transform));
+        } else {
+            let why = "The handle's transform is not finite: enter other numbers.";
+            context.workspace.refuse(why);
+        }
+    }),
+};
+
+/// Turns a handle to these angles about x, y and z in degrees, full turns included.
+pub(super) const SET_TURN: Entry<(HandleId, DVec3)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (id, _)| state.gone(*id),
+    action: Action::Do(|context, (id, turn_deg)| set_turn(context.workspace, id, turn_deg)),
+};
+
+/// How far along the surface a handle takes the surface along.
+pub(super) const SET_REACH: Entry<(HandleId, Reach)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (id, _)| state.gone(*id),
+    action: Action::Do(|context, (id, reach)| set_reach(context.workspace, id, reach)),
+};
+
+/// Gives a handle a weight ([`SOFT_RANGE`](crate::SOFT_RANGE)), so that it only pulls; `None` makes it hard.
+pub(super) const SET_SOFT: Entry<(HandleId, Option<f64>)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (id, _)| state.gone(*id),
+    action: Action::Do(|context, (id, soft)| set_soft(context.workspace, id, soft)),
+};
+
+/// With which continuity ([`pliant_deform::CONTINUITY_RANGE`]) the surface joins a handle; `None` is the smoothest.
+pub(super) const SET_CONTINUITY: Entry<(HandleId, Option<f64>)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (id, _)| state.gone(*id),
+    action: Action::Do(|context, (id, continuity)| set_continuity(context.workspace, id, continuity)),
+};
+
+/// Begins to move, turn or scale the selected handle with the pointer.
+fn transform(context: &mut Context<'_>, kind: TransformKind) -> Option<Box<dyn Gesture>> {
+    let middle_px: DVec2 = context.view.viewport_px() * 0.5;
+    let start_px = context.pointer.map_or(middle_px, |pointer| pointer.position_px);
+    let drag = TransformDrag::begin(context, kind, Constraint::Free, start_px)?;
+    Some(Box::new(drag))
+}

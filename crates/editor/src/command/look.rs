@@ -1,0 +1,207 @@
+//! How the surface is shown.
+
+use super::entry::{Action, Entry, Scope, always, character, item};
+use crate::view::{Clay, Shading};
+
+/// Shades the surface like this clay.
+pub(super) const SET_CLAY: Entry<Clay> = Entry {
+    listed: &[
+        item(
+            Clay::Clay,
+            "Plain clay",
+            "Warm grey modelling clay: shape and nothing else.",
+            "clay matcap shading",
+            &[],
+        ),
+        item(
+            Clay::Plaster,
+            "Plaster",
+            "White plaster in soft daylight: the finest shades.",
+            "clay matcap shading",
+            &[],
+        ),
+        item(
+            Clay::Wax,
+            "Wax",
+            "Red wax with a soft gloss, as sculptors take it.",
+            "clay matcap shading",
+            &[],
+        ),
+        item(
+            Clay::Bronze,
+            "Bronze",
+            "Dark bronze: highlights that run along every ridge.",
+            "clay matcap shading",
+            &[],
+        ),
+        item(
+            Clay::Porcelain,
+            "Porcelain",
+            "Glazed porcelain: sharp lamps that show every dent.",
+            "clay matcap shading",
+            &[],
+        ),
+        item(
+            Clay::Graphite,
+            "Graphite",
+            "Graphite lit from the side: relief.",
+            "clay matcap shading",
+            &[],
+        ),
+    ],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, clay| {
+        context.view.look.clay = clay;
+        context.view.look.shading = Shading::Clay;
+    }),
+};
+
+/// How the surface is shaded.
+pub(super) const SET_SHADING: Entry<Shading> = Entry {
+    listed: &[
+        item(
+            Shading::Clay,
+            "Clay",
+            "Shades the surface like clay.",
+            "matcap shading",
+            &[],
+        ),
+        item(
+            Shading::Material,
+            "Material",
+            "Shades the surface with the file's materials.",
+            "texture colour color pbr",
+            &[],
+        ),
+        item(
+            Shading::Stretch,
+            "Edge stretch",
+            "Colours the surface by how much longer or shorter its edges are than at rest.",
+            "strain distortion",
+            &[],
+        ),
+        item(
+            Shading::Area,
+            "Area change",
+            "Colours the surface by how much larger or smaller it is than at rest.",
+            "distortion",
+            &[],
+        ),
+        item(
+            Shading::Stiffness,
+            "Stiffness",
+            "Colours the surface by how stiff it was painted.",
+            "",
+            &[],
+        ),
+        item(
+            Shading::Curvature,
+            "Curvature",
+            "Colours the surface by its mean curvature: red bulges, blue is hollow.",
+            "bulge",
+            &[],
+        ),
+        item(
+            Shading::Zebra,
+            "Zebra stripes",
+            "Mirrors stripes in the surface: they break at creases and kink where curvature jumps.",
+            "reflection",
+            &[],
+        ),
+        item(
+            Shading::Normals,
+            "Normals",
+            "Colours the surface by the direction in which it faces.",
+            "",
+            &[],
+        ),
+    ],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, shading| context.view.look.shading = shading),
+};
+
+/// Shows each triangle flat, or normals interpolated.
+pub(super) const TOGGLE_FLAT: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Flat faces",
+        "Shows each triangle flat, or normals interpolated.",
+        "facets smooth shading",
+        &[],
+    )],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, ()| context.view.look.flat = !context.view.look.flat),
+};
+
+/// Marks edges that a closed surface lacks, or not.
+pub(super) const TOGGLE_BORDERS: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Borders",
+        "Marks edges where the surface ends, and those that more than two triangles share.",
+        "boundary holes edges",
+        &[],
+    )],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, ()| context.view.look.borders = !context.view.look.borders),
+};
+
+/// Shows or hides the handles' outlines and the border of what is held.
+pub(super) const TOGGLE_OUTLINES: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Outlines",
+        "Shows or hides the outlines of handles, and the line where the region meets what is held.",
+        "contours",
+        &[],
+    )],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, ()| context.view.look.outlines = !context.view.look.outlines),
+};
+
+/// Shows or hides the ground's grid.
+pub(super) const TOGGLE_GRID: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Ground grid",
+        "Shows or hides the ground's grid.",
+        "floor",
+        &[],
+    )],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, ()| context.view.look.grid = !context.view.look.grid),
+};
+
+/// Shows or hides the regions' colours over clay and material.
+pub(super) const TOGGLE_REGIONS: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Show regions",
+        "Shows or hides the regions' colours.",
+        "colours colors overlay",
+        &[],
+    )],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, ()| context.view.look.regions = !context.view.look.regions),
+};
+
+/// Shows or hides the wireframe.
+pub(super) const TOGGLE_WIREFRAME: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Wireframe",
+        "Shows or hides the triangles' edges.",
+        "edges triangles mesh",
+        &[character('w')],
+    )],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, ()| context.view.look.wireframe = !context.view.look.wireframe),
+};

@@ -1,0 +1,80 @@
+//! What of the file is shown and may be painted.
+
+use super::entry::{Action, Entry, Scope, alt, character, item, shift, unless, when_open};
+use crate::document::ObjectAction;
+use crate::workspace::{act_on_object_here, act_on_objects, isolate, show_everything};
+
+/// The same with the object under the pointer.
+pub(super) const OBJECT_HERE: Entry<ObjectAction> = Entry {
+    listed: &[
+        item(
+            ObjectAction::Hide,
+            "Hide object",
+            "Hides the object under the pointer: it is neither drawn nor picked nor painted, and moves along.",
+            "invisible",
+            &[character('h')],
+        ),
+        item(
+            ObjectAction::Solo,
+            "Show only this object",
+            "Hides all objects but the one under the pointer; once more shows everything.",
+            "solo",
+            &[shift('h')],
+        ),
+        item(
+            ObjectAction::Lock,
+            "Lock object",
+            "Holds the object under the pointer still, whatever is painted on it.",
+            "freeze protect",
+            &[],
+        ),
+    ],
+    scope: Scope::Document,
+    unavailable: when_open,
+    action: Action::Do(|context, action| {
+        let pointed_at = context.pointed_at();
+        act_on_object_here(context.workspace, action, pointed_at);
+    }),
+};
+
+/// Hides, shows or locks objects, by their numbers in [`pliant_mesh::Model::all_objects`].
+pub(super) const OBJECTS: Entry<(ObjectAction, Vec<u32>)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: when_open,
+    action: Action::Do(|context, (action, objects)| act_on_objects(context.workspace, action, &objects)),
+};
+
+/// Shows nothing but the connected part under the pointer; once more shows the others again.
+pub(super) const ISOLATE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Isolate part",
+        "Shows nothing but the connected part under the pointer; once more shows the others again.",
+        "solo local view component",
+        &[character('/')],
+    )],
+    scope: Scope::Document,
+    unavailable: when_open,
+    action: Action::Do(|context, ()| {
+        let pointed_at = context.pointed_at();
+        isolate(context.workspace, pointed_at);
+    }),
+};
+
+/// Shows everything that is hidden.
+pub(super) const SHOW_EVERYTHING: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Show everything",
+        "Shows all objects and parts that are hidden.",
+        "unhide reveal",
+        &[alt('h')],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| {
+        let is_any = !state.workspace.document.access().shows_all();
+        unless(is_any, "Nothing is hidden.")
+    },
+    action: Action::Do(|context, ()| show_everything(context.workspace)),
+};

@@ -1,0 +1,209 @@
+//! What the left button does on the surface, and with what.
+
+use super::entry::{Action, Entry, Scope, always, character, item};
+use crate::tool::{BrushMetric, Depth, StiffnessBrush, StrokeShape, ToolMode};
+
+/// The factor by which a key sizes the brush.
+const BRUSH_STEP: f64 = 1.2;
+
+/// Chooses what the left button does on the surface.
+pub(super) const SET_TOOL: Entry<ToolMode> = Entry {
+    listed: &[
+        item(
+            ToolMode::PaintHandle,
+            "Paint handle",
+            "Paints what you want to move; around it a region follows along.",
+            "brush control",
+            &[character('1')],
+        ),
+        item(
+            ToolMode::PaintFree,
+            "Paint region",
+            "Paints what may bend along with the handles.",
+            "brush free roi region of influence",
+            &[character('2')],
+        ),
+        item(
+            ToolMode::PaintFixed,
+            "Paint fixed",
+            "Paints what is held still.",
+            "brush pin anchor hold",
+            &[character('3')],
+        ),
+        item(
+            ToolMode::Erase,
+            "Erase",
+            "Takes paint away.",
+            "unpaint rubber",
+            &[character('4')],
+        ),
+        item(
+            ToolMode::Select,
+            "Select",
+            "Click a handle to select it; drag it to move it in the plane of the screen.",
+            "pick cursor arrow",
+            &[character('5')],
+        ),
+        item(
+            ToolMode::PaintStiffness,
+            "Paint stiffness",
+            "Paints how firmly the surface keeps its shape.",
+            "brush rigidity material",
+            &[character('6')],
+        ),
+    ],
+    scope: Scope::Tool,
+    unavailable: always,
+    action: Action::Do(|context, mode| context.settings.mode = mode),
+};
+
+/// How the left button takes vertices.
+pub(super) const SET_STROKE_SHAPE: Entry<StrokeShape> = Entry {
+    listed: &[
+        item(
+            StrokeShape::Brush,
+            "Brush",
+            "Paints with a round brush.",
+            "",
+            &[character('b')],
+        ),
+        item(
+            StrokeShape::Lasso,
+            "Lasso",
+            "Paints what a line drawn freely encloses.",
+            "freehand select",
+            &[character('l')],
+        ),
+        item(
+            StrokeShape::Box,
+            "Box",
+            "Paints what a box encloses.",
+            "rectangle border select",
+            &[character('k')],
+        ),
+        item(
+            StrokeShape::Component,
+            "Whole part",
+            "Paints the whole part of the surface that is clicked.",
+            "component connected linked",
+            &[character('j')],
+        ),
+    ],
+    scope: Scope::Tool,
+    unavailable: always,
+    action: Action::Do(|context, shape| {
+        context.settings.stroke_shape = shape;
+        if context.settings.mode == ToolMode::Select {
+            context.settings.mode = ToolMode::PaintHandle;
+        }
+    }),
+};
+
+/// How the brush measures its radius.
+pub(super) const SET_BRUSH_METRIC: Entry<BrushMetric> = Entry {
+    listed: &[
+        item(
+            BrushMetric::Screen,
+            "Brush as seen",
+            "The brush takes what its disc on the screen covers and faces you.",
+            "screen",
+            &[],
+        ),
+        item(
+            BrushMetric::Surface,
+            "Brush along the surface",
+            "The brush takes what is near along the surface: into folds and round edges, seen or not.",
+            "geodesic",
+            &[],
+        ),
+        item(
+            BrushMetric::Through,
+            "Brush through",
+            "The brush takes everything that its disc on the screen covers, however far behind.",
+            "x-ray occluded",
+            &[],
+        ),
+    ],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, metric| context.settings.brush.metric = metric),
+};
+
+/// How deep a lasso or a box goes.
+pub(super) const SET_DEPTH: Entry<Depth> = Entry {
+    listed: &[
+        item(
+            Depth::Visible,
+            "Lasso what is seen",
+            "A lasso or a box takes only what faces you and is hidden by nothing.",
+            "",
+            &[],
+        ),
+        item(
+            Depth::Through,
+            "Lasso through",
+            "A lasso or a box takes everything inside, to the back of the model.",
+            "",
+            &[],
+        ),
+    ],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, depth| context.settings.depth = depth),
+};
+
+/// Sets the brush's radius in points, clamped to what the brush allows.
+pub(super) const SET_BRUSH_RADIUS: Entry<f64> = Entry {
+    listed: &[],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, radius_px| context.settings.set_brush_radius(radius_px)),
+};
+
+/// A larger brush.
+pub(super) const GROW_BRUSH: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Larger brush",
+        "Makes the brush larger.",
+        "radius size",
+        &[character(']')],
+    )],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, ()| {
+        context
+            .settings
+            .set_brush_radius(context.settings.brush.radius_px * BRUSH_STEP)
+    }),
+};
+
+/// A smaller brush.
+pub(super) const SHRINK_BRUSH: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Smaller brush",
+        "Makes the brush smaller.",
+        "radius size",
+        &[character('[')],
+    )],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, ()| {
+        context
+            .settings
+            .set_brush_radius(context.settings.brush.radius_px / BRUSH_STEP)
+    }),
+};
+
+/// The stiffness brush's action and numbers, clamped to what they may be.
+pub(super) const SET_STIFFNESS_BRUSH: Entry<StiffnessBrush> = Entry {
+    listed: &[],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, brush| {
+        if let Some(brush) = brush.clamped() {
+            context.settings.stiffness_brush = brush;
+        }
+    }),
+};

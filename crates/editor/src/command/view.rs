@@ -1,0 +1,272 @@
+//! Where one looks from.
+
+use glam::{DVec2, DVec3};
+use pliant_mesh::DrawnVertex;
+
+use super::entry::{Action, Entry, Scope, alt, always, character, ctrl_numpad, item, numpad, plain, unless, when_open};
+use crate::input::Key;
+use crate::view::{Camera, CameraStep, NamedView, Orbit, Projection, UpAxis, View};
+use crate::workspace::{Workspace, members};
+
+/// How far a key turns the view: 15 degrees.
+const VIEW_STEP_RAD: f64 = std::f64::consts::PI / 12.0;
+
+/// Frames everything.
+pub(super) const FRAME_ALL: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Frame all",
+        "Shows the whole surface.",
+        "zoom fit home",
+        &[plain(Key::Home)],
+    )],
+    scope: Scope::View,
+    unavailable: when_open,
+    action: Action::Do(|context, ()| frame_all(context.workspace, context.view)),
+};
+
+/// Frames the selected handle and its region.
+pub(super) const FRAME_SELECTED: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Frame selected",
+        "Shows the selected handle, or the whole surface where none is selected.",
+        "zoom fit focus",
+        &[character('.')],
+    )],
+    scope: Scope::View,
+    unavailable: when_open,
+    action: Action::Do(|context, ()| frame_selected(context.workspace, context.view)),
+};
+
+/// Comes close to a connected part, by its component's number.
+pub(super) const FRAME_PART: Entry<u32> = Entry {
+    listed: &[],
+    scope: Scope::View,
+    unavailable: when_open,
+    action: Action::Do(|context, part| frame_part(context.workspace, context.view, part)),
+};
+
+/// Comes close to a vertex, by the file's number.
+pub(super) const FRAME_FILE_VERTEX: Entry<u32> = Entry {
+    listed: &[],
+    scope: Scope::View,
+    unavailable: when_open,
+    action: Action::Do(|context, vertex| frame_file_vertex(context.workspace, context.view, vertex)),
+};
+
+/// Looks from where one looked before.
+pub(super) const CAMERA_BACK: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "View before",
+        "Looks from where you looked before.",
+        "camera back",
+        &[alt('[')],
+    )],
+    scope: Scope::View,
+    unavailable: |state, ()| {
+        let is_any = state.view.history().has(CameraStep::Back);
+        unless(is_any, "The view was nowhere else before.")
+    },
+    action: Action::Do(|context, ()| context.view.step(CameraStep::Back)),
+};
+
+/// Looks from where one looked before going back.
+pub(super) const CAMERA_FORTH: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "View after",
+        "Looks from where you looked before you went back.",
+        "camera forth forward",
+        &[alt(']')],
+    )],
+    scope: Scope::View,
+    unavailable: |state, ()| {
+        let is_any = state.view.history().has(CameraStep::Forth);
+        unless(is_any, "The view was not taken back anywhere.")
+    },
+    action: Action::Do(|context, ()| context.view.step(CameraStep::Forth)),
+};
+
+/// Which axis points up on the screen.
+pub(super) const SET_UP: Entry<UpAxis> = Entry {
+    listed: &[],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, up| context.view.adjust(|camera| camera.up = up)),
+};
+
+/// Changes between perspective and orthographic.
+pub(super) const TOGGLE_PROJECTION: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Orthographic",
+        "Changes between perspective and a view in which distance does not matter.",
+        "perspective projection parallel",
+        &[numpad(5)],
+    )],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, ()| {
+        context.view.adjust(|camera| {
+            camera.projection = match camera.projection {
+                Projection::Perspective => Projection::Orthographic,
+                Projection::Orthographic => Projection::Perspective,
+            };
+        });
+    }),
+};
+
+/// What dragging the view does.
+pub(super) const SET_ORBIT: Entry<Orbit> = Entry {
+    listed: &[
+        item(
+            Orbit::Turntable,
+            "Turntable",
+            "Dragging turns the view about the up axis; the horizon stays level.",
+            "orbit",
+            &[],
+        ),
+        item(
+            Orbit::Trackball,
+            "Trackball",
+            "Dragging rolls the view like a ball.",
+            "orbit arcball",
+            &[],
+        ),
+    ],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, orbit| context.view.set_orbit(orbit)),
+};
+
+/// Turns the view by steps of 15 degrees, to the right and down.
+pub(super) const STEP_VIEW: Entry<[i8; 2]> = Entry {
+    listed: &[
+        item([1, 0], "Turn left", "Turns the view by 15°.", "", &[numpad(4)]),
+        item([-1, 0], "Turn right", "Turns the view by 15°.", "", &[numpad(6)]),
+        item([0, 1], "Turn up", "Turns the view by 15°.", "", &[numpad(8)]),
+        item([0, -1], "Turn down", "Turns the view by 15°.", "", &[numpad(2)]),
+    ],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, steps| {
+        let angles_rad = DVec2::from(steps.map(f64::from)) * VIEW_STEP_RAD;
+        context.view.travel(|camera| camera.turn(angles_rad));
+    }),
+};
+
+/// Looks from the other side.
+pub(super) const TURN_AROUND: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Other side",
+        "Looks from the other side.",
+        "opposite flip view behind",
+        &[numpad(9)],
+    )],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, ()| context.view.travel(Camera::turn_around)),
+};
+
+/// Looks from a named side.
+pub(super) const VIEW: Entry<NamedView> = Entry {
+    listed: &[
+        item(
+            NamedView::Front,
+            "From front",
+            "Looks from the front.",
+            "camera",
+            &[numpad(1)],
+        ),
+        item(
+            NamedView::Back,
+            "From back",
+            "Looks from behind.",
+            "camera",
+            &[ctrl_numpad(1)],
+        ),
+        item(
+            NamedView::Left,
+            "From left",
+            "Looks from the left.",
+            "camera side",
+            &[ctrl_numpad(3)],
+        ),
+        item(
+            NamedView::Right,
+            "From right",
+            "Looks from the right.",
+            "camera side",
+            &[numpad(3)],
+        ),
+        item(
+            NamedView::Top,
+            "From top",
+            "Looks from above.",
+            "camera above",
+            &[numpad(7)],
+        ),
+        item(
+            NamedView::Bottom,
+            "From bottom",
+            "Looks from below.",
+            "camera below",
+            &[ctrl_numpad(7)],
+        ),
+        item(
+            NamedView::ThreeQuarter,
+            "Three-quarter",
+            "Looks from the front, the right and above.",
+            "camera perspective",
+            &[numpad(0)],
+        ),
+    ],
+    scope: Scope::View,
+    unavailable: always,
+    action: Action::Do(|context, side| context.view.travel(|camera| camera.look_from(side))),
+};
+
+/// Shows everything that is not hidden.
+pub(crate) fn frame_all(workspace: &Workspace, view: &mut View) {
+    if workspace.model().is_some() {
+        view.frame_all(&workspace.shown_positions());
+    }
+}
+
+fn frame_selected(workspace: &Workspace, view: &mut View) {
+    let Some(id) = workspace.selection.selected() else {
+        return;
+    };
+    let members = members(&workspace.document, id).into_iter();
+    let positions: Vec<DVec3> = members.map(|vertex| workspace.position(vertex)).collect();
+    if !positions.is_empty() {
+        view.frame(&positions);
+    }
+}
+
+fn frame_part(workspace: &Workspace, view: &mut View, part: u32) {
+    let Some(model) = workspace.model() else { return };
+    if (part as usize) < model.topology.components().len() {
+        let vertices = model.topology.vertices_of(part);
+        let positions: Vec<DVec3> = vertices.map(|vertex| workspace.position(vertex)).collect();
+        view.frame(&positions);
+    }
+}
+
+/// Comes close to a vertex, by the file's number.
+fn frame_file_vertex(workspace: &Workspace, view: &mut View, file_vertex: u32) {
+    let Some(model) = workspace.model() else { return };
+    let drawn = model.drawn.file_vertices().position(|vertex| vertex.0 == file_vertex);
+    let Some(drawn) = drawn.map(|drawn| DrawnVertex(drawn as u32)) else {
+        return;
+    };
+    let moved = model.drawn.surface_vertex(drawn);
+    let moved = moved.map_or(DVec3::ZERO, |vertex| workspace.document.from_file()[vertex.index()]);
+    let point = model.rest_position(drawn) + moved;
+    if point.is_finite() {
+        view.approach(point);
+    }
+}

@@ -1,0 +1,96 @@
+//! What a document holds, to be read by all and changed by the document alone.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::{Arap, Loose, Method};
+
+use super::access::Access;
+use super::handle::{Handle, HandleId};
+
+/// What was painted on a vertex.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum Paint {
+    /// Nothing: free where a handle reaches, held still elsewhere.
+    #[default]
+    Bare,
+    /// Held still, whatever reaches it.
+    Fixed,
+    /// Free to bend.
+    Free,
+    /// A part of a handle.
+    Handle(HandleId),
+}
+
+/// What a document holds. Every vector has one element per surface vertex.
+#[derive(Clone, Debug)]
+pub struct Content {
+    pub(crate) paint: Arc<Vec<Paint>>,
+    pub(crate) handles: Vec<Handle>,
+    /// The next handle's number.
+    pub(crate) next_handle: u16,
+    /// Painted stiffness; `None` is 1 everywhere.
+    pub(crate) stiffness: Option<Arc<Vec<f64>>>,
+    /// With which continuity the surface joins what holds it; `None` is the highest everywhere.
+    pub(crate) continuity: Option<Arc<Vec<f64>>>,
+    pub(crate) method: Method,
+    pub(crate) loose: Loose,
+    /// What single parts do that nothing holds, by their component's number, in place of `loose`.
+    pub(crate) loose_parts: Arc<BTreeMap<u32, Loose>>,
+    /// What is hidden and locked.
+    pub(crate) access: Arc<Access>,
+    /// The rest shape's displacements from the file's.
+    pub(crate) rest: Arc<Vec<DVec3>>,
+    /// Whether a shape was applied: without, `rest` is zero.
+    pub(crate) applied: bool,
+    /// The present shape's displacements from the rest shape.
+    pub(crate) from_rest: Arc<Vec<DVec3>>,
+    /// The sum of both, what is drawn: follows from them.
+    pub(crate) from_file: Arc<Vec<DVec3>>,
+    /// Whether `from_rest` is final for the handles' transforms.
+    pub(crate) settled: bool,
+}
+
+impl Content {
+    /// What a fresh document holds: everything is held still. It bends by ARAP, which turns and moves at once.
+    pub(crate) fn new(vertex_count: usize) -> Self {
+        let zero = Arc::new(vec![DVec3::ZERO; vertex_count]);
+        Self {
+            paint: Arc::new(vec![Paint::Bare; vertex_count]),
+            handles: Vec::new(),
+            next_handle: 0,
+            stiffness: None,
+            continuity: None,
+            method: Method::Arap(Arap::default()),
+            loose: Loose::default(),
+            loose_parts: Arc::default(),
+            access: Arc::default(),
+            rest: Arc::clone(&zero),
+            applied: false,
+            from_rest: Arc::clone(&zero),
+            from_file: zero,
+            settled: true,
+        }
+    }
+
+    /// Computes what is drawn from the rest shape and the displacements from it.
+    pub(super) fn sum_shapes(&mut self) {
+        self.from_file = sum_of_shapes(self.applied.then_some(&self.rest), &self.from_rest);
+    }
+}
+
+/// What is drawn: the rest shape's displacements, if there are any, plus those from it.
+///
+/// Where nothing is added the bits of the rest shape stay, so that applying a shape moves nothing.
+pub(crate) fn sum_of_shapes(rest: Option<&Arc<Vec<DVec3>>>, from_rest: &Arc<Vec<DVec3>>) -> Arc<Vec<DVec3>> {
+    match rest {
+        None => Arc::clone(from_rest),
+        Some(rest) => Arc::new(
+            rest.iter()
+                .zip(from_rest.iter())
+                .map(|(&rest, &more)| if more == DVec3::ZERO { rest } else { rest + more })
+                .collect(),
+        ),
+    }
+}

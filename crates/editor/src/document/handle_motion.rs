@@ -1,0 +1,115 @@
+//! What dragging does to a handle's transform: moves it, turns it about its pivot, scales it along its own axes.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use super::handle_transform::HandleTransform;
+
+impl HandleTransform {
+    /// Further by `translation`, in world units.
+    pub(crate) fn moved_by(self, way: DVec3) -> Self {
+        match self {
+            Self::Trs {
+                translation,
+                rotation,
+                scale,
+                pivot,
+            } => Self::Trs {
+                translation: translation + way,
+                rotation,
+                scale,
+                pivot,
+            },
+            Self::Matrix(matrix) => Self::Matrix(DAffine3 {
+                matrix3: matrix.matrix3,
+                translation: matrix.translation + way,
+            }),
+        }
+    }
+
+    /// Further by a rotation about where `pivot` of the rest shape is now.
+    pub(crate) fn turned_by(self, turn: DQuat, pivot: DVec3) -> Self {
+        match self {
+            Self::Trs { .. } if turn == DQuat::IDENTITY => self,
+            Self::Trs {
+                translation,
+                rotation,
+                scale,
+                pivot,
+            } => Self::Trs {
+                translation,
+                rotation: (turn * rotation).normalize(),
+                scale,
+                pivot,
+            },
+            Self::Matrix(matrix) => Self::Matrix(with_linear(matrix, DMat3::from_quat(turn) * matrix.matrix3, pivot)),
+        }
+    }
+
+    /// Further by a factor for each of the handle's own axes, about where `pivot` of the rest shape is now.
+    pub(crate) fn scaled_by(self, factors: DVec3, pivot: DVec3) -> Self {
+        match self {
+            Self::Trs {
+                translation,
+                rotation,
+                scale,
+                pivot,
+            } => Self::Trs {
+                translation,
+                rotation,
+                scale: scale * factors,
+                pivot,
+            },
+            Self::Matrix(matrix) => Self::Matrix(with_linear(
+                matrix,
+                matrix.matrix3 * DMat3::from_diagonal(factors),
+                pivot,
+            )),
+        }
+    }
+}
+
+/// The map with another linear part that takes `pivot` where the map took it.
+fn with_linear(map: DAffine3, linear: DMat3, pivot: DVec3) -> DAffine3 {
+    DAffine3 {
+        matrix3: linear,
+        translation: map.transform_point3(pivot) - linear * pivot,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DAffine3, DQuat, DVec3};
+
+    use super::super::handle_transform::HandleTransform;
+
+    #[test]
+    fn turning_and_scaling_leave_the_pivot_where_it_is_in_either_form() {
+        let pivot = DVec3::new(1.0, -2.0, 0.5);
+        let trs = HandleTransform::IDENTITY.moved_by(DVec3::new(0.0, 3.0, 1.0));
+        for start in [trs, HandleTransform::Matrix(trs.affine(pivot))] {
+            let centre = start.affine(pivot).transform_point3(pivot);
+            let turned = start
+                .turned_by(DQuat::from_rotation_z(0.7), pivot)
+                .scaled_by(DVec3::new(2.0, 1.0, 0.5), pivot);
+            assert!(turned.affine(pivot).transform_point3(pivot).distance(centre) < 1e-12);
+        }
+    }
+
+    #[test]
+    fn both_forms_do_the_same() {
+        let pivot = DVec3::new(0.2, 0.4, -1.0);
+        let go = |start: HandleTransform| -> DAffine3 {
+            start
+                .moved_by(DVec3::X)
+                .turned_by(DQuat::from_rotation_y(1.1), pivot)
+                .scaled_by(DVec3::new(1.5, 0.8, 1.0), pivot)
+                .turned_by(DQuat::from_rotation_x(-0.4), pivot)
+                .affine(pivot)
+        };
+        let (a, b) = (
+            go(HandleTransform::IDENTITY),
+            go(HandleTransform::Matrix(DAffine3::IDENTITY)),
+        );
+        assert!(a.abs_diff_eq(b, 1e-12), "{a:?} {b:?}");
+    }
+}

@@ -1,0 +1,242 @@
+//! Undo and redo by deltas: each step holds the other side of what it changed, and swaps it with the document.
+//!
+//! A step holds one copy of each changed value: the old ones while it is done, the new ones while it is undone. So
+//! undo and redo are the same exchange, and bits come back as they were.
+//!
+//! The shape is special: it may arrive after the step that asked for it was committed (a drag whose last solve is
+//! still running, a surface that catches up with an early drag). The history therefore remembers the shape that its
+//! deltas are relative to, and [`History::sync`] re-bases the two neighbouring steps onto the one that is shown.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::{Loose, Method};
+
+use super::access::Access;
+use super::content::Paint;
+use super::handle::Handle;
+use super::sparse::Sparse;
+use super::state::Document;
+use super::version::{Aspect, Version};
+
+/// How many bytes of deltas are kept before the oldest steps are forgotten.
+pub const HISTORY_BYTES: usize = 256 << 20;
+
+/// A changed part of the document: the values that it does not have at present.
+#[derive(Clone, Debug)]
+pub(crate) enum Change {
+    /// Painted vertices.
+    Paint(Sparse<Paint>),
+    /// The list of handles and the next one's number.
+    Handles(Vec<Handle>, u16),
+    /// The stiffness at some vertices, and whether there is a field at all: without, it is 1 everywhere.
+    Stiffness(Sparse<f64>, bool),
+    /// The continuity field.
+    Continuity(Option<Arc<Vec<f64>>>),
+    /// Method and loose components.
+    Options(Method, Loose, Arc<BTreeMap<u32, Loose>>),
+    /// The rest shape, and whether there is another than the file's.
+    Rest(Sparse<DVec3>, bool),
+    /// What is hidden and locked.
+    Access(Arc<Access>),
+    /// Whether the shape is final for the handles' transforms.
+    Settled(bool),
+}
+
+/// A named step.
+#[derive(Clone, Debug)]
+struct Step {
+    name: String,
+    changes: Vec<Change>,
+    /// The shape on the other side, relative to [`History::shape`] if the step is a neighbour of the present.
+    shape: Sparse<DVec3>,
+}
+
+impl Step {
+    fn bytes(&self) -> usize {
+        let changes: usize = self
+            .changes
+            .iter()
+            .map(|change| match change {
+                Change::Paint(sparse) => sparse.bytes(),
+                Change::Rest(sparse, _) => sparse.bytes(),
+                Change::Stiffness(sparse, _) => sparse.bytes(),
+                Change::Continuity(Some(field)) => field.len() * size_of::<f64>(),
+                Change::Handles(handles, _) => handles.len() * size_of::<Handle>(),
+                Change::Access(access) => {
+                    size_of::<Access>() + (access.hidden.len() + access.locked.len()) * size_of::<u32>()
+                }
+                Change::Continuity(None) | Change::Options(..) | Change::Settled(_) => size_of::<Change>(),
+            })
+            .sum();
+        size_of::<Self>() + self.name.len() + changes + self.shape.bytes()
+    }
+}
+
+/// The steps behind and ahead of the present.
+#[derive(Clone, Debug)]
+pub struct History {
+    done: VecDeque<Step>,
+    undone: Vec<Step>,
+    /// The shape that the neighbouring steps' deltas are relative to.
+    shape: Arc<Vec<DVec3>>,
+    /// Which version of the document's shape that is.
+    shape_version: Version,
+    cap_bytes: usize,
+    /// How many steps lie behind the state that was saved; `None` when that state was forgotten.
+    saved_at: Option<usize>,
+    /// Grows with every step that is made, taken back or done again.
+    revision: u64,
+}
+
+impl History {
+    /// An empty history of a document that shows `shape`.
+    pub(crate) fn new(document: &Document, cap_bytes: usize) -> Self {
+        Self {
+            done: VecDeque::new(),
+            undone: Vec::new(),
+            shape: Arc::clone(&document.from_rest),
+            shape_version: document.versions().of(Aspect::Shape),
+            cap_bytes,
+            saved_at: Some(0),
+            revision: 0,
+        }
+    }
+
+    /// The name of the step that undo would take back.
+    pub fn undo_name(&self) -> Option<&str> {
+        self.done.back().map(|step| step.name.as_str())
+    }
+
+    /// The name of the step that redo would do again.
+    pub fn redo_name(&self) -> Option<&str> {
+        self.undone.last().map(|step| step.name.as_str())
+    }
+
+    /// The names of all steps, oldest first, and how many of them are done.
+    pub fn names(&self) -> (Vec<&str>, usize) {
+        let undone = self.undone.iter().rev();
+        (
+            self.done.iter().chain(undone).map(|step| step.name.as_str()).collect(),
+            self.done.len(),
+        )
+    }
+
+    /// The bytes that the deltas take.
+    pub fn bytes(&self) -> usize {
+        self.done.iter().chain(&self.undone).map(Step::bytes).sum()
+    }
+
+    /// Whether the document differs from what was saved.
+    pub fn is_unsaved(&self) -> bool {
+        self.saved_at != Some(self.done.len())
+    }
+
+    /// Notes that the present state was saved.
+    pub(crate) fn mark_saved(&mut self) {
+        self.saved_at = Some(self.done.len());
+    }
+
+    /// Notes that no state of this history was saved.
+    pub(crate) fn mark_unsaved(&mut self) {
+        self.saved_at = None;
+    }
+
+    /// Makes the neighbouring steps relative to the shape that the document shows.
+    pub(crate) fn sync(&mut self, document: &Document) {
+        if self.shape_version == document.versions().of(Aspect::Shape) {
+            return;
+        }
+        for step in self.done.back_mut().into_iter().chain(self.undone.last_mut()) {
+            let other = step.shape.applied(&self.shape);
+            step.shape = Sparse::difference(&document.from_rest, &other);
+        }
+        self.keep_shape_of(document);
+        self.forget_oldest();
+    }
+
+    fn keep_shape_of(&mut self, document: &Document) {
+        self.shape = Arc::clone(&document.from_rest);
+        self.shape_version = document.versions().of(Aspect::Shape);
+    }
+
+    /// Adds a step with what the document had before it; `before` is the document as it was.
+    ///
+    /// What was undone can't be done again after this.
+    pub(crate) fn push(&mut self, name: String, changes: Vec<Change>, before: &Document) {
+        if self.saved_at.is_some_and(|saved_at| saved_at > self.done.len()) {
+            self.saved_at = None;
+        }
+        self.revision += 1;
+        self.undone.clear();
+        self.done.push_back(Step {
+            name,
+            changes,
+            shape: Sparse::default(),
+        });
+        // The step's own shape delta is empty relative to what was shown when it began: `sync` makes it the
+        // difference to what came of it.
+        self.keep_shape_of(before);
+    }
+
+    /// Takes back the last step; its name, or `None` if there is none.
+    pub(crate) fn undo(&mut self, document: &mut Document) -> Option<String> {
+        self.sync(document);
+        let mut step = self.done.pop_back()?;
+        self.exchange(&mut step, document);
+        let name = step.name.clone();
+        self.undone.push(step);
+        Some(name)
+    }
+
+    /// Does the last undone step again; its name, or `None` if there is none.
+    pub(crate) fn redo(&mut self, document: &mut Document) -> Option<String> {
+        self.sync(document);
+        let mut step = self.undone.pop()?;
+        self.exchange(&mut step, document);
+        let name = step.name.clone();
+        self.done.push_back(step);
+        Some(name)
+    }
+
+    /// Grows with every step that is made, taken back or done again.
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    fn exchange(&mut self, step: &mut Step, document: &mut Document) {
+        self.revision += 1;
+        for change in &mut step.changes {
+            swap(change, document);
+        }
+        if !step.shape.is_empty() {
+            document.swap_shape(&mut step.shape);
+        }
+        self.keep_shape_of(document);
+    }
+
+    fn forget_oldest(&mut self) {
+        let mut bytes = self.bytes();
+        while bytes > self.cap_bytes && self.done.len() > 1 {
+            if let Some(oldest) = self.done.pop_front() {
+                bytes -= oldest.bytes();
+                self.saved_at = self.saved_at.and_then(|saved_at| saved_at.checked_sub(1));
+            }
+        }
+    }
+}
+
+/// Exchanges what the change holds with what the document has.
+fn swap(change: &mut Change, document: &mut Document) {
+    match change {
+        Change::Paint(sparse) => document.swap_paint(sparse),
+        Change::Handles(handles, next_handle) => document.swap_handles(handles, next_handle),
+        Change::Stiffness(sparse, is_field) => document.swap_stiffness(sparse, is_field),
+        Change::Continuity(continuity) => document.swap_continuity(continuity),
+        Change::Options(method, loose, parts) => document.swap_options(method, loose, parts),
+        Change::Rest(sparse, applied) => document.swap_rest(sparse, applied),
+        Change::Access(access) => document.swap_access(access),
+        Change::Settled(settled) => document.swap_settled(settled),
+    }
+}

@@ -1,0 +1,33 @@
+//! What a person edits, and how it is undone: paint, handles, options, the shape they have brought about.
+
+mod access;
+mod content;
+mod handle;
+mod handle_colour;
+mod handle_motion;
+mod handle_transform;
+mod history;
+mod mirror_plane;
+mod polar;
+mod sparse;
+mod state;
+mod transaction;
+mod turn;
+mod version;
+mod vertex_access;
+
+pub use access::{Access, ObjectAction, object_name};
+pub(crate) use content::sum_of_shapes;
+pub use content::{Content, Paint};
+pub use handle::{Handle, HandleId, PivotPlace, Reach, Twin};
+pub use handle_colour::HANDLE_COLOURS;
+pub use handle_transform::HandleTransform;
+pub use history::{HISTORY_BYTES, History};
+pub use mirror_plane::MirrorPlane;
+pub(crate) use sparse::bits_equal;
+pub use state::Document;
+pub(crate) use state::Repainted;
+pub(crate) use transaction::Transaction;
+pub(crate) use turn::{accumulated, followed, means, rotation_of};
+pub(crate) use version::{Aspect, Version, Versions};
+pub(crate) use vertex_access::VertexAccess;

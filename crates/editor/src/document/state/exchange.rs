@@ -1,0 +1,136 @@
+//! How a document takes back what was changed, and takes over what another has.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::{Loose, Method};
+use pliant_mesh::SurfaceVertex;
+
+use super::{Document, Repainted, note};
+use crate::document::access::Access;
+use crate::document::content::Paint;
+use crate::document::handle::Handle;
+use crate::document::sparse::Sparse;
+use crate::document::version::{Aspect, Versions};
+
+impl Document {
+    /// Takes everything back to how it was, versions included.
+    pub(crate) fn go_back_to(&mut self, before: Self) {
+        let is_same = |aspect| !self.versions().differ(before.versions(), aspect);
+        if !(is_same(Aspect::Paint) && is_same(Aspect::Stiffness)) {
+            self.repainted = Repainted::All;
+        }
+        self.marks.go_back_to(before.versions());
+        self.content = before.content;
+    }
+
+    /// Takes the place of another document, of which nothing remains.
+    pub(crate) fn replace(&mut self, mut by: Self) {
+        by.marks.count_on_from(&self.marks);
+        by.marks.mark(&Aspect::ALL);
+        *self = by;
+    }
+
+    /// Takes over what another document has, but for the method. `known` are its versions when that was done last. The
+    /// shape stays what this document's method has made, as long as the rest shape does, and is to be solved anew.
+    pub(crate) fn follow(&mut self, leader: &Self, known: Option<&Versions>, method: &Method) {
+        let is_new = |aspect| known.is_none_or(|known| leader.versions().differ(known, aspect));
+        let is_own = |aspect| matches!(aspect, Aspect::Method | Aspect::Shape | Aspect::Drawn);
+        let theirs = Aspect::ALL
+            .into_iter()
+            .filter(|&aspect| !is_own(aspect) && is_new(aspect));
+        let mut changed: Vec<Aspect> = theirs.collect();
+        if self.content.method != *method {
+            changed.push(Aspect::Method);
+        }
+        let own = std::mem::replace(&mut self.content, leader.content.clone());
+        self.content.method = method.clone();
+        if is_new(Aspect::Rest) {
+            self.content.sum_shapes();
+            changed.extend([Aspect::Shape, Aspect::Drawn]);
+        } else {
+            (self.content.from_rest, self.content.from_file) = (own.from_rest, own.from_file);
+        }
+        self.marks.mark(&changed);
+        self.repainted = Repainted::All;
+        self.content.settled = true;
+        self.unsettle();
+    }
+
+    pub(in crate::document) fn swap_paint(&mut self, paint: &mut Sparse<Paint>) {
+        paint.swap(Arc::make_mut(&mut self.content.paint).as_mut_slice());
+        self.marks.mark(&[Aspect::Paint]);
+        note(&mut self.repainted, paint.indices.iter().copied().map(SurfaceVertex));
+    }
+
+    pub(in crate::document) fn swap_handles(&mut self, handles: &mut Vec<Handle>, next_handle: &mut u16) {
+        std::mem::swap(handles, &mut self.content.handles);
+        std::mem::swap(next_handle, &mut self.content.next_handle);
+        self.mark_handles(handles);
+    }
+
+    /// `is_field` tells whether there is a field at all on the other side: without, it is 1 everywhere.
+    pub(in crate::document) fn swap_stiffness(&mut self, stiffness: &mut Sparse<f64>, is_field: &mut bool) {
+        let was_field = self.content.stiffness.is_some();
+        let count = self.content.paint.len();
+        let field = self.content.stiffness.get_or_insert_with(|| Arc::new(vec![1.0; count]));
+        stiffness.swap(Arc::make_mut(field).as_mut_slice());
+        if !*is_field {
+            self.content.stiffness = None;
+        }
+        *is_field = was_field;
+        self.marks.mark(&[Aspect::Stiffness]);
+        note(
+            &mut self.repainted,
+            stiffness.indices.iter().copied().map(SurfaceVertex),
+        );
+    }
+
+    pub(in crate::document) fn swap_continuity(&mut self, continuity: &mut Option<Arc<Vec<f64>>>) {
+        std::mem::swap(continuity, &mut self.content.continuity);
+        self.marks.mark(&[Aspect::Continuity]);
+    }
+
+    pub(in crate::document) fn swap_options(
+        &mut self,
+        method: &mut Method,
+        loose: &mut Loose,
+        parts: &mut Arc<BTreeMap<u32, Loose>>,
+    ) {
+        let before = std::mem::replace(method, self.content.method.clone());
+        self.set_method(before);
+        let (former, former_parts) = (self.content.loose, Arc::clone(&self.content.loose_parts));
+        self.set_loose(*loose, (**parts).clone());
+        (*loose, *parts) = (former, former_parts);
+    }
+
+    pub(in crate::document) fn swap_rest(&mut self, rest: &mut Sparse<DVec3>, applied: &mut bool) {
+        rest.swap(Arc::make_mut(&mut self.content.rest).as_mut_slice());
+        std::mem::swap(applied, &mut self.content.applied);
+        self.content.sum_shapes();
+        self.marks.mark(&[Aspect::Rest, Aspect::Drawn]);
+    }
+
+    pub(in crate::document) fn swap_access(&mut self, access: &mut Arc<Access>) {
+        if self.content.access.locked != access.locked {
+            self.marks.mark(&[Aspect::Locks]);
+        }
+        std::mem::swap(access, &mut self.content.access);
+        self.marks.mark(&[Aspect::Access]);
+    }
+
+    pub(in crate::document) fn swap_settled(&mut self, settled: &mut bool) {
+        std::mem::swap(settled, &mut self.content.settled);
+        // Solves that ended before are no answer any more.
+        if *settled && !self.content.settled {
+            self.marks.mark(&[Aspect::Targets]);
+        }
+    }
+
+    pub(in crate::document) fn swap_shape(&mut self, shape: &mut Sparse<DVec3>) {
+        shape.swap(Arc::make_mut(&mut self.content.from_rest).as_mut_slice());
+        self.content.sum_shapes();
+        self.marks.mark(&[Aspect::Shape, Aspect::Drawn]);
+    }
+}

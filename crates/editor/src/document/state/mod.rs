@@ -1,0 +1,323 @@
+//! What is saved and undone: the paint, the handles, the options, and the shape they have brought about.
+//!
+//! The [`Document`] holds what a person has said and what has come of it. What follows from it alone, and can be
+//! computed again at any time (the region around the handles, the factorisation), is not in it.
+//!
+//! Everybody may read a document's [`Content`]; only the functions here change it, and each says what it has changed
+//! ([`Versions`]), undo and redo included. Cloning is cheap: the long vectors are shared until one side changes.
+
+mod exchange;
+mod shapes;
+
+use std::collections::BTreeMap;
+use std::ops::Deref;
+use std::sync::Arc;
+
+use pliant_deform::{CONTINUITY_RANGE, Loose, Method};
+use pliant_mesh::SurfaceVertex;
+
+use glam::DVec3;
+
+use super::access::Access;
+use super::content::{Content, Paint};
+use super::handle::{Handle, HandleId};
+use super::version::{Aspect, Marks, Versions};
+
+/// The edited state of one mesh.
+#[derive(Clone, Debug)]
+pub struct Document {
+    content: Content,
+    marks: Marks,
+    repainted: Repainted,
+}
+
+/// On which vertices paint or stiffness has changed since somebody asked.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) enum Repainted {
+    /// On these, with repeats.
+    Vertices(Vec<SurfaceVertex>),
+    /// Perhaps on all.
+    All,
+}
+
+impl Default for Repainted {
+    fn default() -> Self {
+        Self::Vertices(Vec::new())
+    }
+}
+
+impl Deref for Document {
+    type Target = Content;
+
+    fn deref(&self) -> &Content {
+        &self.content
+    }
+}
+
+impl From<Content> for Document {
+    fn from(mut content: Content) -> Self {
+        content.sum_shapes();
+        Self {
+            content,
+            marks: Marks::default(),
+            repainted: Repainted::All,
+        }
+    }
+}
+
+/// What a document says of itself.
+impl Document {
+    /// A fresh document: everything is held still. It bends by ARAP, which turns and moves at once.
+    pub fn new(vertex_count: usize) -> Self {
+        Content::new(vertex_count).into()
+    }
+
+    /// What was painted on each surface vertex.
+    pub fn paint(&self) -> &[Paint] {
+        &self.content.paint
+    }
+
+    /// The handles, in the order in which they were made.
+    pub fn handles(&self) -> &[Handle] {
+        &self.content.handles
+    }
+
+    /// The handle with this number.
+    pub fn handle(&self, id: HandleId) -> Option<&Handle> {
+        self.content.handles.iter().find(|handle| handle.id == id)
+    }
+
+    /// Painted stiffness per surface vertex; `None` is 1 everywhere.
+    pub fn stiffness(&self) -> Option<&[f64]> {
+        self.content.stiffness.as_ref().map(|field| field.as_slice())
+    }
+
+    /// With which continuity the surface joins what holds it, per surface vertex; `None` is the highest everywhere.
+    pub fn continuity(&self) -> Option<&[f64]> {
+        self.content.continuity.as_ref().map(|field| field.as_slice())
+    }
+
+    /// The method and its options.
+    pub fn method(&self) -> &Method {
+        &self.content.method
+    }
+
+    /// What components that nothing holds do.
+    pub fn loose(&self) -> Loose {
+        self.content.loose
+    }
+
+    /// What single components do that nothing holds, in place of [`Document::loose`].
+    pub fn loose_parts(&self) -> &BTreeMap<u32, Loose> {
+        &self.content.loose_parts
+    }
+
+    /// The continuity per surface vertex, with that of handles which say one of their own; `None` is the highest
+    /// everywhere.
+    pub fn joints(&self) -> Option<Vec<f64>> {
+        let handles = self.content.handles.iter();
+        let own: BTreeMap<HandleId, f64> = handles
+            .filter_map(|handle| Some((handle.id, handle.continuity?)))
+            .collect();
+        let painted = self.content.continuity.as_ref();
+        if own.is_empty() {
+            return painted.map(|field| field.to_vec());
+        }
+        let highest = *CONTINUITY_RANGE.end();
+        let joint = |(vertex, paint): (usize, &Paint)| match paint {
+            Paint::Handle(id) if own.contains_key(id) => own[id],
+            _ => painted.map_or(highest, |field| field[vertex]),
+        };
+        Some(self.content.paint.iter().enumerate().map(joint).collect())
+    }
+
+    /// What of the file is hidden and locked.
+    pub fn access(&self) -> &Access {
+        &self.content.access
+    }
+
+    /// The rest shape's displacements from the file's shape, per surface vertex.
+    pub fn rest(&self) -> &[DVec3] {
+        &self.content.rest
+    }
+
+    /// The present shape's displacements from the rest shape, per surface vertex.
+    pub fn from_rest(&self) -> &[DVec3] {
+        &self.content.from_rest
+    }
+
+    /// The present shape's displacements from the file's shape, per surface vertex: what is drawn.
+    pub fn from_file(&self) -> &Arc<Vec<DVec3>> {
+        &self.content.from_file
+    }
+
+    /// Whether a shape was applied, so that the rest shape is another than the file's.
+    pub fn is_applied(&self) -> bool {
+        self.content.applied
+    }
+
+    /// Whether the shape is final for the handles' transforms.
+    pub fn is_settled(&self) -> bool {
+        self.content.settled
+    }
+
+    /// Whether the present shape is another than the rest shape.
+    pub fn is_displaced(&self) -> bool {
+        !self.content.settled || self.content.handles.iter().any(Handle::is_displaced)
+    }
+
+    /// Which state of each aspect this is.
+    pub(crate) fn versions(&self) -> &Versions {
+        self.marks.versions()
+    }
+
+    /// The vertices whose paint or stiffness changed since this was asked last.
+    pub(crate) fn take_repainted(&mut self) -> Repainted {
+        std::mem::take(&mut self.repainted)
+    }
+}
+
+/// What is painted.
+impl Document {
+    /// Paints vertices.
+    pub(crate) fn paint_vertices(&mut self, changes: impl IntoIterator<Item = (SurfaceVertex, Paint)>) {
+        let mut changes = changes.into_iter().peekable();
+        if changes.peek().is_none() {
+            return;
+        }
+        self.marks.mark(&[Aspect::Paint]);
+        let painted = Arc::make_mut(&mut self.content.paint);
+        for (vertex, paint) in changes {
+            painted[vertex.index()] = paint;
+            note(&mut self.repainted, [vertex]);
+        }
+    }
+
+    /// Takes all paint and every handle away.
+    pub(crate) fn clear_paint(&mut self) {
+        self.marks.mark(&[Aspect::Paint]);
+        self.repainted = Repainted::All;
+        self.content.paint = Arc::new(vec![Paint::Bare; self.content.paint.len()]);
+        self.change_handles(Vec::clear);
+    }
+
+    /// Sets the stiffness of every vertex; `None` is 1 everywhere.
+    pub(crate) fn set_stiffness(&mut self, stiffness: Option<Vec<f64>>) {
+        self.marks.mark(&[Aspect::Stiffness]);
+        self.repainted = Repainted::All;
+        self.content.stiffness = stiffness.map(Arc::new);
+    }
+
+    /// Changes the stiffness of some vertices, those that `change` gives back.
+    pub(crate) fn stiffen(&mut self, change: impl FnOnce(&mut [f64]) -> Vec<SurfaceVertex>) {
+        let count = self.content.paint.len();
+        let field = self.content.stiffness.get_or_insert_with(|| Arc::new(vec![1.0; count]));
+        let changed = change(Arc::make_mut(field).as_mut_slice());
+        self.marks.mark(&[Aspect::Stiffness]);
+        note(&mut self.repainted, changed);
+    }
+
+    /// Forgets a field of stiffness that is 1 everywhere.
+    pub(crate) fn drop_plain_stiffness(&mut self) {
+        let field = self.content.stiffness.as_ref();
+        if field.is_some_and(|field| field.iter().all(|&value| value == 1.0)) {
+            self.content.stiffness = None;
+            self.marks.mark(&[Aspect::Stiffness]);
+        }
+    }
+}
+
+/// The handles.
+impl Document {
+    /// A new handle without vertices, the last of the list.
+    pub(crate) fn add_handle(&mut self) -> HandleId {
+        let id = HandleId(self.content.next_handle);
+        self.content.next_handle = self.content.next_handle.saturating_add(1);
+        let name = format!("handle {}", u32::from(id.0) + 1);
+        self.change_handles(|handles| handles.push(Handle::new(id, name)));
+        id
+    }
+
+    /// Takes away the handles that were made since `before`; their numbers are given again.
+    pub(crate) fn drop_handles_made_since(&mut self, before: &Self) {
+        self.change_handles(|handles| handles.retain(|handle| before.handle(handle.id).is_some()));
+        self.content.next_handle = before.content.next_handle;
+        if self.content.handles == before.content.handles {
+            for aspect in [Aspect::Handles, Aspect::Holds, Aspect::Targets, Aspect::Appearance] {
+                self.marks.go_back(before.versions(), aspect);
+            }
+        }
+    }
+
+    /// Changes one handle; `None` if it is gone.
+    pub(crate) fn change_handle<R>(&mut self, id: HandleId, change: impl FnOnce(&mut Handle) -> R) -> Option<R> {
+        self.change_handles(|handles| handles.iter_mut().find(|handle| handle.id == id).map(change))
+    }
+
+    /// Changes the list of handles.
+    pub(crate) fn change_handles<R>(&mut self, change: impl FnOnce(&mut Vec<Handle>) -> R) -> R {
+        let before = self.content.handles.clone();
+        let result = change(&mut self.content.handles);
+        self.mark_handles(&before);
+        result
+    }
+
+    /// Marks what about the handles is another than `before`.
+    fn mark_handles(&mut self, before: &[Handle]) {
+        let after = &self.content.handles;
+        if before == after {
+            return;
+        }
+        let mut changed = vec![Aspect::Handles];
+        if !are_same(before, after, |h| (h.id, h.reach, h.soft, h.continuity)) {
+            changed.push(Aspect::Holds);
+        }
+        if !are_same(before, after, Handle::affine) {
+            changed.push(Aspect::Targets);
+        }
+        if !are_same(before, after, |h| (h.id, h.colour, h.visible)) {
+            changed.push(Aspect::Appearance);
+        }
+        self.marks.mark(&changed);
+    }
+}
+
+/// Options and access.
+impl Document {
+    /// Chooses the method and its options.
+    pub(crate) fn set_method(&mut self, method: Method) {
+        if self.content.method != method {
+            self.content.method = method;
+            self.marks.mark(&[Aspect::Method]);
+        }
+    }
+
+    /// Chooses what loose parts do: all, and single ones in place of that.
+    pub(crate) fn set_loose(&mut self, loose: Loose, parts: BTreeMap<u32, Loose>) {
+        if self.content.loose != loose || *self.content.loose_parts != parts {
+            (self.content.loose, self.content.loose_parts) = (loose, Arc::new(parts));
+            self.marks.mark(&[Aspect::Loose]);
+        }
+    }
+
+    /// Chooses what is hidden and locked.
+    pub(crate) fn set_access(&mut self, mut access: Arc<Access>) {
+        self.swap_access(&mut access);
+    }
+}
+
+/// Above so many vertices all count as repainted: to tell them apart would cost more than it saves.
+const MOST_TOLD: usize = 1 << 19;
+
+fn note(repainted: &mut Repainted, vertices: impl IntoIterator<Item = SurfaceVertex>) {
+    if let Repainted::Vertices(told) = repainted {
+        told.extend(vertices);
+        if told.len() > MOST_TOLD {
+            *repainted = Repainted::All;
+        }
+    }
+}
+
+fn are_same<K: PartialEq>(a: &[Handle], b: &[Handle], key: impl Fn(&Handle) -> K) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| key(a) == key(b))
+}

@@ -1,0 +1,87 @@
+//! How the shapes change: the rest shape, and the present one over it.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::Document;
+use crate::document::handle_transform::HandleTransform;
+use crate::document::version::Aspect;
+
+impl Document {
+    /// Makes the present shape the rest shape. No drawn vertex moves; the handles' pivots go along.
+    pub(crate) fn apply_shape(&mut self) {
+        if !self.is_displaced() {
+            return;
+        }
+        let content = &mut self.content;
+        content.rest = Arc::clone(&content.from_file);
+        content.applied = true;
+        content.from_rest = Arc::new(vec![DVec3::ZERO; content.rest.len()]);
+        content.settled = true;
+        self.marks.mark(&[Aspect::Rest, Aspect::Shape]);
+        self.change_handles(|handles| {
+            for handle in handles {
+                handle.pivot = handle.centre();
+                handle.put(HandleTransform::IDENTITY);
+            }
+        });
+    }
+
+    /// Shows a shape that the handles have brought about; `from_file` is its sum with the rest shape.
+    pub(crate) fn show(&mut self, from_rest: Arc<Vec<DVec3>>, from_file: Arc<Vec<DVec3>>) {
+        (self.content.from_rest, self.content.from_file) = (from_rest, from_file);
+        self.marks.mark(&[Aspect::Shape, Aspect::Drawn]);
+    }
+
+    /// Shows a shape by its displacements from the rest shape.
+    pub(crate) fn bend(&mut self, from_rest: Vec<DVec3>) {
+        self.content.from_rest = Arc::new(from_rest);
+        self.content.sum_shapes();
+        self.marks.mark(&[Aspect::Shape, Aspect::Drawn]);
+    }
+
+    /// Shows the rest shape, which is final.
+    pub(crate) fn unbend(&mut self) {
+        self.bend(vec![DVec3::ZERO; self.content.from_rest.len()]);
+        self.settle();
+    }
+
+    /// Takes the rest shape and the present one back to the file's; handles stay where they are put.
+    pub(crate) fn forget_shapes(&mut self) {
+        let content = &mut self.content;
+        content.applied = false;
+        content.rest = Arc::new(vec![DVec3::ZERO; content.paint.len()]);
+        content.from_rest = Arc::clone(&content.rest);
+        content.from_file = Arc::clone(&content.rest);
+        content.settled = true;
+        self.marks.mark(&[Aspect::Rest, Aspect::Shape, Aspect::Drawn]);
+    }
+
+    /// Takes some vertices of the rest shape back to the file's.
+    pub(crate) fn forget_rest_at(&mut self, is_taken: &[bool]) {
+        let rest = Arc::make_mut(&mut self.content.rest);
+        for (displacement, _) in rest.iter_mut().zip(is_taken).filter(|(_, taken)| **taken) {
+            *displacement = DVec3::ZERO;
+        }
+        self.content.sum_shapes();
+        self.marks.mark(&[Aspect::Rest, Aspect::Drawn]);
+    }
+
+    /// The shape is final for the handles' transforms.
+    pub(crate) fn settle(&mut self) {
+        self.content.settled = true;
+    }
+
+    /// The shape is not final: there is something to be solved.
+    pub(crate) fn unsettle(&mut self) {
+        self.swap_settled(&mut false);
+    }
+
+    /// The same, if any handle is elsewhere than where it rests.
+    pub(crate) fn unsettle_if_displaced(&mut self) {
+        if self.is_displaced() {
+            self.unsettle();
+        }
+    }
+}

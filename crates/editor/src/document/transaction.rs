@@ -1,0 +1,126 @@
+//! Begin, preview, commit or abort: how the document changes.
+//!
+//! A transaction remembers the document as it was when it began (cheap: the long vectors are shared until they change).
+//! Abort puts that back, commit writes the differences into the history as one named step. A transaction without
+//! differences leaves nothing.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::content::Paint;
+use super::history::{Change, History};
+use super::sparse::Sparse;
+use super::state::Document;
+use super::version::Aspect;
+
+/// A change of the document that is under way.
+#[derive(Debug)]
+pub(crate) struct Transaction {
+    name: String,
+    before: Document,
+}
+
+impl Transaction {
+    /// Begins a step called `name`.
+    pub(crate) fn begin(name: impl Into<String>, document: &Document, history: &mut History) -> Self {
+        history.sync(document);
+        Self {
+            name: name.into(),
+            before: document.clone(),
+        }
+    }
+
+    /// The document as it was.
+    pub(crate) fn before(&self) -> &Document {
+        &self.before
+    }
+
+    /// Gives the step another name.
+    pub(crate) fn rename(&mut self, name: impl Into<String>) {
+        self.name = name.into();
+    }
+
+    /// Leaves everything as it was.
+    pub(crate) fn abort(&self, document: &mut Document) {
+        document.go_back_to(self.before.clone());
+    }
+
+    /// Enters the differences into the history; false if there are none.
+    pub(crate) fn commit(&self, document: &Document, history: &mut History) -> bool {
+        let Self { name, before } = self;
+        let changes = differences(before, document);
+        let same_shape = !before.versions().differ(document.versions(), Aspect::Shape)
+            || Sparse::difference(&document.from_rest, &before.from_rest).is_empty();
+        if changes.iter().all(|change| matches!(change, Change::Settled(_))) && same_shape {
+            return false;
+        }
+        history.push(name.clone(), changes, before);
+        true
+    }
+}
+
+/// What `before` has that `after` has not.
+fn differences(before: &Document, after: &Document) -> Vec<Change> {
+    let differ = |aspect| before.versions().differ(after.versions(), aspect);
+    let mut changes = Vec::new();
+    if differ(Aspect::Paint) {
+        let sparse = painted(&before.paint, &after.paint);
+        if !sparse.is_empty() {
+            changes.push(Change::Paint(sparse));
+        }
+    }
+    if before.handles != after.handles {
+        changes.push(Change::Handles(before.handles.clone(), before.next_handle));
+    }
+    if differ(Aspect::Stiffness) {
+        let sparse = stiffened(before, after);
+        if !sparse.is_empty() || before.stiffness.is_some() != after.stiffness.is_some() {
+            changes.push(Change::Stiffness(sparse, before.stiffness.is_some()));
+        }
+    }
+    if differ(Aspect::Continuity) {
+        changes.push(Change::Continuity(before.continuity.clone()));
+    }
+    let loose = |document: &Document| (document.loose, Arc::clone(&document.loose_parts));
+    if before.method != after.method || loose(before) != loose(after) {
+        let (loose, parts) = loose(before);
+        changes.push(Change::Options(before.method.clone(), loose, parts));
+    }
+    if before.access != after.access {
+        changes.push(Change::Access(Arc::clone(&before.access)));
+    }
+    if differ(Aspect::Rest) {
+        let sparse = Sparse::<DVec3>::difference(&after.rest, &before.rest);
+        if before.applied != after.applied || !sparse.is_empty() {
+            changes.push(Change::Rest(sparse, before.applied));
+        }
+    }
+    if before.settled != after.settled {
+        changes.push(Change::Settled(before.settled));
+    }
+    changes
+}
+
+/// Where the stiffness was another, and what it was; none is 1 everywhere.
+fn stiffened(before: &Document, after: &Document) -> Sparse<f64> {
+    let at = |document: &Document, vertex: usize| document.stiffness.as_ref().map_or(1.0, |field| field[vertex]);
+    let mut sparse = Sparse::default();
+    for vertex in 0..before.paint.len() {
+        let old = at(before, vertex);
+        if old.to_bits() != at(after, vertex).to_bits() {
+            sparse.push(vertex, old);
+        }
+    }
+    sparse
+}
+
+fn painted(before: &[Paint], after: &[Paint]) -> Sparse<Paint> {
+    let mut sparse = Sparse::default();
+    for (index, (before, after)) in before.iter().zip(after).enumerate() {
+        if before != after {
+            sparse.push(index, *before);
+        }
+    }
+    sparse
+}

@@ -1,0 +1,343 @@
+//! The program without a window: its parts, and the one function through which everything changes.
+
+mod queries;
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::Method;
+use pliant_mesh::Model;
+
+use crate::beginning::Beginning;
+use crate::command::{Command, KeyMap, Scope, frame_all};
+use crate::document::Document;
+use crate::event::Event;
+use crate::input::{Button, Key, Modifiers, Pointer};
+use crate::jobs::{Activity, Arrival, Executor, JobDone, JobKind};
+use crate::snapshot::Snapshot;
+use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin};
+use crate::view::View;
+use crate::workspace::{ColouredBy, Workspace, take_mirrored};
+
+/// The program without a window.
+pub struct Editor {
+    workspace: Workspace,
+    view: View,
+    settings: ToolSettings,
+    brush: Brush,
+    overlay: Overlay,
+    /// What the pointer is doing.
+    gesture: Option<Box<dyn Gesture>>,
+    pointer: Option<Pointer>,
+    key_map: KeyMap,
+    /// Events that wait until rays can be answered from what is drawn.
+    waiting: VecDeque<Event>,
+}
+
+impl Editor {
+    /// An editor without a file. Jobs go to `executor`.
+    pub fn new(executor: Box<dyn Executor>) -> Self {
+        Self {
+            workspace: Workspace::new(executor),
+            view: View::default(),
+            settings: ToolSettings::default(),
+            brush: Brush::default(),
+            overlay: Overlay::default(),
+            gesture: None,
+            pointer: None,
+            key_map: KeyMap::default(),
+            waiting: VecDeque::new(),
+        }
+    }
+
+    /// The one function through which everything changes.
+    pub fn handle(&mut self, event: Event) {
+        let picked = matches!(&event, Event::JobDone(done) if done.kind == JobKind::Pick);
+        if self.must_wait(&event) {
+            self.waiting.push_back(event);
+        } else {
+            self.dispatch(event);
+        }
+        self.conclude();
+        let jobs = &self.workspace.jobs;
+        let answers = picked || jobs.is_picking_current() || !jobs.is_busy(JobKind::Pick);
+        if !self.waiting.is_empty() && answers {
+            for event in std::mem::take(&mut self.waiting) {
+                if self.is_looking() {
+                    self.waiting.push_back(event);
+                } else {
+                    self.dispatch(event);
+                    self.conclude();
+                }
+            }
+        }
+        let lit = self.gesture.as_ref().map_or(Lit::Pointed, |gesture| gesture.lit());
+        let pointer_px = self.pointer.map(|pointer| pointer.position_px);
+        self.overlay
+            .renew(lit, &self.workspace, &self.view, &self.settings, pointer_px);
+    }
+
+    fn dispatch(&mut self, event: Event) {
+        match event {
+            Event::Viewport { size_px } => self.resize(size_px),
+            Event::PointerMoved(pointer) => {
+                self.pointer = Some(pointer);
+                self.ask_gesture(|gesture, context| gesture.moved(context, pointer));
+            }
+            Event::PointerLeft => {
+                if self.gesture.is_none() {
+                    self.pointer = None;
+                }
+            }
+            Event::PointerPressed(pointer, button) => self.press(pointer, button),
+            Event::PointerReleased(pointer, button) => {
+                self.pointer = Some(pointer);
+                self.ask_gesture(|gesture, context| gesture.released(context, pointer, button));
+            }
+            Event::Wheel { pointer, lines } => self.zoom(pointer, |view, anchor| {
+                view.travel(|camera| camera.zoom_lines(lines, anchor));
+            }),
+            Event::Pinch { pointer, factor } => {
+                if factor.is_finite() && factor > 0.0 {
+                    self.zoom(pointer, |view, anchor| {
+                        view.travel(|camera| camera.zoom(factor, anchor))
+                    });
+                }
+            }
+            Event::Pressure(pressure) => self.settings.set_pressure(pressure),
+            Event::Key(key, modifiers) => self.key(key, modifiers),
+            Event::Command(command) => self.execute(command),
+            Event::Keys(key_map) => self.key_map = key_map,
+            Event::Adjust(command) => self.adjust(command),
+            Event::Adjusted => {
+                if self.workspace.is_adjusting() {
+                    self.workspace.commit_adjusting();
+                    self.gesture = None;
+                }
+            }
+            Event::JobDone(done) => self.job_done(done),
+            Event::Opened { model, name, beginning } => self.open(model, name, beginning),
+            Event::Follow { leader, method } => self.follow(&leader, &method),
+            Event::Recovered => self.workspace.history.mark_unsaved(),
+            Event::Saved => {
+                let Workspace { history, document, .. } = &mut self.workspace;
+                history.sync(document);
+                history.mark_saved();
+            }
+        }
+    }
+
+    /// Draws the conclusions from what an event changed: jobs, colours, the way back of the camera.
+    fn conclude(&mut self) {
+        let gesture = self.gesture.as_deref();
+        let activity = gesture.map_or(Activity::Still, Gesture::activity);
+        let by = match self.settings.mode {
+            ToolMode::PaintStiffness => ColouredBy::Stiffness,
+            _ => ColouredBy::Region,
+        };
+        self.workspace.conclude(activity, by);
+        if !gesture.is_some_and(Gesture::moves_camera) {
+            self.view.rest();
+        }
+    }
+
+    /// The gesture that goes on, and apart from it all that it may touch.
+    fn parts(&mut self) -> (&mut Option<Box<dyn Gesture>>, Context<'_>) {
+        let context = Context {
+            workspace: &mut self.workspace,
+            view: &mut self.view,
+            settings: &mut self.settings,
+            brush: &mut self.brush,
+            overlay: &self.overlay,
+            pointer: self.pointer,
+        };
+        (&mut self.gesture, context)
+    }
+
+    /// Tells the gesture of an event, if one goes on; what it says comes next.
+    fn ask_gesture(&mut self, ask: impl FnOnce(&mut dyn Gesture, &mut Context<'_>) -> Next) -> Option<Next> {
+        let (gesture, mut context) = self.parts();
+        let next = ask(gesture.as_deref_mut()?, &mut context);
+        if next != Next::Stay {
+            *gesture = None;
+        }
+        Some(next)
+    }
+
+    /// Ends the gesture without a trace.
+    fn abort_gesture(&mut self) {
+        self.ask_gesture(|gesture, context| {
+            gesture.abort(context);
+            Next::End
+        });
+    }
+
+    fn press(&mut self, pointer: Pointer, button: Button) {
+        self.pointer = Some(pointer);
+        let next = self.ask_gesture(|gesture, context| gesture.pressed(context, pointer, button));
+        if matches!(next, None | Some(Next::EndBefore)) {
+            let (gesture, mut context) = self.parts();
+            *gesture = begin(&mut context, pointer, button);
+        }
+    }
+
+    fn key(&mut self, key: Key, modifiers: Modifiers) {
+        let mut is_taken = false;
+        self.ask_gesture(|gesture, context| {
+            let next = gesture.key(context, key, modifiers);
+            is_taken = next.is_some();
+            next.unwrap_or(Next::Stay)
+        });
+        if is_taken {
+            return;
+        }
+        if key == Key::Escape {
+            self.workspace.refusal = None;
+            self.workspace.selection.wants_new_handle = false;
+            self.settings.wants_pivot = false;
+        } else if let Some(command) = self.key_map.command(key, modifiers) {
+            self.execute(command);
+        }
+    }
+
+    /// Does what the command says; a command that can't be done now is ignored.
+    fn execute(&mut self, command: Command) {
+        if !self.is_enabled(&command) {
+            return;
+        }
+        let scope = command.scope();
+        let had_gesture = self.gesture.is_some();
+        if scope != Scope::View {
+            self.abort_gesture();
+        }
+        if !matches!(scope, Scope::View | Scope::Tool) {
+            self.workspace.refusal = None;
+        }
+        // Undo during a drag takes back the drag, and nothing before it.
+        if !(had_gesture && scope == Scope::History) {
+            self.act(command);
+        }
+    }
+
+    fn act(&mut self, command: Command) {
+        let (gesture, mut context) = self.parts();
+        if let Some(begun) = command.act(&mut context) {
+            *gesture = Some(begun);
+        }
+    }
+
+    /// Adds a command to the step that a widget is adjusting; the first begins it.
+    fn adjust(&mut self, command: Command) {
+        // Steps and gestures of their own have no place within a step.
+        if matches!(command.scope(), Scope::History | Scope::Gesture) {
+            return;
+        }
+        if !self.workspace.is_adjusting() {
+            self.abort_gesture();
+            self.gesture = Some(Box::new(Adjust::begin(&mut self.workspace)));
+        }
+        if self.is_enabled(&command) {
+            self.act(command);
+        }
+    }
+
+    fn zoom(&mut self, pointer: Pointer, zoom: impl FnOnce(&mut View, DVec3)) {
+        if !self.gesture.as_ref().is_some_and(|gesture| gesture.holds_camera()) {
+            let anchor = self.workspace.anchor(&self.view, pointer.position_px);
+            zoom(&mut self.view, anchor);
+        }
+    }
+
+    fn resize(&mut self, size_px: glam::DVec2) {
+        if self.view.resize(size_px) && self.view.is_framed() {
+            frame_all(&self.workspace, &mut self.view);
+        }
+    }
+
+    fn job_done(&mut self, done: JobDone) {
+        let kind = done.kind;
+        let arrival = self.workspace.jobs.accept(done);
+        match self.workspace.take_arrival(arrival) {
+            Some(Arrival::Enclosed(inside)) => {
+                self.ask_gesture(|gesture, context| gesture.found(context, inside));
+            }
+            Some(Arrival::Mirrored(image)) => take_mirrored(&mut self.workspace, image, self.gesture.is_none()),
+            _ => {}
+        }
+        // Nobody looks any more, and nothing was found: it was stopped, or it failed.
+        if kind == JobKind::Enclose && self.is_looking() && !self.workspace.jobs.is_busy(kind) {
+            self.abort_gesture();
+        }
+    }
+
+    fn open(&mut self, model: Arc<Model>, name: String, beginning: Option<Beginning>) {
+        let count = model.surface.positions.len();
+        let begun = beginning.as_ref().map(|beginning| beginning.document(&model));
+        let (document, refusal) = match begun {
+            None => (Document::new(count), None),
+            Some(Ok(document)) => (document, None),
+            Some(Err(error)) => (Document::new(count), Some(error.to_string())),
+        };
+        let bounds = model.bounds();
+        self.begin_file(bounds.map(|bounds| bounds.diagonal()), |workspace| {
+            workspace.open(model, name, document);
+            workspace.refusal = refusal;
+        });
+        if let Some(camera) = beginning.as_ref().and_then(Beginning::camera) {
+            self.view.travel(|present| *present = camera);
+        }
+    }
+
+    /// Takes another file into the workspace, and shows all of it.
+    fn begin_file(&mut self, size: Option<f64>, open: impl FnOnce(&mut Workspace)) {
+        self.abort_gesture();
+        self.waiting.clear();
+        self.settings.wants_pivot = false;
+        self.brush = Brush::default();
+        open(&mut self.workspace);
+        self.view.open(size.map(|size| if size > 0.0 { size } else { 1.0 }));
+        frame_all(&self.workspace, &mut self.view);
+    }
+
+    fn follow(&mut self, leader: &Snapshot, method: &Method) {
+        self.abort_gesture();
+        self.workspace.follow(&leader.work, method);
+        self.settings = leader.settings.clone();
+        self.view.look = leader.look;
+        self.view.travel(|camera| *camera = leader.camera);
+    }
+
+    fn is_looking(&self) -> bool {
+        self.gesture.as_ref().is_some_and(|gesture| gesture.is_looking())
+    }
+
+    /// Whether the event must wait for rays that answer from what is drawn, for what an outline holds, or for those
+    /// that wait already.
+    fn must_wait(&mut self, event: &Event) -> bool {
+        let waits = !self.waiting.is_empty() || self.is_looking();
+        match event {
+            Event::Key(Key::Escape, _) | Event::PointerLeft => {
+                self.waiting.clear();
+                false
+            }
+            Event::PointerMoved(_) | Event::PointerReleased(..) | Event::Wheel { .. } | Event::Key(..) => waits,
+            Event::PointerPressed(pointer, button) => {
+                let asks = *button == Button::Primary && !pointer.modifiers.alt && self.gesture.is_none();
+                let jobs = &self.workspace.jobs;
+                let is_late = asks && jobs.is_busy(JobKind::Pick) && !jobs.is_picking_current();
+                waits || (is_late && self.overlay.hit(pointer.position_px, &self.view).is_none())
+            }
+            _ => false,
+        }
+    }
+}
+
+impl std::fmt::Debug for Editor {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Editor")
+            .field("file_name", &self.file_name())
+            .field("mode", &self.settings.mode)
+            .finish_non_exhaustive()
+    }
+}

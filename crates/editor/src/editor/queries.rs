@@ -1,0 +1,219 @@
+//! What can be asked of the program: what is to be shown, and what can be done.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use glam::DVec2;
+use pliant_deform::Role;
+use pliant_mesh::{ContourLine, SurfaceVertex};
+
+use super::Editor;
+use crate::command::{Command, Shortcut, State};
+use crate::document::{Document, History};
+use crate::edit_file::EditFile;
+use crate::exchange::{ExportError, export};
+use crate::jobs::{JobKind, Revision, Rim};
+use crate::project::{MeshReference, geometry_hash};
+use crate::scene_view::{Cursor, SceneView};
+use crate::snapshot::Snapshot;
+use crate::status::status;
+use crate::tool::{Gesture, ToolMode};
+use crate::view::Pick;
+use crate::workspace::{SnapshotKey, WorkspaceSnapshot, region_colour, rims};
+
+impl Editor {
+    /// What the window must show now.
+    pub fn view(&self) -> SceneView<'_> {
+        let (workspace, view, settings) = (&self.workspace, &self.view, &self.settings);
+        let gesture = self.gesture.as_deref();
+        let document = &workspace.document;
+        SceneView {
+            model: workspace.model(),
+            camera: view.camera(),
+            viewport_px: view.viewport_px(),
+            shape_revision: workspace.shape_revision(),
+            displacements: document.from_file(),
+            regions_revision: workspace.colours().regions_revision(),
+            rims_revision: workspace.colours().rims_revision(),
+            overlay_revision: self.overlay.revision,
+            camera_revision: view.revision(),
+            brush_ring: &self.overlay.ring,
+            gizmo: &self.overlay.gizmo,
+            look: view.look,
+            orbit: view.orbit(),
+            readout: gesture.and_then(|gesture| gesture.readout(workspace, view)),
+            tool: settings.mode,
+            cursor: self.cursor(),
+            outline_px: gesture.map_or(Vec::new(), Gesture::outline_px),
+            stroke_shape: settings.stroke_shape,
+            depth: settings.depth,
+            brush_metric: settings.brush.metric,
+            stiffness_brush: settings.stiffness_brush,
+            pressure: settings.pressure,
+            orientation: settings.orientation,
+            wants_pivot: settings.wants_pivot,
+            brush_radius_px: settings.brush.radius_px,
+            handles: document.handles(),
+            selected: workspace.selection.selected(),
+            companions: workspace.selection.companions(),
+            status: status(gesture, workspace, view, settings),
+            problem: workspace.refusal.as_deref(),
+            jobs: workspace.jobs.running(),
+            counts: workspace.computed().region.counts,
+            undo: workspace.history.undo_name(),
+            redo: workspace.history.redo_name(),
+            unsaved: workspace.history.is_unsaved(),
+            settled: self.is_settled(),
+        }
+    }
+
+    fn cursor(&self) -> Cursor {
+        match &self.gesture {
+            Some(gesture) => gesture.cursor(),
+            None if self.overlay.hovered.is_some() => Cursor::Grab,
+            None if self.overlay.is_over_surface && self.settings.mode != ToolMode::Select => Cursor::Brush,
+            None => Cursor::Arrow,
+        }
+    }
+
+    /// The document.
+    pub fn document(&self) -> &Document {
+        &self.workspace.document
+    }
+
+    /// The steps that can be undone and redone.
+    pub fn history(&self) -> &History {
+        &self.workspace.history
+    }
+
+    /// The open file's name; empty before the first.
+    pub fn file_name(&self) -> &str {
+        &self.workspace.file_name
+    }
+
+    /// What each surface vertex does, as of the last measured region.
+    pub fn roles(&self) -> &[Role] {
+        &self.workspace.computed().region.roles
+    }
+
+    /// The connected parts that nothing holds within some handle's reach, and those that were told what to do, by
+    /// their component's number, as of the last measured region.
+    pub fn loose_components(&self) -> &[u32] {
+        &self.workspace.computed().region.loose
+    }
+
+    /// Sentences about the present factorisation: what loose parts do, what was repaired.
+    pub fn warnings(&self) -> &[String] {
+        &self.workspace.computed().warnings
+    }
+
+    /// Which of [`pliant_mesh::Drawn::triangles`] are shown; `None` is all of them. Another allocation when it changed.
+    pub fn shown_triangles(&self) -> Option<&Arc<Vec<bool>>> {
+        self.workspace.vertex_access.drawn.as_ref()
+    }
+
+    /// The colour of each surface vertex by what it does, sRGB with alpha, replacing `out`: handles in their own
+    /// colours, the free region blue, what was painted to be held still dark grey, and nothing (alpha 0) on what rests
+    /// by itself.
+    ///
+    /// To be fetched again when [`SceneView::regions_revision`] has grown.
+    pub fn region_colours(&self, out: &mut Vec<[u8; 4]>) {
+        out.clear();
+        let colour = self.region_colour();
+        out.extend((0..self.document().paint().len() as u32).map(|vertex| colour(SurfaceVertex(vertex))));
+    }
+
+    /// The vertices whose colour may have changed since a revision of the regions; `None`: all of them.
+    pub fn recoloured_since(&self, regions_revision: u64) -> Option<&[SurfaceVertex]> {
+        self.workspace.colours().since(regions_revision)
+    }
+
+    /// What tells the colour of a vertex: see [`Editor::region_colours`].
+    pub fn region_colour(&self) -> impl Fn(SurfaceVertex) -> [u8; 4] {
+        region_colour(&self.workspace)
+    }
+
+    /// The lines between the regions as they were last measured, each with what it bounds; those of hidden handles are
+    /// left out. To be fetched again when [`SceneView::rims_revision`] has grown.
+    pub fn rims(&self) -> impl Iterator<Item = (&ContourLine, Rim)> {
+        rims(&self.workspace)
+    }
+
+    /// What lies under a point of the view, in points; answered from the last shape that rays can be answered from.
+    pub fn pick(&self, position_px: DVec2) -> Option<Pick> {
+        self.workspace.pick(&self.view, position_px)
+    }
+
+    /// The document as it stands, with what is being dragged; `None` before the first file.
+    pub fn snapshot(&self) -> Option<Snapshot> {
+        Some(Snapshot {
+            work: WorkspaceSnapshot::of(&self.workspace)?,
+            camera: *self.view.camera(),
+            look: self.view.look,
+            settings: self.settings.clone(),
+        })
+    }
+
+    /// Another value for every other state of the document.
+    pub fn snapshot_key(&self) -> SnapshotKey {
+        SnapshotKey::of(&self.workspace)
+    }
+
+    /// A digest of the document, to tell whether two are the same to the bit; `None` before the first file.
+    pub fn document_hash(&self) -> Option<String> {
+        let snapshot = self.snapshot()?;
+        let geometry = geometry_hash(snapshot.model());
+        Some(snapshot.project(MeshReference { path: None, geometry }).document_hash())
+    }
+
+    /// The document as an edit of the open file: `pliant apply` makes the same positions of it.
+    ///
+    /// # Errors
+    /// No file is open, a shape was applied, or a vertex that two nodes show has two roles.
+    pub fn edit_file(&self) -> Result<EditFile, ExportError> {
+        let model = self.workspace.model().ok_or(ExportError::NoFile)?;
+        export(self.document(), model)
+    }
+
+    /// The keys that send a listed command; the first is shown.
+    pub fn shortcuts(&self, command: &Command) -> &[Shortcut] {
+        self.key_map.shortcuts(command)
+    }
+
+    /// Whether the command would do anything now.
+    pub fn is_enabled(&self, command: &Command) -> bool {
+        self.unavailable_because(command).is_none()
+    }
+
+    /// Why a command can't be done now, as a sentence with the remedy where there is one; `None` where it can.
+    pub fn unavailable_because(&self, command: &Command) -> Option<Cow<'static, str>> {
+        command.unavailable(&State {
+            workspace: &self.workspace,
+            view: &self.view,
+            settings: &self.settings,
+        })
+    }
+
+    /// Whether a tool is in the middle of something that Esc ends: a stroke, a drag, a pivot to be picked.
+    pub fn is_acting(&self) -> bool {
+        self.gesture.is_some() || self.settings.wants_pivot
+    }
+
+    /// Whether shape and regions are final: nothing is being dragged or painted, and no job runs but those that get
+    /// ready for the pointer or the first drag.
+    pub fn is_settled(&self) -> bool {
+        let awaited = |kind| match kind {
+            JobKind::Pick => false,
+            JobKind::Order => self.document().is_displaced(),
+            JobKind::Region | JobKind::Bind | JobKind::Solve | JobKind::Mirror | JobKind::Enclose => true,
+        };
+        let jobs = &self.workspace.jobs;
+        let is_busy = || JobKind::ALL.into_iter().any(|kind| awaited(kind) && jobs.is_busy(kind));
+        self.gesture.is_none() && self.waiting.is_empty() && !is_busy()
+    }
+
+    /// The revision of the shape that jobs are stamped with, for tests of lateness.
+    pub fn shape_stamp(&self) -> Revision {
+        self.workspace.jobs.shape_revision
+    }
+}

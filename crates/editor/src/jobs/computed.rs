@@ -1,0 +1,48 @@
+//! What jobs have made so far: their last results, and the model that they work on.
+
+use std::sync::{Arc, Mutex};
+
+use pliant_deform::{Bound, Ordering, Remains};
+use pliant_mesh::Model;
+
+use super::job::{Pickable, ShownTriangles};
+use super::region::Region;
+
+/// The last results.
+pub(crate) struct Computed {
+    pub(crate) model: Option<Arc<Model>>,
+    pub(crate) pickable: Option<Pickable>,
+    /// The triangles that rays are to meet.
+    pub(super) shown: ShownTriangles,
+    /// One a power of the Laplacian that a method has asked for.
+    pub(super) orderings: Vec<Arc<Ordering>>,
+    pub(crate) region: Region,
+    pub(super) bound: Option<Arc<Mutex<Bound>>>,
+    /// What the next binding can take over of the last one.
+    pub(super) remains: Option<Remains>,
+    /// Sentences about the last binding.
+    pub(crate) warnings: Vec<String>,
+}
+
+impl Default for Computed {
+    fn default() -> Self {
+        Self {
+            model: None,
+            pickable: None,
+            shown: ShownTriangles::default(),
+            orderings: Vec::new(),
+            region: Region::still(0),
+            bound: None,
+            remains: None,
+            warnings: Vec::new(),
+        }
+    }
+}
+
+impl Computed {
+    /// The ordering for a power of the Laplacian, if it was made.
+    pub(super) fn ordering(&self, power: u32) -> Option<Arc<Ordering>> {
+        let mut orderings = self.orderings.iter();
+        orderings.find(|ordering| ordering.power() == power).cloned()
+    }
+}

@@ -1,0 +1,52 @@
+//! An executor without threads: jobs wait in a list until somebody runs them, here and now.
+//!
+//! For tests and scripts. The order and the moment are the caller's, so lateness, cancellation and stale results can
+//! be played through without a clock.
+
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+
+use super::job::{Executor, Job, JobDone, JobKind};
+
+/// A list of jobs that wait. Clones share the list: one goes to the editor, one stays with the caller.
+#[derive(Clone, Debug, Default)]
+pub struct InlineExecutor {
+    waiting: Rc<RefCell<VecDeque<Job>>>,
+}
+
+impl InlineExecutor {
+    /// An empty list.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The kinds of the jobs that wait, in the order in which they came.
+    pub fn waiting(&self) -> Vec<JobKind> {
+        self.waiting.borrow().iter().map(|job| job.kind).collect()
+    }
+
+    /// Runs the job that has waited longest.
+    pub fn run_next(&self) -> Option<JobDone> {
+        let job = self.waiting.borrow_mut().pop_front()?;
+        Some(job.run())
+    }
+
+    /// Runs the job of this kind that has waited longest.
+    pub fn run(&self, kind: JobKind) -> Option<JobDone> {
+        self.take(kind).map(Job::run)
+    }
+
+    /// Takes the job of this kind that has waited longest out of the list.
+    pub fn take(&self, kind: JobKind) -> Option<Job> {
+        let mut waiting = self.waiting.borrow_mut();
+        let index = waiting.iter().position(|job| job.kind == kind)?;
+        waiting.remove(index)
+    }
+}
+
+impl Executor for InlineExecutor {
+    fn start(&mut self, job: Job) {
+        self.waiting.borrow_mut().push_back(job);
+    }
+}

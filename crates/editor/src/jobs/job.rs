@@ -1,0 +1,200 @@
+//! Work that must not hold up the window: what it is, how it is handed out and how its results come back.
+//!
+//! The app gives the editor an [`Executor`]. The editor starts at most one job of each [`JobKind`] at a time and keeps
+//! at most one more pending, the newest ([`JobQueue`](crate::JobQueue)); every job is stamped with the revision it was
+//! made for, and a result whose revision is no longer wanted is dropped.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::{Bound, Ordering};
+use pliant_mesh::{Bvh, Cancel, Progress, SurfaceVertex};
+
+use super::region::Region;
+
+/// The jobs the editor hands out, by what they make.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum JobKind {
+    /// The structure that answers "what is under the pointer", built or refitted to the present shape.
+    Pick,
+    /// The mesh's fill-reducing ordering, made once per mesh and operator power.
+    Order,
+    /// Which vertices each handle's reach sets free.
+    Region,
+    /// The factorisation for the present regions.
+    Bind,
+    /// The surface for the present handle transforms.
+    Solve,
+    /// The mirror image of a region.
+    Mirror,
+    /// The vertices that an outline on the screen holds.
+    Enclose,
+}
+
+impl JobKind {
+    /// Every kind, in the order in which their results build on one another.
+    pub const ALL: [Self; 7] = [
+        Self::Pick,
+        Self::Order,
+        Self::Region,
+        Self::Bind,
+        Self::Solve,
+        Self::Mirror,
+        Self::Enclose,
+    ];
+
+    /// What the job does, for the status line: "binding".
+    pub fn doing(self) -> &'static str {
+        match self {
+            Self::Pick => "getting the surface ready for the pointer",
+            Self::Order => "ordering the equations",
+            Self::Region => "measuring the region",
+            Self::Bind => "binding",
+            Self::Solve => "bending",
+            Self::Mirror => "looking for the mirror image",
+            Self::Enclose => "looking for what is inside",
+        }
+    }
+}
+
+/// The number of the state that a job was made for. Numbers only grow; none is used twice.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
+pub struct Revision(pub u64);
+
+/// What a job does, given where to tell its way and what stops it.
+pub(crate) type Work = Box<dyn FnOnce(&Progress, &Cancel) -> JobOutcome + Send>;
+
+/// A piece of work for the executor. `work` is to be called once, off the window's thread, and its outcome sent back
+/// as [`Event::JobDone`](crate::Event::JobDone) with the same kind and stamp, whatever the outcome.
+pub struct Job {
+    /// What the job makes.
+    pub kind: JobKind,
+    /// The revision it was made for.
+    pub stamp: Revision,
+    /// How far it is; shared with the work.
+    pub progress: Progress,
+    /// Raised by the editor when the result is no longer wanted; shared with the work.
+    pub cancel: Cancel,
+    /// The work itself.
+    pub work: Box<dyn FnOnce() -> JobOutcome + Send>,
+}
+
+impl Job {
+    /// Does the work here and now.
+    pub fn run(self) -> JobDone {
+        let Self { kind, stamp, work, .. } = self;
+        JobDone {
+            kind,
+            stamp,
+            outcome: work(),
+        }
+    }
+}
+
+impl std::fmt::Debug for Job {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Job")
+            .field("kind", &self.kind)
+            .field("stamp", &self.stamp)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Where jobs run. The app's executor has threads; a test's has a list.
+pub trait Executor {
+    /// Takes a job and returns at once (or, for a tiny program, does the work first). The result comes back as
+    /// [`Event::JobDone`](crate::Event::JobDone), never by calling the editor from here. A job that panics is to be
+    /// answered with [`JobOutcome::Failed`].
+    fn start(&mut self, job: Job);
+}
+
+/// What rays are answered from.
+#[derive(Clone)]
+pub struct Pickable {
+    /// The hierarchy over the triangles that are shown, in their shape.
+    pub(crate) bvh: Bvh,
+    /// Which of the surface's triangles it is over.
+    pub(crate) shown: ShownTriangles,
+}
+
+/// Triangles of the surface that rays may meet.
+#[derive(Clone, Default)]
+pub(crate) struct ShownTriangles {
+    /// Another one for every other set of triangles.
+    pub(super) revision: Revision,
+    /// Their numbers, ascending; `None` is all of them.
+    pub(crate) triangles: Option<Arc<Vec<u32>>>,
+}
+
+/// The end of a job.
+#[derive(Debug)]
+pub struct JobDone {
+    /// What the job made.
+    pub kind: JobKind,
+    /// The revision it was made for.
+    pub stamp: Revision,
+    /// What came of it.
+    pub outcome: JobOutcome,
+}
+
+/// What came of a job.
+pub enum JobOutcome {
+    /// The picking structure of a shape.
+    Pick(Pickable),
+    /// The mesh's ordering.
+    Ordered(Arc<Ordering>),
+    /// The region that the handles reach.
+    Region(Region),
+    /// A factorisation, ready to be stepped.
+    Bound(Box<Bound>),
+    /// A new shape.
+    Solved(Solved),
+    /// The vertices of a region's mirror image, ascending.
+    Mirrored(Vec<usize>),
+    /// The vertices that an outline holds, ascending.
+    Enclosed(Vec<SurfaceVertex>),
+    /// It was cancelled, and nothing is owed.
+    Cancelled,
+    /// It failed; one sentence that names the culprit and the remedy.
+    Failed(String),
+}
+
+impl std::fmt::Debug for JobOutcome {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Pick(..) => "Pick",
+            Self::Ordered(_) => "Ordered",
+            Self::Region(_) => "Region",
+            Self::Bound(_) => "Bound",
+            Self::Solved(_) => "Solved",
+            Self::Mirrored(_) => "Mirrored",
+            Self::Enclosed(_) => "Enclosed",
+            Self::Cancelled => "Cancelled",
+            Self::Failed(sentence) => return write!(f, "Failed({sentence})"),
+        })
+    }
+}
+
+/// A solve's result, after as many steps as a frame has time for: displacements per surface vertex.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// From the present rest shape.
+    pub from_rest: Arc<Vec<DVec3>>,
+    /// From the file's shape: what is drawn. The same allocation while nothing was applied.
+    pub from_file: Arc<Vec<DVec3>>,
+    /// Whether further steps would leave it as it is.
+    pub finished: bool,
+    /// How far an iterative method's descent is; `None` for a method that is done in one step.
+    pub descent: Option<Descent>,
+}
+
+/// How far a descent is.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Descent {
+    /// The present shape's energy, without unit (see [`pliant_deform::Step::energy`]).
+    pub energy: f64,
+    /// Whether that is the least, to the method's tolerance.
+    pub converged: bool,
+    /// Whether no further step is taken: it converged, or met the method's limit.
+    pub finished: bool,
+}

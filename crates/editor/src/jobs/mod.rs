@@ -1,0 +1,22 @@
+//! What follows from the document and is computed beside the window: the jobs, their queues and their last results.
+
+mod computed;
+mod inline_executor;
+mod job;
+mod job_queue;
+mod region;
+mod rim;
+mod scheduler;
+mod work;
+
+pub(crate) use computed::Computed;
+pub use inline_executor::InlineExecutor;
+pub(crate) use job::Pickable;
+pub use job::{Descent, Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
+pub use job_queue::{JobQueue, Running};
+pub use region::{Counts, Region};
+pub(crate) use region::{centroid, displaced, reach_length};
+pub use rim::Rim;
+pub(crate) use rim::bounded;
+pub(crate) use scheduler::{Activity, Arrival, Finality, Jobs};
+pub(crate) use work::region_input;

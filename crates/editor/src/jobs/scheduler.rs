@@ -1,0 +1,354 @@
+//! Which jobs are asked for, and their last results: the picking structure, the ordering, the region, the
+//! factorisation, the shape.
+//!
+//! [`Jobs::pump`] compares what there is with what the present revisions need and asks for what is missing; it is
+//! called after every event, so no event has to know which jobs it makes necessary. Revisions come from one counter:
+//! *model* (another file), *problem* (paint, reach, rest shape, stiffness, options), *targets* (handles' transforms)
+//! and *shape* (what is drawn).
+
+use std::sync::{Arc, Mutex};
+
+use pliant_mesh::{Model, SurfaceVertex};
+
+use super::computed::Computed;
+use super::job::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, ShownTriangles, Solved, Work};
+use super::job_queue::{JobQueue, Running};
+use super::region::Region;
+use super::work::{bind_work, order_work, pick_work, region_input, region_work, solve_work};
+use crate::document::Document;
+
+/// What the person is doing, as far as jobs care.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Activity {
+    /// Nothing that changes the document.
+    Still,
+    /// A stroke: the regions change at every event.
+    Painting,
+    /// A drag: the targets change at every event.
+    Dragging,
+}
+
+/// The jobs and their last results.
+pub(crate) struct Jobs {
+    executor: Box<dyn Executor>,
+    queues: [JobQueue<Work>; JobKind::ALL.len()],
+    /// For each kind the revision that failed or was stopped by the person: it is not tried again.
+    given_up: [Option<Revision>; JobKind::ALL.len()],
+    counter: u64,
+    pub(crate) computed: Computed,
+    pub(crate) model_revision: Revision,
+    problem_revision: Revision,
+    target_revision: Revision,
+    pub(crate) shape_revision: Revision,
+    /// Solves that were asked for before this are dropped.
+    solve_floor: Revision,
+    bvh_revision: Revision,
+    region_revision: Revision,
+    /// Another one for every region that was measured.
+    pub(crate) roles_revision: Revision,
+    bound_revision: Revision,
+    mirror_revision: Revision,
+    enclose_revision: Revision,
+}
+
+/// What a job's result means for the editor.
+pub(crate) enum Arrival {
+    /// Nothing to see.
+    Nothing,
+    /// Rays can be answered from a newer shape.
+    Picking,
+    /// The vertices of a mirror image.
+    Mirrored(Vec<usize>),
+    /// The vertices that an outline holds.
+    Enclosed(Vec<SurfaceVertex>),
+    /// A new shape; the flag says whether it is the final one.
+    Shape(Solved, Finality),
+    /// Something went wrong; one sentence.
+    Problem(String),
+}
+
+/// Whether a shape is the last one for its targets.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Finality {
+    /// Better ones will come.
+    Preview,
+    /// It is what the transforms mean.
+    Final,
+}
+
+impl Jobs {
+    pub(crate) fn new(executor: Box<dyn Executor>) -> Self {
+        Self {
+            executor,
+            queues: std::array::from_fn(|_| JobQueue::default()),
+            given_up: [None; JobKind::ALL.len()],
+            counter: 0,
+            computed: Computed::default(),
+            model_revision: Revision(0),
+            problem_revision: Revision(0),
+            target_revision: Revision(0),
+            shape_revision: Revision(0),
+            solve_floor: Revision(0),
+            bvh_revision: Revision(0),
+            region_revision: Revision(0),
+            roles_revision: Revision(0),
+            bound_revision: Revision(0),
+            mirror_revision: Revision(0),
+            enclose_revision: Revision(0),
+        }
+    }
+
+    /// A revision that was never used.
+    fn next_revision(&mut self) -> Revision {
+        self.counter += 1;
+        Revision(self.counter)
+    }
+
+    /// Another file: everything that was computed is forgotten, what runs is stopped.
+    pub(crate) fn open(&mut self, model: Arc<Model>) {
+        for kind in JobKind::ALL {
+            self.queues[kind as usize].cancel();
+        }
+        self.computed = Computed {
+            region: Region::still(model.surface.positions.len()),
+            model: Some(model),
+            ..Computed::default()
+        };
+        self.model_revision = self.next_revision();
+        self.roles_revision = self.next_revision();
+        self.problem_changed();
+        self.region_revision = Revision(0);
+        self.shape_changed();
+    }
+
+    /// Paint, reach, rest shape, stiffness or options are no longer what they were.
+    pub(crate) fn problem_changed(&mut self) {
+        self.problem_revision = self.next_revision();
+        self.queues[JobKind::Region as usize].cancel();
+        self.queues[JobKind::Bind as usize].cancel();
+        self.drop_solves();
+        self.targets_changed();
+    }
+
+    /// The handles' transforms are no longer what they were.
+    pub(crate) fn targets_changed(&mut self) {
+        self.target_revision = self.next_revision();
+    }
+
+    /// Has a mirror image looked for, in place of one that is not found yet.
+    pub(crate) fn mirror(&mut self, work: Work) {
+        self.queues[JobKind::Mirror as usize].cancel();
+        self.mirror_revision = self.next_revision();
+        self.queues[JobKind::Mirror as usize].request(self.mirror_revision, work);
+    }
+
+    /// Has an outline's vertices looked for.
+    pub(crate) fn enclose(&mut self, work: Work) {
+        self.stop_enclosing();
+        self.queues[JobKind::Enclose as usize].request(self.enclose_revision, work);
+    }
+
+    /// An outline's vertices are not wanted any more.
+    pub(crate) fn stop_enclosing(&mut self) {
+        self.queues[JobKind::Enclose as usize].cancel();
+        self.enclose_revision = self.next_revision();
+    }
+
+    /// Rays are to meet these triangles alone.
+    pub(crate) fn show_triangles(&mut self, shown: Option<Arc<Vec<u32>>>) {
+        self.computed.shown = ShownTriangles {
+            revision: self.next_revision(),
+            triangles: shown,
+        };
+        self.shape_changed();
+    }
+
+    /// What is drawn is no longer what it was.
+    pub(crate) fn shape_changed(&mut self) {
+        self.shape_revision = self.next_revision();
+    }
+
+    /// Solves that run or are done but have not arrived must not change the shape any more.
+    pub(crate) fn drop_solves(&mut self) {
+        self.queues[JobKind::Solve as usize].cancel();
+        self.solve_floor = self.next_revision();
+        self.targets_changed();
+    }
+
+    /// A stroke begins: what is being bound is not wanted any more.
+    pub(crate) fn stop_binding(&mut self) {
+        self.queues[JobKind::Region as usize].cancel();
+        self.queues[JobKind::Bind as usize].cancel();
+    }
+
+    /// Stops every job for good: each is tried again only when what it is made for has changed.
+    pub(crate) fn give_up(&mut self) {
+        for kind in [
+            JobKind::Order,
+            JobKind::Region,
+            JobKind::Bind,
+            JobKind::Solve,
+            JobKind::Mirror,
+            JobKind::Enclose,
+        ] {
+            let queue = &mut self.queues[kind as usize];
+            if queue.is_busy() {
+                queue.cancel();
+                self.given_up[kind as usize] = Some(self.stamp(kind));
+            }
+        }
+    }
+
+    /// Whether rays are answered from what is drawn.
+    pub(crate) fn is_picking_current(&self) -> bool {
+        self.computed.pickable.is_some() && self.bvh_revision == self.shape_revision
+    }
+
+    /// Whether the region belongs to the present paint.
+    pub(crate) fn is_region_current(&self) -> bool {
+        self.region_revision == self.problem_revision
+    }
+
+    /// Whether the factorisation belongs to the present problem.
+    pub(crate) fn is_bound(&self) -> bool {
+        self.computed.bound.is_some() && self.bound_revision == self.problem_revision
+    }
+
+    /// Whether a job of this kind runs or waits.
+    pub(crate) fn is_busy(&self, kind: JobKind) -> bool {
+        self.queues[kind as usize].is_busy()
+    }
+
+    /// Whether a job of this kind failed or was stopped for what there is at present.
+    pub(crate) fn has_given_up(&self, kind: JobKind) -> bool {
+        self.given_up[kind as usize] == Some(self.stamp(kind))
+    }
+
+    /// The jobs that run, with their progress.
+    pub(crate) fn running(&self) -> Vec<(JobKind, f32)> {
+        let progress = |kind: JobKind| Some((kind, self.queues[kind as usize].running()?.progress.get()));
+        JobKind::ALL.into_iter().filter_map(progress).collect()
+    }
+
+    /// Asks for whatever is missing, and starts what can start.
+    pub(crate) fn pump(&mut self, document: &Document, activity: Activity) {
+        let Some(model) = self.computed.model.clone() else {
+            return;
+        };
+        if model.surface.triangles.is_empty() {
+            return;
+        }
+        if activity != Activity::Dragging && !self.is_picking_current() {
+            self.want(JobKind::Pick, |computed| pick_work(computed, &model, document));
+        }
+        let power = document.method.operator_power();
+        let has_ordering = self.computed.ordering(power).is_some();
+        if !has_ordering {
+            self.want(JobKind::Order, |_| order_work(&model, power));
+        }
+        if activity != Activity::Painting {
+            if !self.is_region_current() {
+                self.want(JobKind::Region, |_| region_work(region_input(&model, document)));
+            } else if has_ordering && !self.is_bound() && !self.computed.region.handles.is_empty() {
+                let revision = self.problem_revision.0;
+                self.want(JobKind::Bind, |computed| {
+                    bind_work(computed, &model, document, revision)
+                });
+            }
+            if self.is_bound() && !document.settled {
+                self.want(JobKind::Solve, |computed| solve_work(computed, document));
+            }
+        }
+        self.start();
+    }
+
+    /// Takes a job's result; what was made for a state that is gone is dropped.
+    pub(crate) fn accept(&mut self, done: JobDone) -> Arrival {
+        let JobDone { kind, stamp, outcome } = done;
+        let Some(running) = self.queues[kind as usize].finish(stamp) else {
+            return Arrival::Nothing;
+        };
+        let wanted = stamp >= self.model_revision;
+        match outcome {
+            // Somebody else stopped it: asking again at once would go on for ever.
+            JobOutcome::Cancelled if !running.cancel.is_cancelled() => self.given_up[kind as usize] = Some(stamp),
+            JobOutcome::Failed(sentence) if wanted && !running.cancel.is_cancelled() => {
+                self.given_up[kind as usize] = Some(stamp);
+                if stamp == self.stamp(kind) {
+                    return Arrival::Problem(sentence);
+                }
+            }
+            JobOutcome::Pick(pickable) if wanted => {
+                self.computed.pickable = Some(pickable);
+                self.bvh_revision = stamp;
+                return Arrival::Picking;
+            }
+            JobOutcome::Ordered(ordering) if stamp == self.model_revision => self.computed.orderings.push(ordering),
+            JobOutcome::Region(region) if stamp == self.problem_revision => {
+                self.computed.region = region;
+                self.roles_revision = self.next_revision();
+                self.region_revision = stamp;
+            }
+            JobOutcome::Bound(bound) if stamp == self.problem_revision => {
+                self.computed.warnings = bound.warnings().to_vec();
+                self.computed.remains = bound.remains();
+                self.computed.bound = Some(Arc::new(Mutex::new(*bound)));
+                self.bound_revision = stamp;
+            }
+            JobOutcome::Mirrored(image) if stamp == self.mirror_revision => return Arrival::Mirrored(image),
+            JobOutcome::Enclosed(vertices) if stamp == self.enclose_revision => return Arrival::Enclosed(vertices),
+            JobOutcome::Solved(solved) if stamp >= self.solve_floor => {
+                let last = stamp == self.target_revision && solved.finished;
+                return Arrival::Shape(solved, if last { Finality::Final } else { Finality::Preview });
+            }
+            _ => {}
+        }
+        Arrival::Nothing
+    }
+
+    /// The revision that a job of this kind would be made for now.
+    fn stamp(&self, kind: JobKind) -> Revision {
+        match kind {
+            JobKind::Pick => self.shape_revision,
+            JobKind::Order => self.model_revision,
+            JobKind::Region | JobKind::Bind => self.problem_revision,
+            JobKind::Solve => self.target_revision,
+            JobKind::Mirror => self.mirror_revision,
+            JobKind::Enclose => self.enclose_revision,
+        }
+    }
+
+    fn want(&mut self, kind: JobKind, work: impl FnOnce(&Computed) -> Option<Work>) {
+        let stamp = self.stamp(kind);
+        if self.queues[kind as usize].wants(stamp) || self.given_up[kind as usize] == Some(stamp) {
+            return;
+        }
+        if let Some(work) = work(&self.computed) {
+            self.queues[kind as usize].request(stamp, work);
+        }
+    }
+
+    fn start(&mut self) {
+        for kind in JobKind::ALL {
+            if let Some((
+                Running {
+                    stamp,
+                    progress,
+                    cancel,
+                },
+                work,
+            )) = self.queues[kind as usize].start_next()
+            {
+                let (job_progress, job_cancel) = (progress.clone(), cancel.clone());
+                let work = Box::new(move || work(&job_progress, &job_cancel));
+                self.executor.start(Job {
+                    kind,
+                    stamp,
+                    progress,
+                    cancel,
+                    work,
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! What each job does, as a closure that owns all it needs.
+
+use std::sync::{Arc, PoisonError};
+
+use glam::{DAffine3, DVec3};
+use pliant_deform::{BindError, Bound, Holds, Loose, Ordering, Problem, SolveError, Step};
+use pliant_mesh::{Bvh, Cancel, Model, SurfaceVertex};
+
+use super::computed::Computed;
+use super::job::{Descent, JobOutcome, Pickable, Solved, Work};
+use super::region::{Region, RegionInput};
+use crate::document::{Document, HandleId, sum_of_shapes};
+
+/// A solve takes so many vertices' worth of steps before it shows its shape: about what a window's frame has time for.
+/// There is no clock here.
+const VERTEX_STEPS: usize = 100_000;
+
+/// The most steps of one solve, however few its vertices are.
+const MOST_STEPS: usize = 16;
+
+/// Makes the ordering for a power of the Laplacian.
+pub(super) fn order_work(model: &Arc<Model>, power: u32) -> Option<Work> {
+    let model = Arc::clone(model);
+    Some(Box::new(move |progress, cancel| {
+        match Ordering::of(&model.topology, power, progress, cancel) {
+            Ok(ordering) => JobOutcome::Ordered(Arc::new(ordering)),
+            Err(_) => JobOutcome::Cancelled,
+        }
+    }))
+}
+
+/// Measures the region.
+pub(super) fn region_work(input: RegionInput) -> Option<Work> {
+    Some(Box::new(move |_, cancel| match Region::measure(&input, cancel) {
+        Ok(region) => JobOutcome::Region(region),
+        Err(_) => JobOutcome::Cancelled,
+    }))
+}
+
+/// Builds or refits what rays are answered from.
+pub(super) fn pick_work(computed: &Computed, model: &Arc<Model>, document: &Document) -> Option<Work> {
+    let (model, displacements, shown) = (
+        Arc::clone(model),
+        Arc::clone(&document.from_file),
+        computed.shown.clone(),
+    );
+    let is_of_shown = |pickable: &&Pickable| pickable.shown.revision == shown.revision;
+    let bvh = computed
+        .pickable
+        .as_ref()
+        .filter(is_of_shown)
+        .map(|pickable| pickable.bvh.clone());
+    Some(Box::new(move |_, cancel| {
+        if cancel.is_cancelled() {
+            return JobOutcome::Cancelled;
+        }
+        let surface = &model.surface;
+        let mut bvh = bvh.unwrap_or_else(|| match &shown.triangles {
+            None => Bvh::build(&surface.positions, &surface.triangles),
+            Some(shown) => {
+                let triangles = shown.iter().map(|&triangle| surface.triangles[triangle as usize]);
+                Bvh::build(&surface.positions, &triangles.collect::<Vec<_>>())
+            }
+        });
+        bvh.refit(|vertex| surface.positions[vertex.index()] + displacements[vertex.index()]);
+        JobOutcome::Pick(Pickable { bvh, shown })
+    }))
+}
+
+/// Factorises; `None` while there is no ordering.
+pub(super) fn bind_work(computed: &Computed, model: &Arc<Model>, document: &Document, revision: u64) -> Option<Work> {
+    let ordering = computed.ordering(document.method.operator_power())?;
+    let (model, region) = (Arc::clone(model), computed.region.clone());
+    let (stiffness, loose, method) = (document.stiffness.clone(), document.loose, document.method.clone());
+    let soft: Vec<Option<f64>> = region
+        .handles
+        .iter()
+        .map(|&id| document.handle(id).and_then(|handle| handle.soft))
+        .collect();
+    let joins = document.clone();
+    let remains = computed.remains.clone();
+    Some(Box::new(move |progress, cancel| {
+        let ones;
+        let stiffness: &[f64] = match &stiffness {
+            Some(field) => field,
+            None => {
+                ones = vec![1.0; region.roles.len()];
+                &ones
+            }
+        };
+        let continuity = joins.joints().unwrap_or_default();
+        let parts: Vec<(u32, Loose)> = joins.loose_parts.iter().map(|(part, loose)| (*part, *loose)).collect();
+        let problem = Problem {
+            surface: region.rest_surface.as_deref().unwrap_or(&model.surface),
+            topology: &model.topology,
+            roles: &region.roles,
+            handle_count: region.handles.len(),
+            stiffness,
+            holds: Holds {
+                soft: &soft,
+                continuity: &continuity,
+                parts: &parts,
+            },
+            loose,
+            method: &method,
+            revision,
+        };
+        match problem.rebind(&ordering, remains.as_ref(), progress, cancel) {
+            Ok(bound) => JobOutcome::Bound(Box::new(bound)),
+            Err(BindError::Cancelled(_)) => JobOutcome::Cancelled,
+            Err(error) => JobOutcome::Failed(
+                error
+                    .renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0)
+                    .to_string(),
+            ),
+        }
+    }))
+}
+
+/// Takes steps towards the handles' targets; `None` while nothing is bound.
+pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Work> {
+    let (bound, model) = (computed.bound.clone()?, computed.model.clone()?);
+    let targets = targets(document, &computed.region.handles)?;
+    let from_rest = Arc::clone(&document.from_rest);
+    let rest = document.applied.then(|| Arc::clone(&document.rest));
+    Some(Box::new(move |_, cancel| {
+        if cancel.is_cancelled() {
+            return JobOutcome::Cancelled;
+        }
+        let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut displacements = from_rest.to_vec();
+        match steps(&mut bound, &targets, &mut displacements, cancel) {
+            Err(error) => JobOutcome::Failed(
+                error
+                    .renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0)
+                    .to_string(),
+            ),
+            Ok(step) => {
+                let from_rest = Arc::new(displacements);
+                let from_file = sum_of_shapes(rest.as_ref(), &from_rest);
+                JobOutcome::Solved(Solved {
+                    from_rest,
+                    from_file,
+                    finished: step.finished,
+                    descent: bound.handle_bases().is_none().then_some(Descent {
+                        energy: step.energy,
+                        converged: step.converged,
+                        finished: step.finished,
+                    }),
+                })
+            }
+        }
+    }))
+}
+
+/// Takes steps towards the targets until the shape is worth showing; it goes on from where the last solve ended.
+fn steps(
+    bound: &mut Bound,
+    targets: &[DAffine3],
+    displacements: &mut [DVec3],
+    cancel: &Cancel,
+) -> Result<Step, SolveError> {
+    bound.set_targets(targets)?;
+    let mut step = bound.step(displacements)?;
+    for _ in 1..(VERTEX_STEPS / bound.step_cost().max(1)).clamp(1, MOST_STEPS) {
+        if step.finished || cancel.is_cancelled() {
+            break;
+        }
+        step = bound.step(displacements)?;
+    }
+    Ok(step)
+}
+
+/// The maps of the handles in the region's order; `None` if one of them is gone.
+fn targets(document: &Document, handles: &[HandleId]) -> Option<Vec<DAffine3>> {
+    handles
+        .iter()
+        .map(|&id| document.handle(id).map(|handle| handle.affine()))
+        .collect()
+}
+
+/// Everything that the region follows from.
+pub(crate) fn region_input(model: &Arc<Model>, document: &Document) -> RegionInput {
+    RegionInput {
+        model: Arc::clone(model),
+        paint: Arc::clone(&document.paint),
+        handles: document
+            .handles
+            .iter()
+            .map(|handle| (handle.id, handle.reach))
+            .collect(),
+        rest: document.applied.then(|| Arc::clone(&document.rest)),
+        loose: document.loose,
+        loose_parts: Arc::clone(&document.loose_parts),
+        access: Arc::clone(&document.access),
+    }
+}

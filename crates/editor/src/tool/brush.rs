@@ -1,0 +1,250 @@
+//! The brush: a disc of constant size on the screen that lies on the surface.
+//!
+//! Between two pointer events it is set down often enough that no gap is left. Each time it takes every vertex within
+//! its radius that is connected, within that radius, with the point under the pointer, and that faces the eye: the
+//! back of a thin part and a neighbouring finger stay clean.
+
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3, DVec4};
+use pliant_mesh::{DistanceSearch, SurfaceVertex};
+
+use crate::view::{Pick, Picking};
+
+/// The smallest and largest radius, in points.
+pub const BRUSH_RADIUS_PX: std::ops::RangeInclusive<f64> = 2.0..=400.0;
+/// Where the brush is set down again, as a share of its radius: the scallops left are below 1% of the radius.
+const SPACING: f64 = 0.25;
+const RING_SEGMENTS: usize = 48;
+
+/// How the brush measures what lies within its radius.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum BrushMetric {
+    /// What the disc on the screen covers, as far as it hangs together and faces the eye.
+    #[default]
+    Screen,
+    /// What is no farther along the surface: into folds and round edges, seen or not.
+    Surface,
+    /// Everything that the disc on the screen covers, however far behind.
+    Through,
+}
+
+/// How large the brush is, and how that is meant.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct BrushSize {
+    pub(crate) radius_px: f64,
+    pub(crate) metric: BrushMetric,
+}
+
+impl Default for BrushSize {
+    fn default() -> Self {
+        Self {
+            radius_px: 30.0,
+            metric: BrushMetric::default(),
+        }
+    }
+}
+
+/// Finds the vertices under the brush; keeps its memory between dabs.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Brush {
+    /// The number of the dab in which a vertex was seen last.
+    seen: Vec<u32>,
+    dab: u32,
+    stack: Vec<(SurfaceVertex, f64)>,
+    search: DistanceSearch,
+}
+
+impl Brush {
+    /// Calls `visit` for every vertex under the brush as it goes from one point of the viewport to another, with its
+    /// distance from the brush's middle as a share of the radius; vertices may be visited more than once.
+    pub(crate) fn stroke(
+        &mut self,
+        picking: &Picking<'_>,
+        from_px: DVec2,
+        to_px: DVec2,
+        size: &BrushSize,
+        mut visit: impl FnMut(SurfaceVertex, f64),
+    ) {
+        if size.metric == BrushMetric::Through {
+            return sweep(picking, [from_px, to_px], size.radius_px, visit);
+        }
+        let steps = ((to_px - from_px).length() / (size.radius_px * SPACING).max(1.0))
+            .ceil()
+            .max(1.0) as u32;
+        let picks = (1..=steps).filter_map(|step| {
+            let position_px = from_px.lerp(to_px, f64::from(step) / f64::from(steps));
+            picking.at(position_px)
+        });
+        match size.metric {
+            BrushMetric::Screen | BrushMetric::Through => {
+                picks.for_each(|pick| self.dab(picking, &pick, size.radius_px, &mut visit))
+            }
+            BrushMetric::Surface => {
+                let picks: Vec<Pick> = picks.collect();
+                self.along_surface(picking, &picks, size.radius_px, &mut visit);
+            }
+        }
+    }
+
+    /// Calls `visit` once for every vertex under the brush around a point of the surface.
+    fn dab(&mut self, picking: &Picking<'_>, pick: &Pick, radius_px: f64, visit: &mut impl FnMut(SurfaceVertex, f64)) {
+        let radius = radius_px * picking.camera.world_per_px(pick.point, picking.viewport_px);
+        self.begin(picking.model.surface.positions.len());
+        // However small the brush and large the triangles, something is painted: the nearest corner.
+        visit(pick.vertex, 0.0);
+        for vertex in picking.model.surface.triangles[pick.triangle as usize] {
+            self.reach(picking, pick, radius, vertex);
+        }
+        while let Some((vertex, share)) = self.stack.pop() {
+            visit(vertex, share);
+            for &neighbour in picking.model.topology.neighbours(vertex) {
+                self.reach(picking, pick, radius, neighbour);
+            }
+        }
+    }
+
+    /// The same around all points of a movement at once, along the surface: one search, however many they are.
+    fn along_surface(
+        &mut self,
+        picking: &Picking<'_>,
+        picks: &[Pick],
+        radius_px: f64,
+        visit: &mut impl FnMut(SurfaceVertex, f64),
+    ) {
+        let Some(middle) = picks.last() else { return };
+        let radius = radius_px * picking.camera.world_per_px(middle.point, picking.viewport_px);
+        let mut seeds: Vec<(SurfaceVertex, f64)> = Vec::with_capacity(3 * picks.len());
+        for pick in picks {
+            visit(pick.vertex, 0.0);
+            let corners = picking.model.surface.triangles[pick.triangle as usize];
+            seeds.extend(corners.map(|v| (v, picking.position(v).distance(pick.point))));
+        }
+        let (triangles, topology) = (&picking.model.surface.triangles, &picking.model.topology);
+        let (rest, moved) = (&*picking.model.surface.positions, picking.displacements.as_slice());
+        let position = |v: SurfaceVertex| rest[v.index()] + moved[v.index()];
+        let reached = self.search.within(triangles, topology, position, &seeds, radius);
+        for &(vertex, distance) in reached {
+            visit(vertex, distance / radius);
+        }
+    }
+
+    fn begin(&mut self, vertex_count: usize) {
+        if self.seen.len() != vertex_count || self.dab == u32::MAX {
+            self.seen = vec![0; vertex_count];
+            self.dab = 0;
+        }
+        self.dab += 1;
+        self.stack.clear();
+    }
+
+    fn reach(&mut self, picking: &Picking<'_>, pick: &Pick, radius: f64, vertex: SurfaceVertex) {
+        let seen = &mut self.seen[vertex.index()];
+        if *seen == self.dab {
+            return;
+        }
+        *seen = self.dab;
+        let position = picking.position(vertex);
+        let distance = position.distance(pick.point);
+        if distance <= radius && picking.shows(vertex, position, pick.front) {
+            self.stack.push((vertex, distance / radius));
+        }
+    }
+}
+
+/// Calls `visit` once for every vertex that appears within `radius_px` of the way from one point of the viewport to
+/// the other, whatever hides it.
+fn sweep(
+    picking: &Picking<'_>,
+    [from_px, to_px]: [DVec2; 2],
+    radius_px: f64,
+    mut visit: impl FnMut(SurfaceVertex, f64),
+) {
+    let along = to_px - from_px;
+    let length_squared = along.length_squared();
+    let mut meet = |vertex: SurfaceVertex, position: DVec3| {
+        let Some(seen_px) = picking.sight.project(position) else {
+            return;
+        };
+        let share = if length_squared > 0.0 {
+            ((seen_px - from_px).dot(along) / length_squared).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let off_px = seen_px.distance(from_px + along * share);
+        if off_px <= radius_px {
+            visit(vertex, off_px / radius_px);
+        }
+    };
+    // The hierarchy of a shape that has moved on would miss what moved under the brush.
+    if picking.is_current {
+        let planes = tube(picking, from_px, to_px, radius_px);
+        picking.bvh.vertices_within(&planes, meet);
+    } else {
+        let every = (0..picking.model.surface.positions.len() as u32).map(SurfaceVertex);
+        every.for_each(|vertex| meet(vertex, picking.position(vertex)));
+    }
+}
+
+/// The planes of what appears in the rectangle around the way of a disc, their normals inwards.
+fn tube(picking: &Picking<'_>, from_px: DVec2, to_px: DVec2, radius_px: f64) -> [DVec4; 4] {
+    let along = (to_px - from_px).normalize_or(DVec2::X) * radius_px;
+    let across = along.perp();
+    let corners = [
+        from_px - along - across,
+        to_px + along - across,
+        to_px + along + across,
+        from_px - along + across,
+    ];
+    let ray = |position_px: DVec2| picking.camera.ray(position_px, picking.viewport_px);
+    let middle = ray(0.5 * (from_px + to_px));
+    std::array::from_fn(|corner| {
+        let (here, next) = (ray(corners[corner]), ray(corners[(corner + 1) % 4]));
+        let side = next.origin + next.direction - here.origin;
+        let normal = side.cross(here.direction).normalize_or_zero();
+        let plane = normal.extend(-normal.dot(here.origin));
+        let is_inside = plane.dot((middle.origin + middle.direction).extend(1.0)) >= 0.0;
+        if is_inside { plane } else { -plane }
+    })
+}
+
+/// The brush's outline around a pick, a closed line. A brush that reaches through keeps its circle on the screen; any
+/// other lies on the surface, leaning as what it covers leans. Where the surface ends the line runs on in the brush's
+/// own plane.
+pub(crate) fn ring(picking: &Picking<'_>, position_px: DVec2, pick: &Pick, size: &BrushSize) -> Vec<DVec3> {
+    let px = picking.camera.world_per_px(pick.point, picking.viewport_px);
+    let radius = size.radius_px * px;
+    let axes = picking.camera.axes();
+    let normal = match size.metric {
+        BrushMetric::Through => axes.z_axis,
+        BrushMetric::Screen | BrushMetric::Surface => leaning(picking, position_px, pick, size.radius_px, radius),
+    };
+    let (right, up) = normal.any_orthonormal_pair();
+    // Lifted towards the eye, so that the surface does not swallow it.
+    let lifted = |point: DVec3| point + picking.camera.towards_eye(point) * px;
+    (0..RING_SEGMENTS)
+        .map(|step| {
+            let angle_rad = TAU * step as f64 / RING_SEGMENTS as f64;
+            let in_plane = pick.point + (right * angle_rad.cos() + up * angle_rad.sin()) * radius;
+            let seen_px = picking.sight.project(in_plane);
+            let ray = seen_px.map(|seen_px| picking.camera.ray(seen_px, picking.viewport_px));
+            let on_surface = ray.and_then(|ray| picking.along(ray)).map(|pick| pick.point);
+            let near = on_surface.filter(|point| point.distance(pick.point) <= 2.5 * radius);
+            lifted(near.unwrap_or(in_plane))
+        })
+        .collect()
+}
+
+/// How the surface leans under the brush: the mean normal of what is seen within it, so that a rough scan does not make
+/// the ring flicker.
+fn leaning(picking: &Picking<'_>, position_px: DVec2, pick: &Pick, radius_px: f64, radius: f64) -> DVec3 {
+    const SAMPLES: usize = 12;
+    let around = (0..SAMPLES).filter_map(|sample| {
+        let angle_rad = TAU * sample as f64 / SAMPLES as f64;
+        let share = if sample % 2 == 0 { 0.4 } else { 0.75 };
+        picking.at(position_px + DVec2::from_angle(angle_rad) * radius_px * share)
+    });
+    let near = around.filter(|other| other.point.distance(pick.point) <= radius);
+    let sum: DVec3 = near.map(|other| other.normal).sum();
+    (sum + pick.normal).normalize_or(pick.normal)
+}

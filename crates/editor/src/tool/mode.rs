@@ -1,0 +1,43 @@
+//! What the left button does on the surface, and how it takes vertices.
+
+/// What the left button does on the surface.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum ToolMode {
+    /// Paints the selected handle, or a new one.
+    #[default]
+    PaintHandle,
+    /// Paints the free region.
+    PaintFree,
+    /// Paints what is held still.
+    PaintFixed,
+    /// Takes paint away.
+    Erase,
+    /// Paints how stiff the surface is.
+    PaintStiffness,
+    /// Selects a handle and drags it.
+    Select,
+}
+
+/// How the left button takes vertices.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum StrokeShape {
+    /// With the brush.
+    #[default]
+    Brush,
+    /// Within a line drawn freely around them.
+    Lasso,
+    /// Within a box.
+    Box,
+    /// All that hang together with the one under the pointer.
+    Component,
+}
+
+/// How deep a lasso or a box goes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum Depth {
+    /// Only what is seen.
+    #[default]
+    Visible,
+    /// Through the surface to its back.
+    Through,
+}

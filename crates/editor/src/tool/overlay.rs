@@ -1,0 +1,97 @@
+//! What lies over the surface: the brush's ring and the selected handle's gizmo.
+
+use glam::{DVec2, DVec3};
+
+use super::brush::ring;
+use super::mode::{StrokeShape, ToolMode};
+use super::settings::ToolSettings;
+use crate::view::{Camera, GizmoAxes, GizmoPart, GizmoShape, View, gizmo_shapes, hit_gizmo};
+use crate::workspace::Workspace;
+
+/// What of the overlay is shown, by what goes on.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Lit {
+    /// Nothing goes on: the gizmo, with the part under the pointer lit, or else the brush's ring.
+    Pointed,
+    /// The gizmo, with this part lit.
+    Gizmo(Option<GizmoPart>),
+    /// The brush's ring.
+    Ring,
+}
+
+/// The overlay as it is shown.
+#[derive(Debug, Default)]
+pub(crate) struct Overlay {
+    pub(crate) ring: Vec<DVec3>,
+    pub(crate) gizmo: Vec<GizmoShape>,
+    /// The part of the gizmo under the pointer, while nothing goes on.
+    pub(crate) hovered: Option<GizmoPart>,
+    pub(crate) is_over_surface: bool,
+    pub(crate) revision: u64,
+}
+
+impl Overlay {
+    /// The part of the gizmo at a point of the viewport.
+    pub(crate) fn hit(&self, position_px: DVec2, view: &View) -> Option<GizmoPart> {
+        hit_gizmo(&self.gizmo, position_px, view.camera(), view.viewport_px())
+    }
+
+    /// Computes the overlay anew; its revision grows if it looks different.
+    pub(crate) fn renew(
+        &mut self,
+        lit: Lit,
+        workspace: &Workspace,
+        view: &View,
+        settings: &ToolSettings,
+        pointer_px: Option<DVec2>,
+    ) {
+        let (camera, viewport_px) = (view.camera(), view.viewport_px());
+        let gizmo_of = |part| gizmo(lit, workspace, camera, viewport_px, settings, part).unwrap_or_default();
+        let mut gizmo = gizmo_of(None);
+        let highlighted = match (lit, pointer_px) {
+            (Lit::Pointed, Some(pointer_px)) => hit_gizmo(&gizmo, pointer_px, camera, viewport_px),
+            (Lit::Gizmo(part), _) => part,
+            _ => None,
+        };
+        if highlighted.is_some() {
+            gizmo = gizmo_of(highlighted);
+        }
+        let (mut line, mut is_over_surface) = (Vec::new(), false);
+        if let (Some(pointer_px), Some(picking)) = (pointer_px, workspace.picking(view))
+            && !matches!(lit, Lit::Gizmo(_))
+            && highlighted.is_none()
+            && let Some(pick) = picking.at(pointer_px)
+        {
+            is_over_surface = true;
+            let has_ring = settings.mode != ToolMode::Select && settings.stroke_shape == StrokeShape::Brush;
+            if has_ring && !settings.wants_pivot {
+                line = ring(&picking, pointer_px, &pick, &settings.brush);
+            }
+        }
+        self.hovered = highlighted.filter(|_| lit == Lit::Pointed);
+        self.is_over_surface = is_over_surface;
+        if self.ring != line || self.gizmo != gizmo {
+            self.ring = line;
+            self.gizmo = gizmo;
+            self.revision += 1;
+        }
+    }
+}
+
+/// The selected handle's gizmo, if it is to be shown.
+fn gizmo(
+    lit: Lit,
+    workspace: &Workspace,
+    camera: &Camera,
+    viewport_px: DVec2,
+    settings: &ToolSettings,
+    highlighted: Option<GizmoPart>,
+) -> Option<Vec<GizmoShape>> {
+    let handle = workspace.selected()?;
+    if lit == Lit::Ring || !handle.visible || handle.locked {
+        return None;
+    }
+    let axes = GizmoAxes::of(&handle.transform, settings.orientation, camera);
+    let (mode, centre) = (settings.gizmo_mode, handle.centre());
+    Some(gizmo_shapes(mode, centre, axes, camera, viewport_px, highlighted))
+}

@@ -1,0 +1,65 @@
+//! What a person has chosen for tools: which one, how it takes vertices, how the gizmo stands.
+
+use super::brush::{BRUSH_RADIUS_PX, BrushSize};
+use super::mode::{Depth, StrokeShape, ToolMode};
+use super::stiffness_brush::StiffnessBrush;
+use crate::document::{HandleId, Paint};
+use crate::view::{GizmoMode, GizmoOrientation};
+
+/// The tool, its brushes and the gizmo.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) struct ToolSettings {
+    pub(crate) mode: ToolMode,
+    pub(crate) stroke_shape: StrokeShape,
+    pub(crate) depth: Depth,
+    pub(crate) brush: BrushSize,
+    pub(crate) stiffness_brush: StiffnessBrush,
+    /// How hard a pen presses, 0 to 1; `None` until the system has said so.
+    pub(crate) pressure: Option<f64>,
+    pub(crate) gizmo_mode: GizmoMode,
+    pub(crate) orientation: GizmoOrientation,
+    /// Whether the next click puts the selected handle's pivot.
+    pub(crate) wants_pivot: bool,
+}
+
+impl Default for ToolSettings {
+    fn default() -> Self {
+        Self {
+            mode: ToolMode::default(),
+            stroke_shape: StrokeShape::default(),
+            depth: Depth::default(),
+            brush: BrushSize::default(),
+            stiffness_brush: StiffnessBrush::default(),
+            pressure: None,
+            gizmo_mode: GizmoMode::default(),
+            orientation: GizmoOrientation::default(),
+            wants_pivot: false,
+        }
+    }
+}
+
+impl ToolSettings {
+    /// The role that region commands speak of: the tool's, else the selected handle's.
+    pub(crate) fn role_in_hand(&self, selected: Option<HandleId>) -> Option<Paint> {
+        match self.mode {
+            ToolMode::PaintFree => Some(Paint::Free),
+            ToolMode::PaintFixed => Some(Paint::Fixed),
+            _ => selected.map(Paint::Handle),
+        }
+    }
+
+    /// Chooses the brush's radius, within what it may be.
+    pub(crate) fn set_brush_radius(&mut self, radius_px: f64) {
+        if radius_px.is_finite() {
+            self.brush.radius_px = radius_px.clamp(*BRUSH_RADIUS_PX.start(), *BRUSH_RADIUS_PX.end());
+        }
+    }
+
+    /// How hard the pen presses; what reports no force presses fully.
+    pub(crate) fn set_pressure(&mut self, pressure: Option<f64>) {
+        let usable = pressure.filter(|pressure| pressure.is_finite());
+        if pressure.is_some() || self.pressure.is_some() {
+            self.pressure = Some(usable.map_or(1.0, |pressure| pressure.clamp(0.0, 1.0)));
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The stiffness brush: what it does, how far, and how softly it ends.
+
+use crate::STIFFNESS_RANGE;
+
+/// What the stiffness brush does.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+pub enum StiffnessAction {
+    /// Takes the surface towards the brush's value.
+    #[default]
+    Paint,
+    /// Takes each vertex towards its neighbours.
+    Smooth,
+    /// Takes the surface back to 1.
+    Erase,
+}
+
+/// The stiffness brush.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct StiffnessBrush {
+    /// What it does.
+    pub action: StiffnessAction,
+    /// What it paints, in [`STIFFNESS_RANGE`].
+    pub value: f64,
+    /// How far one stroke goes, 0 to 1.
+    pub strength: f64,
+    /// How softly it ends at its rim: 0 is a hard rim, 1 falls off from the middle.
+    pub falloff: f64,
+}
+
+impl Default for StiffnessBrush {
+    fn default() -> Self {
+        Self {
+            action: StiffnessAction::default(),
+            value: 10.0,
+            strength: 1.0,
+            falloff: 0.5,
+        }
+    }
+}
+
+impl StiffnessBrush {
+    /// The brush with every number within its range; `None` where one is no number.
+    pub(crate) fn clamped(self) -> Option<Self> {
+        let is_usable = [self.value, self.strength, self.falloff]
+            .iter()
+            .all(|number| number.is_finite());
+        is_usable.then(|| Self {
+            value: self.value.clamp(*STIFFNESS_RANGE.start(), *STIFFNESS_RANGE.end()),
+            strength: self.strength.clamp(0.0, 1.0),
+            falloff: self.falloff.clamp(0.0, 1.0),
+            ..self
+        })
+    }
+
+    /// How firm the brush is at a share of its radius: 1 inside, 0 at the rim, a smooth step between.
+    pub(super) fn firmness(&self, share: f64) -> f64 {
+        let inner = 1.0 - self.falloff;
+        if share <= inner || self.falloff == 0.0 {
+            return 1.0;
+        }
+        let t = ((1.0 - share) / self.falloff).clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
+    }
+}

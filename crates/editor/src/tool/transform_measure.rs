@@ -1,0 +1,279 @@
+//! How far the pointer, or a typed number, has taken a transform: a way, an angle, a factor.
+
+use glam::{DQuat, DVec2, DVec3};
+
+use super::constraint::{Constraint, along_axis, angle_about_axis_rad, on_plane, screen_angle_rad, short_turn_rad};
+use super::number_entry::NumberEntry;
+use crate::document::{Handle, HandleTransform};
+use crate::view::{GizmoPart, View, axis_vector};
+
+/// The smallest factor that the pointer can scale by.
+const MIN_FACTOR: f64 = 1e-3;
+/// What Ctrl holds turns to: 5 degrees.
+const SNAP_RAD: f64 = std::f64::consts::PI / 36.0;
+/// What Ctrl holds factors to.
+const SNAP_FACTOR: f64 = 0.1;
+/// What Ctrl holds lengths to is the largest power of ten below this many points.
+const SNAP_PX: f64 = 40.0;
+
+/// What is done to the handle.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum TransformKind {
+    Move,
+    Turn,
+    Scale,
+}
+
+/// What a transform began with, and where the pointer has taken it.
+#[derive(Debug)]
+pub(super) struct Measure {
+    pub(super) kind: TransformKind,
+    pub(super) constraint: Constraint,
+    /// The part of the gizmo that was grabbed.
+    pub(super) part: Option<GizmoPart>,
+    /// The handle's transform when it began.
+    pub(super) start: HandleTransform,
+    /// Where the handle's pivot was when it began.
+    pub(super) centre: DVec3,
+    pub(super) start_px: DVec2,
+    pub(super) last_px: DVec2,
+    /// The turn so far, which may exceed a full circle.
+    turned_rad: f64,
+    pub(super) number: NumberEntry,
+    /// Whether Ctrl holds the pointer's way to round numbers.
+    snaps: bool,
+    /// The gizmo's axes when it began.
+    basis: DQuat,
+}
+
+impl Measure {
+    /// Nothing was done yet.
+    pub(super) fn begin(
+        kind: TransformKind,
+        constraint: Constraint,
+        handle: &Handle,
+        basis: DQuat,
+        start_px: DVec2,
+    ) -> Self {
+        Self {
+            kind,
+            constraint,
+            part: None,
+            start: handle.transform,
+            centre: handle.centre(),
+            start_px,
+            last_px: start_px,
+            turned_rad: 0.0,
+            number: NumberEntry::default(),
+            snaps: false,
+            basis,
+        }
+    }
+
+    /// The pointer moved on; `snaps` says whether Ctrl is held.
+    pub(super) fn move_to(&mut self, view: &View, position_px: DVec2, snaps: bool) {
+        self.snaps = snaps;
+        if self.kind == TransformKind::Turn {
+            self.turned_rad += self.turn_rad(view, self.last_px, position_px);
+        }
+        self.last_px = position_px;
+    }
+
+    /// The turn counts from the start again, along another constraint.
+    pub(super) fn restart(&mut self, view: &View) {
+        self.turned_rad = 0.0;
+        if self.kind == TransformKind::Turn {
+            self.turned_rad = self.turn_rad(view, self.start_px, self.last_px);
+        }
+    }
+
+    /// How far, by what angle or factor it has come, as typed or as the pointer says.
+    pub(super) fn label(&self, view: &View) -> String {
+        let typed = self.number.text();
+        match (typed.is_empty(), self.kind) {
+            (false, TransformKind::Turn) => format!("{typed}°"),
+            (false, TransformKind::Scale) => format!("×{typed}"),
+            (false, TransformKind::Move) => typed,
+            (true, TransformKind::Move) => length_label(self.translation(view).length()),
+            (true, TransformKind::Turn) => format!("{:.1}°", self.angle_rad().to_degrees()),
+            (true, TransformKind::Scale) => format!("×{:.3}", self.factor(view)),
+        }
+    }
+
+    /// The turn, typed or made by the pointer.
+    pub(super) fn angle_rad(&self) -> f64 {
+        match self.number.value() {
+            Some(degrees) => degrees.to_radians(),
+            None if self.snaps => (self.turned_rad / SNAP_RAD).round() * SNAP_RAD,
+            None => self.turned_rad,
+        }
+    }
+
+    /// An axis of the gizmo.
+    fn axis(&self, axis: usize) -> DVec3 {
+        self.basis * axis_vector(axis)
+    }
+
+    /// How far the handle goes, in world units.
+    pub(super) fn translation(&self, view: &View) -> DVec3 {
+        if let Some(length) = self.number.value() {
+            return match self.constraint {
+                Constraint::Free => self.axis(0) * length,
+                Constraint::Axis(axis) => self.axis(axis) * length,
+                Constraint::Plane(axis) => self.basis * ((DVec3::ONE - axis_vector(axis)) * length),
+            };
+        }
+        let [from, to] = [self.start_px, self.last_px].map(|px| view.camera().ray(px, view.viewport_px()));
+        match self.constraint {
+            Constraint::Axis(axis) => {
+                let axis = self.axis(axis);
+                let way = along_axis(from, self.centre, axis).zip(along_axis(to, self.centre, axis));
+                way.map_or(DVec3::ZERO, |(from, to)| axis * self.snapped(view, to - from))
+            }
+            Constraint::Free | Constraint::Plane(_) => {
+                let normal = match self.constraint {
+                    Constraint::Plane(axis) => self.axis(axis),
+                    _ => view.camera().forward(),
+                };
+                let way = on_plane(from, self.centre, normal).zip(on_plane(to, self.centre, normal));
+                way.map_or(DVec3::ZERO, |(from, to)| {
+                    let way = to - from;
+                    match self.constraint {
+                        // Exactly within the plane, so that the other coordinate keeps its bits.
+                        Constraint::Plane(axis) if self.basis == DQuat::IDENTITY => {
+                            let snapped = way.to_array().map(|part| self.snapped(view, part));
+                            DVec3::from(snapped) * (DVec3::ONE - axis_vector(axis))
+                        }
+                        Constraint::Free if self.snaps => {
+                            let axes = view.camera().axes();
+                            let along = |axis: DVec3| axis * self.snapped(view, way.dot(axis));
+                            along(axes.x_axis) + along(axes.y_axis)
+                        }
+                        _ => way,
+                    }
+                })
+            }
+        }
+    }
+
+    /// A length, held to round numbers while Ctrl is: the power of ten that some dozens of points of the screen span.
+    fn snapped(&self, view: &View, length: f64) -> f64 {
+        if !self.snaps {
+            return length;
+        }
+        let seen = SNAP_PX * view.camera().world_per_px(self.centre, view.viewport_px());
+        let step = 10.0_f64.powf(seen.log10().floor());
+        (length / step).round() * step
+    }
+
+    /// The axis that a turn goes about.
+    pub(super) fn turn_axis(&self, view: &View) -> DVec3 {
+        match self.constraint {
+            Constraint::Free => -view.camera().forward(),
+            Constraint::Axis(axis) | Constraint::Plane(axis) => self.axis(axis),
+        }
+    }
+
+    /// The turn that the pointer's way from one point to another means.
+    fn turn_rad(&self, view: &View, from_px: DVec2, to_px: DVec2) -> f64 {
+        let axis = self.turn_axis(view);
+        let to_eye = view.camera().towards_eye(self.centre);
+        // Within the ring's plane where that is seen well, else on the screen.
+        if self.part.is_some() && axis.dot(to_eye).abs() > 0.25 {
+            let [from, to] = [from_px, to_px].map(|px| {
+                let point = on_plane(view.camera().ray(px, view.viewport_px()), self.centre, axis)?;
+                angle_about_axis_rad(point, self.centre, axis)
+            });
+            if let (Some(from), Some(to)) = (from, to) {
+                return short_turn_rad(from, to);
+            }
+        }
+        let Some(centre_px) = view.camera().project(self.centre, view.viewport_px()) else {
+            return 0.0;
+        };
+        let sign = if axis.dot(to_eye) < 0.0 { -1.0 } else { 1.0 };
+        match (screen_angle_rad(from_px, centre_px), screen_angle_rad(to_px, centre_px)) {
+            (Some(from), Some(to)) => sign * short_turn_rad(from, to),
+            _ => 0.0,
+        }
+    }
+
+    /// The factor that the pointer's way means.
+    fn factor(&self, view: &View) -> f64 {
+        match self.number.value() {
+            Some(factor) => factor,
+            None if self.snaps => (self.pointed_factor(view) / SNAP_FACTOR).round().max(1.0) * SNAP_FACTOR,
+            None => self.pointed_factor(view),
+        }
+    }
+
+    fn pointed_factor(&self, view: &View) -> f64 {
+        if let (Some(GizmoPart::Box(axis)), Constraint::Axis(_)) = (self.part, self.constraint) {
+            let axis = self.own_rotation() * axis_vector(axis);
+            let [from, to] = [self.start_px, self.last_px]
+                .map(|px| along_axis(view.camera().ray(px, view.viewport_px()), self.centre, axis));
+            if let (Some(from), Some(to)) = (from, to)
+                && from.abs() > 0.0
+            {
+                return (to / from).max(MIN_FACTOR);
+            }
+        }
+        match view.camera().project(self.centre, view.viewport_px()) {
+            Some(centre_px) => {
+                let start = self.start_px.distance(centre_px).max(1.0);
+                (self.last_px.distance(centre_px) / start).max(MIN_FACTOR)
+            }
+            None => 1.0,
+        }
+    }
+
+    /// One factor for each of the handle's own axes.
+    pub(super) fn scale(&self, view: &View) -> DVec3 {
+        let factor = self.factor(view);
+        match self.constraint {
+            Constraint::Free => DVec3::splat(factor),
+            Constraint::Axis(axis) => DVec3::ONE + axis_vector(axis) * (factor - 1.0),
+            Constraint::Plane(axis) => DVec3::splat(factor) + axis_vector(axis) * (1.0 - factor),
+        }
+    }
+
+    /// How the handle was turned when it began.
+    pub(super) fn own_rotation(&self) -> DQuat {
+        match self.start {
+            HandleTransform::Trs { rotation, .. } => rotation,
+            HandleTransform::Matrix(_) => DQuat::IDENTITY,
+        }
+    }
+}
+
+/// A length in four digits.
+fn length_label(length: f64) -> String {
+    let digits = match length.abs() {
+        size if size >= 1000.0 => 0,
+        size if size >= 100.0 => 1,
+        size if size >= 10.0 => 2,
+        size if size >= 0.01 || size == 0.0 => 4,
+        _ => return format!("{length:.2e}"),
+    };
+    format!("{length:.digits$}")
+}
+
+impl TransformKind {
+    /// As the history calls it.
+    pub(super) fn verb(self) -> &'static str {
+        match self {
+            Self::Move => "Move",
+            Self::Turn => "Turn",
+            Self::Scale => "Scale",
+        }
+    }
+
+    /// As the status line says it while it goes on.
+    pub(super) fn doing(self) -> &'static str {
+        match self {
+            Self::Move => "Moving",
+            Self::Turn => "Turning",
+            Self::Scale => "Scaling",
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! Where one looks from, what is seen there, and how it is shown.
+
+mod camera;
+mod camera_history;
+mod camera_motion;
+mod gizmo;
+mod look;
+mod picking;
+mod sight;
+mod state;
+
+pub use camera::{Camera, NamedView, Orbit, Projection, Ray, UpAxis};
+pub(crate) use camera_history::CameraStep;
+pub(crate) use gizmo::axis_vector;
+pub use gizmo::{GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, gizmo_shapes, hit_gizmo};
+pub use look::{Clay, Look, Shading};
+pub use picking::Pick;
+pub(crate) use picking::Picking;
+pub(crate) use state::View;

@@ -1,0 +1,143 @@
+//! The view: camera, viewport and look. It is chosen by a person and belongs to no document.
+
+use glam::{DVec2, DVec3};
+
+use super::camera::{Camera, Orbit};
+use super::camera_history::{CameraHistory, CameraStep};
+use super::look::Look;
+
+/// Where one looks from, and how the surface is shown.
+#[derive(Debug)]
+pub(crate) struct View {
+    camera: Camera,
+    history: CameraHistory,
+    viewport_px: DVec2,
+    /// Grows when camera or viewport changed.
+    revision: u64,
+    /// Whether nobody has moved the camera since everything was framed.
+    is_framed: bool,
+    orbit: Orbit,
+    pub(crate) look: Look,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            camera: Camera::default(),
+            history: CameraHistory::default(),
+            viewport_px: DVec2::new(1280.0, 800.0),
+            revision: 0,
+            is_framed: true,
+            orbit: Orbit::default(),
+            look: Look::default(),
+        }
+    }
+}
+
+impl View {
+    pub(crate) fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The view's size in points.
+    pub(crate) fn viewport_px(&self) -> DVec2 {
+        self.viewport_px
+    }
+
+    /// What dragging does.
+    pub(crate) fn orbit(&self) -> Orbit {
+        self.orbit
+    }
+
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Whether everything is to be framed again when the view changes its size.
+    pub(crate) fn is_framed(&self) -> bool {
+        self.is_framed
+    }
+
+    /// Which places can be gone back and forth to.
+    pub(crate) fn history(&self) -> &CameraHistory {
+        &self.history
+    }
+
+    /// Takes another size; false if that is none, or the present one.
+    pub(crate) fn resize(&mut self, size_px: DVec2) -> bool {
+        let is_usable = size_px.is_finite() && size_px.x >= 1.0 && size_px.y >= 1.0;
+        let is_other = is_usable && size_px != self.viewport_px;
+        if is_other {
+            self.viewport_px = size_px;
+            self.revision += 1;
+        }
+        is_other
+    }
+
+    /// Changes how the camera sees from where it is.
+    pub(crate) fn adjust(&mut self, change: impl FnOnce(&mut Camera)) {
+        let before = self.camera;
+        change(&mut self.camera);
+        if self.camera != before {
+            self.revision += 1;
+        }
+    }
+
+    /// Moves the camera away from where everything was framed.
+    pub(crate) fn travel(&mut self, change: impl FnOnce(&mut Camera)) {
+        self.adjust(change);
+        self.is_framed = false;
+    }
+
+    /// Chooses what dragging does; a turntable has a level horizon.
+    pub(crate) fn set_orbit(&mut self, orbit: Orbit) {
+        self.orbit = orbit;
+        if orbit == Orbit::Turntable {
+            self.adjust(|camera| camera.roll_rad = 0.0);
+        }
+    }
+
+    /// Shows all of these points, which are everything: the camera stays so when the view changes its size.
+    pub(crate) fn frame_all(&mut self, positions: &[DVec3]) {
+        let viewport_px = self.viewport_px;
+        self.adjust(|camera| camera.frame(positions, viewport_px));
+        self.is_framed = true;
+    }
+
+    /// Comes close to these points, with as much room again on every side to show what they lie on.
+    pub(crate) fn frame(&mut self, positions: &[DVec3]) {
+        let viewport_px = self.viewport_px;
+        self.travel(|camera| {
+            camera.frame(positions, viewport_px);
+            camera.distance *= 3.0;
+        });
+    }
+
+    /// Comes close to a point.
+    pub(crate) fn approach(&mut self, point: DVec3) {
+        self.travel(|camera| {
+            camera.target = point;
+            camera.distance = 0.15 * camera.scale;
+        });
+    }
+
+    /// Begins a file of this size with no place to go back to.
+    pub(crate) fn open(&mut self, scale: Option<f64>) {
+        if let Some(scale) = scale {
+            self.adjust(|camera| camera.scale = scale);
+        }
+        self.history = CameraHistory::default();
+    }
+
+    /// Goes to where one looked from before, or forth again.
+    pub(crate) fn step(&mut self, step: CameraStep) {
+        if let Some(camera) = self.history.step(step, self.camera) {
+            self.travel(|present| *present = camera);
+        }
+    }
+
+    /// Takes note that no gesture moves the camera.
+    pub(crate) fn rest(&mut self) {
+        self.history.rest(self.camera);
+    }
+}

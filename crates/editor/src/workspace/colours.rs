@@ -1,0 +1,65 @@
+//! The colours of regions and handles on the surface, and the lines between them.
+
+use pliant_deform::Role;
+use pliant_mesh::{ContourLine, SurfaceVertex};
+
+use super::colour_revisions::ColouredBy;
+use super::state::Workspace;
+use crate::document::{HandleId, Paint};
+use crate::jobs::{Rim, bounded};
+
+/// The colour of a stiffness, sRGB with alpha: blue where it gives way (0.001), grey at 1, red where it is firm (1000).
+pub fn stiffness_colour(stiffness: f64) -> [u8; 4] {
+    const SOFT: [f64; 3] = [58.0, 118.0, 214.0];
+    const PLAIN: [f64; 3] = [196.0, 196.0, 192.0];
+    const FIRM: [f64; 3] = [206.0, 66.0, 44.0];
+    let decades = stiffness.max(f64::MIN_POSITIVE).log10() / 3.0;
+    // What is near 1 is told apart, too.
+    let share = decades.abs().min(1.0).sqrt();
+    let end = if decades < 0.0 { SOFT } else { FIRM };
+    let [r, g, b] = std::array::from_fn(|i| (PLAIN[i] + (end[i] - PLAIN[i]) * share).round() as u8);
+    [r, g, b, 255]
+}
+
+/// What tells the colour of a vertex, sRGB with alpha.
+pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> [u8; 4] {
+    const FREE: [u8; 4] = [96, 150, 222, 255];
+    // The clay or the material as it is: a share of any grey would wash it out.
+    const STILL: [u8; 4] = [0; 4];
+    const FIXED: [u8; 4] = [112, 112, 116, 255];
+    let document = &workspace.document;
+    let handles = document.handles();
+    let largest = handles.iter().map(|handle| usize::from(handle.id.0) + 1).max();
+    let mut of_handle = vec![STILL; largest.unwrap_or(0)];
+    for handle in handles.iter().filter(|handle| handle.visible) {
+        of_handle[usize::from(handle.id.0)] = handle.colour;
+    }
+    let by = workspace.colours.by();
+    move |vertex| {
+        if by == ColouredBy::Stiffness {
+            return stiffness_colour(document.stiffness().map_or(1.0, |field| field[vertex.index()]));
+        }
+        match document.paint[vertex.index()] {
+            Paint::Fixed => FIXED,
+            Paint::Free => FREE,
+            Paint::Handle(HandleId(id)) => of_handle.get(usize::from(id)).copied().unwrap_or(STILL),
+            Paint::Bare => match workspace.computed().region.roles.get(vertex.index()) {
+                Some(Role::Free) => FREE,
+                _ => STILL,
+            },
+        }
+    }
+}
+
+/// The lines between the regions as they were last measured, each with what it bounds; those of hidden handles and on
+/// hidden triangles are left out.
+pub(crate) fn rims(workspace: &Workspace) -> impl Iterator<Item = (&ContourLine, Rim)> {
+    let region = &workspace.computed().region;
+    let is_seen = |rim: &Rim| match rim {
+        Rim::Held => true,
+        Rim::Handle(id) => workspace.document.handle(*id).is_some_and(|handle| handle.visible),
+    };
+    let lines = region.rims.iter();
+    let shown = lines.filter(|line| workspace.vertex_access.shows_triangle(line.triangle));
+    shown.filter_map(move |line| Some((line, bounded(line.label, &region.handles).filter(is_seen)?)))
+}

@@ -1,0 +1,93 @@
+//! What follows from an event: which revisions grow, and which jobs are asked for.
+//!
+//! The document says what has changed by the versions of its aspects. Each thing that follows from some of them is
+//! renewed when those are others than what it was made from; nobody has to know who follows from a change.
+
+use super::colour_revisions::{ColouredBy, Sources};
+use super::state::Workspace;
+use crate::document::{Aspect, Handle, VertexAccess};
+use crate::jobs::{Activity, Arrival, Finality, Solved};
+
+impl Workspace {
+    /// Draws the conclusions from what an event changed: revisions grow, and jobs are asked for.
+    pub(crate) fn conclude(&mut self, activity: Activity, coloured_by: ColouredBy) {
+        self.renew_vertex_access();
+        self.rest_if_undisplaced();
+        self.follow_versions(activity);
+        self.selection.drop_lost(&self.document);
+        self.jobs.pump(&self.document, activity);
+        let versions = self.document.versions();
+        let sources = Sources {
+            appearance: versions.of(Aspect::Appearance),
+            access: versions.of(Aspect::Access),
+            roles: self.jobs.roles_revision,
+            by: coloured_by,
+            selected: self.selection.selected(),
+        };
+        self.colours.follow(sources, self.document.take_repainted());
+    }
+
+    /// Tells the jobs what has changed. While a stroke goes on the problem changes with every event; it counts once, at
+    /// the end, and not at all if the stroke was taken back.
+    fn follow_versions(&mut self, activity: Activity) {
+        let versions = *self.document.versions();
+        let seen = std::mem::replace(&mut self.seen, versions);
+        if activity == Activity::Painting {
+            self.seen = seen;
+            self.seen.take(&versions, Aspect::Drawn);
+        } else if versions.are_other_problem(&seen) {
+            self.jobs.problem_changed();
+        } else if versions.differ(&seen, Aspect::Targets) {
+            self.jobs.targets_changed();
+        }
+        if versions.differ(&seen, Aspect::Drawn) {
+            self.jobs.shape_changed();
+            self.shape_revision += 1;
+        }
+    }
+
+    /// Handles that all rest need no solve: the rest shape is known.
+    fn rest_if_undisplaced(&mut self) {
+        if !self.document.is_settled() && !self.document.handles().iter().any(Handle::is_displaced) {
+            self.jobs.drop_solves();
+            self.document.unbend();
+        }
+    }
+
+    /// What is hidden and locked, triangle by triangle.
+    fn renew_vertex_access(&mut self) {
+        let Some(model) = self.model() else { return };
+        let of = (self.jobs.model_revision, self.document.versions().of(Aspect::Access));
+        if self.vertex_access_of == Some(of) {
+            return;
+        }
+        let had = self.vertex_access.triangles.is_some();
+        self.vertex_access = VertexAccess::of(self.document.access(), model);
+        self.vertex_access_of = Some(of);
+        if had || self.vertex_access.triangles.is_some() {
+            self.jobs.show_triangles(self.vertex_access.triangles.clone());
+        }
+    }
+
+    /// Takes what a job has brought; what belongs to a gesture or to what waits for it is given back.
+    pub(crate) fn take_arrival(&mut self, arrival: Arrival) -> Option<Arrival> {
+        match arrival {
+            Arrival::Nothing | Arrival::Picking => {}
+            Arrival::Problem(sentence) => self.refuse(sentence),
+            Arrival::Shape(solved, finality) => self.take_shape(solved, finality),
+            Arrival::Enclosed(_) | Arrival::Mirrored(_) => return Some(arrival),
+        }
+        None
+    }
+
+    fn take_shape(&mut self, solved: Solved, finality: Finality) {
+        if self.document.is_settled() || solved.from_rest.len() != self.document.from_rest.len() {
+            return;
+        }
+        self.descent = solved.descent;
+        self.document.show(solved.from_rest, solved.from_file);
+        if finality == Finality::Final {
+            self.document.settle();
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! The numbers of a handle, as a panel or a command sets them: where it stands, how it is turned, how far the surface
+//! comes along, how it joins, how firmly it holds.
+
+use pliant_deform::CONTINUITY_RANGE;
+
+use super::handles::{count_turn, put_handle};
+use super::state::Workspace;
+use crate::SOFT_RANGE;
+use crate::document::{HandleId, HandleTransform, Reach, rotation_of};
+
+/// Puts a handle somewhere in a step of its own.
+pub(crate) fn transform_handle(workspace: &mut Workspace, verb: &str, id: HandleId, transform: HandleTransform) {
+    let Some(name) = workspace.document.handle(id).map(|handle| handle.name.clone()) else {
+        return;
+    };
+    workspace.step(format!("{verb} {name}"), |workspace| {
+        put_handle(workspace, id, transform)
+    });
+}
+
+/// Turns a handle to these angles about x, y and z in degrees, full turns included.
+pub(crate) fn set_turn(workspace: &mut Workspace, id: HandleId, turn_deg: glam::DVec3) {
+    if !turn_deg.is_finite() {
+        workspace.refuse("The handle's turn is not finite: enter other numbers.");
+        return;
+    }
+    let Some(handle) = workspace.document.handle(id) else {
+        return;
+    };
+    let HandleTransform::Trs {
+        translation,
+        scale,
+        pivot,
+        ..
+    } = handle.transform
+    else {
+        workspace.refuse(format!(
+            "{} is moved by a matrix: reset it to turn it by angles.",
+            handle.name
+        ));
+        return;
+    };
+    let turned = HandleTransform::Trs {
+        translation,
+        rotation: rotation_of(turn_deg),
+        scale,
+        pivot,
+    };
+    workspace.step(format!("Turn {}", handle.name.clone()), |workspace| {
+        put_handle(workspace, id, turned);
+        count_turn(workspace, id, turn_deg);
+    });
+}
+
+/// Widening the region changes roles: the present shape becomes the rest shape first.
+pub(crate) fn set_reach(workspace: &mut Workspace, id: HandleId, reach: Reach) {
+    let (Reach::Radii(size) | Reach::Length(size)) = reach;
+    if !(size.is_finite() && size >= 0.0) {
+        workspace.refuse("A reach is a length of at least 0: enter another number.");
+        return;
+    }
+    if workspace.document.handle(id).is_none_or(|handle| handle.reach == reach) {
+        return;
+    }
+    workspace.jobs.drop_solves();
+    workspace.change("Change reach", |document| {
+        document.apply_shape();
+        document.change_handle(id, |handle| handle.reach = reach);
+    });
+}
+
+/// With which continuity the surface joins a handle; `None` is what is painted.
+pub(crate) fn set_continuity(workspace: &mut Workspace, id: HandleId, continuity: Option<f64>) {
+    if continuity.is_some_and(|value| !CONTINUITY_RANGE.contains(&value)) {
+        workspace.refuse("A continuity is from 0 (a hinge) to 2 (smooth): enter another number.");
+        return;
+    }
+    workspace.change("Change continuity", |document| {
+        if document
+            .handle(id)
+            .is_some_and(|handle| handle.continuity != continuity)
+        {
+            document.unsettle_if_displaced();
+            document.change_handle(id, |handle| handle.continuity = continuity);
+        }
+    });
+}
+
+/// Gives a handle a weight, so that it only pulls; `None` makes it hard.
+pub(crate) fn set_soft(workspace: &mut Workspace, id: HandleId, soft: Option<f64>) {
+    if soft.is_some_and(|weight| !SOFT_RANGE.contains(&weight)) {
+        let (least, most) = (SOFT_RANGE.start(), SOFT_RANGE.end());
+        workspace.refuse(format!(
+            "A soft handle's weight is from {least} to {most}: enter another number."
+        ));
+        return;
+    }
+    workspace.change("Change softness", |document| {
+        if document.handle(id).is_some_and(|handle| handle.soft != soft) {
+            document.unsettle_if_displaced();
+            document.change_handle(id, |handle| handle.soft = soft);
+        }
+    });
+}

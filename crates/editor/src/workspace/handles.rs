@@ -1,0 +1,258 @@
+//! What is done to handles: put somewhere, given a pivot, split, twinned, deleted, taken back with their region.
+
+use glam::DVec3;
+use pliant_deform::Role;
+use pliant_mesh::{Model, SurfaceVertex};
+
+use super::painting::{border_middle, members, repaint, tidy_handles};
+use super::state::Workspace;
+use crate::document::{Document, Handle, HandleId, HandleTransform, Paint, PivotPlace, VertexAccess, means};
+
+/// Why a handle can't be moved, if it can't.
+pub(crate) fn held_because(workspace: &Workspace, id: HandleId) -> Option<String> {
+    let handle = workspace.document.handle(id)?;
+    if handle.locked {
+        return Some(format!("{} is locked: unlock it in the list to move it.", handle.name));
+    }
+    let access = &workspace.vertex_access;
+    let is_locked = |vertex: SurfaceVertex| access.is_locked(vertex.index());
+    let is_held = access.locks_any() && members(&workspace.document, id).into_iter().all(is_locked);
+    is_held.then(|| {
+        format!(
+            "{} lies on a locked object: unlock that in the list of objects to move it.",
+            handle.name
+        )
+    })
+}
+
+/// Puts a handle somewhere, in the document as it stands: the surface follows as soon as it can, and so does its twin.
+pub(crate) fn put_handle(workspace: &mut Workspace, id: HandleId, transform: HandleTransform) {
+    if let Some(why) = held_because(workspace, id) {
+        workspace.refuse(why);
+        return;
+    }
+    let Some(handle) = workspace
+        .document
+        .handle(id)
+        .filter(|handle| handle.transform != transform)
+    else {
+        return;
+    };
+    let twin = handle.twin;
+    workspace.document.unsettle();
+    put_alone(workspace, id, transform);
+    if let Some(twin) = twin
+        && held_because(workspace, twin.handle).is_none()
+    {
+        put_alone(workspace, twin.handle, twin.plane.mirrored_transform(transform));
+    }
+}
+
+/// Puts a handle; before the factorisation is ready its own vertices follow it, and the rest stays.
+fn put_alone(workspace: &mut Workspace, id: HandleId, transform: HandleTransform) {
+    let document = &mut workspace.document;
+    document.change_handle(id, |handle| handle.put(transform));
+    if !workspace.jobs.is_bound()
+        && let Some(model) = workspace.jobs.computed.model.as_deref()
+        && let Some(from_rest) = moved_alone(document, model, &workspace.vertex_access, id)
+    {
+        document.bend(from_rest);
+    }
+}
+
+/// The shape with a handle's own vertices where the handle takes them, as displacements from the rest shape.
+fn moved_alone(document: &Document, model: &Model, access: &VertexAccess, id: HandleId) -> Option<Vec<DVec3>> {
+    let affine = document.handle(id)?.affine();
+    let mut from_rest: Vec<DVec3> = document.from_rest().to_vec();
+    for vertex in members(document, id).into_iter().map(SurfaceVertex::index) {
+        if !access.is_locked(vertex) {
+            let applied = if document.is_applied() {
+                document.rest()[vertex]
+            } else {
+                DVec3::ZERO
+            };
+            let rest = model.surface.positions[vertex] + applied;
+            from_rest[vertex] = affine.transform_point3(rest) - rest;
+        }
+    }
+    Some(from_rest)
+}
+
+/// Says how a handle's turn is counted, if that means its rotation.
+pub(crate) fn count_turn(workspace: &mut Workspace, id: HandleId, turn_deg: DVec3) {
+    workspace.document.change_handle(id, |handle| {
+        if let HandleTransform::Trs { rotation, .. } = handle.transform
+            && means(turn_deg, rotation)
+        {
+            handle.turn_deg = turn_deg;
+        }
+    });
+}
+
+/// Changes a handle in one step.
+pub(crate) fn change_handle(
+    workspace: &mut Workspace,
+    name: impl Into<String>,
+    id: HandleId,
+    change: impl FnOnce(&mut Handle),
+) {
+    workspace.change(name, |document| {
+        document.change_handle(id, change);
+    });
+}
+
+/// Deletes the selected handle; its vertices are held still where they are.
+pub(crate) fn delete_selected(workspace: &mut Workspace) {
+    let Some(handle) = workspace.selected() else { return };
+    let (id, name) = (handle.id, format!("Delete {}", handle.name));
+    workspace.jobs.drop_solves();
+    workspace.change(name, |document| {
+        document.apply_shape();
+        let freed = members(document, id).into_iter().map(|vertex| (vertex, Paint::Bare));
+        document.paint_vertices(freed.collect::<Vec<_>>());
+        document.change_handles(|handles| {
+            handles.retain(|handle| handle.id != id);
+            for handle in handles {
+                handle.twin = handle.twin.filter(|twin| twin.handle != id);
+            }
+        });
+    });
+}
+
+/// Chooses where a pivot stands, and puts it there.
+pub(crate) fn set_pivot_place(workspace: &mut Workspace, id: HandleId, place: PivotPlace) {
+    let Some(model) = workspace.model().cloned() else {
+        return;
+    };
+    let document = &workspace.document;
+    let position = |vertex: usize| model.surface.positions[vertex] + document.rest[vertex];
+    let members = (0..document.paint.len()).filter(|&vertex| document.paint[vertex] == Paint::Handle(id));
+    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+    for vertex in members {
+        sum += position(vertex);
+        count += 1.0;
+    }
+    let pivot = match place {
+        PivotPlace::Centroid => (count > 0.0).then(|| sum / count),
+        PivotPlace::Border => border_middle(id, &document.paint, &model, &position),
+        PivotPlace::Picked => None,
+    };
+    change_handle(workspace, "Choose pivot", id, |handle| {
+        handle.pivot_place = place;
+        if let Some(pivot) = pivot {
+            move_pivot(handle, pivot);
+        }
+    });
+}
+
+/// Puts a pivot at a point of the present shape.
+pub(crate) fn set_pivot(workspace: &mut Workspace, id: HandleId, point: DVec3) {
+    if !point.is_finite() {
+        workspace.refuse("The pivot is not finite: enter other numbers.");
+        return;
+    }
+    change_handle(workspace, "Put pivot", id, |handle| {
+        let affine = handle.affine();
+        let inverse = affine.inverse();
+        // A handle that was scaled to nothing has no way back: the pivot's way along is all there is.
+        let rest = if inverse.is_finite() {
+            inverse.transform_point3(point)
+        } else {
+            handle.pivot + (point - handle.centre())
+        };
+        handle.pivot_place = PivotPlace::Picked;
+        move_pivot(handle, rest);
+    });
+}
+
+/// Splits the selected handle in two across its longest side.
+pub(crate) fn split_selected(workspace: &mut Workspace) {
+    let (Some(id), Some(model)) = (workspace.selection.selected(), workspace.model().cloned()) else {
+        return;
+    };
+    let members: Vec<usize> = (0..workspace.document.paint.len())
+        .filter(|&vertex| workspace.document.paint[vertex] == Paint::Handle(id))
+        .collect();
+    let positions: Vec<DVec3> = members
+        .iter()
+        .map(|&vertex| model.surface.positions[vertex] + workspace.document.from_file[vertex])
+        .collect();
+    let Some(bounds) = pliant_mesh::bounding_box(&positions) else {
+        return;
+    };
+    let extent = bounds.extent();
+    let axis = (0..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
+    let middle = bounds.centre()[axis];
+    let target = Paint::Handle(HandleId(workspace.document.next_handle));
+    let changes: Vec<(usize, Paint)> = members
+        .iter()
+        .zip(&positions)
+        .filter(|(_, position)| position[axis] > middle)
+        .map(|(&vertex, _)| (vertex, target))
+        .collect();
+    if changes.is_empty() || changes.len() == members.len() {
+        workspace.refuse("A handle of one point can't be split: paint more of it.");
+        return;
+    }
+    repaint(workspace, "Split handle".to_owned(), Paint::Handle(id), target, changes);
+}
+
+/// Parts the selected handle from its twin.
+pub(crate) fn untwin(workspace: &mut Workspace) {
+    let Some(id) = workspace.selection.selected() else {
+        return;
+    };
+    workspace.change("Part twins", |document| {
+        let twin = document.change_handle(id, |handle| handle.twin.take());
+        if let Some(twin) = twin.flatten() {
+            document.change_handle(twin.handle, |other| other.twin = None);
+        }
+    });
+}
+
+/// Takes the selected handle's vertices and what is free around them back to the file's shape.
+pub(crate) fn reset_region(workspace: &mut Workspace) {
+    let (Some(id), Some(model)) = (workspace.selection.selected(), workspace.model().cloned()) else {
+        return;
+    };
+    // The free vertices that hang together with the handle's.
+    let is_own = |vertex: usize| workspace.document.paint[vertex] == Paint::Handle(id);
+    let mut taken: Vec<bool> = (0..workspace.document.paint.len()).map(is_own).collect();
+    let mut stack: Vec<usize> = (0..taken.len()).filter(|&vertex| taken[vertex]).collect();
+    while let Some(vertex) = stack.pop() {
+        for neighbour in model.topology.neighbours(SurfaceVertex(vertex as u32)) {
+            let next = neighbour.index();
+            if !taken[next] && workspace.computed().region.roles.get(next) == Some(&Role::Free) {
+                taken[next] = true;
+                stack.push(next);
+            }
+        }
+    }
+    workspace.jobs.drop_solves();
+    workspace.step("Reset region", |workspace| {
+        let before = workspace.document.clone();
+        let document = &mut workspace.document;
+        document.apply_shape();
+        document.forget_rest_at(&taken);
+        let members = members(document, id);
+        let position = |vertex: &SurfaceVertex| model.surface.positions[vertex.index()] + document.rest[vertex.index()];
+        let middle = members.iter().map(position).sum::<DVec3>() / members.len().max(1) as f64;
+        document.change_handle(id, |handle| {
+            if handle.pivot_place != PivotPlace::Picked {
+                handle.pivot = middle;
+            }
+        });
+        tidy_handles(workspace, &before);
+    });
+}
+
+/// Puts a pivot at a point of the rest shape; the map of positions stays the same.
+fn move_pivot(handle: &mut Handle, pivot: DVec3) {
+    let affine = handle.affine();
+    if let HandleTransform::Trs { translation, .. } = &mut handle.transform
+        && *translation != affine.transform_point3(pivot) - pivot
+    {
+        *translation = affine.transform_point3(pivot) - pivot;
+    }
+    handle.pivot = pivot;
+}

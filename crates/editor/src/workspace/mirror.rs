@@ -1,0 +1,161 @@
+//! The mirror image of a region: looked for by a job, since every vertex asks for the nearest one across the plane.
+//!
+//! What is done with the image waits meanwhile. If the paint has changed when it comes, nothing is done, and that is
+//! said.
+
+use pliant_mesh::{Bvh, Cancel, Cancelled, Model, Progress, SurfaceVertex};
+use rayon::prelude::*;
+
+use super::mirror_request::{Mirroring, Purpose};
+use super::painting::{members_of, name_of, repaint};
+use super::state::Workspace;
+use crate::document::{Aspect, HandleId, MirrorPlane, Paint, PivotPlace, Twin};
+use crate::jobs::JobOutcome;
+
+/// How many vertices are asked between two looks at the progress.
+const BATCH: usize = 16_384;
+
+/// Has the mirror image of a role's vertices looked for.
+pub(crate) fn mirror(workspace: &mut Workspace, purpose: Purpose, axis: usize) {
+    let (Some(model), Some(plane)) = (workspace.model().cloned(), mirror_plane(workspace, axis)) else {
+        return;
+    };
+    let role = match purpose {
+        Purpose::Region(role) => role,
+        Purpose::Twin(id) => Paint::Handle(id),
+    };
+    let is_member = members_of(workspace, role);
+    let is_as_in_file = !workspace.document.applied && !workspace.document.is_displaced();
+    let ready = workspace.computed().pickable.as_ref();
+    let bvh = ready
+        .filter(|pickable| is_as_in_file && pickable.shown.triangles.is_none() && workspace.jobs.is_picking_current())
+        .map(|pickable| pickable.bvh.clone());
+    workspace.mirroring = Some(Mirroring {
+        purpose,
+        plane,
+        paint: workspace.document.versions().of(Aspect::Paint),
+    });
+    workspace.jobs.mirror(Box::new(move |progress, cancel| {
+        let bvh = bvh.unwrap_or_else(|| Bvh::build(&model.surface.positions, &model.surface.triangles));
+        match mirrored(&model, &bvh, &is_member, plane, progress, cancel) {
+            Ok(image) => JobOutcome::Mirrored(image),
+            Err(_) => JobOutcome::Cancelled,
+        }
+    }));
+}
+
+/// Does what an image was wanted for, if no gesture goes on and the paint is what it was.
+pub(crate) fn take_mirrored(workspace: &mut Workspace, image: Vec<usize>, is_idle: bool) {
+    let Some(Mirroring { purpose, plane, paint }) = workspace.mirroring.take() else {
+        return;
+    };
+    let is_other = workspace.document.versions().of(Aspect::Paint) != paint;
+    if is_other || !is_idle {
+        workspace.refuse("The regions have changed while the mirror image was looked for: mirror again.");
+        return;
+    }
+    match purpose {
+        Purpose::Region(role) => mirror_region(workspace, role, image),
+        Purpose::Twin(id) => twin_of(workspace, id, &image, plane),
+    }
+}
+
+/// Takes a region's mirror image in.
+fn mirror_region(workspace: &mut Workspace, role: Paint, image: Vec<usize>) {
+    let changes = image.into_iter().map(|vertex| (vertex, role)).collect();
+    repaint(
+        workspace,
+        format!("Mirror {}", name_of(workspace, role)),
+        role,
+        role,
+        changes,
+    );
+}
+
+/// Makes an image of a handle's vertices its twin.
+fn twin_of(workspace: &mut Workspace, id: HandleId, image: &[usize], plane: MirrorPlane) {
+    let image: Vec<usize> = image
+        .iter()
+        .copied()
+        .filter(|&vertex| workspace.vertex_access.may_be_painted(vertex))
+        .filter(|&vertex| !matches!(workspace.document.paint[vertex], Paint::Handle(_)))
+        .collect();
+    if image.is_empty() {
+        workspace
+            .refuse("The handle has no mirror image on the surface that is free: choose another axis, or paint it.");
+        return;
+    }
+    workspace.jobs.drop_solves();
+    workspace.change("Make twin", |document| {
+        document.apply_shape();
+        let other = document.add_handle();
+        let painted = image.iter().map(|&vertex| SurfaceVertex(vertex as u32));
+        document.paint_vertices(painted.map(|vertex| (vertex, Paint::Handle(other))));
+        let first = document.change_handle(id, |first| {
+            first.twin = Some(Twin { handle: other, plane });
+            first.clone()
+        });
+        let Some(first) = first else { return };
+        document.change_handle(other, |second| {
+            second.name = format!("{} twin", first.name);
+            second.reach = first.reach;
+            second.pivot = plane.mirrored(first.pivot);
+            // Mirrored motion needs mirrored pivots.
+            second.pivot_place = PivotPlace::Picked;
+            second.twin = Some(Twin { handle: id, plane });
+        });
+    });
+}
+
+/// The plane through the middle of the model's rest shape, across an axis.
+fn mirror_plane(workspace: &Workspace, axis: usize) -> Option<MirrorPlane> {
+    let axis = axis.min(2);
+    let bounds = workspace.model()?.bounds()?;
+    Some(MirrorPlane {
+        axis,
+        at: bounds.centre()[axis],
+    })
+}
+
+/// The vertices whose mirror image on the file's shape is nearest to a member and no farther from it than its longest
+/// edge, ascending.
+fn mirrored(
+    model: &Model,
+    bvh: &Bvh,
+    is_member: &[bool],
+    plane: MirrorPlane,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<Vec<usize>, Cancelled> {
+    let positions = &model.surface.positions;
+    let members = (0..is_member.len()).filter(|&vertex| is_member[vertex]);
+    let images: Vec<_> = members.map(|vertex| plane.mirrored(positions[vertex])).collect();
+    let Some(bounds) = pliant_mesh::bounding_box(&images) else {
+        return Ok(Vec::new());
+    };
+    let margin = 0.05 * bounds.diagonal();
+    let near = |p: glam::DVec3| p.cmpge(bounds.min - margin).all() && p.cmple(bounds.max + margin).all();
+    let is_image = |vertex: &usize| {
+        let position = positions[*vertex];
+        if is_member[*vertex] || !near(position) {
+            return false;
+        }
+        bvh.nearest_vertex(plane.mirrored(position))
+            .is_some_and(|(nearest, distance)| {
+                let here = positions[nearest.index()];
+                let neighbours = model.topology.neighbours(nearest).iter();
+                let longest = neighbours
+                    .map(|v| here.distance(positions[v.index()]))
+                    .fold(0.0, f64::max);
+                is_member[nearest.index()] && distance <= longest
+            })
+    };
+    let mut found = Vec::new();
+    for start in (0..is_member.len()).step_by(BATCH) {
+        cancel.check()?;
+        let batch = start..(start + BATCH).min(is_member.len());
+        found.par_extend(batch.into_par_iter().filter(is_image));
+        progress.set(start as f32 / is_member.len() as f32);
+    }
+    Ok(found)
+}

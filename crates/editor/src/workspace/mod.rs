@@ -1,0 +1,39 @@
+//! What a person works on, what is done to it, and what follows from that.
+
+mod colour_revisions;
+mod colours;
+mod consequences;
+mod dirty_colours;
+mod following;
+mod handle_values;
+mod handles;
+mod mirror;
+mod mirror_request;
+mod objects;
+mod options;
+mod painting;
+mod regions;
+mod selection;
+mod snapshot;
+mod state;
+
+pub(crate) use colour_revisions::ColouredBy;
+pub use colours::stiffness_colour;
+pub(crate) use colours::{region_colour, rims};
+pub(crate) use handle_values::{set_continuity, set_reach, set_soft, set_turn, transform_handle};
+pub(crate) use handles::{
+    change_handle, count_turn, delete_selected, held_because, put_handle, reset_region, set_pivot, set_pivot_place,
+    split_selected, untwin,
+};
+pub(crate) use mirror::{mirror, take_mirrored};
+pub(crate) use mirror_request::Purpose;
+pub(crate) use objects::{act_on_object_here, act_on_objects, isolate, show_everything};
+pub(crate) use options::{
+    apply_shape, clear_regions, clear_stiffness, reset_shape, set_loose, set_loose_part, set_method, set_stiffness,
+};
+pub(crate) use painting::{members, tidy_handles};
+pub use regions::RegionAction;
+pub(crate) use regions::act_on_region;
+pub use snapshot::SnapshotKey;
+pub(crate) use snapshot::WorkspaceSnapshot;
+pub(crate) use state::Workspace;

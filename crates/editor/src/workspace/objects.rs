@@ -1,0 +1,85 @@
+//! What is done with objects: hidden, shown alone, locked, by the list or under the pointer.
+
+use std::sync::Arc;
+
+use super::state::Workspace;
+use crate::document::{Access, ObjectAction, object_name};
+use crate::view::Pick;
+
+/// Does something with objects, by their numbers in [`pliant_mesh::Model::all_objects`].
+pub(crate) fn act_on_objects(workspace: &mut Workspace, action: ObjectAction, objects: &[u32]) {
+    let Some(model) = workspace.model().cloned() else {
+        return;
+    };
+    let all = model.all_objects();
+    if objects.iter().any(|&object| object as usize >= all.len()) {
+        workspace.refuse("The file has no such object: choose one of the list.");
+        return;
+    }
+    let access = workspace.document.access.after(action, objects, all.len() as u32);
+    let what = match objects {
+        [one] => object_name(&all[*one as usize].name, *one),
+        several => format!("{} objects", several.len()),
+    };
+    let name = match action {
+        ObjectAction::Solo if access.shows_all() => "Show everything".to_owned(),
+        _ => format!("{} {what}", action.name()),
+    };
+    set_access(workspace, name, access);
+}
+
+/// Shows everything there is.
+pub(crate) fn show_everything(workspace: &mut Workspace) {
+    let locked = workspace.document.access.locked.clone();
+    let access = Access {
+        locked,
+        ..Access::default()
+    };
+    set_access(workspace, "Show everything".to_owned(), access);
+}
+
+/// Shows nothing but the connected part that is pointed at, or everything else again.
+pub(crate) fn isolate(workspace: &mut Workspace, pointed_at: Option<Pick>) {
+    let access = workspace.document.access().clone();
+    if access.isolated.is_some() {
+        let isolated = None;
+        return set_access(
+            workspace,
+            "Show the other parts".to_owned(),
+            Access { isolated, ..access },
+        );
+    }
+    let (Some(pick), Some(model)) = (pointed_at, workspace.model()) else {
+        return workspace.refuse(NOTHING_HERE);
+    };
+    let isolated = Some(model.topology.component(pick.vertex));
+    set_access(workspace, "Isolate part".to_owned(), Access { isolated, ..access });
+}
+
+/// Does something with the object that is pointed at.
+pub(crate) fn act_on_object_here(workspace: &mut Workspace, action: ObjectAction, pointed_at: Option<Pick>) {
+    let object = pointed_at.and_then(|pick| workspace.model()?.object_of(pick.triangle));
+    match object {
+        Some(object) => act_on_objects(workspace, action, &[object as u32]),
+        None => workspace.refuse(NOTHING_HERE),
+    }
+}
+
+fn set_access(workspace: &mut Workspace, name: String, access: Access) {
+    if *workspace.document.access() == access {
+        return;
+    }
+    // What is held still is part of the problem, and no change of that moves anything.
+    let relocked = access.locked != workspace.document.access.locked;
+    if relocked {
+        workspace.jobs.drop_solves();
+    }
+    workspace.change(name, |document| {
+        if relocked {
+            document.apply_shape();
+        }
+        document.set_access(Arc::new(access));
+    });
+}
+
+const NOTHING_HERE: &str = "There is nothing under the pointer: put it over a part of the surface and press the key.";

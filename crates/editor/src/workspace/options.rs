@@ -1,0 +1,125 @@
+//! What is chosen for the document as a whole: method, loose parts, stiffness; and its shape taken back.
+
+use std::collections::BTreeMap;
+
+use pliant_deform::{Loose, Method};
+
+use super::painting::members;
+use super::state::Workspace;
+use crate::STIFFNESS_RANGE;
+use crate::document::{Document, HandleTransform};
+use crate::jobs::centroid;
+
+/// Makes the present shape the new rest shape.
+pub(crate) fn apply_shape(workspace: &mut Workspace) {
+    workspace.change("Apply shape", Document::apply_shape);
+    workspace.jobs.drop_solves();
+}
+
+/// Takes the rest shape and every handle back to the file's shape.
+pub(crate) fn reset_shape(workspace: &mut Workspace) {
+    let Some(model) = workspace.model().cloned() else {
+        return;
+    };
+    workspace.jobs.drop_solves();
+    workspace.change("Reset shape", |document| {
+        let was_applied = document.is_applied();
+        document.forget_shapes();
+        let positions = &model.surface.positions;
+        let pivot = |id| centroid(positions, members(document, id).into_iter());
+        let pivots: Vec<_> = document.handles().iter().map(|handle| pivot(handle.id)).collect();
+        document.change_handles(|handles| {
+            for (handle, pivot) in handles.iter_mut().zip(pivots) {
+                handle.put(HandleTransform::IDENTITY);
+                if was_applied {
+                    handle.pivot = pivot;
+                }
+            }
+        });
+    });
+}
+
+/// Removes all handles and regions; the shape stays as it is.
+pub(crate) fn clear_regions(workspace: &mut Workspace) {
+    workspace.jobs.drop_solves();
+    workspace.change("Clear regions", |document| {
+        document.apply_shape();
+        document.clear_paint();
+    });
+}
+
+/// Chooses the method and its options.
+pub(crate) fn set_method(workspace: &mut Workspace, method: Method) {
+    workspace.change("Change method", |document| {
+        if *document.method() != method {
+            document.unsettle_if_displaced();
+            document.set_method(method);
+        }
+    });
+}
+
+/// Chooses what components that nothing holds do, all of them.
+pub(crate) fn set_loose(workspace: &mut Workspace, loose: Loose) {
+    workspace.change("Change loose parts", |document| {
+        put_loose(document, loose, BTreeMap::new());
+    });
+}
+
+/// Chooses what one of them does, by its component's number; `None` is what all do.
+pub(crate) fn set_loose_part(workspace: &mut Workspace, part: u32, loose: Option<Loose>) {
+    let count = workspace.model().map_or(0, |model| model.topology.components().len());
+    if part as usize >= count {
+        workspace.refuse(format!(
+            "The mesh has {count} parts and none of this number: choose one of the list."
+        ));
+        return;
+    }
+    workspace.change("Change loose part", |document| {
+        let mut parts = document.loose_parts().clone();
+        match loose {
+            Some(loose) => parts.insert(part, loose),
+            None => parts.remove(&part),
+        };
+        put_loose(document, document.loose(), parts);
+    });
+}
+
+fn put_loose(document: &mut Document, loose: Loose, parts: BTreeMap<u32, Loose>) {
+    if document.loose() != loose || *document.loose_parts() != parts {
+        document.unsettle_if_displaced();
+        document.set_loose(loose, parts);
+    }
+}
+
+/// Sets the stiffness of every vertex.
+pub(crate) fn set_stiffness(workspace: &mut Workspace, field: Vec<f64>) {
+    let count = workspace.document.paint().len();
+    let bad = field.iter().find(|stiffness| !STIFFNESS_RANGE.contains(stiffness));
+    if field.len() != count {
+        workspace.refuse(format!(
+            "The stiffness has {} values for {count} vertices: give one for each.",
+            field.len()
+        ));
+    } else if let Some(bad) = bad {
+        let (low, high) = (STIFFNESS_RANGE.start(), STIFFNESS_RANGE.end());
+        workspace.refuse(format!(
+            "A stiffness of {bad} is not between {low} and {high}: paint another."
+        ));
+    } else {
+        let field = field.iter().any(|&stiffness| stiffness != 1.0).then_some(field);
+        workspace.change("Change stiffness", |document| {
+            if document.stiffness() != field.as_deref() {
+                document.unsettle_if_displaced();
+                document.set_stiffness(field);
+            }
+        });
+    }
+}
+
+/// Makes the whole surface equally stiff.
+pub(crate) fn clear_stiffness(workspace: &mut Workspace) {
+    workspace.change("Clear stiffness", |document| {
+        document.unsettle_if_displaced();
+        document.set_stiffness(None);
+    });
+}

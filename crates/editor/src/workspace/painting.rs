@@ -1,0 +1,154 @@
+//! What every change of paint goes through: which vertices a role has, painting them in a step, and what that means for
+//! handles.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::Role;
+use pliant_mesh::{Model, SurfaceVertex};
+
+use super::state::Workspace;
+use crate::document::{Aspect, Document, HandleId, Paint, PivotPlace};
+
+/// The vertices of a handle, ascending.
+pub(crate) fn members(document: &Document, id: HandleId) -> Vec<SurfaceVertex> {
+    let painted = document.paint().iter().zip(0..);
+    painted
+        .filter(|(paint, _)| **paint == Paint::Handle(id))
+        .map(|(_, vertex)| SurfaceVertex(vertex))
+        .collect()
+}
+
+/// Which vertices have a role; for the free region those that a reach has freed, too.
+pub(crate) fn members_of(workspace: &Workspace, role: Paint) -> Vec<bool> {
+    let roles = &workspace.computed().region.roles;
+    let is_member = |(vertex, &paint): (usize, &Paint)| {
+        paint == role
+            || (role == Paint::Free && paint == Paint::Bare && roles.get(vertex).is_some_and(|r| *r == Role::Free))
+    };
+    workspace.document.paint.iter().enumerate().map(is_member).collect()
+}
+
+/// What a role's region is called.
+pub(super) fn name_of(workspace: &Workspace, role: Paint) -> String {
+    match role {
+        Paint::Handle(id) => {
+            let handle = workspace.document.handle(id);
+            handle.map_or(String::new(), |handle| handle.name.clone())
+        }
+        Paint::Free => "region".to_owned(),
+        Paint::Fixed => "what is fixed".to_owned(),
+        Paint::Bare => "what is bare".to_owned(),
+    }
+}
+
+/// Paints vertices in one step; vertices of handles other than `role`'s stay as they are. `target` may be a handle
+/// that is not there yet.
+pub(crate) fn repaint(
+    workspace: &mut Workspace,
+    name: String,
+    role: Paint,
+    target: Paint,
+    changes: Vec<(usize, Paint)>,
+) {
+    let document = &workspace.document;
+    let changes: Vec<(usize, Paint)> = changes
+        .into_iter()
+        .filter(|&(vertex, paint)| {
+            let present = document.paint[vertex];
+            present != paint
+                && workspace.vertex_access.may_be_painted(vertex)
+                && (present == role || !matches!(present, Paint::Handle(_)))
+        })
+        .collect();
+    if changes.is_empty() {
+        return;
+    }
+    workspace.jobs.drop_solves();
+    let mut made = None;
+    workspace.step(name, |workspace| {
+        let before = workspace.document.clone();
+        workspace.document.apply_shape();
+        if let Paint::Handle(id) = target
+            && workspace.document.handle(id).is_none()
+        {
+            made = Some(workspace.document.add_handle());
+        }
+        let changes = changes.into_iter();
+        let changes = changes.map(|(vertex, paint)| (SurfaceVertex(vertex as u32), paint));
+        workspace.document.paint_vertices(changes);
+        tidy_handles(workspace, &before);
+    });
+    if made.is_some() {
+        workspace.selection.put(made);
+    }
+}
+
+/// After regions have changed: handles without a vertex go, and the pivot of each handle whose vertices are others
+/// than before is their mean.
+pub(crate) fn tidy_handles(workspace: &mut Workspace, before: &Document) {
+    let Some(model) = workspace.model().cloned() else {
+        return;
+    };
+    let document = &mut workspace.document;
+    if !document.versions().differ(before.versions(), Aspect::Paint) {
+        document.drop_handles_made_since(before);
+        return;
+    }
+    let numbers = document.handles().iter().map(|handle| usize::from(handle.id.0) + 1);
+    let mut sums = vec![(DVec3::ZERO, 0.0, false); numbers.max().unwrap_or(0)];
+    let (paint, rest) = (Arc::clone(&document.paint), Arc::clone(&document.rest));
+    let position = |vertex: usize| model.surface.positions[vertex] + rest[vertex];
+    for (vertex, (&paint, &former)) in paint.iter().zip(before.paint()).enumerate() {
+        if let Paint::Handle(HandleId(id)) = paint {
+            let (sum, count, _) = &mut sums[usize::from(id)];
+            *sum += position(vertex);
+            *count += 1.0;
+        }
+        if paint != former {
+            for touched in [paint, former] {
+                if let Paint::Handle(HandleId(id)) = touched
+                    && let Some((_, _, changed)) = sums.get_mut(usize::from(id))
+                {
+                    *changed = true;
+                }
+            }
+        }
+    }
+    document.change_handles(|handles| {
+        handles.retain_mut(|handle| {
+            let (sum, count, changed) = sums[usize::from(handle.id.0)];
+            if changed && count > 0.0 {
+                handle.pivot = match handle.pivot_place {
+                    PivotPlace::Centroid => sum / count,
+                    PivotPlace::Border => border_middle(handle.id, &paint, &model, &position).unwrap_or(sum / count),
+                    PivotPlace::Picked => handle.pivot,
+                };
+            }
+            count > 0.0
+        });
+        let left: Vec<HandleId> = handles.iter().map(|handle| handle.id).collect();
+        for handle in handles {
+            handle.twin = handle.twin.filter(|twin| left.contains(&twin.handle));
+        }
+    });
+}
+
+/// The mean of a handle's vertices that stand beside others; `None` where it covers whole parts.
+pub(crate) fn border_middle(
+    id: HandleId,
+    paint: &[Paint],
+    model: &Model,
+    position: &impl Fn(usize) -> DVec3,
+) -> Option<DVec3> {
+    let own = Paint::Handle(id);
+    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+    for vertex in (0..paint.len()).filter(|&vertex| paint[vertex] == own) {
+        let neighbours = model.topology.neighbours(SurfaceVertex(vertex as u32));
+        if neighbours.iter().any(|neighbour| paint[neighbour.index()] != own) {
+            sum += position(vertex);
+            count += 1.0;
+        }
+    }
+    (count > 0.0).then(|| sum / count)
+}

@@ -1,0 +1,166 @@
+//! What can be done to a painted region as a whole: grow, shrink, invert, fill, smooth its border, mirror it, hand it
+//! to another role.
+//!
+//! Each is a pure function from the region's vertices to the vertices that change; other handles' vertices never do.
+
+use pliant_mesh::{Model, SurfaceVertex};
+
+use super::mirror::mirror;
+use super::mirror_request::Purpose;
+use super::painting::{members_of, name_of, repaint};
+use super::state::Workspace;
+use crate::document::{HandleId, Paint};
+
+/// Something to do to the region in hand: that of the tool, or of the selected handle.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
+pub enum RegionAction {
+    /// Takes in the vertices around it.
+    Grow,
+    /// Gives up the vertices at its border.
+    Shrink,
+    /// Becomes what it was not.
+    Invert,
+    /// All that is not in it is held still; for what is held still: all else may bend.
+    EverythingBut,
+    /// Straightens its border.
+    SmoothBorder,
+    /// Takes in every part of the surface that it touches.
+    FillParts,
+    /// Takes in its mirror image across the plane through the model's middle, across axis 0, 1, 2 for x, y, z.
+    Mirror(usize),
+    /// Becomes free to bend.
+    ToFree,
+    /// Is held still.
+    ToFixed,
+    /// Becomes a handle of its own.
+    ToHandle,
+}
+
+impl RegionAction {
+    /// What the history calls it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Grow => "Grow",
+            Self::Shrink => "Shrink",
+            Self::Invert => "Invert",
+            Self::EverythingBut => "Everything but",
+            Self::SmoothBorder => "Smooth border of",
+            Self::FillParts => "Fill parts of",
+            Self::Mirror(_) => "Mirror",
+            Self::ToFree => "Make region of",
+            Self::ToFixed => "Make fixed",
+            Self::ToHandle => "Make handle of",
+        }
+    }
+}
+
+/// Changes the region of a role as a whole.
+pub(crate) fn act_on_region(workspace: &mut Workspace, role: Paint, action: RegionAction) {
+    let Some(model) = workspace.model().cloned() else {
+        return;
+    };
+    let is_member = members_of(workspace, role);
+    if !is_member.contains(&true) {
+        workspace.refuse("There is nothing painted to do this with: paint first.");
+        return;
+    }
+    let what = name_of(workspace, role);
+    let removed = |vertex: usize| match role {
+        // What a reach frees would be free again.
+        Paint::Free if workspace.document.paint[vertex] == Paint::Bare => Paint::Fixed,
+        _ => Paint::Bare,
+    };
+    let mut changes: Vec<(usize, Paint)> = Vec::new();
+    let target = match action {
+        RegionAction::Grow => {
+            changes.extend(grown(&model, &is_member).map(|vertex| (vertex, role)));
+            role
+        }
+        RegionAction::Shrink => {
+            changes.extend(rim(&model, &is_member).map(|vertex| (vertex, removed(vertex))));
+            role
+        }
+        RegionAction::SmoothBorder => {
+            for (vertex, joins) in smoothed(&model, &is_member) {
+                changes.push((vertex, if joins { role } else { removed(vertex) }));
+            }
+            role
+        }
+        RegionAction::Invert => {
+            for (vertex, &is_member) in is_member.iter().enumerate() {
+                changes.push((vertex, if is_member { removed(vertex) } else { role }));
+            }
+            role
+        }
+        RegionAction::EverythingBut => {
+            let other = if role == Paint::Fixed {
+                Paint::Free
+            } else {
+                Paint::Fixed
+            };
+            changes.extend(
+                (0..is_member.len())
+                    .filter(|&vertex| !is_member[vertex])
+                    .map(|vertex| (vertex, other)),
+            );
+            role
+        }
+        RegionAction::FillParts => {
+            changes.extend(filled(&model, &is_member).map(|vertex| (vertex, role)));
+            role
+        }
+        RegionAction::Mirror(axis) => return mirror(workspace, Purpose::Region(role), axis),
+        RegionAction::ToFree | RegionAction::ToFixed | RegionAction::ToHandle => {
+            let target = match action {
+                RegionAction::ToFree => Paint::Free,
+                RegionAction::ToFixed => Paint::Fixed,
+                _ => Paint::Handle(HandleId(workspace.document.next_handle)),
+            };
+            changes.extend(
+                (0..is_member.len())
+                    .filter(|&vertex| is_member[vertex])
+                    .map(|vertex| (vertex, target)),
+            );
+            target
+        }
+    };
+    repaint(workspace, format!("{} {what}", action.name()), role, target, changes);
+}
+
+/// Vertices beside members.
+fn grown<'a>(model: &'a Model, is_member: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
+    (0..is_member.len()).filter(|&vertex| !is_member[vertex] && has_neighbour(model, vertex, |v| is_member[v]))
+}
+
+/// Members beside vertices that are none.
+fn rim<'a>(model: &'a Model, is_member: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
+    (0..is_member.len()).filter(|&vertex| is_member[vertex] && has_neighbour(model, vertex, |v| !is_member[v]))
+}
+
+fn has_neighbour(model: &Model, vertex: usize, holds: impl Fn(usize) -> bool) -> bool {
+    let neighbours = model.topology.neighbours(SurfaceVertex(vertex as u32));
+    neighbours.iter().any(|neighbour| holds(neighbour.index()))
+}
+
+/// Vertices that most of their neighbours differ from, and whether they join.
+fn smoothed(model: &Model, is_member: &[bool]) -> Vec<(usize, bool)> {
+    (0..is_member.len())
+        .filter_map(|vertex| {
+            let neighbours = model.topology.neighbours(SurfaceVertex(vertex as u32));
+            let members = neighbours.iter().filter(|v| is_member[v.index()]).count();
+            let joins = 2 * members > neighbours.len();
+            let leaves = 2 * members < neighbours.len();
+            ((joins && !is_member[vertex]) || (leaves && is_member[vertex])).then_some((vertex, joins))
+        })
+        .collect()
+}
+
+/// Every vertex of the parts that have a member.
+fn filled<'a>(model: &'a Model, is_member: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
+    let part = |vertex: usize| model.topology.component(SurfaceVertex(vertex as u32)) as usize;
+    let mut has_member = vec![false; model.topology.components().len()];
+    for vertex in (0..is_member.len()).filter(|&vertex| is_member[vertex]) {
+        has_member[part(vertex)] = true;
+    }
+    (0..is_member.len()).filter(move |&vertex| has_member[part(vertex)])
+}

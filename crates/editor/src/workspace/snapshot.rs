@@ -1,0 +1,52 @@
+//! The document as it stands, for those who write it elsewhere or follow it while the person goes on.
+
+use std::sync::Arc;
+
+use pliant_mesh::Model;
+
+use super::selection::HandleSelection;
+use super::state::Workspace;
+use crate::document::{Document, Versions};
+use crate::jobs::Revision;
+
+/// A workspace that nobody changes any more. Taking one costs next to nothing: its long vectors are shared.
+#[derive(Clone, Debug)]
+pub(crate) struct WorkspaceSnapshot {
+    pub(crate) document: Document,
+    pub(crate) model: Arc<Model>,
+    pub(super) model_revision: Revision,
+    pub(super) file_name: String,
+    pub(super) selection: HandleSelection,
+}
+
+impl WorkspaceSnapshot {
+    /// What a workspace has; `None` before the first file.
+    pub(crate) fn of(workspace: &Workspace) -> Option<Self> {
+        Some(Self {
+            document: workspace.document.clone(),
+            model: Arc::clone(workspace.model()?),
+            model_revision: workspace.jobs.model_revision,
+            file_name: workspace.file_name.clone(),
+            selection: workspace.selection.clone(),
+        })
+    }
+}
+
+/// What a snapshot differs by: equal states have equal ones within a session.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct SnapshotKey {
+    steps: u64,
+    versions: Versions,
+    settled: bool,
+}
+
+impl SnapshotKey {
+    /// Another value for every other state of the document.
+    pub(crate) fn of(workspace: &Workspace) -> Self {
+        Self {
+            steps: workspace.history.revision(),
+            versions: *workspace.document.versions(),
+            settled: workspace.document.is_settled(),
+        }
+    }
+}

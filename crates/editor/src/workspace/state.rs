@@ -1,0 +1,268 @@
+//! What a person works on: the document with its history, what jobs have made of it, and which handles are selected.
+//!
+//! The document changes in named steps ([`Workspace::step`]), or in a transaction that a gesture holds.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use pliant_mesh::{Model, SurfaceVertex};
+
+use super::colour_revisions::Colours;
+use super::mirror_request::Mirroring;
+use super::selection::HandleSelection;
+use crate::document::{Aspect, Document, HISTORY_BYTES, Handle, History, Transaction, Version, Versions, VertexAccess};
+use crate::jobs::{Computed, Descent, Executor, Jobs, Revision};
+use crate::view::{Pick, Picking, View};
+
+/// The document and what follows from it.
+pub(crate) struct Workspace {
+    pub(crate) document: Document,
+    pub(crate) history: History,
+    pub(crate) jobs: Jobs,
+    pub(crate) selection: HandleSelection,
+    /// The last thing that was refused or went wrong, in one sentence.
+    pub(crate) refusal: Option<String>,
+    /// The open file's name.
+    pub(crate) file_name: String,
+    /// How far the shape's descent is, where its method takes steps.
+    pub(crate) descent: Option<Descent>,
+    pub(crate) vertex_access: VertexAccess,
+    /// Of which model and what access that was made.
+    pub(super) vertex_access_of: Option<(Revision, Version)>,
+    pub(super) colours: Colours,
+    /// Grows when what is drawn has another shape.
+    pub(super) shape_revision: u64,
+    /// The versions that jobs and colours were last made to follow.
+    pub(super) seen: Versions,
+    /// The step that a widget is adjusting.
+    adjusting: Option<Transaction>,
+    pub(super) mirroring: Option<Mirroring>,
+    pub(super) followed: Option<Followed>,
+}
+
+/// What was last taken over from another workspace.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Followed {
+    pub(super) model: Revision,
+    pub(super) versions: Versions,
+}
+
+impl Workspace {
+    /// A workspace without a file. Jobs go to `executor`.
+    pub(crate) fn new(executor: Box<dyn Executor>) -> Self {
+        let document = Document::new(0);
+        Self {
+            jobs: Jobs::new(executor),
+            history: History::new(&document, HISTORY_BYTES),
+            seen: *document.versions(),
+            document,
+            selection: HandleSelection::default(),
+            refusal: None,
+            file_name: String::new(),
+            descent: None,
+            vertex_access: VertexAccess::default(),
+            vertex_access_of: None,
+            colours: Colours::default(),
+            shape_revision: 0,
+            adjusting: None,
+            mirroring: None,
+            followed: None,
+        }
+    }
+
+    /// Works on another file, which begins with this document.
+    pub(crate) fn open(&mut self, model: Arc<Model>, name: String, document: Document) {
+        self.document.replace(document);
+        self.history = History::new(&self.document, HISTORY_BYTES);
+        self.selection = HandleSelection::default();
+        self.selection
+            .put(self.document.handles().first().map(|handle| handle.id));
+        self.refusal = None;
+        self.file_name = name;
+        self.descent = None;
+        self.mirroring = None;
+        self.followed = None;
+        self.jobs.open(model);
+        self.seen = *self.document.versions();
+        self.shape_revision += 1;
+        self.colours.change_all();
+    }
+
+    /// The open file's vertex sets.
+    pub(crate) fn model(&self) -> Option<&Arc<Model>> {
+        self.jobs.computed.model.as_ref()
+    }
+
+    /// What jobs have made.
+    pub(crate) fn computed(&self) -> &Computed {
+        &self.jobs.computed
+    }
+
+    /// The selected handle.
+    pub(crate) fn selected(&self) -> Option<&Handle> {
+        self.document.handle(self.selection.selected()?)
+    }
+
+    /// Grows when what is drawn has another shape.
+    pub(crate) fn shape_revision(&self) -> u64 {
+        self.shape_revision
+    }
+
+    pub(crate) fn colours(&self) -> &Colours {
+        &self.colours
+    }
+
+    /// Says why something was not done.
+    pub(crate) fn refuse(&mut self, why: impl Into<String>) {
+        self.refusal = Some(why.into());
+    }
+}
+
+/// Steps of the document.
+impl Workspace {
+    /// Begins a step, to be committed or aborted.
+    pub(crate) fn begin(&mut self, name: impl Into<String>) -> Transaction {
+        Transaction::begin(name, &self.document, &mut self.history)
+    }
+
+    /// Begins a step that paints: what is being bound or solved is not wanted any more.
+    pub(crate) fn begin_stroke(&mut self, name: impl Into<String>) -> Transaction {
+        self.jobs.stop_binding();
+        self.jobs.drop_solves();
+        self.begin(name)
+    }
+
+    /// Enters a step into the history; false if it changed nothing.
+    pub(crate) fn commit(&mut self, transaction: &Transaction) -> bool {
+        transaction.commit(&self.document, &mut self.history)
+    }
+
+    /// Takes everything back to where a step began.
+    pub(crate) fn abort(&mut self, transaction: &Transaction) {
+        transaction.abort(&mut self.document);
+        self.jobs.drop_solves();
+    }
+
+    /// Does something to the document in one named step, or in the step that is being adjusted; false if that changed
+    /// nothing. Solves that run are dropped if the shape was changed.
+    pub(crate) fn step(&mut self, name: impl Into<String>, act: impl FnOnce(&mut Self)) -> bool {
+        let shape = self.document.versions().of(Aspect::Shape);
+        let begun = match &mut self.adjusting {
+            Some(open) => {
+                open.rename(name);
+                None
+            }
+            None => Some(self.begin(name)),
+        };
+        act(self);
+        if self.document.versions().of(Aspect::Shape) != shape {
+            self.jobs.drop_solves();
+        }
+        begun.is_none_or(|transaction| self.commit(&transaction))
+    }
+
+    /// Changes the document in one named step; false if that changed nothing.
+    pub(crate) fn change(&mut self, name: impl Into<String>, change: impl FnOnce(&mut Document)) -> bool {
+        self.step(name, |workspace| change(&mut workspace.document))
+    }
+
+    /// Whether a widget is adjusting a step.
+    pub(crate) fn is_adjusting(&self) -> bool {
+        self.adjusting.is_some()
+    }
+
+    /// All steps that follow are one, until it is committed or aborted.
+    pub(crate) fn begin_adjusting(&mut self) {
+        self.adjusting = Some(self.begin("Adjust"));
+    }
+
+    /// Enters the adjusted step into the history.
+    pub(crate) fn commit_adjusting(&mut self) {
+        if let Some(transaction) = self.adjusting.take() {
+            self.commit(&transaction);
+        }
+    }
+
+    /// Takes the adjusted step back.
+    pub(crate) fn abort_adjusting(&mut self) {
+        if let Some(transaction) = self.adjusting.take() {
+            self.abort(&transaction);
+        }
+    }
+
+    /// Takes back the last step.
+    pub(crate) fn undo(&mut self) {
+        self.jobs.drop_solves();
+        self.history.undo(&mut self.document);
+    }
+
+    /// Does the last taken-back step again.
+    pub(crate) fn redo(&mut self) {
+        self.jobs.drop_solves();
+        self.history.redo(&mut self.document);
+        // A handle that has come back is most likely what one wants to go on with.
+        let last = self.document.handles().last().map(|handle| handle.id);
+        self.selection.put(self.selection.selected().or(last));
+    }
+
+    /// Goes back or forth to the state after so many steps of the history.
+    pub(crate) fn go_to_step(&mut self, steps: usize) {
+        self.jobs.drop_solves();
+        while self.history.names().1 > steps && self.history.undo(&mut self.document).is_some() {}
+        while self.history.names().1 < steps && self.history.redo(&mut self.document).is_some() {}
+    }
+}
+
+/// What lies under a point of the view.
+impl Workspace {
+    /// What rays are answered from; `None` before a file's structure is built.
+    pub(crate) fn picking<'a>(&'a self, view: &'a View) -> Option<Picking<'a>> {
+        Some(Picking::of(
+            self.model()?,
+            self.document.from_file(),
+            self.computed().pickable.as_ref()?,
+            (view.camera(), view.viewport_px()),
+            self.jobs.is_picking_current(),
+        ))
+    }
+
+    /// The first point of the surface under a point of the view.
+    pub(crate) fn pick(&self, view: &View, position_px: DVec2) -> Option<Pick> {
+        self.picking(view)?.at(position_px)
+    }
+
+    /// The point that zooming keeps in place: on the surface under the pointer, or at the target's depth.
+    pub(crate) fn anchor(&self, view: &View, position_px: DVec2) -> DVec3 {
+        match self.pick(view, position_px) {
+            Some(pick) => pick.point,
+            None => {
+                let camera = view.camera();
+                let ray = camera.ray(position_px, view.viewport_px());
+                ray.origin + ray.direction * (camera.distance / ray.direction.dot(camera.forward()))
+            }
+        }
+    }
+
+    /// Where a surface vertex is drawn; the origin before the first file.
+    pub(crate) fn position(&self, vertex: SurfaceVertex) -> DVec3 {
+        let rest = self.model().map(|model| model.surface.positions[vertex.index()]);
+        rest.unwrap_or_default() + self.document.from_file[vertex.index()]
+    }
+
+    /// Every vertex that hangs together with this one.
+    pub(crate) fn part_of(&self, vertex: SurfaceVertex) -> Vec<SurfaceVertex> {
+        let Some(model) = self.model() else { return Vec::new() };
+        let part = model.topology.component(vertex);
+        (0..self.document.paint.len() as u32)
+            .map(SurfaceVertex)
+            .filter(|&vertex| model.topology.component(vertex) == part)
+            .collect()
+    }
+
+    /// The positions of all vertices that are shown.
+    pub(crate) fn shown_positions(&self) -> Vec<DVec3> {
+        let count = self.document.paint.len() as u32;
+        let shown = (0..count).filter(|&vertex| self.vertex_access.is_shown(vertex as usize));
+        shown.map(|vertex| self.position(SurfaceVertex(vertex))).collect()
+    }
+}

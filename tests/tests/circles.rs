@@ -1,0 +1,357 @@
+//! No file of a crate needs, through others, itself: whoever reads a file needs only those below it.
+//!
+//! The paths that a file names (`crate::…`, `super::…`, `self::…`, in `use` lines and elsewhere) are followed to the
+//! file that defines what they name: through folders' `mod.rs` and through what those hand on by `pub use`. Unit tests
+//! and comments are left out. Crates that are not in [`STRICT`] are held to a little less.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// The crates whose every arrow counts. In the others the crate's root is a face that every file may look at, and a
+/// folder's own file (`mod.rs`) is one with the files below it.
+const STRICT: &[&str] = &["editor"];
+
+/// Which arrows count.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Counted {
+    /// All.
+    All,
+    /// Neither names that the crate's root hands on, nor arrows to a folder's own file from below.
+    BesideFolders,
+}
+
+/// A module: its file, and the names that it takes from elsewhere.
+#[derive(Debug, Default)]
+struct Module {
+    file: PathBuf,
+    /// For each name that a `use` brings in, the path behind it.
+    imports: BTreeMap<String, Vec<String>>,
+    /// Every path that the code names outside of `use` lines and in private ones.
+    paths: Vec<Vec<String>>,
+    /// Every word outside of `use` lines.
+    words: BTreeSet<String>,
+}
+
+/// The modules of a crate by their paths; the crate's root has the empty one.
+type Modules = BTreeMap<Vec<String>, Module>;
+
+#[test]
+fn no_file_needs_itself_through_others() {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
+    let mut folders: Vec<PathBuf> = std::fs::read_dir(&crates)
+        .unwrap()
+        .map(|entry| entry.unwrap().path().join("src"))
+        .filter(|folder| folder.is_dir())
+        .collect();
+    folders.sort();
+    assert!(folders.len() > 5, "{folders:?}");
+    let mut found = Vec::new();
+    for folder in folders {
+        let modules = modules_of(&folder);
+        let is_strict = STRICT.iter().any(|name| folder.ends_with(Path::new(name).join("src")));
+        let arrows = arrows(&modules, if is_strict { Counted::All } else { Counted::BesideFolders });
+        let count: usize = arrows.values().map(BTreeSet::len).sum();
+        assert!(count > 0 || modules.len() < 3, "{} has arrows", folder.display());
+        for circle in circles(&arrows) {
+            found.push(told(&circle, &arrows, &crates));
+        }
+    }
+    assert!(found.is_empty(), "circles of files:\n{}", found.join("\n"));
+}
+
+/// The scan itself: what it must see in a made-up crate, and what it must not.
+#[test]
+fn the_scan_sees_grouped_paths_and_follows_what_is_handed_on() {
+    let mut modules = Modules::new();
+    let mut add = |path: &[&str], text: &str| {
+        let path: Vec<String> = path.iter().map(|segment| (*segment).to_owned()).collect();
+        let file = PathBuf::from(format!("{}.rs", path.join("/")));
+        modules.insert(path.clone(), module(file, &path, text));
+    };
+    add(&[], "mod a; mod b; pub use a::{A, inner::Deep}; pub use b::B;");
+    add(&["a"], "mod inner; use crate::{B as Other, b::C}; /* use crate::z::Z; */ pub struct A;");
+    add(&["a", "inner"], "use super::A; // use crate::b::B;\npub struct Deep(A);");
+    add(&["b"], "pub struct C; fn f() -> crate::Deep { \"crate::a::A\" }\n#[cfg(test)]\nmod tests { use crate::A; }");
+    let arrows = arrows(&modules, Counted::All);
+    let to = |from: &str| -> Vec<&str> {
+        let to = arrows.get(Path::new(from)).into_iter().flatten();
+        to.map(|path| path.to_str().unwrap()).collect()
+    };
+    assert_eq!(to("a.rs"), ["b.rs"]);
+    assert_eq!(to("a/inner.rs"), ["a.rs"]);
+    assert_eq!(to("b.rs"), ["a/inner.rs"], "through the root, and not what its test names");
+    assert_eq!(to(".rs"), Vec::<&str>::new(), "handing on is not needing");
+    let names: Vec<Vec<PathBuf>> = circles(&arrows);
+    assert_eq!(names.len(), 1);
+    assert_eq!(names[0], ["a/inner.rs", "a.rs", "b.rs"].map(PathBuf::from));
+}
+
+/// The modules under a `src` folder.
+fn modules_of(source: &Path) -> Modules {
+    let mut modules = Modules::new();
+    let mut folders = vec![source.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                let text = std::fs::read_to_string(&path).unwrap();
+                let within = path.strip_prefix(source).unwrap().with_extension("");
+                let mut name: Vec<String> = within.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
+                // A binary beside a library is a crate of its own that names the library from outside.
+                if name == ["main"] && source.join("lib.rs").exists() {
+                    continue;
+                }
+                if matches!(name.last().map(String::as_str), Some("mod" | "lib" | "main")) {
+                    name.pop();
+                }
+                modules.insert(name.clone(), module(path, &name, &text));
+            }
+        }
+    }
+    modules
+}
+
+/// Reads one file.
+fn module(file: PathBuf, own: &[String], text: &str) -> Module {
+    let code = without_comments_and_texts(text);
+    let code = code.split("#[cfg(test)]").next().unwrap_or_default();
+    let mut module = Module {
+        file,
+        ..Module::default()
+    };
+    let mut rest = String::new();
+    let mut statements = code;
+    while let Some(start) = next_use(statements) {
+        rest.push_str(&statements[..start]);
+        let end = statements[start..].find(';').map_or(statements.len(), |end| start + end);
+        let is_handed_on = rest.trim_end().ends_with("pub") || rest.trim_end().ends_with(')');
+        for (path, name) in expanded(&statements[start + 4..end]) {
+            let path = absolute(&path, own);
+            if !is_handed_on {
+                module.paths.push(path.clone());
+            }
+            module.imports.insert(name, path);
+        }
+        statements = &statements[(end + 1).min(statements.len())..];
+    }
+    rest.push_str(statements);
+    for path in paths_in(&rest) {
+        module.paths.push(absolute(&path, own));
+    }
+    module.words = rest
+        .split(|letter: char| !letter.is_alphanumeric() && letter != '_')
+        .map(str::to_owned)
+        .collect();
+    module
+}
+
+/// Where the next `use` statement begins.
+fn next_use(code: &str) -> Option<usize> {
+    code.match_indices("use ").map(|(start, _)| start).find(|&start| {
+        let before = code[..start].chars().next_back();
+        before.is_none_or(|letter| letter.is_whitespace() || ";{})".contains(letter))
+    })
+}
+
+/// The paths of a `use` tree, each with the name that it is known by.
+fn expanded(tree: &str) -> Vec<(Vec<String>, String)> {
+    let tree = tree.trim();
+    if let Some(open) = tree.find('{') {
+        let prefix = tree[..open].trim().trim_end_matches("::");
+        let inner = &tree[open + 1..tree.rfind('}').unwrap_or(tree.len())];
+        let mut parts = Vec::new();
+        let (mut depth, mut start) = (0, 0);
+        for (place, letter) in inner.char_indices() {
+            match letter {
+                '{' => depth += 1,
+                '}' => depth -= 1,
+                ',' if depth == 0 => {
+                    parts.push(&inner[start..place]);
+                    start = place + 1;
+                }
+                _ => {}
+            }
+        }
+        parts.push(&inner[start..]);
+        let whole = parts.iter().filter(|part| !part.trim().is_empty());
+        return whole
+            .flat_map(|part| expanded(&format!("{prefix}::{}", part.trim())))
+            .collect();
+    }
+    let (path, name) = match tree.split_once(" as ") {
+        Some((path, name)) => (path, Some(name.trim().to_owned())),
+        None => (tree, None),
+    };
+    let mut path: Vec<String> = path.split("::").map(|segment| segment.trim().to_owned()).collect();
+    path.retain(|segment| !segment.is_empty());
+    if path.len() > 1 && path.last().is_some_and(|last| last == "self") {
+        path.pop();
+    }
+    let name = name.unwrap_or_else(|| path.last().cloned().unwrap_or_default());
+    vec![(path, name)]
+}
+
+/// Every `crate::…` and `super::…` path within code.
+fn paths_in(code: &str) -> Vec<Vec<String>> {
+    let is_word = |letter: char| letter.is_alphanumeric() || letter == '_';
+    let mut paths = Vec::new();
+    for root in ["crate::", "super::"] {
+        for (start, _) in code.match_indices(root) {
+            let before = code[..start].chars().next_back();
+            if before.is_some_and(|letter| is_word(letter) || letter == ':' || letter == '$') {
+                continue;
+            }
+            let end = code[start..].find(|letter| !is_word(letter) && letter != ':');
+            let path = &code[start..end.map_or(code.len(), |end| start + end)];
+            paths.push(path.split("::").filter(|s| !s.is_empty()).map(str::to_owned).collect());
+        }
+    }
+    paths
+}
+
+/// The path from the crate's root; a path into another crate keeps its first segment, which no module has.
+fn absolute(path: &[String], own: &[String]) -> Vec<String> {
+    let mut absolute = own.to_vec();
+    for (place, segment) in path.iter().enumerate() {
+        match segment.as_str() {
+            "crate" => absolute.clear(),
+            "self" => {}
+            "super" => {
+                absolute.pop();
+            }
+            _ => {
+                absolute.extend_from_slice(&path[place..]);
+                break;
+            }
+        }
+    }
+    absolute
+}
+
+/// The file that defines what a path names, if that is one of the crate's.
+fn definer<'a>(modules: &'a Modules, path: &[String], counted: Counted, depth: usize) -> Option<&'a Path> {
+    if depth == 0 {
+        return None;
+    }
+    let mut at: Vec<String> = Vec::new();
+    for (place, segment) in path.iter().enumerate() {
+        let below: Vec<String> = at.iter().chain([segment]).cloned().collect();
+        if modules.contains_key(&below) {
+            at = below;
+            continue;
+        }
+        let module = &modules[&at];
+        if let Some(behind) = module.imports.get(segment).filter(|behind| **behind != path[..=place]) {
+            if at.is_empty() && counted == Counted::BesideFolders {
+                return None;
+            }
+            let whole: Vec<String> = behind.iter().chain(&path[place + 1..]).cloned().collect();
+            return definer(modules, &whole, counted, depth - 1);
+        }
+        // A word that the module never writes is another crate's, or made by a macro.
+        let is_own = segment == "*" || module.words.contains(segment);
+        return is_own.then_some(module.file.as_path());
+    }
+    modules.get(&at).map(|module| module.file.as_path())
+}
+
+/// Which file needs which others.
+fn arrows(modules: &Modules, counted: Counted) -> BTreeMap<PathBuf, BTreeSet<PathBuf>> {
+    let mut arrows: BTreeMap<PathBuf, BTreeSet<PathBuf>> = BTreeMap::new();
+    for (own, module) in modules {
+        let used = module
+            .imports
+            .iter()
+            .filter(|(name, _)| module.words.contains(*name))
+            .map(|(_, path)| path);
+        for path in module.paths.iter().chain(used) {
+            // Naming a child's folder is not needing it.
+            let is_module = modules.contains_key(path);
+            match definer(modules, path, counted, 8) {
+                Some(file) if file != module.file && !(is_module && path.starts_with(own)) => {
+                    let is_above = || (0..own.len()).any(|length| modules.get(&own[..length]).is_some_and(|m| m.file == file));
+                    if counted == Counted::BesideFolders && is_above() {
+                        continue;
+                    }
+                    arrows.entry(module.file.clone()).or_default().insert(file.to_owned());
+                }
+                _ => {}
+            }
+        }
+    }
+    arrows
+}
+
+/// The groups of files that reach each other, each in order.
+fn circles(arrows: &BTreeMap<PathBuf, BTreeSet<PathBuf>>) -> Vec<Vec<PathBuf>> {
+    let reached = |start: &PathBuf| {
+        let (mut seen, mut stack) = (BTreeSet::new(), vec![start.clone()]);
+        while let Some(file) = stack.pop() {
+            for next in arrows.get(&file).into_iter().flatten() {
+                if seen.insert(next.clone()) {
+                    stack.push(next.clone());
+                }
+            }
+        }
+        seen
+    };
+    let all: BTreeMap<&PathBuf, BTreeSet<PathBuf>> = arrows.keys().map(|file| (file, reached(file))).collect();
+    let mut circles = BTreeSet::new();
+    for (file, reaches) in all.iter().filter(|(file, reaches)| reaches.contains(**file)) {
+        let both = reaches.iter().filter(|other| all.get(other).is_some_and(|back| back.contains(*file)));
+        circles.insert(both.cloned().collect::<Vec<_>>());
+    }
+    circles.into_iter().collect()
+}
+
+/// A circle in words: each of its files with those of the circle that it names.
+fn told(circle: &[PathBuf], arrows: &BTreeMap<PathBuf, BTreeSet<PathBuf>>, crates: &Path) -> String {
+    let short = |file: &PathBuf| file.strip_prefix(crates).unwrap_or(file).display().to_string();
+    let lines = circle.iter().map(|file| {
+        let to: Vec<String> = arrows[file].iter().filter(|to| circle.contains(to)).map(short).collect();
+        format!("  {} names {}", short(file), to.join(", "))
+    });
+    format!("{} files:\n{}", circle.len(), lines.collect::<Vec<_>>().join("\n"))
+}
+
+/// The code with every comment and every text literal blanked.
+fn without_comments_and_texts(text: &str) -> String {
+    let mut code = String::with_capacity(text.len());
+    let letters: Vec<char> = text.chars().collect();
+    let mut at = 0;
+    while at < letters.len() {
+        let next = letters.get(at + 1).copied();
+        match letters[at] {
+            '/' if next == Some('/') => {
+                while at < letters.len() && letters[at] != '\n' {
+                    at += 1;
+                }
+            }
+            '/' if next == Some('*') => {
+                at += 2;
+                while at + 1 < letters.len() && !(letters[at] == '*' && letters[at + 1] == '/') {
+                    at += 1;
+                }
+                at += 2;
+            }
+            '"' => {
+                at += 1;
+                while at < letters.len() && letters[at] != '"' {
+                    at += if letters[at] == '\\' { 2 } else { 1 };
+                }
+                at += 1;
+            }
+            // A quote as a character would open a text.
+            '\'' if next == Some('"') => at += 3,
+            '\'' if next == Some('\\') => at += 4,
+            letter => {
+                code.push(letter);
+                at += 1;
+            }
+        }
+    }
+    code
+}
