@@ -58,7 +58,7 @@ fn measure(file: &Path, threads: usize, clock: fn() -> f64) {
         unreachable!()
     };
     let (operator_ms, operator) = watch.of(times, || Operator::of(&problem(&roles), options, &ordering).unwrap());
-    let (assemble_ms, matrix) = watch.of(times, || operator.assemble());
+    let (assemble_ms, matrix) = watch.of(times, || operator.assemble().unwrap());
     let (symbolic_ms, _) = watch.of(times, || operator.analyse(&matrix).unwrap());
     let (numeric_ms, factor) = watch.of(times, || {
         let mut factor = operator.analyse(&matrix).unwrap();

@@ -157,6 +157,10 @@ impl ArapSolver {
             }
             ArapEnergy::Smooth => matrix::assemble_plate(&cells, &domain, springs.all()),
         };
+        let too_large = |_| BindError::OutOfMemory {
+            free_count: domain.solved_count,
+        };
+        let system = system.map_err(too_large)?;
         cancel.check()?;
         progress.set(0.4);
         let component = |local: usize| topology.component(SurfaceVertex(domain.vertices[local]));
@@ -172,7 +176,7 @@ impl ArapSolver {
             unheld: &unheld,
         };
         let (preconditioner, weights) =
-            Preconditioner::of(&system, &ends, &input, cancel).map_err(|error| match error {
+            Preconditioner::of(&system, &ends, &input, partition.budget, cancel).map_err(|error| match error {
                 PreconditionError::Pivot(local) => BindError::NotPositiveDefinite {
                     component: component(local),
                     vertex: domain.vertices[local],
@@ -185,6 +189,7 @@ impl ArapSolver {
                 PreconditionError::Memory => BindError::OutOfMemory {
                     free_count: domain.solved_count,
                 },
+                PreconditionError::Budget => BindError::budget(domain.solved_count),
                 PreconditionError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
             })?;
         cancel.check()?;

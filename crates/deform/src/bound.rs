@@ -7,14 +7,14 @@ use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
 use crate::arap::ArapSolver;
-use crate::follow::{Follower, carry, followers};
+use crate::follow::{Followers, followers};
 use crate::handle::{Handle, Motion};
 use crate::partition::Partition;
 use crate::primo::PrimoSolver;
 use crate::shell::bases::FRAME_CHUNK;
 use crate::shell::plate::{Finite, Known, Plate, repairs};
 use crate::sparse::cholesky::{Renewable, Renewal};
-use crate::{BindError, HandleBases, Method, Ordering, Problem, SolveError};
+use crate::{BindError, Budget, HandleBases, Method, Ordering, Problem, SolveError};
 
 /// A bound problem: everything that does not depend on the handles' transforms is solved.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub struct Bound {
     motions: Vec<Motion>,
     iteration: u32,
     solver: Solver,
-    followers: Vec<Follower>,
+    followers: Followers,
     warnings: Vec<String>,
 }
 
@@ -80,11 +80,25 @@ impl Bound {
         problem: &Problem,
         ordering: &Ordering,
         renewal: Renewal,
+        budget: Budget,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, BindError> {
+        let bound = Self::bind_within(problem, ordering, renewal, budget, progress, cancel);
+        bound.map_err(|refused| refused.with_culprit(problem.topology, budget))
+    }
+
+    fn bind_within(
+        problem: &Problem,
+        ordering: &Ordering,
+        renewal: Renewal,
+        budget: Budget,
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
         cancel.check()?;
         let mut partition = Partition::of(problem)?;
+        partition.take_budget(budget)?;
         let (expected, expected_power) = (problem.surface.positions.len(), problem.method.operator_power());
         if (ordering.vertex_count(), ordering.power()) != (expected, expected_power) {
             let (found, found_power) = (ordering.vertex_count(), ordering.power());
@@ -251,9 +265,13 @@ impl Bound {
                 step.finished = step.converged || self.iteration >= primo.max_iterations();
             }
         }
-        carry(&self.followers, displacements);
+        self.followers.carry(displacements);
         if finite == Finite::Unknown || !self.followers.is_empty() {
             gate(displacements)?;
+        }
+        if !step.energy.is_finite() {
+            displacements.fill(DVec3::ZERO);
+            return Err(SolveError::EnergyNotFinite);
         }
         Ok(step)
     }

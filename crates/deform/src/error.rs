@@ -1,6 +1,8 @@
 //! What can go wrong, each in one sentence that names the culprit and the remedy.
 
-use pliant_mesh::Cancelled;
+use pliant_mesh::{Cancelled, SurfaceVertex, Topology};
+
+use crate::Budget;
 
 /// A problem could not be bound. Vertices are the surface's, until they are [`BindError::renumbered`].
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
@@ -111,6 +113,38 @@ pub enum BindError {
         /// What stands in its way.
         refused: Box<BindError>,
     },
+    /// What is solved for is too long and thin to be computed with.
+    #[error(
+        "vertex {vertex} lies {edges} edges from all that holds it, too far to be solved for: fix vertices on the way, make the mesh coarser, or lower the method's `order` from {order}"
+    )]
+    Slender {
+        /// The vertex that is farthest.
+        vertex: u32,
+        /// How many edges lie between it and the nearest fixed vertex or handle.
+        edges: usize,
+        /// The shell's order.
+        order: u32,
+    },
+    /// Binding would take more than its [`crate::Budget`].
+    #[error("{}", over_budget(*.free_count, *.allowed_bytes, .crowded.as_ref()))]
+    Budget {
+        /// How many vertices are solved for.
+        free_count: usize,
+        /// The budget.
+        allowed_bytes: u64,
+        /// The vertex with the most neighbours, where these are many.
+        crowded: Option<Crowded>,
+    },
+    /// What is kept for each of many handles would take more than the [`crate::Budget`].
+    #[error(
+        "{handle_count} handles over {free_count} free vertices take more memory than allowed: join handles or make the region smaller"
+    )]
+    Handles {
+        /// How many handles there are.
+        handle_count: usize,
+        /// How many vertices are solved for.
+        free_count: usize,
+    },
     /// The factor does not fit.
     #[error("the factor of {free_count} free vertices does not fit into memory: make the region smaller")]
     OutOfMemory {
@@ -119,7 +153,56 @@ pub enum BindError {
     },
 }
 
+/// A vertex that very many others neighbour.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Crowded {
+    /// The vertex.
+    pub vertex: u32,
+    /// How many others neighbour it.
+    pub neighbours: usize,
+}
+
+/// A vertex of fewer neighbours than this is no culprit.
+const CROWD: usize = 100;
+
+fn over_budget(free_count: usize, allowed_bytes: u64, crowded: Option<&Crowded>) -> String {
+    let allowed = allowed_bytes as f64 / f64::from(1 << 30);
+    let remedy = match crowded {
+        Some(Crowded { vertex, neighbours }) => {
+            format!("split vertex {vertex}, which has {neighbours} neighbours, or make the region smaller")
+        }
+        None => "make the region smaller or the mesh coarser".to_owned(),
+    };
+    format!("solving for {free_count} free vertices takes more than the {allowed:.1} GiB of memory allowed: {remedy}")
+}
+
 impl BindError {
+    /// That so many free vertices exceed the budget; the binding fills in the rest.
+    pub(crate) fn budget(free_count: usize) -> Self {
+        Self::Budget {
+            free_count,
+            allowed_bytes: 0,
+            crowded: None,
+        }
+    }
+
+    /// The refusal with the budget and the mesh's most crowded vertex, where it is for memory.
+    pub(crate) fn with_culprit(mut self, topology: &Topology, budget: Budget) -> Self {
+        if let Self::Budget {
+            allowed_bytes, crowded, ..
+        } = &mut self
+        {
+            *allowed_bytes = budget.bytes;
+            let count = |vertex: u32| topology.neighbours(SurfaceVertex(vertex)).len();
+            let most = (0..topology.vertex_count() as u32).max_by_key(|&vertex| count(vertex));
+            *crowded = most.filter(|&vertex| count(vertex) >= CROWD).map(|vertex| Crowded {
+                vertex,
+                neighbours: count(vertex),
+            });
+        }
+        self
+    }
+
     /// The vertex that stands in the way.
     pub fn vertex(&self) -> Option<u32> {
         match self {
@@ -127,8 +210,10 @@ impl BindError {
             | Self::Stiffness { vertex, .. }
             | Self::Continuity { vertex, .. }
             | Self::Position { vertex }
+            | Self::Slender { vertex, .. }
             | Self::NotPositiveDefinite { vertex, .. }
             | Self::Inaccurate { vertex, .. } => Some(*vertex),
+            Self::Budget { crowded, .. } => crowded.map(|crowded| crowded.vertex),
             Self::Order { refused, .. } => refused.vertex(),
             _ => None,
         }
@@ -142,8 +227,12 @@ impl BindError {
             | Self::Stiffness { vertex, .. }
             | Self::Continuity { vertex, .. }
             | Self::Position { vertex }
+            | Self::Slender { vertex, .. }
             | Self::NotPositiveDefinite { vertex, .. }
             | Self::Inaccurate { vertex, .. } => *vertex = known(*vertex),
+            Self::Budget {
+                crowded: Some(crowded), ..
+            } => crowded.vertex = known(crowded.vertex),
             Self::Order { refused, .. } => **refused = refused.as_ref().clone().renumbered(known),
             _ => {}
         }
@@ -194,6 +283,9 @@ pub enum SolveError {
         /// An estimate of what is wrong, relative to the largest displacement.
         error: f64,
     },
+    /// The energy is beyond what can be computed with.
+    #[error("the energy of the bent surface is not finite: move the handles less far or scale the model down")]
+    EnergyNotFinite,
     /// A displacement came out as no number.
     #[error("the displacement of vertex {vertex} is not finite: move the handles less far")]
     NotFinite {

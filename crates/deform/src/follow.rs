@@ -6,7 +6,7 @@
 //! has such a tie at several of its vertices, evenly spread, and between them the motions are blended as in an embedded
 //! deformation (Sumner et al. 2007): each place by the four nearest, with weights (1 − d/d₅)², d₅ the fifth's distance.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, HashSet};
 
 use glam::DVec3;
 use pliant_mesh::{Bvh, Surface, SurfaceVertex, Topology};
@@ -15,16 +15,32 @@ use rayon::prelude::*;
 use crate::Loose;
 use crate::rigid_fit::RigidMotion;
 
-/// A component and what it follows.
+/// All components that follow, and what.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Followers {
+    /// The places that something is tied to, each once.
+    ties: Vec<Tie>,
+    rigid: Vec<Rigid>,
+    bending: Vec<Bending>,
+}
+
+/// A vertex that moves with one tie, as all of its component do.
+#[derive(Clone, Copy, Debug)]
+struct Rigid {
+    vertex: SurfaceVertex,
+    tie: u32,
+    world_rest: DVec3,
+}
+
+/// A component that bends along.
 #[derive(Clone, Debug)]
-pub(crate) struct Follower {
-    /// The component's vertices.
+struct Bending {
     vertices: Vec<SurfaceVertex>,
     /// Their rest positions.
     world_rest: Vec<DVec3>,
-    /// The places where it is tied.
-    ties: Vec<Tie>,
-    /// Of each vertex the ties that move it, with their shares, whose sum is 1; empty where the first one moves all.
+    /// The first of its ties.
+    first_tie: usize,
+    /// Of each vertex the ties that move it, counted from the first, with their shares, whose sum is 1.
     shares: Vec<[(u16, f64); BLENDED]>,
 }
 
@@ -35,6 +51,13 @@ struct Tie {
     patch: Vec<SurfaceVertex>,
     /// Their rest positions.
     world_rest: Vec<DVec3>,
+}
+
+/// Where a tie is, and how far its patch reaches.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    middle: SurfaceVertex,
+    radius: f64,
 }
 
 /// How many ties move a vertex of a component that bends along.
@@ -49,15 +72,19 @@ const PATCH_SAMPLES: usize = 256;
 /// A patch reaches at least this many mean edge lengths at its middle.
 const PATCH_EDGES: f64 = 3.0;
 
+/// Where more components follow than this they are crumbs, and each is tied to the least patch, which those beside it
+/// share: patches as large as each of very many components would take much more room than the mesh.
+const CRUMBS: usize = 10_000;
+
 /// Ties each of the components `following` to the nearest of the components `driven`.
 pub(crate) fn followers(
     surface: &Surface,
     topology: &Topology,
     following: &[(u32, Loose)],
     driven: &[u32],
-) -> Vec<Follower> {
+) -> Followers {
     if following.is_empty() || driven.is_empty() {
-        return Vec::new();
+        return Followers::default();
     }
     let is_driven = |corner: SurfaceVertex| driven.binary_search(&topology.component(corner)).is_ok();
     let triangles: Vec<_> = surface
@@ -67,17 +94,49 @@ pub(crate) fn followers(
         .filter(|corners| is_driven(corners[0]))
         .collect();
     let nearby = Bvh::build(&surface.positions, &triangles);
-    following
+    let reach = if following.len() > CRUMBS { 0.0 } else { 1.0 };
+    let place = |middle: SurfaceVertex, radius: f64| Place {
+        middle,
+        radius: (reach * radius).max(PATCH_EDGES * mean_edge(surface, topology, middle)),
+    };
+    // All that is kept of a component that follows as a whole is its place.
+    let rigid: Vec<Option<Place>> = following
         .par_iter()
-        .filter_map(|&(component, how)| {
-            let vertices = topology.vertices_of(component).collect();
-            match how {
-                Loose::Follow => rigid(surface, topology, vertices, &nearby),
-                Loose::Bend => bending(surface, topology, vertices, &nearby),
-                Loose::Rest => None,
-            }
+        .map(|&(component, how)| {
+            let vertices = topology.vertices_of(component);
+            let (middle, radius) = (how == Loose::Follow).then(|| nearest(surface, vertices, &nearby))??;
+            Some(place(middle, radius))
         })
-        .collect()
+        .collect();
+    // Components that are tied to the same patch share it.
+    let key = |place: &Place| (place.middle, place.radius.to_bits());
+    let mut numbers: BTreeMap<(SurfaceVertex, u64), u32> = BTreeMap::new();
+    let mut places = Vec::new();
+    let mut followers = Followers::default();
+    for (&(component, _), place) in following.iter().zip(&rigid) {
+        let Some(place) = place else { continue };
+        let tie = *numbers.entry(key(place)).or_insert_with(|| {
+            places.push(*place);
+            places.len() as u32 - 1
+        });
+        followers
+            .rigid
+            .extend(topology.vertices_of(component).map(|vertex| Rigid {
+                vertex,
+                tie,
+                world_rest: surface.positions[vertex.index()],
+            }));
+    }
+    for &(component, how) in following {
+        if how == Loose::Bend
+            && let Some((bending, knots)) = bending(surface, topology, component, &nearby, places.len())
+        {
+            places.extend(knots.into_iter().map(|(middle, radius)| place(middle, radius)));
+            followers.bending.push(bending);
+        }
+    }
+    followers.ties = places.par_iter().map(|place| tie(surface, topology, place)).collect();
+    followers
 }
 
 fn positions_of(surface: &Surface, vertices: &[SurfaceVertex]) -> Vec<DVec3> {
@@ -87,49 +146,50 @@ fn positions_of(surface: &Surface, vertices: &[SurfaceVertex]) -> Vec<DVec3> {
         .collect()
 }
 
-fn rigid(surface: &Surface, topology: &Topology, vertices: Vec<SurfaceVertex>, nearby: &Bvh) -> Option<Follower> {
-    let world_rest = positions_of(surface, &vertices);
+/// The vertex of the driven surface that the component of these vertices comes nearest to, and half the diagonal of its
+/// bounding box.
+fn nearest(
+    surface: &Surface,
+    vertices: impl Iterator<Item = SurfaceVertex>,
+    nearby: &Bvh,
+) -> Option<(SurfaceVertex, f64)> {
     let mut nearest: Option<(SurfaceVertex, f64)> = None;
-    for &point in &world_rest {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for point in vertices.map(|vertex| surface.positions[vertex.index()]) {
         if let Some(found) = nearby.nearest_vertex(point)
             && nearest.is_none_or(|(_, distance)| found.1 < distance)
         {
             nearest = Some(found);
         }
-    }
-    let (middle, _) = nearest?;
-    let (mut low, mut high) = (world_rest[0], world_rest[0]);
-    for &point in &world_rest {
         (low, high) = (low.min(point), high.max(point));
     }
-    Some(Follower {
-        vertices,
-        world_rest,
-        ties: vec![tie(surface, topology, middle, 0.5 * low.distance(high))],
-        shares: Vec::new(),
-    })
+    nearest.map(|(middle, _)| (middle, 0.5 * low.distance(high)))
 }
 
-fn bending(surface: &Surface, topology: &Topology, vertices: Vec<SurfaceVertex>, nearby: &Bvh) -> Option<Follower> {
+/// A component that bends along, whose ties are the next from `first_tie` on: their middles and radii.
+fn bending(
+    surface: &Surface,
+    topology: &Topology,
+    component: u32,
+    nearby: &Bvh,
+    first_tie: usize,
+) -> Option<(Bending, Vec<(SurfaceVertex, f64)>)> {
+    let vertices: Vec<SurfaceVertex> = topology.vertices_of(component).collect();
     let world_rest = positions_of(surface, &vertices);
     let (knots, spacing) = spread(&world_rest);
-    let ties = knots
-        .iter()
-        .map(|&knot| {
-            let (middle, _) = nearby.nearest_vertex(world_rest[knot])?;
-            Some(tie(surface, topology, middle, 0.5 * spacing))
-        })
-        .collect::<Option<Vec<Tie>>>()?;
+    let place = |&knot: &usize| Some((nearby.nearest_vertex(world_rest[knot])?.0, 0.5 * spacing));
+    let places = knots.iter().map(place).collect::<Option<_>>()?;
     let shares = world_rest
         .par_iter()
         .map(|&point| shares_at(point, knots.iter().map(|&knot| world_rest[knot])))
         .collect();
-    Some(Follower {
+    let bending = Bending {
         vertices,
         world_rest,
-        ties,
+        first_tie,
         shares,
-    })
+    };
+    Some((bending, places))
 }
 
 /// At most [`MOST_TIES`] of the points, each as far as can be from those before it, and how far apart they are in the
@@ -186,31 +246,35 @@ fn shares_at(point: DVec3, ties: impl Iterator<Item = DVec3>) -> [(u16, f64); BL
     shares
 }
 
-fn tie(surface: &Surface, topology: &Topology, middle: SurfaceVertex, radius: f64) -> Tie {
-    let patch = thinned(patch_around(surface, topology, middle, radius));
+fn tie(surface: &Surface, topology: &Topology, place: &Place) -> Tie {
+    let patch = thinned(patch_around(surface, topology, place));
     Tie {
         world_rest: positions_of(surface, &patch),
         patch,
     }
 }
 
-/// The vertices joined to `middle` within a ball, which is at least [`PATCH_EDGES`] edges large; in walking order.
-fn patch_around(surface: &Surface, topology: &Topology, middle: SurfaceVertex, radius: f64) -> Vec<SurfaceVertex> {
-    let centre = surface.positions[middle.index()];
+/// The mean length of the edges at a vertex.
+fn mean_edge(surface: &Surface, topology: &Topology, vertex: SurfaceVertex) -> f64 {
+    let centre = surface.positions[vertex.index()];
+    let ring = topology.neighbours(vertex);
+    let length = |other: &SurfaceVertex| surface.positions[other.index()].distance(centre);
+    ring.iter().map(length).sum::<f64>() / ring.len().max(1) as f64
+}
+
+/// The vertices joined to the middle within the radius, in walking order.
+fn patch_around(surface: &Surface, topology: &Topology, place: &Place) -> Vec<SurfaceVertex> {
+    let centre = surface.positions[place.middle.index()];
     let distance = |vertex: SurfaceVertex| surface.positions[vertex.index()].distance(centre);
-    let ring = topology.neighbours(middle);
-    let edge = ring.iter().map(|&vertex| distance(vertex)).sum::<f64>() / ring.len().max(1) as f64;
-    let radius = radius.max(PATCH_EDGES * edge);
-    let mut seen = vec![false; surface.positions.len()];
-    seen[middle.index()] = true;
-    let mut queue = VecDeque::from([middle]);
-    let mut patch = Vec::new();
-    while let Some(vertex) = queue.pop_front() {
-        patch.push(vertex);
-        for &next in topology.neighbours(vertex) {
-            if !seen[next.index()] && distance(next) <= radius {
-                seen[next.index()] = true;
-                queue.push_back(next);
+    // A table of all vertices for each of many patches would cost more than all patches.
+    let mut seen = HashSet::from([place.middle]);
+    let mut patch = vec![place.middle];
+    let mut next = 0;
+    while let Some(&vertex) = patch.get(next) {
+        next += 1;
+        for &beside in topology.neighbours(vertex) {
+            if distance(beside) <= place.radius && seen.insert(beside) {
+                patch.push(beside);
             }
         }
     }
@@ -222,33 +286,33 @@ fn thinned(patch: Vec<SurfaceVertex>) -> Vec<SurfaceVertex> {
     patch.into_iter().step_by(stride.max(1)).collect()
 }
 
-/// Writes the followers' displacements, given those of the driven components.
-pub(crate) fn carry(followers: &[Follower], displacements: &mut [DVec3]) {
-    let motions: Vec<Vec<Option<RigidMotion>>> = followers
-        .par_iter()
-        .map(|follower| {
-            let motion = |tie: &Tie| {
-                let moved: Vec<DVec3> = tie.patch.iter().map(|vertex| displacements[vertex.index()]).collect();
-                RigidMotion::fit(&tie.world_rest, &moved)
-            };
-            follower.ties.par_iter().map(motion).collect()
-        })
-        .collect();
-    for (follower, motions) in followers.iter().zip(motions) {
-        let moved = |tie: u16, rest: DVec3| {
-            let motion = motions.get(usize::from(tie)).and_then(Option::as_ref);
-            motion.map(|motion| motion.displace(rest))
+impl Followers {
+    /// Whether nothing follows.
+    pub fn is_empty(&self) -> bool {
+        self.rigid.is_empty() && self.bending.is_empty()
+    }
+
+    /// Writes the followers' displacements, given those of the driven components.
+    pub fn carry(&self, displacements: &mut [DVec3]) {
+        let motion = |tie: &Tie| {
+            let moved: Vec<DVec3> = tie.patch.iter().map(|vertex| displacements[vertex.index()]).collect();
+            RigidMotion::fit(&tie.world_rest, &moved)
         };
-        for (number, (vertex, &rest)) in follower.vertices.iter().zip(&follower.world_rest).enumerate() {
-            let displacement = match follower.shares.get(number) {
-                None => moved(0, rest),
-                Some(shares) => shares
-                    .iter()
-                    .filter_map(|&(tie, share)| Some(moved(tie, rest)? * share))
-                    .reduce(|sum, more| sum + more),
-            };
-            if let Some(displacement) = displacement {
-                displacements[vertex.index()] = displacement;
+        let motions: Vec<Option<RigidMotion>> = self.ties.par_iter().map(motion).collect();
+        let moved = |tie: usize, rest: DVec3| Some(motions.get(tie)?.as_ref()?.displace(rest));
+        for own in &self.rigid {
+            if let Some(displacement) = moved(own.tie as usize, own.world_rest) {
+                displacements[own.vertex.index()] = displacement;
+            }
+        }
+        for own in &self.bending {
+            for ((vertex, &rest), shares) in own.vertices.iter().zip(&own.world_rest).zip(&own.shares) {
+                let shares = shares.iter();
+                let parts =
+                    shares.filter_map(|&(tie, share)| Some(moved(own.first_tie + usize::from(tie), rest)? * share));
+                if let Some(displacement) = parts.reduce(|sum, more| sum + more) {
+                    displacements[vertex.index()] = displacement;
+                }
             }
         }
     }

@@ -11,6 +11,7 @@
 mod arap;
 mod blend;
 mod bound;
+mod budget;
 mod error;
 mod follow;
 mod handle;
@@ -33,7 +34,8 @@ mod sums;
 
 pub use arap::{Arap, ArapEnergy};
 pub use bound::{Bound, Remains, Step};
-pub use error::{BindError, SolveError};
+pub use budget::Budget;
+pub use error::{BindError, Crowded, SolveError};
 pub use holds::{CONTINUITY_RANGE, Holds};
 pub use method::Method;
 pub use operators::Laplacian;

@@ -65,6 +65,15 @@ fn row_chunks<'a, T: Send>(entries: &'a mut [T], offsets: &[u32]) -> rayon::vec:
     chunks.into_par_iter()
 }
 
+/// Where `number` stands in an ascending row. Most rows are short, and looked through sooner than searched.
+pub(crate) fn place_in<T: Ord>(row: &[T], number: &T) -> Option<usize> {
+    if row.len() <= 32 {
+        row.iter().position(|own| own == number)
+    } else {
+        row.binary_search(number).ok()
+    }
+}
+
 /// A surface vertex that has no local number.
 const ABSENT: u32 = u32::MAX;
 
@@ -197,7 +206,7 @@ impl Laplacian {
                         // have this vertex twice, and an edge from it to itself is none.
                         for other in (0..3).filter(|&corner| corners[corner] != vertex) {
                             let number = local_of[corners[other].index()];
-                            if let Some(place) = neighbours.iter().position(|&neighbour| neighbour == number) {
+                            if let Some(place) = place_in(neighbours, &number) {
                                 row[place] += terms.half_cotangents[3 - own - other];
                             }
                         }

@@ -8,8 +8,9 @@
 
 use pliant_mesh::SurfaceVertex;
 
+use crate::budget::bytes_of;
 use crate::operators::net::{Graph, Net};
-use crate::{BindError, CONTINUITY_RANGE, Loose, Method, Problem, Role};
+use crate::{BindError, Budget, CONTINUITY_RANGE, Loose, Method, Problem, Role};
 
 /// The vertices by what happens to them, all lists ascending.
 #[derive(Debug)]
@@ -30,6 +31,8 @@ pub(crate) struct Partition<'a> {
     pub held: Vec<bool>,
     /// How many vertices have the role [`Role::Free`].
     pub free_count: usize,
+    /// How much memory may be taken for them.
+    pub budget: Budget,
     /// Sentences for a person about components.
     pub warnings: Vec<String>,
 }
@@ -65,8 +68,9 @@ impl<'a> Partition<'a> {
                 .collect::<Vec<_>>()
         };
         let loose = indices(&|c| !held[c] && !driven[c]);
-        let mut warnings = warnings(problem, &loose, &indices(&|c| driven[c] && !held[c]));
-        let follows = |component: u32| match problem.loose_of(component) {
+        let loose_of = problem.loose_by_component();
+        let mut warnings = warnings(problem, &loose, &loose_of, &indices(&|c| driven[c] && !held[c]));
+        let follows = |component: u32| match loose_of[component as usize] {
             Loose::Rest => None,
             how => (!handles.is_empty()).then_some((component, how)),
         };
@@ -87,10 +91,33 @@ impl<'a> Partition<'a> {
             driven: indices(&|c| driven[c]),
             held,
             free_count,
+            budget: Budget::default(),
             warnings,
         })
     }
 }
+
+impl Partition<'_> {
+    /// Takes over the budget, less what is kept of every handle at every solved vertex and pair of handles.
+    ///
+    /// # Errors
+    /// [`BindError::Handles`] where that alone exceeds it.
+    pub fn take_budget(&mut self, budget: Budget) -> Result<(), BindError> {
+        let (handles, solved) = (self.handles.len(), self.solved.len());
+        let bytes = bytes_of(handles, ROW * solved).saturating_add(bytes_of(handles, PAIR * handles));
+        self.budget = budget.without(bytes).map_err(|_| BindError::Handles {
+            handle_count: handles,
+            free_count: solved,
+        })?;
+        Ok(())
+    }
+}
+
+/// Bytes of a handle's basis at a vertex, while all are put together: twice four numbers in single precision.
+const ROW: usize = 32;
+
+/// Bytes of the energy's block of a pair of handles: 4 × 4 numbers.
+const PAIR: usize = 128;
 
 /// Whether every table fits the surface and every number is one that it may be.
 fn check(problem: &Problem) -> Result<(), BindError> {
@@ -198,7 +225,7 @@ fn unheeded(problem: &Problem) -> Option<String> {
 /// How many components are named one by one before they are only counted.
 const NAMED: usize = 4;
 
-fn warnings(problem: &Problem, loose: &[u32], unheld: &[u32]) -> Vec<String> {
+fn warnings(problem: &Problem, loose: &[u32], loose_of: &[Loose], unheld: &[u32]) -> Vec<String> {
     let mut sentences = Vec::new();
     if problem.handle_count == 0 {
         return sentences;
@@ -225,7 +252,7 @@ fn warnings(problem: &Problem, loose: &[u32], unheld: &[u32]) -> Vec<String> {
         let alike = loose
             .iter()
             .copied()
-            .filter(|&component| problem.loose_of(component) == how);
+            .filter(|&component| loose_of[component as usize] == how);
         let alike: Vec<u32> = alike.collect();
         if alike.len() > NAMED {
             sentences.push(format!(

@@ -17,11 +17,12 @@
 //! on a scan of 86,482 faces binding took 0.75 instead of more than 3 s, a step 0.13 instead of 0.3 s, and there were as
 //! many steps.
 //!
-//! Parts: `prisms` sorts the triangles, `quad` is the integral over a shared quad, `joints` are the couplings, `pose` is
+//! Parts: `edges` finds which triangles meet, `prisms` sorts them, `quad` is the integral over a shared quad, `joints` are the couplings, `pose` is
 //! where the prisms are and their energy, `system` and `factored` make the matrices, `hierarchy` the cells, `start` chooses where to begin,
 //! `sweep` unfolds, `descent` takes a step, and `vertices` takes the prisms' mean.
 
 mod descent;
+mod edges;
 mod factored;
 mod hierarchy;
 mod joints;
@@ -40,6 +41,7 @@ use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
 
 pub use self::options::Primo;
 
+use self::edges::Edges;
 use self::hierarchy::{DIRECT, Preconditioner};
 use self::joints::{Joints, Material};
 use self::pose::Pose;
@@ -103,10 +105,11 @@ impl PrimoSolver {
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
         let (surface, topology) = (problem.surface, problem.topology);
-        let mut prisms = Prisms::of(surface, topology, problem.roles);
+        let edges = Edges::of(surface, topology);
+        let mut prisms = Prisms::of(&edges, problem.roles);
         cancel.check()?;
         progress.set(0.1);
-        let (offsets, neighbours) = prisms.graph(surface, topology);
+        let (offsets, neighbours) = prisms.graph(&edges);
         let Elimination { order, ends } = elimination(&offsets, &neighbours, cancel)?;
         prisms.reorder(&order);
         cancel.check()?;
@@ -118,8 +121,7 @@ impl PrimoSolver {
         let mut joints = Joints::of(
             &prisms,
             &Material {
-                surface,
-                topology,
+                edges: &edges,
                 stiffness: problem.stiffness,
                 thickness: options.thickness * diagonal,
                 world_origin,
@@ -138,18 +140,19 @@ impl PrimoSolver {
                 let (component, SurfaceVertex(vertex)) = component(prism);
                 BindError::NotPositiveDefinite { component, vertex }
             }
+            FactorError::Budget => BindError::budget(partition.free_count),
             FactorError::Memory => BindError::OutOfMemory {
                 free_count: partition.free_count,
             },
             FactorError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
         };
         let unheld = |prism: usize| !partition.held[component(prism).0 as usize];
-        let springs = Springs::of(&joints, cancel).map_err(refused)?;
+        let springs = Springs::of(&joints, partition.budget, cancel).map_err(refused)?;
         let weights = springs.weights(&joints, handles.len(), unheld);
         cancel.check()?;
         progress.set(0.4);
         let at_rest = Pose::at_rest(joints.count(), world_grounds.len());
-        let preconditioner = Preconditioner::of(&joints, DIRECT, cancel).map_err(refused)?;
+        let preconditioner = Preconditioner::of(&joints, DIRECT, partition.budget, cancel).map_err(refused)?;
         progress.set(1.0);
         let world_rest = |vertex: u32| surface.positions[vertex as usize];
         Ok(Self {

@@ -3,7 +3,7 @@
 use pliant_mesh::{Cancel, Progress, Surface, Topology};
 
 use crate::sparse::cholesky::Renewal;
-use crate::{BindError, Bound, Holds, Method, Ordering, Remains};
+use crate::{BindError, Bound, Budget, Holds, Method, Ordering, Remains};
 
 /// What a surface vertex does.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -57,10 +57,15 @@ pub struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// What a component does if nothing holds it.
-    pub(crate) fn loose_of(&self, component: u32) -> Loose {
-        let own = self.holds.parts.iter().rev().find(|(part, _)| *part == component);
-        own.map_or(self.loose, |(_, loose)| *loose)
+    /// What each component does if nothing holds it.
+    pub(crate) fn loose_by_component(&self) -> Vec<Loose> {
+        let mut loose = vec![self.loose; self.topology.components().len()];
+        for &(part, own) in self.holds.parts {
+            if let Some(loose) = loose.get_mut(part as usize) {
+                *loose = own;
+            }
+        }
+        loose
     }
 
     /// Factors and solves whatever does not depend on the handles' transforms.
@@ -73,12 +78,26 @@ impl Problem<'_> {
     /// [`BindError::Cancelled`] once `cancel` is raised, which is looked at between the steps and many times within a
     /// factorisation.
     pub fn bind(&self, ordering: &Ordering, progress: &Progress, cancel: &Cancel) -> Result<Bound, BindError> {
-        Bound::bind(self, ordering, Renewal::Never, progress, cancel)
+        self.bind_within(ordering, Budget::default(), progress, cancel)
+    }
+
+    /// As [`Problem::bind`], with another budget of memory than the default one.
+    ///
+    /// # Errors
+    /// As [`Problem::bind`]; [`BindError::Budget`] where more would be taken.
+    pub fn bind_within(
+        &self,
+        ordering: &Ordering,
+        budget: Budget,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Bound, BindError> {
+        Bound::bind(self, ordering, Renewal::Never, budget, progress, cancel)
     }
 
     /// As [`Problem::bind`], and with the same result to the bit, for who binds again and again: what `remains` of an
-    /// earlier binding and is not touched by what changed since is not factored again. What is kept for that takes about
-    /// as much memory as the factor.
+    /// earlier binding and is not touched by what changed since is not factored again. What is kept for that takes at
+    /// most as much memory as the factor, and is then what spares most operations a byte.
     ///
     /// # Errors
     /// As [`Problem::bind`].
@@ -90,6 +109,6 @@ impl Problem<'_> {
         cancel: &Cancel,
     ) -> Result<Bound, BindError> {
         let renewal = Renewal::From(remains.map(Remains::factored));
-        Bound::bind(self, ordering, renewal, progress, cancel)
+        Bound::bind(self, ordering, renewal, Budget::default(), progress, cancel)
     }
 }

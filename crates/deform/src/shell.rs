@@ -5,9 +5,11 @@ pub(crate) mod bases;
 mod bilaplacian;
 mod continuity;
 pub(crate) mod factored;
+pub(crate) mod hubs;
 pub(crate) mod operator;
 pub(crate) mod plate;
 mod refine;
+mod slender;
 mod springs;
 
 pub use bases::HandleBases;

@@ -2,16 +2,19 @@
 
 mod bisection;
 pub(crate) mod cholesky;
+mod crumbs;
 mod dissection;
 mod elimination;
 pub(crate) mod factor_error;
 mod forest;
 mod front;
 pub(crate) mod graph;
+pub(crate) mod hubs;
 mod kernels;
 mod labels;
 mod leaf;
 mod line;
+pub(crate) mod low_rank;
 pub(crate) mod matrix;
 mod multifrontal;
 mod ordering;

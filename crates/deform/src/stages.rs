@@ -5,12 +5,13 @@ use pliant_mesh::Cancel;
 use crate::handle::Handle;
 use crate::partition::Partition;
 use crate::shell::assembly::assemble_shell;
+use crate::shell::hubs::Hubs;
 use crate::shell::operator::ShellOperator;
 use crate::shell::plate::operator;
 use crate::sparse::Elimination;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
-use crate::{Bilaplacian, Ordering, Problem};
+use crate::{Bilaplacian, Budget, Ordering, Problem};
 
 /// The operator of a linear shell, and the order in which its vertices are eliminated.
 #[derive(Debug)]
@@ -40,20 +41,28 @@ impl Operator {
         })
     }
 
-    /// Its matrix.
-    pub fn assemble(&self) -> Matrix {
+    /// Its matrix, the curvature at hubs included; `None` where it takes too much memory.
+    pub fn assemble(&self) -> Option<Matrix> {
         let laplacian = &self.operator.laplacian;
         let columns: Vec<u32> = laplacian.locals(&self.elimination.order);
         let mut column_of = vec![CONSTRAINED; laplacian.vertices().len()];
         for (column, &local) in columns.iter().enumerate() {
             column_of[local as usize] = column as u32;
         }
-        Matrix(assemble_shell(&self.operator, &columns, &column_of))
+        let matrix = assemble_shell(
+            &self.operator,
+            &columns,
+            &column_of,
+            &Hubs::default(),
+            Budget::default(),
+        );
+        matrix.ok().map(Matrix)
     }
 
     /// What the matrix' factor holds, without its numbers.
     pub fn analyse(&self, matrix: &Matrix) -> Option<Factored> {
-        Some(Factored(Factor::analysed(&matrix.0, &self.elimination.ends)))
+        let factor = Factor::analysed(&matrix.0, &self.elimination.ends, Budget::default());
+        factor.ok().map(Factored)
     }
 }
 

@@ -62,7 +62,11 @@ impl<'a> Faces<'a> {
         triangles: &'a [[SurfaceVertex; 3]],
         runs: &'a [u32],
     ) -> Self {
-        let lower = ring.iter().take_while(|&&u| u < vertex).count();
+        let lower = if ring.len() <= LONG {
+            ring.iter().take_while(|&&u| u < vertex).count()
+        } else {
+            ring.partition_point(|&u| u < vertex)
+        };
         Self {
             vertex,
             triangles,

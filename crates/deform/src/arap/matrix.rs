@@ -8,7 +8,10 @@ use super::cells::{Cells, vector};
 use super::domain::Domain;
 use super::spokes::{floored, largest_weights};
 use super::springs::Spring;
+use crate::budget::reserved;
 use crate::operators::CHUNK;
+use crate::sparse::factor_error::FactorError;
+use crate::sparse::hubs::hub_degree;
 use crate::sparse::matrix::ScaledMatrix;
 use crate::{ArapEnergy, Laplacian};
 
@@ -44,7 +47,14 @@ struct Row {
 
 /// Assembles the plate of cells that bend: their weights' Laplacian less Σ_i Z_i β_i K_i Z_iᵀ, Z_i's rows being G_iv for
 /// the ring's vertices and minus their sum for the cell's own.
-pub(crate) fn assemble_plate(cells: &Cells, domain: &Domain, springs: &[Spring]) -> System {
+///
+/// What a hub's cell subtracts couples all its neighbours with each other, and is left out: the quadratic is larger then
+/// and majorises the energy as before, so that the shape is the same, and steps differ at hubs alone.
+///
+/// # Errors
+/// [`FactorError::Memory`].
+pub(crate) fn assemble_plate(cells: &Cells, domain: &Domain, springs: &[Spring]) -> Result<System, FactorError> {
+    let most = hub_degree(domain.local_of.len());
     let rows: Vec<Row> = (0..domain.solved_count.div_ceil(CHUNK))
         .into_par_iter()
         .map_init(
@@ -52,7 +62,7 @@ pub(crate) fn assemble_plate(cells: &Cells, domain: &Domain, springs: &[Spring])
             |slots, chunk| {
                 let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(domain.solved_count);
                 range
-                    .map(|column| plate_row(cells, column as u32, slots))
+                    .map(|column| plate_row(cells, column as u32, most, slots))
                     .collect::<Vec<_>>()
             },
         )
@@ -61,8 +71,8 @@ pub(crate) fn assemble_plate(cells: &Cells, domain: &Domain, springs: &[Spring])
     assembled(&rows, domain, springs)
 }
 
-/// `slots` are all zero, and are so again behind it.
-fn plate_row(cells: &Cells, column: u32, slots: &mut [u32]) -> Row {
+/// Cells of more than `most` neighbours are hubs'. `slots` are all zero, and are so again behind it.
+fn plate_row(cells: &Cells, column: u32, most: usize, slots: &mut [u32]) -> Row {
     let mut others: Vec<(u32, f64)> = Vec::new();
     let mut add = |others: &mut Vec<(u32, f64)>, end: u32, value: f64| {
         let slot = &mut slots[end as usize];
@@ -81,6 +91,9 @@ fn plate_row(cells: &Cells, column: u32, slots: &mut [u32]) -> Row {
     }
     for &cell in std::iter::once(&column).chain(&cells.ends[around]) {
         let ring = cells.around(cell as usize);
+        if ring.len() > most {
+            continue;
+        }
         let sum: DVec3 = ring.clone().map(|place| vector(cells.towards[place])).sum();
         let row = |end: u32| {
             let own = ring.clone().find(|&place| cells.ends[place] == end);
@@ -106,7 +119,15 @@ fn plate_row(cells: &Cells, column: u32, slots: &mut [u32]) -> Row {
 }
 
 /// Assembles the Laplacian −L of the energy; `laplacian` has full rows for the solved vertices at least.
-pub(crate) fn assemble(laplacian: &Laplacian, domain: &Domain, springs: &[Spring], energy: ArapEnergy) -> System {
+///
+/// # Errors
+/// [`FactorError::Memory`].
+pub(crate) fn assemble(
+    laplacian: &Laplacian,
+    domain: &Domain,
+    springs: &[Spring],
+    energy: ArapEnergy,
+) -> Result<System, FactorError> {
     let largest = match energy {
         ArapEnergy::Spokes => largest_weights(laplacian),
         ArapEnergy::SpokesAndRims | ArapEnergy::Smooth => Vec::new(),
@@ -135,7 +156,7 @@ pub(crate) fn assemble(laplacian: &Laplacian, domain: &Domain, springs: &[Spring
     assembled(&rows, domain, springs)
 }
 
-fn assembled(rows: &[Row], domain: &Domain, springs: &[Spring]) -> System {
+fn assembled(rows: &[Row], domain: &Domain, springs: &[Spring]) -> Result<System, FactorError> {
     let mut diagonal: Vec<f64> = rows.iter().map(|row| row.diagonal).collect();
     for spring in springs {
         diagonal[spring.local as usize] += spring.strength;
@@ -144,12 +165,19 @@ fn assembled(rows: &[Row], domain: &Domain, springs: &[Spring]) -> System {
         .iter()
         .map(|&value| if value > 0.0 { value.sqrt().recip() } else { 1.0 })
         .collect();
+    let below = |(column, row): (usize, &Row)| {
+        let solved = column as u32..domain.solved_count as u32;
+        1 + row.others.iter().filter(|(other, _)| solved.contains(other)).count()
+    };
+    let entries: usize = rows.iter().enumerate().map(below).sum();
+    u32::try_from(entries).map_err(|_| FactorError::Memory)?;
     let mut matrix = ScaledMatrix {
         scale,
-        lower_offsets: vec![0],
-        lower_rows: Vec::new(),
-        lower_values: Vec::new(),
+        lower_offsets: reserved(rows.len() + 1)?,
+        lower_rows: reserved(entries)?,
+        lower_values: reserved(entries)?,
     };
+    matrix.lower_offsets.push(0);
     let mut coupling = Vec::new();
     for (column, row) in rows.iter().enumerate() {
         let scale = matrix.scale[column];
@@ -165,9 +193,9 @@ fn assembled(rows: &[Row], domain: &Domain, springs: &[Spring]) -> System {
         }
         matrix.lower_offsets.push(matrix.lower_rows.len() as u32);
     }
-    System {
+    Ok(System {
         springs: springs.to_vec(),
         matrix,
         coupling,
-    }
+    })
 }

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::cells::Quad;
 use super::domain::Domain;
 use super::matrix::System;
+use crate::budget::{Budget, filled};
 use crate::operators::CHUNK;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
@@ -43,7 +44,19 @@ pub(crate) enum PreconditionError {
     /// A constant is missed by this much at this solved vertex.
     Inaccurate(usize, f64),
     Memory,
+    Budget,
     Cancelled,
+}
+
+impl From<FactorError> for PreconditionError {
+    fn from(error: FactorError) -> Self {
+        match error {
+            FactorError::Pivot(column) => Self::Pivot(column),
+            FactorError::Memory => Self::Memory,
+            FactorError::Budget => Self::Budget,
+            FactorError::Cancelled => Self::Cancelled,
+        }
+    }
 }
 
 /// By how much a constant may be missed: enough to descend by.
@@ -55,14 +68,12 @@ impl Preconditioner {
         system: &System,
         ends: &[u32],
         weights: &WeightInput<'_>,
+        budget: Budget,
         cancel: &Cancel,
     ) -> Result<(Self, Vec<f64>), PreconditionError> {
-        match Factor::to_descend_by(&system.matrix, ends, cancel) {
-            Ok(factor) => Self::checked(&factor, system, weights, cancel),
-            Err(FactorError::Pivot(column)) => Err(PreconditionError::Pivot(column)),
-            Err(FactorError::Memory) => Err(PreconditionError::Memory),
-            Err(FactorError::Cancelled) => Err(PreconditionError::Cancelled),
-        }
+        // It is copied twice, once in half the bytes.
+        let factor = Factor::to_descend_by(&system.matrix, ends, budget.shared_by(2.5), cancel)?;
+        Self::checked(&factor, system, weights, cancel)
     }
 
     fn checked(
@@ -73,17 +84,17 @@ impl Preconditioner {
     ) -> Result<(Self, Vec<f64>), PreconditionError> {
         let scale = system.matrix.scale.clone();
         let double = Self {
-            solver: Solver::Double(factor.substitution()),
+            solver: Solver::Double(factor.substitution()?),
             scale: scale.clone(),
         };
         let (vertex, error) = double.miss(system);
         if error > TOLERANCE {
             return Err(PreconditionError::Inaccurate(vertex, error));
         }
-        let weights = double.weights(system, weights);
+        let weights = double.weights(system, weights)?;
         cancel.check().map_err(|_| PreconditionError::Cancelled)?;
         let single = Self {
-            solver: Solver::Single(factor.substitution()),
+            solver: Solver::Single(factor.substitution()?),
             scale,
         };
         let (_, error) = single.miss(system);
@@ -180,14 +191,14 @@ impl Preconditioner {
 
     /// Each handle's weight on each cell, row-major: 1 on its own vertices, 0 on other constrained ones, harmonic in the
     /// system's sense between. Where nothing is fixed around a vertex they sum to 1.
-    fn weights(&self, system: &System, input: &WeightInput<'_>) -> Vec<f64> {
+    fn weights(&self, system: &System, input: &WeightInput<'_>) -> Result<Vec<f64>, FactorError> {
         let WeightInput {
             domain,
             handle_count,
             handle_of,
             unheld,
         } = *input;
-        let mut weights = vec![0.0; domain.cell_count * handle_count];
+        let mut weights = filled(0.0, domain.cell_count * handle_count)?;
         let handles: Vec<usize> = (0..handle_count).collect();
         for group in handles.chunks(4) {
             // Four right-hand sides a solve, the last group's spare ones empty.
@@ -216,7 +227,7 @@ impl Preconditioner {
                 }
             }
         }
-        weights
+        Ok(weights)
     }
 }
 

@@ -13,8 +13,8 @@ use rayon::prelude::*;
 
 use super::cells::{Cells, Entry, Solved, add_square};
 use super::domain::{ABSENT, Domain};
-use crate::operators::CHUNK;
 use crate::operators::face_terms::Metric;
+use crate::operators::{CHUNK, place_in};
 
 struct Face {
     corners: [u32; 3],
@@ -83,8 +83,10 @@ pub(crate) fn cells(surface: &Surface, topology: &Topology, stiffness: &[f64], d
                     .faces(vertex, &surface.triangles)
                     .map(|face| &faces[slots[face as usize] as usize]);
                 let mut rest = [0.0; 6];
+                let ring = topology.neighbours(vertex);
+                let place = |end: u32| place_in(ring, &SurfaceVertex(domain.vertices[end as usize]));
                 for face in around {
-                    add(face, cell as u32, &mut entries, &mut rest);
+                    add(face, cell as u32, &mut entries, &mut rest, place);
                 }
                 let solved = if cell < domain.solved_count {
                     Solved::Yes
@@ -113,12 +115,12 @@ fn firmness(ties: &[f64], cell: usize) -> f64 {
     1.0 + ties.get(cell).copied().unwrap_or(0.0)
 }
 
-/// Adds a triangle's part to a cell's entries and to its rest matrix.
-fn add(face: &Face, cell: u32, entries: &mut [Entry], rest: &mut [f64; 6]) {
+/// Adds a triangle's part to a cell's entries, the one of a local vertex being at `place`, and to its rest matrix.
+fn add(face: &Face, cell: u32, entries: &mut [Entry], rest: &mut [f64; 6], place: impl Fn(u32) -> Option<usize>) {
     for own in (0..3).filter(|&own| face.corners[own] == cell) {
         for other in (0..3).filter(|&other| face.corners[other] != cell) {
             let end = face.corners[other];
-            if let Some(entry) = entries.iter_mut().find(|entry| entry.end == end) {
+            if let Some(entry) = place(end).map(|place| &mut entries[place]) {
                 entry.towards += face.towards(other) / 3.0;
                 entry.back += face.towards(own) / 3.0;
                 entry.weight += face.weights[3 - own - other] * face.factor;

@@ -5,6 +5,7 @@ use pliant_mesh::Cancel;
 use super::joints::Joints;
 use super::pose::Pose;
 use super::system::{DOF, gauss_newton};
+use crate::budget::Budget;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
 
@@ -19,10 +20,11 @@ impl Factored {
     /// Factors the matrix at `pose`.
     ///
     /// # Errors
-    /// As [`Factor::of`]; a pivot is named by its prism.
-    pub fn at(joints: &Joints, pose: &Pose, cancel: &Cancel) -> Result<Self, FactorError> {
-        let matrix = gauss_newton(joints, pose);
-        let factor = Factor::to_descend_by(&matrix, &joints.column_ends(DOF), cancel).map_err(|error| match error {
+    /// As [`Factor::to_descend_by`]; a pivot is named by its prism.
+    pub fn at(joints: &Joints, pose: &Pose, budget: Budget, cancel: &Cancel) -> Result<Self, FactorError> {
+        let matrix = gauss_newton(joints, pose)?;
+        let factor = Factor::to_descend_by(&matrix, &joints.column_ends(DOF), budget, cancel);
+        let factor = factor.map_err(|error| match error {
             FactorError::Pivot(column) => FactorError::Pivot(column / DOF),
             other => other,
         })?;
@@ -34,7 +36,7 @@ impl Factored {
 
     /// Factors the matrix at another pose; the old factor stays where that fails.
     pub fn renew(&mut self, joints: &Joints, pose: &Pose) {
-        if let Ok(factored) = Self::at(joints, pose, &Cancel::new()) {
+        if let Ok(factored) = Self::at(joints, pose, Budget::default(), &Cancel::new()) {
             *self = factored;
         }
     }

@@ -15,6 +15,7 @@ use super::joints::Joints;
 use super::pose::Pose;
 use super::sweep::Colours;
 use super::system::{Block, own_block};
+use crate::budget::Budget;
 use crate::operators::CHUNK;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::graph::elimination;
@@ -56,10 +57,10 @@ impl Preconditioner {
     ///
     /// # Errors
     /// As [`Factored::at`]; a pivot is named by one of its prisms.
-    pub fn of(joints: &Joints, direct: usize, cancel: &Cancel) -> Result<Self, FactorError> {
+    pub fn of(joints: &Joints, direct: usize, budget: Budget, cancel: &Cancel) -> Result<Self, FactorError> {
         if joints.count() <= direct {
             let at_rest = Pose::at_rest(joints.count(), joints.centres.len() - joints.count());
-            return Ok(Self::Direct(Box::new(Factored::at(joints, &at_rest, cancel)?)));
+            return Ok(Self::Direct(Box::new(Factored::at(joints, &at_rest, budget, cancel)?)));
         }
         let mut cell_of = cells(joints);
         let mut coarse = joints.of_cells(&cell_of);
@@ -76,7 +77,7 @@ impl Preconditioner {
             coarse = joints.of_cells(&cell_of);
             coarse.block_ends = elimination.ends;
         }
-        let below = Self::of(&coarse, direct, cancel).map_err(|error| match error {
+        let below = Self::of(&coarse, direct, budget, cancel).map_err(|error| match error {
             FactorError::Pivot(cell) => {
                 FactorError::Pivot(cell_of.iter().position(|&own| own as usize == cell).unwrap_or_default())
             }
@@ -291,6 +292,7 @@ mod tests {
     use super::super::joints::Joints;
     use super::super::pose::tests::{joints_of, noise};
     use super::{Preconditioner, Wrench, residual};
+    use crate::Budget;
 
     fn random(count: usize, seed: usize) -> Vec<Wrench> {
         let value = |body: usize, k: usize| noise(6 * body + k + 1000 * seed);
@@ -318,7 +320,7 @@ mod tests {
     #[test]
     fn the_direct_inverse_undoes_the_product() {
         let joints = joints_of(shapes::torus(30, 20));
-        let direct = Preconditioner::of(&joints, usize::MAX, &Cancel::new()).unwrap();
+        let direct = Preconditioner::of(&joints, usize::MAX, Budget::default(), &Cancel::new()).unwrap();
         let x = random(joints.count(), 1);
         let back = solved(&direct, &joints, &product(&joints, &x));
         let error = back
@@ -334,7 +336,7 @@ mod tests {
         // Two levels, and three.
         for direct in [400, 50] {
             let joints = joints_of(shapes::torus(60, 30));
-            let cells = Preconditioner::of(&joints, direct, &Cancel::new()).unwrap();
+            let cells = Preconditioner::of(&joints, direct, Budget::default(), &Cancel::new()).unwrap();
             assert!(matches!(cells, Preconditioner::Cells(_)));
             let (a, b) = (random(joints.count(), 1), random(joints.count(), 2));
             let (ca, cb) = (solved(&cells, &joints, &a), solved(&cells, &joints, &b));

@@ -4,16 +4,13 @@
 //! which is the mean of the two triangles', each the mean of its vertices'.
 
 use glam::{DMat3, DVec3};
-use pliant_mesh::{Surface, SurfaceVertex, Topology, area_of_lengths, edge_lengths, vertex_normals};
+use pliant_mesh::{Surface, SurfaceVertex, vertex_normals};
 use rayon::prelude::*;
 
-use super::prisms::{Prisms, across, edges};
+use super::edges::{Edges, area, sides as sides_of};
+use super::prisms::{NONE, Prisms};
 use super::quad::Quad;
 use crate::operators::CHUNK;
-
-/// A triangle's area counts as at least this share of its longest edge's square, so that one without an area is
-/// coupled firmly, but not beyond what can be computed.
-const AREA_FLOOR: f64 = 1e-3;
 
 /// The least weight of a coupling: an edge of no length still holds its prisms together.
 const WEIGHT_FLOOR: f64 = 1e-9;
@@ -55,8 +52,7 @@ pub(crate) struct Side {
 
 /// What joints are made of.
 pub(crate) struct Material<'a> {
-    pub surface: &'a Surface,
-    pub topology: &'a Topology,
+    pub edges: &'a Edges<'a>,
     /// One a surface vertex.
     pub stiffness: &'a [f64],
     /// The prisms' height, in world units.
@@ -77,7 +73,7 @@ impl Joints {
 
     /// The joints of `prisms`, in their order.
     pub fn of(prisms: &Prisms, material: &Material) -> Self {
-        let Material { surface, topology, .. } = *material;
+        let Edges { surface, topology, .. } = *material.edges;
         let world_centre = |face: u32| {
             let [a, b, c] = surface.corners(face as usize);
             (a - material.world_origin) + ((b - a) + (c - a)) / 3.0
@@ -179,10 +175,11 @@ impl Joints {
     /// The other solved bodies that each is joined to, each once, as compressed rows.
     pub fn graph(&self) -> (Vec<u32>, Vec<u32>) {
         let (mut offsets, mut list) = (vec![0], Vec::new());
+        let mut seen = vec![NONE; self.count()];
         for body in 0..self.count() {
-            let start = list.len();
             for side in self.sides(body) {
-                if (side.other as usize) < self.count() && !list[start..].contains(&side.other) {
+                if seen.get(side.other as usize).is_some_and(|&by| by != body as u32) {
+                    seen[side.other as usize] = body as u32;
                     list.push(side.other);
                 }
             }
@@ -204,7 +201,7 @@ impl Joints {
         for pin in &prisms.pins {
             let prism = prisms.body_of[pin.face as usize] as usize;
             let other = (self.count() as u32) + pin.ground;
-            let point = material.surface.positions[pin.vertex as usize] - material.world_origin;
+            let point = material.edges.surface.positions[pin.vertex as usize] - material.world_origin;
             let ball = Quad::around(point, material.thickness);
             extra[prism].push(Side {
                 other,
@@ -233,12 +230,13 @@ fn sides(
     prism: usize,
     face: u32,
 ) -> Vec<Side> {
-    let Material { surface, topology, .. } = *material;
+    let surface = material.edges.surface;
     let mut sides = Vec::with_capacity(3);
-    for [a, b] in edges(surface.triangles[face as usize]) {
+    for [a, b] in sides_of(surface.triangles[face as usize]) {
         let at = |v: SurfaceVertex| surface.positions[v.index()] - material.world_origin;
-        let joints = across(surface, topology, face, [a, b]).count();
-        for other in across(surface, topology, face, [a, b]) {
+        let across = material.edges.across(face, [a, b]);
+        let joints = across.clone().count();
+        for other in across {
             let body = prisms.body_of[other as usize];
             // Both of a joint's prisms must see the same quad, to the last bit.
             let [a, b] = if a < b { [a, b] } else { [b, a] };
@@ -251,7 +249,9 @@ fn sides(
                 material.thickness,
             );
             let (one, two) = (face.min(other), face.max(other));
-            let areas = area(surface, one) + area(surface, two);
+            let crowded_areas = material.edges.crowded_areas([one, two], [a, b]);
+            let joints = if crowded_areas.is_some() { 1 } else { joints };
+            let areas = crowded_areas.unwrap_or_else(|| area(surface, one) + area(surface, two));
             let share = at(a).distance_squared(at(b)) / areas.max(f64::MIN_POSITIVE);
             let stiffness = 0.5 * (stiffness(material, one) + stiffness(material, two));
             sides.push(Side {
@@ -272,14 +272,8 @@ fn normal(surface: &Surface, face: u32) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-fn area(surface: &Surface, face: u32) -> f64 {
-    let lengths = edge_lengths(surface.corners(face as usize));
-    let longest = lengths[0].max(lengths[1]).max(lengths[2]);
-    area_of_lengths(lengths).max(AREA_FLOOR * longest * longest)
-}
-
 fn stiffness(material: &Material, face: u32) -> f64 {
-    let corners = material.surface.triangles[face as usize];
+    let corners = material.edges.surface.triangles[face as usize];
     corners
         .iter()
         .map(|corner| material.stiffness[corner.index()])

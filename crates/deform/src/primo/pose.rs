@@ -154,6 +154,7 @@ pub(crate) mod tests {
 
     use super::Pose;
     use crate::Role;
+    use crate::primo::edges::Edges;
     use crate::primo::joints::{Joints, Material};
     use crate::primo::prisms::Prisms;
     use crate::primo::springs::Springs;
@@ -182,13 +183,13 @@ pub(crate) mod tests {
         let (surface, topology) = (&model.surface, &model.topology);
         let count = surface.positions.len();
         let stiffness: Vec<f64> = (0..count).map(|v| 1.0 + (v % 5) as f64).collect();
-        let prisms = Prisms::of(surface, topology, roles);
+        let edges = Edges::of(surface, topology);
+        let prisms = Prisms::of(&edges, roles);
         assert!(prisms.count() > 0);
         Joints::of(
             &prisms,
             &Material {
-                surface,
-                topology,
+                edges: &edges,
                 stiffness: &stiffness,
                 thickness,
                 world_origin: DVec3::ZERO,
@@ -254,7 +255,7 @@ pub(crate) mod tests {
     fn settled_prisms_have_the_least_energy_for_their_turns() {
         for drawn in shapes_with_joints() {
             let joints = joints_of(drawn);
-            let springs = Springs::of(&joints, &Cancel::new()).unwrap();
+            let springs = Springs::of(&joints, crate::Budget::default(), &Cancel::new()).unwrap();
             let mut pose = scattered(&joints, 0.7, 0.2);
             pose.settle(&joints, &springs);
             pose.evaluate(&joints);
@@ -274,7 +275,7 @@ pub(crate) mod tests {
         for drawn in shapes_with_joints() {
             let joints = joints_of(drawn);
             let rest = Pose::at_rest(joints.count(), 2);
-            let matrix = gauss_newton(&joints, &rest);
+            let matrix = gauss_newton(&joints, &rest).unwrap();
             let direction: Vec<f64> = (0..6 * joints.count()).map(noise).collect();
             let mut quadratic = 0.0;
             for column in 0..direction.len() {

@@ -5,15 +5,14 @@
 //! A constrained vertex whose ground holds no triangle around it (a handle of one vertex, or of a line of them) *pins*
 //! the free prisms there instead, as if the ground held a small stiff ball around the vertex; so it turns with its
 //! handle, too.
-//!
-//! More than two triangles on an edge are joined each with each, the couplings weaker by as much as there are more: a
-//! prism is held at such an edge as firmly as at any other.
 
 use std::collections::VecDeque;
 
-use pliant_mesh::{Surface, SurfaceVertex, Topology};
+use pliant_mesh::SurfaceVertex;
 
+use super::edges::{Edges, sides};
 use crate::Role;
+use crate::operators::place_in;
 
 /// Nobody's.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -50,25 +49,10 @@ pub(crate) fn ground_of(role: Role) -> u32 {
     }
 }
 
-/// The triangles on the edge from `a` to `b` other than `face`.
-pub(crate) fn across<'a>(
-    surface: &'a Surface,
-    topology: &'a Topology,
-    face: u32,
-    [a, b]: [SurfaceVertex; 2],
-) -> impl Iterator<Item = u32> + 'a {
-    let around = topology.faces(a, &surface.triangles);
-    around.filter(move |&other| other != face && surface.triangles[other as usize].contains(&b))
-}
-
-/// A triangle's edges, each from one corner to the next.
-pub(crate) fn edges([a, b, c]: [SurfaceVertex; 3]) -> [[SurfaceVertex; 2]; 3] {
-    [[a, b], [b, c], [c, a]]
-}
-
 impl Prisms {
     /// Sorts the triangles; solved prisms stand by rising triangle.
-    pub fn of(surface: &Surface, topology: &Topology, roles: &[Role]) -> Self {
+    pub fn of(edges: &Edges, roles: &[Role]) -> Self {
+        let surface = edges.surface;
         let grounds: Vec<u32> = surface
             .triangles
             .iter()
@@ -77,14 +61,14 @@ impl Prisms {
                 if a == b && b == c { a } else { NONE }
             })
             .collect();
-        let pins = pins(surface, topology, roles, &grounds);
+        let pins = pins(edges, roles, &grounds);
         let is_handle = |ground: u32| ground != FIXED && ground != NONE;
         let mut reached = vec![false; grounds.len()];
         let mut queue = VecDeque::new();
         let neighbours = |face: u32| {
-            edges(surface.triangles[face as usize])
+            sides(surface.triangles[face as usize])
                 .into_iter()
-                .flat_map(move |edge| across(surface, topology, face, edge))
+                .flat_map(move |side| edges.across(face, side))
         };
         for face in 0..grounds.len() as u32 {
             if is_handle(grounds[face as usize]) {
@@ -118,14 +102,15 @@ impl Prisms {
     }
 
     /// The solved neighbours of each solved prism, each once, as compressed rows.
-    pub fn graph(&self, surface: &Surface, topology: &Topology) -> (Vec<u32>, Vec<u32>) {
+    pub fn graph(&self, edges: &Edges) -> (Vec<u32>, Vec<u32>) {
         let (mut offsets, mut list) = (vec![0], Vec::with_capacity(3 * self.count()));
-        for &face in &self.faces {
-            let start = list.len();
-            for edge in edges(surface.triangles[face as usize]) {
-                for other in across(surface, topology, face, edge) {
+        let mut seen = vec![NONE; self.count()];
+        for (prism, &face) in (0..).zip(&self.faces) {
+            for side in sides(edges.surface.triangles[face as usize]) {
+                for other in edges.across(face, side) {
                     let body = self.body_of[other as usize];
-                    if (body as usize) < self.count() && !list[start..].contains(&body) {
+                    if seen.get(body as usize).is_some_and(|&by| by != prism) {
+                        seen[body as usize] = prism;
                         list.push(body);
                     }
                 }
@@ -149,56 +134,52 @@ impl Prisms {
 }
 
 /// Every free triangle's vertices that are held and whose ground no triangle joined to it around them stands on.
-fn pins(surface: &Surface, topology: &Topology, roles: &[Role], grounds: &[u32]) -> Vec<Pin> {
+fn pins(edges: &Edges, roles: &[Role], grounds: &[u32]) -> Vec<Pin> {
     let mut pins = Vec::new();
-    let mut seen = Vec::new();
     for (vertex, &role) in roles.iter().enumerate() {
         let (vertex, ground) = (SurfaceVertex(vertex as u32), ground_of(role));
         if ground == NONE {
             continue;
         }
-        for face in topology.faces(vertex, &surface.triangles) {
-            if grounds[face as usize] == NONE && !stands(surface, topology, grounds, (vertex, ground), face, &mut seen)
-            {
-                pins.push(Pin {
-                    face,
-                    vertex: vertex.0,
-                    ground,
-                });
+        let around: Vec<u32> = edges.topology.faces(vertex, &edges.surface.triangles).collect();
+        let mut is_met = vec![false; around.len()];
+        for first in 0..around.len() {
+            if is_met[first] {
+                continue;
             }
+            let fan = fan(edges, vertex, &around, first, &mut is_met);
+            if fan.iter().any(|&face| grounds[face as usize] == ground) {
+                continue;
+            }
+            let free = fan.into_iter().filter(|&face| grounds[face as usize] == NONE);
+            pins.extend(free.map(|face| Pin {
+                face,
+                vertex: vertex.0,
+                ground,
+            }));
         }
     }
     pins.sort_unstable_by_key(|pin| (pin.face, pin.vertex));
     pins
 }
 
-/// Whether walking from `face` around the vertex, from triangle to triangle, comes to one on the ground.
-fn stands(
-    surface: &Surface,
-    topology: &Topology,
-    grounds: &[u32],
-    (vertex, ground): (SurfaceVertex, u32),
-    face: u32,
-    seen: &mut Vec<u32>,
-) -> bool {
-    seen.clear();
-    seen.push(face);
+/// The triangles that are met walking from the first one around the vertex, from triangle to triangle.
+fn fan(edges: &Edges, vertex: SurfaceVertex, around: &[u32], first: usize, is_met: &mut [bool]) -> Vec<u32> {
+    let mut fan = vec![around[first]];
+    is_met[first] = true;
     let mut next = 0;
-    while let Some(&face) = seen.get(next) {
+    while let Some(&face) = fan.get(next) {
         next += 1;
-        if grounds[face as usize] == ground {
-            return true;
-        }
-        for edge in edges(surface.triangles[face as usize])
-            .into_iter()
-            .filter(|edge| edge.contains(&vertex))
-        {
-            for other in across(surface, topology, face, edge) {
-                if !seen.contains(&other) {
-                    seen.push(other);
+        let at_vertex = sides(edges.surface.triangles[face as usize]).into_iter();
+        for side in at_vertex.filter(|side| side.contains(&vertex)) {
+            for other in edges.across(face, side) {
+                if let Some(place) = place_in(around, &other)
+                    && !std::mem::replace(&mut is_met[place], true)
+                {
+                    fan.push(other);
                 }
             }
         }
     }
-    false
+    fan
 }

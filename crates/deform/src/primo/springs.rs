@@ -3,6 +3,7 @@
 use pliant_mesh::Cancel;
 
 use super::joints::Joints;
+use crate::budget::{Budget, filled, reserved};
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
@@ -15,10 +16,10 @@ pub(crate) struct Springs {
 }
 
 impl Springs {
-    pub fn of(joints: &Joints, cancel: &Cancel) -> Result<Self, FactorError> {
-        let matrix = laplacian(joints);
+    pub fn of(joints: &Joints, budget: Budget, cancel: &Cancel) -> Result<Self, FactorError> {
+        let matrix = laplacian(joints)?;
         Ok(Self {
-            factor: Factor::to_descend_by(&matrix, &joints.column_ends(1), cancel)?,
+            factor: Factor::to_descend_by(&matrix, &joints.column_ends(1), budget, cancel)?,
             scale: matrix.scale,
         })
     }
@@ -66,13 +67,18 @@ impl Springs {
 }
 
 /// The matrix of Σ w_ij (u_i − u_j)², scaled to a unit diagonal: harmonic weights are solved for with it.
-fn laplacian(joints: &Joints) -> ScaledMatrix {
+fn laplacian(joints: &Joints) -> Result<ScaledMatrix, FactorError> {
+    let sides: usize = (0..joints.count()).map(|prism| joints.sides(prism).len()).sum();
+    let most = joints.count() + sides;
     let mut matrix = ScaledMatrix {
-        scale: Vec::with_capacity(joints.count()),
-        lower_offsets: vec![0],
-        lower_rows: Vec::new(),
-        lower_values: Vec::new(),
+        scale: reserved(joints.count())?,
+        lower_offsets: reserved(joints.count() + 1)?,
+        lower_rows: reserved(most)?,
+        lower_values: reserved(most)?,
     };
+    matrix.lower_offsets.push(0);
+    // One more than where a row stands in the present column, as far as it does.
+    let mut places = filled(0, joints.count())?;
     for prism in 0..joints.count() {
         let start = matrix.lower_rows.len();
         matrix.lower_rows.push(prism as u32);
@@ -82,11 +88,13 @@ fn laplacian(joints: &Joints) -> ScaledMatrix {
             if !(prism + 1..joints.count()).contains(&(side.other as usize)) {
                 continue;
             }
-            if let Some(place) = matrix.lower_rows[start + 1..].iter().position(|&row| row == side.other) {
-                matrix.lower_values[start + 1 + place] -= side.weight;
+            let place = &mut places[side.other as usize];
+            if *place > start + 1 {
+                matrix.lower_values[*place - 1] -= side.weight;
             } else {
                 matrix.lower_rows.push(side.other);
                 matrix.lower_values.push(-side.weight);
+                *place = matrix.lower_rows.len();
             }
         }
         let diagonal = matrix.lower_values[start];
@@ -96,5 +104,5 @@ fn laplacian(joints: &Joints) -> ScaledMatrix {
         matrix.lower_offsets.push(matrix.lower_rows.len() as u32);
     }
     matrix.scale_values();
-    matrix
+    Ok(matrix)
 }

@@ -9,12 +9,16 @@
 //! rows and columns (ω, v). The matrix is positive semidefinite whatever the pose: it leaves the residual's own
 //! curvature out.
 
+use std::collections::BTreeMap;
+
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::joints::{Joints, Side};
 use super::pose::Pose;
+use crate::budget::reserved;
 use crate::operators::CHUNK;
+use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
 
 /// A 6×6 block by its rows.
@@ -30,18 +34,24 @@ struct Row {
 }
 
 /// The Gauss–Newton matrix at `pose`, scaled to a unit diagonal.
-pub(crate) fn gauss_newton(joints: &Joints, pose: &Pose) -> ScaledMatrix {
-    let rows: Vec<Row> = (0..joints.count())
-        .into_par_iter()
-        .with_min_len(CHUNK)
-        .map(|prism| row(joints, pose, prism))
-        .collect();
+///
+/// # Errors
+/// [`FactorError::Memory`].
+pub(crate) fn gauss_newton(joints: &Joints, pose: &Pose) -> Result<ScaledMatrix, FactorError> {
+    let mut rows: Vec<Row> = reserved(joints.count())?;
+    let each = (0..joints.count()).into_par_iter().with_min_len(CHUNK);
+    rows.par_extend(each.map(|prism| row(joints, pose, prism)));
+    let below = |(prism, row): (usize, &Row)| row.others.iter().filter(|(other, _)| *other as usize > prism).count();
+    let blocks: usize = rows.iter().enumerate().map(below).sum();
+    let entries = rows.len() * DOF * (DOF + 1) / 2 + blocks * DOF * DOF;
+    u32::try_from(entries).map_err(|_| FactorError::Memory)?;
     let mut matrix = ScaledMatrix {
-        scale: Vec::with_capacity(DOF * rows.len()),
-        lower_offsets: vec![0],
-        lower_rows: Vec::new(),
-        lower_values: Vec::new(),
+        scale: reserved(DOF * rows.len())?,
+        lower_offsets: reserved(DOF * rows.len() + 1)?,
+        lower_rows: reserved(entries)?,
+        lower_values: reserved(entries)?,
     };
+    matrix.lower_offsets.push(0);
     for row in &rows {
         let inverse_root = |k: usize| {
             if row.own[k][k] > 0.0 {
@@ -71,7 +81,7 @@ pub(crate) fn gauss_newton(joints: &Joints, pose: &Pose) -> ScaledMatrix {
         }
     }
     matrix.scale_values();
-    matrix
+    Ok(matrix)
 }
 
 fn row(joints: &Joints, pose: &Pose, prism: usize) -> Row {
@@ -79,13 +89,22 @@ fn row(joints: &Joints, pose: &Pose, prism: usize) -> Row {
         own: [[0.0; 6]; 6],
         others: Vec::with_capacity(3),
     };
+    // A long row is searched by this.
+    let mut places = BTreeMap::new();
+    let is_long = joints.sides(prism).len() > 32;
     let turned_back = pose.turns[prism].transpose();
     for side in joints.sides(prism) {
         add(&mut row.own, &own_block(side));
         if (side.other as usize) < joints.count() {
             let block = other_block(side, &(turned_back * pose.turns[side.other as usize]));
-            match row.others.iter_mut().find(|(other, _)| *other == side.other) {
-                Some((_, sum)) => add(sum, &block),
+            let place = if is_long {
+                let end = row.others.len();
+                Some(*places.entry(side.other).or_insert(end)).filter(|&place| place < end)
+            } else {
+                row.others.iter().position(|(other, _)| *other == side.other)
+            };
+            match place {
+                Some(place) => add(&mut row.others[place].1, &block),
                 None => row.others.push((side.other, block)),
             }
         }

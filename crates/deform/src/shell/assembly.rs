@@ -5,26 +5,46 @@
 //! matrix is scaled symmetrically to a unit diagonal, which takes the units and most of the spread of triangle sizes
 //! out of it.
 
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
 use rayon::prelude::*;
 
 use crate::Laplacian;
+use crate::budget::{Budget, filled};
 use crate::operators::CHUNK;
+use crate::shell::hubs::Hubs;
 use crate::shell::operator::ShellOperator;
+use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
 
 /// Assembles the shell over the local vertices `columns`, in that order; `column_of` is the inverse table, with
-/// [`CONSTRAINED`] where a local vertex has no column.
-pub(crate) fn assemble_shell(operator: &ShellOperator, columns: &[u32], column_of: &[u32]) -> ScaledMatrix {
+/// [`CONSTRAINED`] where a local vertex has no column. The curvature at `hubs` is left to their correction.
+///
+/// # Errors
+/// Where its entries exceed the budget, or the machine's memory.
+pub(crate) fn assemble_shell(
+    operator: &ShellOperator,
+    columns: &[u32],
+    column_of: &[u32],
+    hubs: &Hubs,
+    budget: Budget,
+) -> Result<ScaledMatrix, FactorError> {
+    // Chunks and the matrix are held at once for a while. Its offsets have 32 bits.
+    let most = (budget.bytes / (2 * ENTRY)).min(u64::from(u32::MAX));
+    let entries = AtomicU64::new(0);
     let chunks: Vec<Chunk> = (0..columns.len().div_ceil(CHUNK))
         .into_par_iter()
         .map_init(
             || Expansion::new(column_of.len()),
             |expansion, chunk| {
                 let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(columns.len());
-                assemble_chunk(operator, columns, column_of, range, expansion)
+                assemble_chunk(operator, columns, column_of, hubs, range, expansion, &|count| {
+                    entries.fetch_add(count, Relaxed) + count <= most
+                })
             },
         )
-        .collect();
+        .collect::<Option<_>>()
+        .ok_or(FactorError::Budget)?;
     let scale: Vec<f64> = chunks.iter().flat_map(|chunk| chunk.scale.iter().copied()).collect();
     let mut lower_offsets = Vec::with_capacity(columns.len() + 1);
     lower_offsets.push(0);
@@ -33,7 +53,7 @@ pub(crate) fn assemble_shell(operator: &ShellOperator, columns: &[u32], column_o
         end += count;
         lower_offsets.push(end);
     }
-    let (mut lower_rows, mut lower_values) = (vec![0; end as usize], vec![0.0; end as usize]);
+    let (mut lower_rows, mut lower_values) = (filled(0, end as usize)?, filled(0.0, end as usize)?);
     let (mut rows_left, mut values_left) = (lower_rows.as_mut_slice(), lower_values.as_mut_slice());
     let mut targets = Vec::with_capacity(chunks.len());
     for chunk in &chunks {
@@ -59,13 +79,16 @@ pub(crate) fn assemble_shell(operator: &ShellOperator, columns: &[u32], column_o
                 first = entries.end;
             }
         });
-    ScaledMatrix {
+    Ok(ScaledMatrix {
         scale,
         lower_offsets,
         lower_rows,
         lower_values,
-    }
+    })
 }
+
+/// Bytes of an entry: its row and its value.
+const ENTRY: u64 = 12;
 
 #[derive(Default)]
 struct Chunk {
@@ -77,33 +100,40 @@ struct Chunk {
     lower_values: Vec<f64>,
 }
 
+/// `None` as soon as `fits` says that so many further entries don't.
 fn assemble_chunk(
     operator: &ShellOperator,
     columns: &[u32],
     column_of: &[u32],
+    hubs: &Hubs,
     range: std::ops::Range<usize>,
     expansion: &mut Expansion,
-) -> Chunk {
+    fits: &impl Fn(u64) -> bool,
+) -> Option<Chunk> {
     let mut chunk = Chunk::default();
     let solved = |vertex: u32| column_of[vertex as usize] != CONSTRAINED;
     for column in range {
         let before = chunk.lower_rows.len();
         // The diagonal is met first: each walk starts at the column's own vertex.
-        for &(far, value) in expansion.column(operator, columns[column], solved) {
+        for &(far, value) in expansion.column(operator, hubs, columns[column], solved) {
             let row = column_of[far as usize];
             if row as usize >= column {
                 chunk.lower_rows.push(row);
                 chunk.lower_values.push(value);
             }
         }
-        chunk.counts.push((chunk.lower_rows.len() - before) as u32);
+        let count = chunk.lower_rows.len() - before;
+        if !fits(count as u64) {
+            return None;
+        }
+        chunk.counts.push(count as u32);
         // A vertex without any weight has an empty row: leave it to the factorisation to say so.
         let diagonal = chunk.lower_values[before];
         chunk
             .scale
             .push(if diagonal > 0.0 { diagonal.sqrt().recip() } else { 1.0 });
     }
-    chunk
+    Some(chunk)
 }
 
 /// Room for one column's entries as they are met.
@@ -124,7 +154,13 @@ impl Expansion {
     }
 
     /// The entries of A's column on the vertices that are solved for, the diagonal first.
-    fn column(&mut self, operator: &ShellOperator, vertex: u32, solved: impl Fn(u32) -> bool) -> &[(u32, f64)] {
+    fn column(
+        &mut self,
+        operator: &ShellOperator,
+        hubs: &Hubs,
+        vertex: u32,
+        solved: impl Fn(u32) -> bool,
+    ) -> &[(u32, f64)] {
         let laplacian = &operator.laplacian;
         self.entries.clear();
         if operator.power == 1 {
@@ -135,16 +171,24 @@ impl Expansion {
         // M⁻¹ P, then at order 3 M⁻¹ P M⁻¹ P, of the column's unit vector, with P = −L; nothing is left out yet.
         self.add(laplacian, vertex, operator.bending, |_| true);
         if operator.power == 3 {
-            self.step(operator.middle());
+            self.step(operator.middle(), hubs);
         }
         self.close();
         std::mem::swap(&mut self.entries, &mut self.inner);
         self.entries.clear();
+        if hubs.contains(vertex) {
+            self.put(vertex, 0.0);
+        }
         if operator.stretching > 0.0 {
             let stretched = operator.stretched.as_ref().unwrap_or(laplacian);
             self.add(stretched, vertex, operator.stretching, &solved);
         }
-        self.spread(laplacian, |cell| operator.cell_stiffness(cell), &solved);
+        self.spread(laplacian, hubs, |cell| operator.cell_stiffness(cell), &solved);
+        for (far, value) in hubs.stand_in_column(vertex) {
+            if solved(far) {
+                self.put(far, value);
+            }
+        }
         self.finished(operator, vertex)
     }
 
@@ -158,17 +202,26 @@ impl Expansion {
     }
 
     /// entries ← P M⁻¹ entries.
-    fn step(&mut self, laplacian: &Laplacian) {
+    fn step(&mut self, laplacian: &Laplacian, hubs: &Hubs) {
         self.close();
         std::mem::swap(&mut self.entries, &mut self.inner);
         self.entries.clear();
-        self.spread(laplacian, |_| 1.0, |_| true);
+        self.spread(laplacian, hubs, |_| 1.0, |_| true);
     }
 
-    /// entries += P s M⁻¹ inner, with s what `stiffness` gives for a local vertex.
-    fn spread(&mut self, laplacian: &Laplacian, stiffness: impl Fn(usize) -> f64, keep: impl Fn(u32) -> bool) {
+    /// entries += P s M⁻¹ inner, with s what `stiffness` gives for a local vertex, and nothing through a hub.
+    fn spread(
+        &mut self,
+        laplacian: &Laplacian,
+        hubs: &Hubs,
+        stiffness: impl Fn(usize) -> f64,
+        keep: impl Fn(u32) -> bool,
+    ) {
         for place in 0..self.inner.len() {
             let (middle, value) = self.inner[place];
+            if hubs.contains(middle) {
+                continue;
+            }
             self.add(
                 laplacian,
                 middle,
@@ -184,13 +237,18 @@ impl Expansion {
             if !keep(far) {
                 continue;
             }
-            let slot = &mut self.slots[far as usize];
-            if *slot == 0 {
-                self.entries.push((far, 0.0));
-                *slot = self.entries.len() as u32;
-            }
-            self.entries[*slot as usize - 1].1 += factor * weight;
+            self.put(far, factor * weight);
         }
+    }
+
+    /// entries += value at a local vertex.
+    fn put(&mut self, far: u32, value: f64) {
+        let slot = &mut self.slots[far as usize];
+        if *slot == 0 {
+            self.entries.push((far, 0.0));
+            *slot = self.entries.len() as u32;
+        }
+        self.entries[*slot as usize - 1].1 += value;
     }
 
     /// Forgets which vertices were met.
@@ -216,9 +274,10 @@ fn stiffness_row(laplacian: &Laplacian, vertex: u32) -> impl Iterator<Item = (u3
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::assemble_shell;
+    use crate::shell::hubs::Hubs;
     use crate::shell::operator::ShellOperator;
     use crate::sparse::matrix::CONSTRAINED;
-    use crate::{Bilaplacian, Laplacian, ShellOrder};
+    use crate::{Bilaplacian, Budget, Laplacian, ShellOrder};
     use pliant_mesh::shapes;
 
     fn matches_its_operator(options: &Bilaplacian) {
@@ -239,7 +298,7 @@ mod tests {
         for (column, &vertex) in columns.iter().enumerate() {
             column_of[vertex as usize] = column as u32;
         }
-        let plate = assemble_shell(&operator, &columns, &column_of);
+        let plate = assemble_shell(&operator, &columns, &column_of, &Hubs::default(), Budget::default()).unwrap();
         for (column, &vertex) in columns.iter().enumerate() {
             let mut unit = vec![[0.0]; count];
             unit[vertex as usize] = [1.0];

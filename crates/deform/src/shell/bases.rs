@@ -7,8 +7,11 @@
 //! translation would leave dents. So there the motion of one *reference* handle's centre is taken out first and added
 //! back whole: what is left to the rounded weights is how the handles differ.
 
+use std::collections::TryReserveError;
+
 use glam::{DMat3, DVec3};
 
+use crate::budget::filled;
 use crate::handle::Motion;
 
 /// What the handles' transforms do to each vertex that is solved for.
@@ -57,8 +60,15 @@ impl HandleBases {
 
     /// Bases over `vertices` (ascending) from one column block a handle; `reference` names the reference handle of a
     /// vertex in a component where nothing is fixed.
-    pub(crate) fn new(vertices: Vec<u32>, blocks: &[Vec<[f32; 4]>], reference: impl Fn(u32) -> Option<u16>) -> Self {
-        let mut rows = vec![[0.0; 4]; vertices.len() * blocks.len()];
+    ///
+    /// # Errors
+    /// Where the machine has no memory for them.
+    pub(crate) fn new(
+        vertices: Vec<u32>,
+        blocks: &[Vec<[f32; 4]>],
+        reference: impl Fn(u32) -> Option<u16>,
+    ) -> Result<Self, TryReserveError> {
+        let mut rows = filled([0.0; 4], vertices.len() * blocks.len())?;
         for (handle, block) in blocks.iter().enumerate() {
             for (row, entry) in block.iter().enumerate() {
                 rows[row * blocks.len() + handle] = *entry;
@@ -75,12 +85,12 @@ impl HandleBases {
                 }),
             }
         }
-        Self {
+        Ok(Self {
             vertices,
             handle_count: blocks.len(),
             rows,
             runs,
-        }
+        })
     }
 
     /// What the motions make of the solved ones among the vertices from `first` on.

@@ -9,12 +9,15 @@ use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
 use crate::BindError;
+use crate::budget::{Budget, bytes_of};
 use crate::operators::CHUNK;
 use crate::shell::assembly::assemble_shell;
+use crate::shell::hubs::Hubs;
 use crate::shell::operator::ShellOperator;
 use crate::sparse::Elimination;
-use crate::sparse::cholesky::{Factor, Renewable, Renewal};
+use crate::sparse::cholesky::{Renewable, Renewal};
 use crate::sparse::factor_error::FactorError;
+use crate::sparse::low_rank::LowRank;
 use crate::sparse::matrix::CONSTRAINED;
 
 /// The factored shell over the local vertices of its Laplacian.
@@ -26,6 +29,8 @@ pub(crate) struct Shell {
     /// The column of each of the operator's springs.
     spring_columns: Vec<u32>,
     factored: Arc<Renewable>,
+    /// What hubs add to the factor; none without hubs.
+    low_rank: Option<LowRank>,
     /// How slowly refinement went at the check: [`crate::shell::refine`].
     pub(super) contraction: f64,
 }
@@ -36,6 +41,7 @@ pub(crate) enum ShellError {
     NotPositiveDefinite { vertex: u32 },
     Inaccurate { vertex: u32, error: f64 },
     OutOfMemory,
+    Budget,
     Cancelled,
 }
 
@@ -50,39 +56,63 @@ impl Shell {
         operator: ShellOperator,
         elimination: Elimination,
         renewal: Renewal,
+        budget: Budget,
         cancel: &Cancel,
     ) -> Result<Self, ShellError> {
         let laplacian = &operator.laplacian;
-        let columns = laplacian.locals(&elimination.order);
-        let mut column_of = vec![CONSTRAINED; laplacian.vertices().len()];
-        for (column, &local) in columns.iter().enumerate() {
-            column_of[local as usize] = column as u32;
+        let numbered = |elimination: &Elimination| {
+            let columns = laplacian.locals(&elimination.order);
+            let mut column_of = vec![CONSTRAINED; laplacian.vertices().len()];
+            for (column, &local) in columns.iter().enumerate() {
+                column_of[local as usize] = column as u32;
+            }
+            (columns, column_of)
+        };
+        let (mut columns, mut column_of) = numbered(&elimination);
+        let hubs = Hubs::of(&operator, &column_of);
+        let mut elimination = elimination;
+        if !hubs.is_empty() {
+            // The ordering has the surface's own hubs last; those of other triangles follow here.
+            elimination = elimination
+                .with_last(|vertex| laplacian.local(vertex).is_some_and(|local| hubs.contains(local as u32)));
+            (columns, column_of) = numbered(&elimination);
         }
+        let rank = hubs.rank(&operator);
+        let of_hubs = bytes_of(LowRank::stored_at_rank(columns.len(), rank), size_of::<f64>());
+        let budget = budget.without(of_hubs).map_err(|_| ShellError::Budget)?;
         let spring_columns = operator
             .springs
             .locals()
             .iter()
             .map(|&local| column_of[local as usize])
             .collect();
-        let plate = assemble_shell(&operator, &columns, &column_of);
-        cancel.check().map_err(|_| ShellError::Cancelled)?;
-        match Renewable::of(plate, elimination, &SHIFTS, renewal, cancel) {
-            Ok(factored) => Ok(Self {
-                operator,
-                columns,
-                spring_columns,
-                factored: Arc::new(factored),
-                contraction: 0.0,
-            }),
-            Err(FactorError::Memory) => Err(ShellError::OutOfMemory),
-            Err(FactorError::Cancelled) => Err(ShellError::Cancelled),
-            Err(FactorError::Pivot(column)) => {
+        let refused = |error| match error {
+            FactorError::Memory => ShellError::OutOfMemory,
+            FactorError::Budget => ShellError::Budget,
+            FactorError::Cancelled => ShellError::Cancelled,
+            FactorError::Pivot(column) => {
                 let local = columns.get(column).map_or(0, |&local| local as usize);
-                Err(ShellError::NotPositiveDefinite {
+                ShellError::NotPositiveDefinite {
                     vertex: operator.laplacian.vertices()[local],
-                })
+                }
             }
+        };
+        let plate = assemble_shell(&operator, &columns, &column_of, &hubs, budget).map_err(refused)?;
+        cancel.check().map_err(|_| ShellError::Cancelled)?;
+        let factored = Renewable::of(plate, elimination, &SHIFTS, renewal, budget, cancel).map_err(refused)?;
+        let mut low_rank = None;
+        if !hubs.is_empty() {
+            let (vectors, c) = hubs.correction(&operator, &column_of, factored.scale());
+            low_rank = Some(LowRank::of(&factored.factor, vectors, &c).map_err(refused)?);
         }
+        Ok(Self {
+            operator,
+            columns,
+            spring_columns,
+            factored: Arc::new(factored),
+            low_rank,
+            contraction: 0.0,
+        })
     }
 
     /// The local vertices that are solved for.
@@ -90,9 +120,17 @@ impl Shell {
         &self.columns
     }
 
-    /// The factor of S A S, or nearly so.
-    pub fn factor(&self) -> &Factor {
-        &self.factored.factor
+    /// x ← (S A S)⁻¹ x, or nearly so.
+    pub fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]]) {
+        self.factored.factor.solve(x);
+        if let Some(low_rank) = &self.low_rank {
+            low_rank.correct(x);
+        }
+    }
+
+    /// How many numbers the factor stores.
+    pub fn factor_len(&self) -> usize {
+        self.factored.factor.stored() + self.low_rank.as_ref().map_or(0, LowRank::stored)
     }
 
     /// What a shell that is nearly the same can take over.
@@ -148,6 +186,7 @@ impl ShellError {
                 error,
             },
             Self::OutOfMemory => BindError::OutOfMemory { free_count },
+            Self::Budget => BindError::budget(free_count),
             Self::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
         }
     }

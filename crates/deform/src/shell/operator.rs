@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use crate::operators::CHUNK;
 use crate::shell::springs::Springs;
+use crate::sparse::hubs::hub_degree;
 use crate::{Bilaplacian, Laplacian};
 
 /// What A makes forces of: φ, and d itself where stretching has an L of its own.
@@ -35,6 +36,8 @@ pub(crate) struct ShellOperator {
     pub cell_stiffness: Vec<f64>,
     /// The soft handles' springs, W in (A + W) d = W c.
     pub springs: Springs,
+    /// A vertex with more solved neighbours than this is a hub: see [`crate::shell::hubs`].
+    pub hub_degree: usize,
     /// n: how many times L stands in the second term.
     pub power: u32,
     /// k_s over the squared diagonal.
@@ -54,6 +57,7 @@ impl ShellOperator {
             _ => options.bending * square,
         };
         Self {
+            hub_degree: hub_degree(laplacian.vertices().len()),
             laplacian,
             middle: None,
             stretched: None,

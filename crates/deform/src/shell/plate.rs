@@ -7,6 +7,7 @@ use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::budget::filled;
 use crate::handle::{Handle, Motion};
 use crate::operators::net::{Graph, Net};
 use crate::partition::Partition;
@@ -14,7 +15,9 @@ use crate::shell::bases::{FRAME_CHUNK, Tables};
 use crate::shell::continuity::join;
 use crate::shell::factored::{Shell, ShellError};
 use crate::shell::operator::ShellOperator;
+use crate::shell::slender;
 use crate::sparse::cholesky::{Renewable, Renewal};
+use crate::sparse::hubs::hub_degree;
 use crate::{Bilaplacian, BindError, HandleBases, Laplacian, Ordering, Problem, SolveError};
 
 /// The bound linear shell.
@@ -62,13 +65,14 @@ impl Plate {
         let solved = &partition.solved;
         let component_of = |vertex: u32| problem.topology.component(SurfaceVertex(vertex));
         let refuse = |error: ShellError| of_order(options, error.into_bind_error(component_of, solved.len()));
+        slender::check(&partition.net, solved, options.operator_power())?;
         let elimination = known.ordering.elimination(solved);
         cancel.check()?;
         progress.set(0.1);
         let (operator, prescribed) = operator(problem, options, partition, handles);
         cancel.check()?;
         progress.set(0.2);
-        let mut shell = Shell::new(operator, elimination, known.renewal, cancel).map_err(refuse)?;
+        let mut shell = Shell::new(operator, elimination, known.renewal, partition.budget, cancel).map_err(refuse)?;
         progress.set(0.7);
         let solved_locals = shell.operator.laplacian.locals(solved);
         // The constant is solved for beside the first handle: one pass over the factor for both.
@@ -111,7 +115,10 @@ impl Plate {
                 return Err(of_order(options, refused));
             }
         }
-        let mut energy_blocks = vec![[[0.0; 4]; 4]; handles.len() * handles.len()];
+        let pairs = filled([[0.0; 4]; 4], handles.len() * handles.len());
+        let mut energy_blocks = pairs.map_err(|_| BindError::OutOfMemory {
+            free_count: solved.len(),
+        })?;
         for (k, column) in columns.iter().enumerate() {
             for (h, block) in column.energies.iter().enumerate() {
                 energy_blocks[h * handles.len() + k] = *block;
@@ -122,6 +129,9 @@ impl Plate {
         let bases = HandleBases::new(solved.clone(), &blocks, |vertex| {
             reference[component_of(vertex) as usize]
         });
+        let bases = bases.map_err(|_| BindError::OutOfMemory {
+            free_count: solved.len(),
+        })?;
         progress.set(1.0);
         Ok(Self {
             shell,
@@ -177,7 +187,7 @@ impl Plate {
 
     /// How many numbers the factor stores.
     pub fn factor_len(&self) -> usize {
-        self.shell.factor().stored()
+        self.shell.factor_len()
     }
 
     /// The energy of a frame, from the motions alone: no pass over the surface.
@@ -201,8 +211,8 @@ impl Plate {
                 }
             }
         }
-        // Rigid motions leave a rounding error of either sign.
-        (0.5 * sum).max(0.0)
+        // Rigid motions leave a rounding error of either sign; what is not a number stays so.
+        if sum > 0.0 || sum.is_nan() { 0.5 * sum } else { 0.0 }
     }
 
     /// The energy of any displacements, one a surface vertex, with soft handles wanting what `motions` say; components
@@ -414,6 +424,7 @@ pub(crate) fn operator(
     } else {
         operator = ShellOperator::new(on(problem.stiffness), options, diagonal);
     }
+    operator.hub_degree = hub_degree(net.vertex_count());
     join(&mut operator, net, problem, options, &rows, diagonal);
     let prescribed = prescribe(&mut operator, problem, partition, handles);
     (operator, prescribed)

@@ -92,7 +92,7 @@ fn solve<const K: usize>(shell: &Shell, d: &mut [[f64; K]], contraction: f64, ca
         if gradients > 0 {
             x = conjugate_gradients(shell, x, cancel);
         } else {
-            shell.factor().solve(&mut x);
+            shell.solve_factored(&mut x);
         }
         let Some((correction, size)) = correct(shell, d, &x) else {
             return Outcome {
@@ -143,7 +143,7 @@ fn correct<const K: usize>(shell: &Shell, d: &mut [[f64; K]], x: &[[f64; K]]) ->
 fn conjugate_gradients<const K: usize>(shell: &Shell, mut r: Vec<[f64; K]>, cancel: &Cancel) -> Vec<[f64; K]> {
     let mut x = vec![[0.0; K]; r.len()];
     let mut z = r.clone();
-    shell.factor().solve(&mut z);
+    shell.solve_factored(&mut z);
     let mut p = z.clone();
     let mut rho = dots(&r, &z);
     let first = rho;
@@ -167,7 +167,7 @@ fn conjugate_gradients<const K: usize>(shell: &Shell, mut r: Vec<[f64; K]>, canc
             }
         }
         z.copy_from_slice(&r);
-        shell.factor().solve(&mut z);
+        shell.solve_factored(&mut z);
         let next = dots(&r, &z);
         let beta: [f64; K] = std::array::from_fn(|k| if rho[k] > 0.0 { next[k] / rho[k] } else { 0.0 });
         for (p, z) in p.iter_mut().zip(&z) {

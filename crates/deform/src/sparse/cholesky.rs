@@ -11,12 +11,13 @@ use std::sync::Arc;
 
 use pliant_mesh::Cancel;
 
+use crate::budget::Budget;
 use crate::sparse::elimination::Elimination;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::forest::Forest;
 use crate::sparse::matrix::ScaledMatrix;
-use crate::sparse::multifrontal::{Left, Numbers};
-use crate::sparse::reuse::{Named, equal_parts};
+use crate::sparse::multifrontal::Numbers;
+use crate::sparse::reuse::{Named, equal_parts, worth_keeping};
 use crate::sparse::substitution::{Real, Substitution};
 use crate::sparse::symbolic::Symbolic;
 use crate::sparse::{multifrontal, triangular};
@@ -35,7 +36,8 @@ pub(crate) struct Factor {
 pub(crate) enum Renewal<'a> {
     /// Nothing: there will be none. Half the memory.
     Never,
-    /// What parts left is kept; what the former factor, if there is one, has to the bit is taken from there.
+    /// What parts left is kept, as far as it is [worth it](worth_keeping); what the former factor, if there is one, has
+    /// to the bit is taken from there.
     From(Option<&'a Renewable>),
 }
 
@@ -54,48 +56,61 @@ const SHIFTS: [f64; 6] = [0.0, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5];
 
 impl Factor {
     /// Factors the matrix, whose columns stand in blocks that end at `ends`, with `shift` added to its unit diagonal.
+    #[cfg(test)]
     pub fn of(plate: &ScaledMatrix, ends: &[u32], shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
-        let mut factor = Self::analysed(plate, ends);
+        let mut factor = Self::analysed(plate, ends, Budget::default())?;
         factor.fill(plate, shift, cancel)?;
         Ok(factor)
     }
 
     /// As [`Factor::of`] for a method that only descends by it: something is added to the unit diagonal until that can
     /// be factored. Steps get shorter by it; results stay the same. The refusal is that of the matrix as it is.
-    pub fn to_descend_by(plate: &ScaledMatrix, ends: &[u32], cancel: &Cancel) -> Result<Self, FactorError> {
+    pub fn to_descend_by(
+        plate: &ScaledMatrix,
+        ends: &[u32],
+        budget: Budget,
+        cancel: &Cancel,
+    ) -> Result<Self, FactorError> {
         let mut refused = None;
+        let mut factor = Self::analysed(plate, ends, budget)?;
         for shift in SHIFTS {
             if cancel.is_cancelled() {
                 return Err(FactorError::Cancelled);
             }
-            match Self::of(plate, ends, shift, cancel) {
+            match factor.fill(plate, shift, cancel) {
                 Err(error @ FactorError::Pivot(_)) => refused = refused.or(Some(error)),
-                other => return other,
+                other => return other.map(|()| factor),
             }
         }
         Err(refused.unwrap_or(FactorError::Memory))
     }
 
     /// What the factor is to hold, without numbers.
-    pub fn analysed(plate: &ScaledMatrix, ends: &[u32]) -> Self {
-        let symbolic = Symbolic::of(plate, ends);
+    ///
+    /// # Errors
+    /// Where its factorisation takes more than the budget.
+    pub fn analysed(plate: &ScaledMatrix, ends: &[u32], budget: Budget) -> Result<Self, FactorError> {
+        let symbolic = Symbolic::of(plate, ends, budget)?;
         let forest = Forest::of(&symbolic);
-        Self {
+        Ok(Self {
             symbolic,
             forest,
             numbers: Vec::new(),
-        }
+        })
     }
 
     /// Factors into what [`Factor::analysed`] left empty.
     pub fn fill(&mut self, plate: &ScaledMatrix, shift: f64, cancel: &Cancel) -> Result<(), FactorError> {
         let (symbolic, forest) = (&self.symbolic, &self.forest);
-        self.numbers = multifrontal::factor(plate, shift, symbolic, forest, &[], Left::Dropped, cancel)?;
+        self.numbers = multifrontal::factor(plate, shift, symbolic, forest, &[], &[], cancel)?;
         Ok(())
     }
 
     /// Its values laid out for solving again and again.
-    pub fn substitution<T: Real>(&self) -> Substitution<T> {
+    ///
+    /// # Errors
+    /// [`FactorError::Memory`].
+    pub fn substitution<T: Real>(&self) -> Result<Substitution<T>, FactorError> {
         Substitution::new(&self.symbolic, &self.forest, &self.numbers)
     }
 
@@ -133,9 +148,10 @@ impl Renewable {
         elimination: Elimination,
         shifts: &[f64],
         renewal: Renewal,
+        budget: Budget,
         cancel: &Cancel,
     ) -> Result<Self, FactorError> {
-        let mut factor = Factor::analysed(&plate, &elimination.ends);
+        let mut factor = Factor::analysed(&plate, &elimination.ends, budget)?;
         let new = Named {
             plate: &plate,
             elimination: &elimination,
@@ -143,16 +159,17 @@ impl Renewable {
             forest: &factor.forest,
         };
         let mut refused = None;
+        let kept = match renewal {
+            Renewal::Never => Vec::new(),
+            Renewal::From(_) => worth_keeping(&factor.symbolic, &factor.forest),
+        };
         for &shift in shifts {
-            let (known, fate) = match renewal {
-                Renewal::Never => (Vec::new(), Left::Dropped),
-                Renewal::From(Some(former)) if former.shift.to_bits() == shift.to_bits() => {
-                    (former.known_to(new), Left::Kept)
-                }
-                Renewal::From(_) => (Vec::new(), Left::Kept),
+            let known = match renewal {
+                Renewal::From(Some(former)) if former.shift.to_bits() == shift.to_bits() => former.known_to(new),
+                Renewal::Never | Renewal::From(_) => Vec::new(),
             };
             let (symbolic, forest) = (&factor.symbolic, &factor.forest);
-            match multifrontal::factor(&plate, shift, symbolic, forest, &known, fate, cancel) {
+            match multifrontal::factor(&plate, shift, symbolic, forest, &known, &kept, cancel) {
                 Ok(numbers) => {
                     factor.numbers = numbers;
                     return Ok(Self {
@@ -203,16 +220,24 @@ impl Renewable {
     pub fn scale(&self) -> &[f64] {
         &self.plate.scale
     }
+
+    /// How many numbers are kept beside the factor for the next one.
+    #[cfg(test)]
+    pub fn kept(&self) -> usize {
+        self.factor.numbers.iter().map(Numbers::kept).sum()
+    }
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 pub(crate) mod tests {
-    use super::Factor;
+    use super::{Factor, Renewable, Renewal};
     use crate::Bilaplacian;
+    use crate::Budget;
     use crate::Laplacian;
     use crate::Ordering;
     use crate::shell::assembly::assemble_shell;
+    use crate::shell::hubs::Hubs;
     use crate::shell::operator::ShellOperator;
     use crate::sparse::Elimination;
     use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
@@ -240,7 +265,8 @@ pub(crate) mod tests {
             column_of[vertex as usize] = column as u32;
         }
         let operator = ShellOperator::new(laplacian, &Bilaplacian::default(), 1.0);
-        (assemble_shell(&operator, &columns, &column_of), ends)
+        let plate = assemble_shell(&operator, &columns, &column_of, &Hubs::default(), Budget::default());
+        (plate.unwrap(), ends)
     }
 
     fn product<const K: usize>(plate: &ScaledMatrix, x: &[[f64; K]]) -> Vec<[f64; K]> {
@@ -329,5 +355,55 @@ pub(crate) mod tests {
             let bits = |row: &[f64; 3]| row.map(f64::to_bits);
             assert!(x.iter().map(bits).eq(other_x.iter().map(bits)), "{threads}");
         }
+    }
+
+    /// Columns in an order that fits the matrix badly, so that parts leave much more than they have.
+    fn badly_ordered() -> (ScaledMatrix, Elimination) {
+        let model = shapes::model(shapes::grid(60, 60));
+        let count = model.surface.positions.len();
+        let laplacian = Laplacian::of(&model.surface, &model.topology, &vec![1.0; count]);
+        // Every other vertex first, one by one: hardly any of them neighbour each other.
+        let order: Vec<u32> = (0..count as u32)
+            .step_by(3)
+            .chain((0..count as u32).filter(|v| v % 3 != 0))
+            .collect();
+        let mut column_of = vec![CONSTRAINED; count];
+        for (column, &vertex) in order.iter().enumerate() {
+            column_of[vertex as usize] = column as u32;
+        }
+        let operator = ShellOperator::new(laplacian, &Bilaplacian::default(), 1.0);
+        let mut plate = assemble_shell(&operator, &order, &column_of, &Hubs::default(), Budget::default()).unwrap();
+        // Nothing is held: let every vertex be held a little.
+        for column in 0..count {
+            plate.lower_values[plate.lower_offsets[column] as usize] += 0.1;
+        }
+        let ends = (1..=count as u32)
+            .filter(|end| end % 8 == 0 || *end == count as u32)
+            .collect();
+        (plate, Elimination { order, ends })
+    }
+
+    #[test]
+    fn what_is_kept_for_the_next_factor_is_no_more_than_the_factor_and_is_worth_it() {
+        let (plate, elimination) = badly_ordered();
+        let cancel = Cancel::new();
+        let bind = |renewal| {
+            let (plate, elimination) = badly_ordered();
+            Renewable::of(plate, elimination, &[0.0], renewal, Budget::default(), &cancel).unwrap()
+        };
+        let all = {
+            let factor = Factor::analysed(&plate, &elimination.ends, Budget::default()).unwrap();
+            let lines = |part: &crate::sparse::forest::Part| {
+                crate::sparse::symbolic::lines_left(factor.symbolic.pattern(part.blocks.end - 1).len())
+            };
+            8 * factor.forest.parts.iter().map(lines).sum::<usize>()
+        };
+        let first = bind(Renewal::From(None));
+        assert!(all > 2 * first.factor.stored(), "all of it is {all}");
+        assert!(first.kept() <= first.factor.stored());
+        assert!(2 * first.kept() > first.factor.stored());
+        // Nothing changed: all is taken over, whatever was kept of it.
+        assert_eq!(bind(Renewal::From(Some(&first))).share_of(&first), 1.0);
+        assert_eq!(bind(Renewal::Never).kept(), 0);
     }
 }

@@ -9,10 +9,13 @@
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use pliant_mesh::{Cancel, Cancelled, SurfaceVertex};
+use rayon::prelude::*;
 
 use crate::operators::net::Graph;
 use crate::sparse::bisection::WeightedGraph;
+use crate::sparse::crumbs::{Crumbs, crumbs};
 use crate::sparse::elimination::Elimination;
+use crate::sparse::hubs::{WithoutHubs, hubs};
 use crate::sparse::labels::{CUT_OUT, Labelled};
 use crate::sparse::leaf;
 
@@ -22,10 +25,32 @@ const LEAF: usize = 250;
 /// Parts of more vertices are cut beside each other.
 const APART: usize = 2048;
 
-/// Orders a graph's `count` vertices for the graph of the `power`-th power of the Laplacian.
+/// Orders a graph's `count` vertices for the graph of the `power`-th power of the Laplacian, its hubs last.
 pub(crate) fn dissect<G: Graph>(
     graph: &G,
     count: usize,
+    power: u32,
+    cancel: &Cancel,
+) -> Result<Elimination, Cancelled> {
+    let hubs = hubs(graph, count);
+    if hubs.is_empty() {
+        return dissect_all(graph, count, (0..count as u32).collect(), power, cancel);
+    }
+    let rest = WithoutHubs::of(graph, count, &hubs);
+    let vertices = (0..count as u32).filter(|v| hubs.binary_search(v).is_err()).collect();
+    let mut piece = dissect_all(&rest, count, vertices, power, cancel)?;
+    piece.append(Elimination {
+        ends: vec![hubs.len() as u32],
+        order: hubs,
+    });
+    Ok(piece)
+}
+
+/// Orders some of a graph's `count` vertices; the others have no neighbours.
+fn dissect_all<G: Graph>(
+    graph: &G,
+    count: usize,
+    vertices: Vec<u32>,
     power: u32,
     cancel: &Cancel,
 ) -> Result<Elimination, Cancelled> {
@@ -35,7 +60,12 @@ pub(crate) fn dissect<G: Graph>(
         places: (0..count).map(|_| AtomicU32::new(0)).collect(),
         cancel,
     };
-    let piece = dissection.part((0..count as u32).collect(), 1);
+    let Crumbs { packs, rest } = crumbs(graph, count, vertices, LEAF);
+    let order = |pack: &Vec<u32>| leaf::order(&dissection.parts, power, pack, 1);
+    let packs: Vec<Elimination> = packs.par_iter().map(order).collect();
+    let mut piece = Elimination::default();
+    packs.into_iter().for_each(|pack| piece.append(pack));
+    piece.append(dissection.part(rest, 1));
     cancel.check()?;
     Ok(piece)
 }
@@ -167,5 +197,65 @@ impl<G: Graph> Dissection<'_, G> {
             }
         });
         separator
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+    use pliant_mesh::{Cancel, Drawn, DrawnVertex, SurfaceVertex, Topology, shapes};
+
+    use super::dissect;
+    use crate::operators::net::Graph;
+
+    /// A graph that counts how many neighbours were asked for.
+    struct Counted {
+        topology: Topology,
+        asked: AtomicUsize,
+    }
+
+    impl Graph for Counted {
+        fn neighbours(&self, vertex: SurfaceVertex) -> &[SurfaceVertex] {
+            let ring = self.topology.neighbours(vertex);
+            self.asked.fetch_add(ring.len(), Relaxed);
+            ring
+        }
+    }
+
+    /// How many neighbours are asked for to order a shape.
+    fn asked(drawn: Drawn, power: u32) -> usize {
+        let topology = Topology::of(&shapes::model(drawn).surface);
+        let count = topology.vertex_count();
+        let graph = Counted {
+            topology,
+            asked: AtomicUsize::new(0),
+        };
+        let piece = dissect(&graph, count, power, &Cancel::new()).unwrap();
+        let mut all = piece.order;
+        all.sort_unstable();
+        assert!(all.into_iter().eq(0..count as u32));
+        assert_eq!(piece.ends.last().copied(), Some(count as u32));
+        graph.asked.into_inner()
+    }
+
+    fn soup(count: usize) -> Drawn {
+        let corner = |v: usize| glam::DVec3::new((v % 3 % 2) as f64 * 0.1, (v % 3 / 2) as f64 * 0.1, (v / 3) as f64);
+        let triangles = (0..count as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2].map(DrawnVertex));
+        Drawn::once((0..3 * count).map(corner).collect(), triangles.collect())
+    }
+
+    #[test]
+    fn ordering_looks_at_a_crowded_edge_or_a_soup_as_often_as_it_is_large() {
+        for power in 1..=3 {
+            let [once, twice] = [1000, 2000].map(|pages| asked(shapes::non_manifold_fan(pages), power));
+            assert!(twice < 3 * once, "{power}: {once} {twice}");
+            let [once, twice] = [11_000, 22_000].map(|crumbs| asked(soup(crumbs), power));
+            assert!(
+                twice < 2 * once + once / 10 && once < 60 * 11_000,
+                "{power}: {once} {twice}"
+            );
+        }
     }
 }

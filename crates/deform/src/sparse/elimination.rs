@@ -8,6 +8,33 @@ pub(crate) struct Elimination {
 }
 
 impl Elimination {
+    /// The same order with the vertices for which `is_last` holds as a block of their own behind all others.
+    pub fn with_last(self, is_last: impl Fn(u32) -> bool) -> Self {
+        let (mut first, mut last) = (Self::default(), Vec::new());
+        let mut start = 0;
+        for end in self.ends {
+            let before = first.order.len();
+            for &vertex in &self.order[start..end as usize] {
+                if is_last(vertex) {
+                    last.push(vertex);
+                } else {
+                    first.order.push(vertex);
+                }
+            }
+            if first.order.len() > before {
+                first.ends.push(first.order.len() as u32);
+            }
+            start = end as usize;
+        }
+        if !last.is_empty() {
+            first.append(Self {
+                ends: vec![last.len() as u32],
+                order: last,
+            });
+        }
+        first
+    }
+
     /// What `other` orders comes behind.
     pub fn append(&mut self, other: Self) {
         let first = self.order.len() as u32;

@@ -1,5 +1,9 @@
 //! Why a factorisation came to nothing.
 
+use std::collections::TryReserveError;
+
+use crate::budget::Exceeded;
+
 /// Why there is no factor.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum FactorError {
@@ -7,6 +11,20 @@ pub(crate) enum FactorError {
     Pivot(usize),
     /// Too large for the machine or for the index type.
     Memory,
+    /// It takes more memory than the budget has left.
+    Budget,
     /// Somebody raised the flag.
     Cancelled,
+}
+
+impl From<TryReserveError> for FactorError {
+    fn from(_: TryReserveError) -> Self {
+        Self::Memory
+    }
+}
+
+impl From<Exceeded> for FactorError {
+    fn from(_: Exceeded) -> Self {
+        Self::Budget
+    }
 }

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use pliant_mesh::Cancel;
 
+use crate::budget::reserved;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::forest::Forest;
 use crate::sparse::front::{factor_panel, square};
@@ -24,13 +25,12 @@ pub(crate) struct Numbers {
     left: Option<Arc<Vec<Line>>>,
 }
 
-/// What becomes of what parts leave.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Left {
-    /// It is given back as soon as it was taken in.
-    Dropped,
-    /// It stays for a factorisation of nearly the same matrix.
-    Kept,
+impl Numbers {
+    /// How many numbers are kept of what it leaves.
+    #[cfg(test)]
+    pub fn kept(&self) -> usize {
+        self.left.as_ref().map_or(0, |left| LANES * left.len())
+    }
 }
 
 /// What is factored.
@@ -42,26 +42,31 @@ struct Job<'a> {
     cancel: &'a Cancel,
     done: Vec<OnceLock<Arc<Vec<Line>>>>,
     left: Vec<Mutex<Option<Arc<Vec<Line>>>>>,
-    fate: Left,
+    /// Of which parts what they leave stays for a factorisation of nearly the same matrix; none if empty.
+    kept: &'a [bool],
     rooms: Mutex<Vec<Room>>,
 }
 
-/// Factors the matrix, with `shift` added to its unit diagonal; takes over the parts that are `known`, one entry a part.
+/// Factors the matrix, with `shift` added to its unit diagonal; takes over the parts that are `known`, one entry a part,
+/// and keeps what the parts in `kept` leave.
 pub(crate) fn factor(
     plate: &ScaledMatrix,
     shift: f64,
     symbolic: &Symbolic,
     forest: &Forest,
     known: &[Option<Numbers>],
-    fate: Left,
+    kept: &[bool],
     cancel: &Cancel,
 ) -> Result<Vec<Numbers>, FactorError> {
     let count = forest.parts.len();
-    let needed = |part: usize| forest.parts[part].parent.is_some();
-    let known = |part: usize| {
-        let numbers = known.get(part)?.as_ref()?;
-        (numbers.left.is_some() || !needed(part)).then_some(numbers)
-    };
+    // What a part leaves is needed where the part above is not taken over.
+    let mut is_known = vec![false; count];
+    for part in (0..count).rev() {
+        let above = forest.parts[part].parent;
+        let own = known.get(part).and_then(Option::as_ref);
+        is_known[part] = own.is_some_and(|own| own.left.is_some() || above.is_none_or(|above| is_known[above]));
+    }
+    let known = |part: usize| is_known[part].then(|| known[part].as_ref()).flatten();
     let job = Job {
         plate,
         shift,
@@ -74,7 +79,7 @@ pub(crate) fn factor(
         left: (0..count)
             .map(|part| Mutex::new(known(part).and_then(|numbers| numbers.left.clone())))
             .collect(),
-        fate,
+        kept,
         rooms: Mutex::default(),
     };
     let failures = Mutex::new(Vec::new());
@@ -90,19 +95,26 @@ pub(crate) fn factor(
     let failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
     let of = |error: &FactorError| match error {
         FactorError::Pivot(column) => *column,
-        FactorError::Memory => usize::MAX - 1,
+        FactorError::Memory | FactorError::Budget => usize::MAX - 1,
         FactorError::Cancelled => usize::MAX,
     };
     if let Some(error) = failures.into_iter().min_by_key(of) {
         return Err(error);
     }
-    let numbers = job.done.into_iter().zip(job.left).filter_map(|(panels, left)| {
-        let left = left.into_inner().unwrap_or_else(PoisonError::into_inner);
-        Some(Numbers {
-            panels: panels.into_inner()?,
-            left,
-        })
-    });
+    let is_kept = |part: usize| kept.get(part).copied().unwrap_or(false);
+    let numbers = job
+        .done
+        .into_iter()
+        .zip(job.left)
+        .enumerate()
+        .filter_map(|(part, (panels, left))| {
+            let left = left.into_inner().unwrap_or_else(PoisonError::into_inner);
+            let left = left.filter(|_| is_kept(part));
+            Some(Numbers {
+                panels: panels.into_inner()?,
+                left,
+            })
+        });
     Ok(numbers.collect())
 }
 
@@ -120,20 +132,24 @@ struct Room {
 impl Room {
     /// So many lines of whatever, in the least of the spare squares that holds them. Room is asked for in powers of two,
     /// so that it is asked for seldom.
-    fn take(&mut self, lines: usize) -> Vec<Line> {
+    fn take(&mut self, lines: usize) -> Result<Vec<Line>, FactorError> {
         let fitting = (0..self.spare.len())
             .filter(|&spare| self.spare[spare].capacity() >= lines)
             .min_by_key(|&spare| self.spare[spare].capacity());
-        let mut square = fitting.map_or_else(
-            || Vec::with_capacity(lines.next_power_of_two()),
-            |spare| self.spare.swap_remove(spare),
-        );
+        let mut square = fitting.map_or_else(Vec::new, |spare| self.spare.swap_remove(spare));
+        if square.capacity() < lines {
+            square.try_reserve_exact(lines.next_power_of_two())?;
+        }
         square.resize(lines, Line::ZERO);
-        square
+        Ok(square)
     }
 }
 
 impl Job<'_> {
+    fn keeps(&self, part: usize) -> bool {
+        self.kept.get(part).copied().unwrap_or(false)
+    }
+
     fn part(&self, part: usize) -> Result<(), FactorError> {
         let children = &self.forest.parts[part].children;
         if children.iter().any(|&child| self.done[child].get().is_none()) {
@@ -144,10 +160,7 @@ impl Job<'_> {
             .iter()
             .map(|&child| {
                 let mut left = self.left[child].lock().unwrap_or_else(PoisonError::into_inner);
-                let given = match self.fate {
-                    Left::Dropped => left.take(),
-                    Left::Kept => left.clone(),
-                };
+                let given = if self.keeps(child) { left.clone() } else { left.take() };
                 (self.forest.parts[child].blocks.end - 1, given)
             })
             .collect();
@@ -160,8 +173,7 @@ impl Job<'_> {
         room.place.resize(self.plate.scale.len(), 0);
         let blocks = self.forest.parts[part].blocks.clone();
         let lines = blocks.clone().map(|s| self.symbolic.shape(s).lines()).sum();
-        let mut panels = Vec::new();
-        panels.try_reserve_exact(lines).map_err(|_| FactorError::Memory)?;
+        let mut panels = reserved(lines)?;
         for s in blocks.clone() {
             // A part with children is one block.
             let left = self.block(s, &mut panels, &given, &mut room)?;
@@ -169,13 +181,13 @@ impl Job<'_> {
                 room.pending.push((s, left));
             } else if !left.is_empty() {
                 // Rooms are larger than what stands in them.
-                let left = match self.fate {
-                    Left::Dropped => left,
-                    Left::Kept => {
-                        let exact = left.clone();
-                        room.spare.push(left);
-                        exact
-                    }
+                let left = if self.keeps(part) {
+                    let mut exact = reserved(left.len())?;
+                    exact.extend_from_slice(&left);
+                    room.spare.push(left);
+                    exact
+                } else {
+                    left
                 };
                 *self.left[part].lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(left));
             }
@@ -220,7 +232,11 @@ impl Job<'_> {
         }
         // In postorder the children are the last ones; in any other order they are somewhere.
         let mut children = Vec::new();
+        let count = self.symbolic.child_counts[s] as usize - given.len();
         for pending in (0..room.pending.len()).rev() {
+            if children.len() == count {
+                break;
+            }
             if self.symbolic.parent[room.pending[pending].0] as usize == s {
                 children.push(room.pending.remove(pending));
             }
@@ -238,7 +254,7 @@ impl Job<'_> {
             other => other,
         })?;
         let mut left = if shape.below > 0 {
-            room.take(triangle(strips(shape.below)))
+            room.take(triangle(strips(shape.below)))?
         } else {
             Vec::new()
         };

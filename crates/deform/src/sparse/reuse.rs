@@ -11,8 +11,41 @@ use rayon::prelude::*;
 
 use crate::sparse::Elimination;
 use crate::sparse::forest::Forest;
+use crate::sparse::line::LANES;
 use crate::sparse::matrix::ScaledMatrix;
-use crate::sparse::symbolic::Symbolic;
+use crate::sparse::symbolic::{Symbolic, lines_left};
+
+/// What is kept for the next factor takes at most so many times the factor's own memory. On a mesh's own triangles all
+/// of it takes about as much as the factor; where the ordering fits badly, as with flipped edges at order 3, it would
+/// take ten times that.
+const KEPT: usize = 1;
+
+/// Of each part, whether what it leaves is kept for the next factor: first where that spares most operations a byte, up
+/// to [`KEPT`] times the factor.
+pub(crate) fn worth_keeping(symbolic: &Symbolic, forest: &Forest) -> Vec<bool> {
+    let count = forest.parts.len();
+    // What is spared is the whole subtree's work.
+    let mut work: Vec<f64> = vec![0.0; count];
+    for (part, own) in forest.parts.iter().enumerate() {
+        work[part] += own.blocks.clone().map(|s| symbolic.work(s)).sum::<f64>();
+        if let Some(above) = own.parent {
+            work[above] += work[part];
+        }
+    }
+    let lines = |part: usize| lines_left(symbolic.pattern(forest.parts[part].blocks.end - 1).len());
+    let mut by_worth: Vec<usize> = (0..count).filter(|&part| lines(part) > 0).collect();
+    let worth = |part: usize| work[part] / lines(part) as f64;
+    by_worth.sort_by(|&a, &b| worth(b).total_cmp(&worth(a)).then(a.cmp(&b)));
+    let mut left = KEPT * symbolic.stored() / LANES;
+    let mut kept = vec![false; count];
+    for part in by_worth {
+        if lines(part) <= left {
+            left -= lines(part);
+            kept[part] = true;
+        }
+    }
+    kept
+}
 
 /// What is factored, with the names of its columns: the same column of two matrices has the same name.
 #[derive(Clone, Copy)]

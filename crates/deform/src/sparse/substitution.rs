@@ -10,7 +10,9 @@ use std::sync::{Mutex, PoisonError};
 
 use pulp::{Arch, Simd, WithSimd};
 
+use crate::budget::reserved;
 use crate::prefetch::Prefetch;
+use crate::sparse::factor_error::FactorError;
 use crate::sparse::forest::Forest;
 use crate::sparse::line::{Line, Shape};
 use crate::sparse::multifrontal::Numbers;
@@ -84,9 +86,12 @@ type Rows<T> = Vec<Row<T>>;
 
 impl<T: Real> Substitution<T> {
     /// Copies a factor's values.
-    pub fn new(symbolic: &Symbolic, forest: &Forest, numbers: &[Numbers]) -> Self {
+    ///
+    /// # Errors
+    /// [`FactorError::Memory`].
+    pub fn new(symbolic: &Symbolic, forest: &Forest, numbers: &[Numbers]) -> Result<Self, FactorError> {
         let mut nodes = Vec::with_capacity(symbolic.block_count());
-        let mut copied = Vec::with_capacity(symbolic.stored());
+        let mut copied = reserved(symbolic.stored())?;
         for (part, numbers) in forest.parts.iter().zip(numbers) {
             let mut panels = numbers.panels.as_slice();
             for s in part.blocks.clone() {
@@ -103,11 +108,11 @@ impl<T: Real> Substitution<T> {
                 copy_node(panel, shape, &mut copied);
             }
         }
-        Self {
+        Ok(Self {
             nodes,
             values: copied,
             forest: forest.clone(),
-        }
+        })
     }
 
     /// How many numbers it stores.
@@ -374,7 +379,7 @@ mod tests {
     fn agrees<T: Real>(tolerance: f64) {
         for drawn in [shapes::torus(40, 30), shapes::grid(3, 3), shapes::icosphere(4)] {
             let factor = factor_of(drawn);
-            let laid_out = factor.substitution::<T>();
+            let laid_out = factor.substitution::<T>().unwrap();
             let (symbolic, _) = factor.parts();
             let count = symbolic.column_count();
             let mut expected: Vec<[f64; 3]> = (0..count).map(|i| [1.0, (i % 7) as f64, -0.3]).collect();

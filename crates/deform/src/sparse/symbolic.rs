@@ -5,11 +5,46 @@
 
 use std::ops::Range;
 
-use crate::sparse::line::{LANES, Shape};
+use crate::budget::{Budget, bytes_of};
+use crate::sparse::factor_error::FactorError;
+use crate::sparse::line::{LANES, Line, Shape, strips, triangle};
 use crate::sparse::matrix::ScaledMatrix;
 
 /// No parent: a root.
 pub(crate) const ROOT: u32 = u32::MAX;
+
+/// What a factorisation needs, block by block.
+#[derive(Default)]
+struct Needed {
+    rows: usize,
+    panel_lines: usize,
+    /// Of the update matrices that wait for their parents, now and at most.
+    waiting: usize,
+    most_waiting: usize,
+}
+
+impl Needed {
+    /// The next block, with what its children passed on to it, in lines.
+    fn meet(&mut self, width: usize, below: usize, passed_on: usize) {
+        let own = lines_left(below);
+        self.rows += below;
+        self.panel_lines = self.panel_lines.saturating_add(Shape { width, below }.lines());
+        self.most_waiting = self.most_waiting.max(self.waiting + own);
+        self.waiting = self.waiting + own - passed_on;
+    }
+
+    /// In bytes.
+    fn bytes(&self) -> u64 {
+        // The rows are stored twice: in the factor's columns and in their part's.
+        let lines = self.panel_lines.saturating_add(self.most_waiting);
+        bytes_of(lines, size_of::<Line>()).saturating_add(bytes_of(self.rows, 8))
+    }
+}
+
+/// Lines of the update matrix of a block with so many rows below.
+pub(crate) fn lines_left(below: usize) -> usize {
+    triangle(strips(below))
+}
 
 /// The blocks of a factor.
 #[derive(Debug)]
@@ -22,17 +57,23 @@ pub(crate) struct Symbolic {
     pub rows: Vec<u32>,
     /// The block that holds the first row of each block's pattern, [`ROOT`] where there is none.
     pub parent: Vec<u32>,
+    /// Of how many blocks each is the parent.
+    pub child_counts: Vec<u32>,
 }
 
 impl Symbolic {
     /// The factor of `matrix`, whose columns stand in blocks that end at `ends`.
-    pub fn of(matrix: &ScaledMatrix, ends: &[u32]) -> Self {
+    ///
+    /// # Errors
+    /// As soon as what was found of it exceeds the budget: its numbers, its rows, and what blocks pass on at once.
+    pub fn of(matrix: &ScaledMatrix, ends: &[u32], budget: Budget) -> Result<Self, FactorError> {
         let column_count = matrix.scale.len();
         let mut symbolic = Self {
             starts: std::iter::once(0).chain(ends.iter().copied()).collect(),
             row_starts: vec![0],
             rows: Vec::new(),
             parent: Vec::with_capacity(ends.len()),
+            child_counts: vec![0; ends.len()],
         };
         let mut block_of = vec![0_u32; column_count];
         for s in 0..ends.len() {
@@ -42,6 +83,7 @@ impl Symbolic {
         let (mut last_child, mut sibling) = (vec![ROOT; ends.len()], vec![ROOT; ends.len()]);
         let mut seen = vec![ROOT; column_count];
         let mut rows = Vec::new();
+        let mut needed = Needed::default();
         for s in 0..ends.len() {
             let own = symbolic.columns(s);
             let end = own.end as u32;
@@ -52,7 +94,9 @@ impl Symbolic {
                 }
             };
             let mut child = last_child[s];
+            let mut passed_on = 0;
             while child != ROOT {
+                passed_on += lines_left(symbolic.pattern(child as usize).len());
                 symbolic.pattern(child as usize).iter().copied().for_each(&mut meet);
                 child = sibling[child as usize];
             }
@@ -61,13 +105,17 @@ impl Symbolic {
             rows.sort_unstable();
             let parent = rows.first().map_or(ROOT, |&row| block_of[row as usize]);
             if parent != ROOT {
+                symbolic.child_counts[parent as usize] += 1;
                 sibling[s] = std::mem::replace(&mut last_child[parent as usize], s as u32);
             }
+            needed.meet(own.len(), rows.len(), passed_on);
+            budget.without(needed.bytes())?;
             symbolic.parent.push(parent);
+            symbolic.rows.try_reserve(rows.len())?;
             symbolic.rows.extend_from_slice(&rows);
             symbolic.row_starts.push(symbolic.rows.len());
         }
-        symbolic
+        Ok(symbolic)
     }
 
     /// How many blocks there are.

@@ -3,7 +3,7 @@
 use crate::rig::{Scene, step, turned};
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Bilaplacian, BindError, Loose, Method, Ordering, Role};
-use pliant_mesh::{Cancel, Cancelled, Drawn, Progress, SurfaceVertex, shapes};
+use pliant_mesh::{Cancel, Cancelled, Drawn, DrawnVertex, Progress, SurfaceVertex, shapes};
 
 fn at(shape: Drawn, shift: DVec3, scale: f64) -> Drawn {
     shapes::moved(
@@ -280,4 +280,22 @@ fn cancelling_stops_ordering_and_binding() {
     let method = Method::default();
     let refused = scene.problem(&method).bind(&ordering, &Progress::new(), &cancel).err();
     assert_eq!(refused, Some(BindError::Cancelled(Cancelled)));
+}
+
+#[test]
+fn crumbs_by_the_ten_thousand_go_with_the_surface_beside_them() {
+    let bar = shapes::bar(3, 3, 12);
+    let crumb = |number: usize| {
+        let at = DVec3::new((number % 100) as f64, (number / 100) as f64, 200.0) * 0.1;
+        let corners = [at, at + DVec3::X * 0.01, at + DVec3::Y * 0.01];
+        Drawn::once(corners.to_vec(), vec![[0, 1, 2].map(DrawnVertex)])
+    };
+    let mut all = vec![bar];
+    all.extend((0..10_500).map(crumb));
+    let scene = Scene::new(shapes::together(&all)).with(Role::Handle(0), |p| p.z < 2.0);
+    let shift = DVec3::new(0.5, -0.25, 1.0);
+    let bound = &mut scene.bind();
+    for displacement in step(bound, &[DAffine3::from_translation(shift)]) {
+        assert!(displacement.distance(shift) < 1e-9, "{displacement}");
+    }
 }

@@ -6,6 +6,7 @@ mod arap;
 mod components;
 mod continuity;
 mod energies;
+mod hubs;
 mod laws;
 mod nonlinear;
 mod operators;

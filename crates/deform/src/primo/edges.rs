@@ -1,0 +1,153 @@
+//! Which triangles an edge joins.
+//!
+//! Two triangles on an edge are joined; more than two each with each, the couplings weaker by as much as there are more,
+//! so that a prism is held at such an edge as firmly as at any other. Pairs grow with the square of the triangles, so at
+//! an edge of very many, a *crowded* one, each is joined with a single one instead, the largest, as firmly as it would be
+//! with all others together. Where the triangles are alike that is the same energy but for one of them, which goes with
+//! the mean of the others.
+
+use std::collections::BTreeMap;
+
+use pliant_mesh::{Surface, SurfaceVertex, Topology, area_of_lengths, edge_lengths};
+
+/// A triangle's area counts as at least this share of its longest edge's square, so that one without an area is
+/// coupled firmly, but not beyond what can be computed.
+const AREA_FLOOR: f64 = 1e-3;
+
+/// Edges of more triangles are crowded.
+const CROWD: usize = 32;
+
+/// The triangles on a surface's edges.
+#[derive(Debug)]
+pub(crate) struct Edges<'a> {
+    pub surface: &'a Surface,
+    pub topology: &'a Topology,
+    /// By the edge's vertices, the lower first.
+    crowded: BTreeMap<[SurfaceVertex; 2], Crowd>,
+}
+
+/// The triangles on a crowded edge, ascending, and the one that all others are joined with.
+#[derive(Debug, Default)]
+struct Crowd {
+    faces: Vec<u32>,
+    middle: u32,
+    mean_area: f64,
+}
+
+impl<'a> Edges<'a> {
+    /// Finds the crowded ones.
+    pub fn of(surface: &'a Surface, topology: &'a Topology) -> Self {
+        let is_crowded = |v: &SurfaceVertex| topology.neighbours(*v).len() > CROWD;
+        let mut crowded: BTreeMap<[SurfaceVertex; 2], Crowd> = BTreeMap::new();
+        for low in (0..topology.vertex_count() as u32)
+            .map(SurfaceVertex)
+            .filter(is_crowded)
+        {
+            for face in topology.faces(low, &surface.triangles) {
+                let ends = surface.triangles[face as usize].into_iter();
+                for high in ends.filter(|&high| high > low).filter(is_crowded) {
+                    crowded.entry([low, high]).or_default().faces.push(face);
+                }
+            }
+        }
+        crowded.retain(|_, crowd| crowd.faces.len() > CROWD);
+        for crowd in crowded.values_mut() {
+            let area = |face: &u32| area(surface, *face);
+            let largest = crowd
+                .faces
+                .iter()
+                .max_by(|a, b| area(a).total_cmp(&area(b)).then(b.cmp(a)));
+            crowd.middle = largest.copied().unwrap_or_default();
+            crowd.mean_area = crowd.faces.iter().map(area).sum::<f64>() / crowd.faces.len() as f64;
+        }
+        Self {
+            surface,
+            topology,
+            crowded,
+        }
+    }
+
+    /// The triangles on the edge from `a` to `b` that `face` is joined with there, ascending.
+    pub fn across(&self, face: u32, [a, b]: [SurfaceVertex; 2]) -> impl Iterator<Item = u32> + Clone + '_ {
+        let crowd = self.crowd([a, b]);
+        let (all, middle) = match crowd {
+            None => (&[][..], None),
+            Some(crowd) if crowd.middle == face => (&crowd.faces[..], None),
+            Some(crowd) => (&[][..], Some(crowd.middle)),
+        };
+        // The same triangles, found from the end with fewer.
+        let count = |v: SurfaceVertex| self.topology.neighbours(v).len();
+        let (from, to) = if count(b) < count(a) { (b, a) } else { (a, b) };
+        let around = crowd
+            .is_none()
+            .then(|| self.topology.faces(from, &self.surface.triangles));
+        let beside = around
+            .into_iter()
+            .flatten()
+            .filter(move |&other| self.surface.triangles[other as usize].contains(&to));
+        let others = beside.chain(all.iter().copied()).chain(middle);
+        others.filter(move |&other| other != face)
+    }
+
+    /// The areas that a joint's weight is taken over, of `face` and what it meets at the edge, where that is crowded:
+    /// the same for both of the joint's triangles.
+    pub fn crowded_areas(&self, [one, two]: [u32; 2], edge: [SurfaceVertex; 2]) -> Option<f64> {
+        let crowd = self.crowd(edge)?;
+        let outer = if one == crowd.middle { two } else { one };
+        Some(area(self.surface, outer) + crowd.mean_area)
+    }
+
+    fn crowd(&self, [a, b]: [SurfaceVertex; 2]) -> Option<&Crowd> {
+        self.crowded.get(&[a.min(b), a.max(b)])
+    }
+}
+
+/// A triangle's area, as far as it counts for couplings.
+pub(crate) fn area(surface: &Surface, face: u32) -> f64 {
+    let lengths = edge_lengths(surface.corners(face as usize));
+    let longest = lengths[0].max(lengths[1]).max(lengths[2]);
+    area_of_lengths(lengths).max(AREA_FLOOR * longest * longest)
+}
+
+/// A triangle's sides, each from one corner to the next.
+pub(crate) fn sides([a, b, c]: [SurfaceVertex; 3]) -> [[SurfaceVertex; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
+
+#[cfg(test)]
+mod tests {
+    use pliant_mesh::{Topology, shapes};
+
+    use super::{CROWD, Edges, sides};
+
+    /// Of a fan of so many triangles around one edge: how many joints its triangles see.
+    fn joints(count: usize) -> usize {
+        let model = shapes::model(shapes::non_manifold_fan(count));
+        let topology = Topology::of(&model.surface);
+        let edges = Edges::of(&model.surface, &topology);
+        let mut joints = 0;
+        for (face, corners) in (0..).zip(&model.surface.triangles) {
+            for side in sides(*corners) {
+                for other in edges.across(face, side) {
+                    let back = sides(model.surface.triangles[other as usize]);
+                    let sees = back
+                        .into_iter()
+                        .any(|side| edges.across(other, side).any(|own| own == face));
+                    assert!(sees, "{count}: both triangles of a joint see it");
+                    joints += 1;
+                }
+            }
+        }
+        joints
+    }
+
+    #[test]
+    fn triangles_on_an_edge_are_joined_each_with_each_until_they_are_too_many() {
+        for count in [2, 5, CROWD] {
+            assert_eq!(joints(count), count * (count - 1));
+        }
+        for count in [CROWD + 1, 100, 2000] {
+            assert_eq!(joints(count), 2 * (count - 1));
+        }
+    }
+}

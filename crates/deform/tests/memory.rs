@@ -1,0 +1,204 @@
+//! What binding allocates: it grows as the mesh does, stays within the budget, and where the machine has none left that
+//! is an error.
+//!
+//! One test, alone in its binary: an allocator counts for the whole process.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+use glam::DVec3;
+use pliant_deform::{
+    Arap, ArapEnergy, Bilaplacian, BindError, Budget, Holds, Loose, Method, Ordering, Primo, Problem, Role, ShellOrder,
+};
+use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
+
+/// The system's allocator, which counts, and refuses what is too large.
+struct Counting;
+
+/// All that was allocated since it was last set.
+static ALLOCATED: AtomicUsize = AtomicUsize::new(0);
+/// What is held.
+static HELD: AtomicUsize = AtomicUsize::new(0);
+/// The most that was held at once since it was last set.
+static PEAK: AtomicUsize = AtomicUsize::new(0);
+/// The largest allocation since it was last set.
+static LARGEST: AtomicUsize = AtomicUsize::new(0);
+/// No single allocation larger than this succeeds.
+static MOST: AtomicUsize = AtomicUsize::new(usize::MAX);
+
+fn count(bytes: usize) {
+    ALLOCATED.fetch_add(bytes, Relaxed);
+    LARGEST.fetch_max(bytes, Relaxed);
+    let held = HELD.fetch_add(bytes, Relaxed) + bytes;
+    PEAK.fetch_max(held, Relaxed);
+}
+
+#[expect(
+    unsafe_code,
+    reason = "each call is handed to the system's allocator with the very arguments that came in, or refused"
+)]
+// SAFETY: as `System`, to which everything is handed on; a null pointer says that there is no memory, as the trait has it.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        if layout.size() > MOST.load(Relaxed) {
+            return std::ptr::null_mut();
+        }
+        count(layout.size());
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
+        HELD.fetch_sub(layout.size(), Relaxed);
+        unsafe { System.dealloc(at, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Three rings of so many vertices around a tip.
+fn fan(count: usize) -> Drawn {
+    let mut positions = vec![DVec3::Z * 0.2];
+    for ring in 1..=3 {
+        positions.extend((0..count).map(|place| {
+            let (sin, cos) = (TAU * place as f64 / count as f64).sin_cos();
+            DVec3::new(cos, sin, 0.0) * f64::from(ring) / 3.0
+        }));
+    }
+    let at = |ring: usize, place: usize| DrawnVertex((1 + (ring - 1) * count + place % count) as u32);
+    let mut triangles = Vec::new();
+    for place in 0..count {
+        triangles.push([DrawnVertex(0), at(1, place), at(1, place + 1)]);
+        for ring in 1..3 {
+            let [a, b] = [at(ring, place), at(ring, place + 1)];
+            let [c, d] = [at(ring + 1, place), at(ring + 1, place + 1)];
+            triangles.extend([[a, c, b], [b, c, d]]);
+        }
+    }
+    Drawn::once(positions, triangles)
+}
+
+/// A torus and so many loose triangles beside it.
+fn soup(count: usize) -> Drawn {
+    let mut drawn = shapes::torus(12, 8);
+    for crumb in 0..count {
+        let first = drawn.positions.len() as u32;
+        let at = DVec3::new((crumb % 97) as f64, (crumb / 97 % 89) as f64, (crumb / 97 / 89) as f64) * 0.1;
+        drawn.positions.extend([at, at + DVec3::X * 0.01, at + DVec3::Y * 0.01]);
+        drawn.triangles.push([first, first + 1, first + 2].map(DrawnVertex));
+    }
+    Drawn::once(drawn.positions, drawn.triangles)
+}
+
+struct Scene {
+    model: Model,
+    roles: Vec<Role>,
+    method: Method,
+}
+
+impl Scene {
+    fn new(drawn: Drawn, method: &Method) -> Self {
+        let model = shapes::model(drawn);
+        let bounds = model.bounds().unwrap();
+        let role = |p: &DVec3| match (p.x - bounds.min.x) / bounds.extent().x {
+            x if x > 0.9 => Role::Handle(0),
+            x if x < 0.1 => Role::Fixed,
+            _ => Role::Free,
+        };
+        Self {
+            roles: model.surface.positions.iter().map(role).collect(),
+            model,
+            method: method.clone(),
+        }
+    }
+
+    /// Orders and binds within a budget: how much was held at most and allocated in all beyond what was before.
+    fn bind(&self, bytes: u64) -> (Result<usize, BindError>, usize, usize) {
+        let stiffness = vec![1.0; self.roles.len()];
+        let problem = Problem {
+            surface: &self.model.surface,
+            topology: &self.model.topology,
+            roles: &self.roles,
+            handle_count: 1,
+            stiffness: &stiffness,
+            holds: Holds::default(),
+            loose: Loose::Follow,
+            method: &self.method,
+            revision: 0,
+        };
+        let (progress, cancel) = (Progress::new(), Cancel::new());
+        let before = HELD.load(Relaxed);
+        PEAK.store(before, Relaxed);
+        ALLOCATED.store(0, Relaxed);
+        let ordering = Ordering::of(&self.model.topology, self.method.operator_power(), &progress, &cancel).unwrap();
+        let bound = problem.bind_within(&ordering, Budget { bytes }, &progress, &cancel);
+        let (peak, allocated) = (PEAK.load(Relaxed) - before, ALLOCATED.load(Relaxed));
+        (bound.map(|bound| bound.factor_len()), peak, allocated)
+    }
+}
+
+fn methods() -> Vec<Method> {
+    let mut methods = vec![Method::Primo(Primo::default())];
+    for order in ShellOrder::ALL {
+        let mut shell = Bilaplacian::default();
+        shell.order = order;
+        methods.push(Method::Bilaplacian(shell));
+    }
+    for energy in ArapEnergy::ALL {
+        let mut arap = Arap::default();
+        arap.energy = energy;
+        methods.push(Method::Arap(arap));
+    }
+    methods
+}
+
+const PLENTY: u64 = 1 << 34;
+
+#[test]
+fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
+    // Rooms are kept by thread: one thread, so that what is counted is the same each time.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| {
+        for method in methods() {
+            for (name, shape, sizes) in [
+                ("vertex", fan as fn(usize) -> Drawn, [1000, 2000]),
+                ("edge", shapes::non_manifold_fan, [1000, 2000]),
+                ("soup", soup, [4000, 8000]),
+            ] {
+                let measured = sizes.map(|size| {
+                    let (bound, peak, allocated) = Scene::new(shape(size), &method).bind(PLENTY);
+                    bound.unwrap();
+                    (peak, allocated)
+                });
+                let [(peak, allocated), (twice, all_twice)] = measured;
+                assert!(twice < 3 * peak, "{name}, {method:?}: {peak} {twice} held");
+                assert!(
+                    all_twice < 3 * allocated,
+                    "{name}, {method:?}: {allocated} {all_twice} in all"
+                );
+            }
+            // A surface of no crowded vertex at all is refused before its memory is taken.
+            let scene = Scene::new(shapes::grid(70, 70), &method);
+            let (bound, peak, _) = scene.bind(PLENTY);
+            bound.unwrap();
+            let (refused, least, _) = scene.bind(400_000);
+            assert!(
+                matches!(refused, Err(BindError::Budget { .. })),
+                "{method:?}: {refused:?}"
+            );
+            assert!(least < peak, "{method:?}: {least} {peak}");
+            // Where the machine has no memory for the largest that is asked for, nothing aborts.
+            LARGEST.store(0, Relaxed);
+            scene.bind(PLENTY).0.unwrap();
+            MOST.store(LARGEST.load(Relaxed) - 1, Relaxed);
+            let (refused, ..) = scene.bind(PLENTY);
+            MOST.store(usize::MAX, Relaxed);
+            assert!(
+                matches!(refused, Err(BindError::OutOfMemory { .. })),
+                "{method:?}: {refused:?}"
+            );
+        }
+    });
+}
