@@ -15,6 +15,8 @@ mod error;
 mod follow;
 mod handle;
 mod holds;
+#[cfg(feature = "identity-method")]
+mod identity;
 mod lanes;
 mod lbfgs;
 mod method;
@@ -35,7 +37,10 @@ pub use arap::{Arap, ArapEnergy};
 pub use bound::{Bound, Remains, Step};
 pub use error::{BindError, SolveError};
 pub use holds::{CONTINUITY_RANGE, Holds};
-pub use method::Method;
+pub use method::{
+    ConstraintKind, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused,
+    OptionValue, Solve,
+};
 pub use operators::Laplacian;
 pub use primo::Primo;
 pub use problem::{Loose, Problem, Role};

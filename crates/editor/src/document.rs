@@ -219,7 +219,7 @@ pub struct Document {
 }
 
 impl Document {
-    /// A fresh document: everything is held still. It bends by ARAP, which turns and moves at once.
+    /// A fresh document: everything is held still. It bends by smooth ARAP, which turns and moves at once.
     pub fn new(vertex_count: usize) -> Self {
         let zero = Arc::new(vec![DVec3::ZERO; vertex_count]);
         Self {
@@ -228,7 +228,7 @@ impl Document {
             next_handle: 0,
             stiffness: None,
             continuity: None,
-            method: Method::Arap(Arap::default()),
+            method: Arap::first_choice().into(),
             loose: Loose::default(),
             loose_parts: Arc::default(),
             access: Arc::default(),

@@ -259,15 +259,17 @@ impl Engine {
         if activity != Activity::Dragging && !self.is_picking_current() {
             self.want(JobKind::Pick, |engine| engine.pick_work(&model, document));
         }
-        let power = document.method.operator_power();
-        let has_ordering = self.ordering(power).is_some();
-        if !has_ordering {
+        let missing = document
+            .method
+            .ordering_power()
+            .filter(|&power| self.ordering(power).is_none());
+        if let Some(power) = missing {
             self.want(JobKind::Order, |_| order_work(&model, power));
         }
         if activity != Activity::Painting {
             if !self.is_region_current() {
                 self.want(JobKind::Region, |_| region_work(region_input(&model, document)));
-            } else if has_ordering && !self.is_bound() && !self.region.handles.is_empty() {
+            } else if missing.is_none() && !self.is_bound() && !self.region.handles.is_empty() {
                 self.want(JobKind::Bind, |engine| engine.bind_work(&model, document));
             }
             if self.is_bound() && !document.settled {

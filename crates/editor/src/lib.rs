@@ -89,9 +89,6 @@ pub use job::{Descent, Executor, Job, JobDone, JobKind, JobOutcome, Revision, So
 pub use job_queue::{JobQueue, Running};
 pub use key_map::KeyMap;
 pub use look::{Clay, Look, Shading};
-pub use method_form::{
-    MethodOption, OptionKind, method_keywords, method_options, method_title, option_value, when_to_use, with_option,
-};
 pub use picking::Pick;
 pub use project::{MeshReference, Project, geometry_hash};
 pub use region::Region;

@@ -1,158 +1,12 @@
-//! How a method and its options stand in an edit, and what the command line's help says about them.
+//! A method and its options in an edit: `{"name": .., <options>}`, where what is left out has its default.
 
-mod arap;
-mod bilaplacian;
-mod iteration;
-mod primo;
-
-use pliant_deform::Method;
+use pliant_deform::{METHODS, Method, OptionDeclaration, OptionKind, OptionValue};
 use serde_json::{Map, Value, json};
 
 use crate::edit_error::EditError;
 use crate::edit_node::Node;
 
-/// One option of a method, for a person: the command line's help and the window's panel are made of it.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct MethodOption {
-    /// Its name in the edit.
-    pub name: &'static str,
-    /// What it does, its unit, range and default.
-    pub says: &'static str,
-    /// What values it takes.
-    pub takes: OptionKind,
-}
-
-/// What values an option takes, and which one it has where an edit says nothing.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum OptionKind {
-    /// A number.
-    Number {
-        /// The smallest and the largest that are taken.
-        range: [f64; 2],
-        /// What it is at first.
-        default: f64,
-        /// What it is counted in; empty for a plain number.
-        unit: &'static str,
-    },
-    /// A whole number.
-    Whole {
-        /// The smallest and the largest that are taken.
-        range: [u64; 2],
-        /// What it is at first.
-        default: u64,
-    },
-    /// One of a few whole numbers, each with what it stands for.
-    Numbered {
-        /// The numbers and their words.
-        choices: &'static [(u64, &'static str)],
-        /// What it is at first.
-        default: u64,
-    },
-    /// One of a few names.
-    Named {
-        /// The names.
-        choices: &'static [&'static str],
-        /// What it is at first.
-        default: &'static str,
-    },
-    /// Yes or no.
-    Switch {
-        /// What it is at first.
-        default: bool,
-    },
-}
-
-/// Each method's options.
-const OPTIONS: &[(&str, &[MethodOption])] = &[
-    ("bilaplacian", bilaplacian::OPTIONS),
-    ("arap", arap::OPTIONS),
-    ("primo", primo::OPTIONS),
-];
-
-/// How people speak of a method.
-struct Words {
-    name: &'static str,
-    title: &'static str,
-    /// When it is the one to take.
-    when: &'static str,
-    /// What else it is called, in lower case.
-    keywords: &'static str,
-}
-
-const WORDS: &[Words] = &[
-    Words {
-        name: "bilaplacian",
-        title: "Thin plate",
-        when: "Bends like a thin plate, at once: for small turns and smooth bulges.",
-        keywords: "bilaplacian bi-laplacian biharmonic linear shell laplacian",
-    },
-    Words {
-        name: "arap",
-        title: "As rigid as possible",
-        when: "Keeps every neighbourhood as rigid as it can, step by step: for large turns and long drags.",
-        keywords: "arap as-rigid-as-possible",
-    },
-    Words {
-        name: "primo",
-        title: "Coupled prisms",
-        when: "Bends like a rubber sheet of a thickness you choose, step by step: for even bends and twists.",
-        keywords: "primo rubber nonlinear shell",
-    },
-];
-
-fn words(name: &str) -> Option<&'static Words> {
-    WORDS.iter().find(|words| words.name == name)
-}
-
-/// A sentence on when the method called `name` is the one to take; empty for a name that is not known.
-pub fn when_to_use(name: &str) -> &'static str {
-    words(name).map_or("", |words| words.when)
-}
-
-/// What a person calls the method called `name`: its own name where nothing shorter is known.
-pub fn method_title(name: &str) -> &str {
-    words(name).map_or(name, |words| words.title)
-}
-
-/// What else the method called `name` is called, in lower case.
-pub fn method_keywords(name: &str) -> &'static str {
-    words(name).map_or("", |words| words.keywords)
-}
-
-/// What an option of a method is now, its default where the method says nothing else.
-pub fn option_value(method: &Method, option: &MethodOption) -> Value {
-    match method_to_value(method).get(option.name) {
-        Some(value) => value.clone(),
-        None => match option.takes {
-            OptionKind::Number { default, .. } => json!(default),
-            OptionKind::Whole { default, .. } | OptionKind::Numbered { default, .. } => json!(default),
-            OptionKind::Named { default, .. } => json!(default),
-            OptionKind::Switch { default } => json!(default),
-        },
-    }
-}
-
-/// The method with one of its options set.
-///
-/// # Errors
-/// An option or a value that the method does not take, in a sentence.
-pub fn with_option(method: &Method, name: &str, value: Value) -> Result<Method, EditError> {
-    let mut members = method_to_value(method);
-    if let Some(members) = members.as_object_mut() {
-        members.insert(name.to_owned(), value);
-    }
-    read_method(&Node::new(&members, "method"))
-}
-
-/// The options of the method called `name`, empty where it has none.
-pub fn method_options(name: &str) -> &'static [MethodOption] {
-    OPTIONS
-        .iter()
-        .find(|(method, _)| *method == name)
-        .map_or(&[], |(_, options)| options)
-}
-
-/// Reads `{"name": .., <options>}`.
+/// Reads a method.
 pub(crate) fn read_method(node: &Node<'_>) -> Result<Method, EditError> {
     let expected = "an object with the method's `name` and options";
     let object = node.value().as_object().ok_or_else(|| node.wrong_kind(expected))?;
@@ -163,28 +17,69 @@ pub(crate) fn read_method(node: &Node<'_>) -> Result<Method, EditError> {
     })?;
     let name = Node::new(name, &format!("{}.name", node.place()));
     let text = name.string("a method's name")?;
-    let mut method = Method::from_name(text).ok_or_else(|| name.unknown_name(text, Method::NAMES))?;
+    let method = Method::from_name(text).ok_or_else(|| {
+        let names: Vec<&str> = METHODS.iter().map(|declaration| declaration.name).collect();
+        name.unknown_name(text, &names)
+    })?;
+    let options = method.declaration().options;
     let mut known = vec!["name"];
-    known.extend(method_options(text).iter().map(|option| option.name));
+    known.extend(options.iter().map(|option| option.name));
     let members = node.object(expected, &known)?;
-    match &mut method {
-        Method::Bilaplacian(options) => bilaplacian::read(&members, options)?,
-        Method::Arap(options) => arap::read(&members, options)?,
-        Method::Primo(options) => primo::read(&members, options)?,
-        _ => {}
+    let mut values = Vec::new();
+    for option in options {
+        if let Some(node) = members.get(option.name) {
+            values.push((option.name, read_option(option, &node)?));
+        }
     }
-    Ok(method)
+    method
+        .with(values)
+        .map_err(|refused| match members.get(&refused.option) {
+            Some(node) => node.out_of_range(refused.allowed),
+            None => node.out_of_range(refused),
+        })
+}
+
+fn read_option(option: &OptionDeclaration, node: &Node<'_>) -> Result<OptionValue, EditError> {
+    let value = match option.kind {
+        OptionKind::Number { .. } => OptionValue::Number(node.number()?),
+        OptionKind::Whole { .. } | OptionKind::Numbered { .. } => match u32::try_from(node.whole()?) {
+            Ok(number) => OptionValue::Whole(number),
+            Err(_) => return Err(node.out_of_range(option.kind.allowed())),
+        },
+        OptionKind::Named { choices } => {
+            let text = node.string("a name")?;
+            match choices.iter().find(|choice| **choice == text) {
+                Some(choice) => OptionValue::Name(choice),
+                None => return Err(node.unknown_name(text, choices)),
+            }
+        }
+        OptionKind::Switch => match node.value().as_bool() {
+            Some(on) => OptionValue::Switch(on),
+            None => return Err(node.wrong_kind("true or false")),
+        },
+    };
+    Ok(value)
 }
 
 /// The method as the edit format has it: its name and what differs from its defaults.
 pub(crate) fn method_to_value(method: &Method) -> Value {
+    let declaration = method.declaration();
+    let default = (declaration.default)();
     let mut members = Map::new();
-    members.insert("name".to_owned(), json!(method.name()));
-    match method {
-        Method::Bilaplacian(options) => bilaplacian::write(options, &mut members),
-        Method::Arap(options) => arap::write(options, &mut members),
-        Method::Primo(options) => primo::write(options, &mut members),
-        _ => {}
+    members.insert("name".to_owned(), json!(declaration.name));
+    for OptionDeclaration { name, .. } in declaration.options {
+        let value = method.value(name);
+        if value != default.value(name)
+            && let Some(value) = value
+        {
+            let value = match value {
+                OptionValue::Number(number) => json!(number),
+                OptionValue::Whole(number) => json!(number),
+                OptionValue::Name(name) => json!(name),
+                OptionValue::Switch(on) => json!(on),
+            };
+            members.insert((*name).to_owned(), value);
+        }
     }
     Value::Object(members)
 }
@@ -192,64 +87,86 @@ pub(crate) fn method_to_value(method: &Method) -> Value {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
-    use pliant_deform::Method;
-    use serde_json::{Value, json};
+    use pliant_deform::{Bilaplacian, Discretisation, ShellOrder};
 
-    use super::{OptionKind, method_options, option_value, when_to_use, with_option};
-    use crate::edit_error::EditError;
-    use crate::edit_node::Node;
+    use super::*;
 
-    pub(super) fn read(value: &Value) -> Result<Method, EditError> {
-        super::read_method(&Node::new(value, "method"))
+    fn read(value: &Value) -> Result<Method, EditError> {
+        read_method(&Node::new(value, "method"))
     }
 
     #[test]
-    fn every_listed_option_has_the_default_it_says_and_takes_the_ends_of_its_range() {
-        for &name in Method::NAMES {
-            let method = Method::from_name(name).unwrap();
-            assert!(!when_to_use(name).is_empty(), "{name}");
-            for option in method_options(name) {
-                let default = option_value(&method, option);
-                assert_eq!(
-                    with_option(&method, option.name, default.clone()).unwrap(),
-                    method,
-                    "{name} {}",
-                    option.name
-                );
-                let (taken, refused) = match option.takes {
-                    OptionKind::Number {
-                        range: [least, most], ..
-                    } => (vec![json!(most)], vec![json!(least - 1.0), json!(most * 1.01)]),
-                    OptionKind::Whole {
-                        range: [least, most], ..
-                    } => (vec![json!(least), json!(most)], vec![json!(most + 1)]),
-                    OptionKind::Numbered { choices, .. } => (
-                        choices.iter().map(|(number, _)| json!(number)).collect(),
-                        vec![json!("many")],
-                    ),
-                    OptionKind::Named { choices, .. } => (
-                        choices.iter().map(|choice| json!(choice)).collect(),
-                        vec![json!("banana")],
-                    ),
-                    OptionKind::Switch { .. } => (vec![json!(true), json!(false)], vec![json!(1)]),
-                };
-                for value in taken {
-                    let set = with_option(&method, option.name, value.clone()).unwrap();
-                    let read = option_value(&set, option);
-                    assert!(
-                        read == value || read.as_f64() == value.as_f64(),
-                        "{name} {}: {read} {value}",
-                        option.name
-                    );
-                }
-                for value in refused {
-                    assert!(
-                        with_option(&method, option.name, value).is_err(),
-                        "{name} {}",
-                        option.name
-                    );
-                }
-            }
+    fn every_option_is_read_and_written_again() {
+        let value = json!({
+            "name": "bilaplacian", "order": 3, "stretching": 2.5, "bending": 0.5, "discretisation": "uniform",
+            "triangulation": "tufted", "anisotropy": 0.25
+        });
+        let method = read(&value).unwrap();
+        let options = method.options::<Bilaplacian>().unwrap();
+        let Bilaplacian {
+            stretching, bending, ..
+        } = *options;
+        assert_eq!((stretching, bending), (2.5, 0.5));
+        assert_eq!(options.order, ShellOrder::CurvatureVariation);
+        assert_eq!(options.discretisation, Discretisation::Uniform);
+        for value in [
+            value,
+            json!({ "name": "arap", "energy": "smooth", "smoothness": 0.5, "tolerance": 1e-6, "max_iterations": 40 }),
+            json!({ "name": "primo", "thickness": 0.1, "tolerance": 1e-6, "max_iterations": 40 }),
+        ] {
+            let method = read(&value).unwrap();
+            assert_eq!(method_to_value(&method), value);
+            assert_eq!(method.declaration().options.len() + 1, value.as_object().unwrap().len());
         }
+    }
+
+    #[test]
+    fn defaults_are_not_written() {
+        for declaration in METHODS {
+            let value = json!({ "name": declaration.name });
+            assert_eq!(method_to_value(&read(&value).unwrap()), value);
+        }
+        let spelled = json!({ "name": "bilaplacian", "order": 2, "bending": 1, "discretisation": "cotangent-area" });
+        assert_eq!(read(&spelled).unwrap(), Method::default());
+    }
+
+    #[test]
+    fn options_out_of_range_are_refused_by_name_with_what_is_allowed() {
+        for (method, option, value, allowed) in [
+            ("bilaplacian", "order", json!(0), "1, 2 or 3"),
+            ("bilaplacian", "order", json!(4), "1, 2 or 3"),
+            ("bilaplacian", "order", json!(1.5), "whole"),
+            ("bilaplacian", "order", json!("two"), "whole"),
+            ("bilaplacian", "stretching", json!(-1.0), "from 0 to 1e12"),
+            ("bilaplacian", "stretching", json!(1e13), "from 0 to 1e12"),
+            ("bilaplacian", "bending", json!(0), "above 0"),
+            ("bilaplacian", "bending", json!(null), "a number"),
+            (
+                "bilaplacian",
+                "discretisation",
+                json!("cotangents"),
+                "did you mean `cotangent`?",
+            ),
+            ("bilaplacian", "discretisation", json!(1), "a name"),
+            ("bilaplacian", "triangulation", json!("delaunay"), "as-is"),
+            ("bilaplacian", "anisotropy", json!(1.5), "from 0 to 1"),
+            ("bilaplacian", "ordre", json!(2), "did you mean `order`?"),
+            ("arap", "energy", json!("rims"), "smooth"),
+            ("arap", "smoothness", json!(0), "from 1e-6 to 10"),
+            ("arap", "tolerance", json!(0.2), "from 1e-12 to 0.1"),
+            ("arap", "tolerance", json!("little"), "a number"),
+            ("arap", "max_iterations", json!(0), "from 1 to 100000"),
+            ("arap", "max_iterations", json!(9_999_999_999_u64), "from 1 to 100000"),
+            ("arap", "max_iterations", json!(1.5), "whole"),
+            ("arap", "order", json!(2), "known are"),
+            ("primo", "thickness", json!("thin"), "a number"),
+            ("primo", "energy", json!("spokes"), "known are"),
+        ] {
+            let refused = read(&json!({ "name": method, option: value })).unwrap_err().to_string();
+            assert!(refused.contains("method") && refused.contains(option), "{refused}");
+            assert!(refused.contains(allowed), "{refused}: {allowed}");
+        }
+        let membrane = json!({ "name": "bilaplacian", "bending": 0, "stretching": 1 });
+        assert_eq!(read(&membrane).unwrap().ordering_power(), Some(1));
     }
 }

@@ -24,12 +24,11 @@ use crate::document::{Document, Handle, HandleId, Paint};
 use crate::edit_error::EditError;
 use crate::edit_node::Node;
 use crate::engine::region_input;
-use crate::exchange::with_pivot;
 use crate::history::bits_equal;
 use crate::method_form::{method_to_value, read_method};
 use crate::project_field::{Field, Ranges, for_each_drawn, ranges_where};
-use crate::region::{Region, displaced};
-use crate::{Camera, HandleSetup, Rest, STIFFNESS_RANGE, Setup};
+use crate::region::Region;
+use crate::{Camera, STIFFNESS_RANGE, Setup};
 use camera::StoredCamera;
 use handle::StoredHandle;
 use objects::{StoredObject, stored_objects};
@@ -365,39 +364,7 @@ impl Project {
         let document = self.document(model)?;
         let input = region_input(&Arc::new(model.clone()), &document);
         let region = Region::measure(&input, &Cancel::new()).unwrap_or_else(|_| Region::still(document.paint.len()));
-        Ok(Setup {
-            roles: region.roles.to_vec(),
-            handles: region
-                .handles
-                .iter()
-                .filter_map(|&id| document.handle(id))
-                .map(|handle| HandleSetup {
-                    name: handle.name.clone(),
-                    transform: with_pivot(handle),
-                    pivot: handle.pivot,
-                })
-                .collect(),
-            stiffness: document
-                .stiffness()
-                .map_or_else(|| vec![1.0; document.paint.len()], <[f64]>::to_vec),
-            soft: region
-                .handles
-                .iter()
-                .map(|&id| document.handle(id).and_then(|handle| handle.soft))
-                .collect(),
-            continuity: document.joints().unwrap_or_default(),
-            loose: document.loose,
-            loose_parts: document
-                .loose_parts
-                .iter()
-                .map(|(part, loose)| (*part, *loose))
-                .collect(),
-            method: document.method.clone(),
-            rest: document.applied.then(|| Rest {
-                displacements: Arc::clone(&document.rest),
-                surface: Arc::new(displaced(&model.surface, &document.rest)),
-            }),
-        })
+        Ok(Setup::of_document(&document, &region))
     }
 }
 
