@@ -310,6 +310,12 @@ impl Editor {
         if handle.transform == transform {
             return;
         }
+        if !transform.can_be_undone() {
+            self.problem = Some("That would flatten the handle for good: give a scale other than 0.".to_owned());
+            return;
+        }
+        // A number that is typed digit by digit passes by 0.
+        self.problem = None;
         let twin = handle.twin;
         handle.put(transform);
         self.document.settled = false;

@@ -11,7 +11,7 @@ use crate::command::Command;
 use crate::constraint::Constraint;
 use crate::document::{HandleId, Paint};
 use crate::editor::Editor;
-use crate::exchange::without_pivot;
+use crate::format::without_pivot;
 use crate::tool::{Tool, TransformDrag, TransformKind, Widen};
 use crate::{HandleTransform, Orbit, Projection, STIFFNESS_RANGE};
 

@@ -7,13 +7,11 @@ use pliant_mesh::Model;
 
 use crate::command::Reach;
 use crate::document::{Document, Handle, HandleId, Paint, PivotPlace};
-use crate::edit_file::{EditFile, HandleEntry};
 use crate::editor::Editor;
 use crate::engine::region_input;
-use crate::field_form::FieldEntry;
 use crate::region::Region;
 use crate::turn::followed;
-use crate::{EditError, HandleTransform, Selector};
+use crate::{EditError, EditFile, FieldEntry, HandleEntry, HandleTransform, Selector};
 
 /// Why a document can't be said as an edit.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]

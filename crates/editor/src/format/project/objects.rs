@@ -4,8 +4,7 @@ use pliant_mesh::Model;
 use serde::{Deserialize, Serialize};
 
 use super::Project;
-use crate::Access;
-use crate::edit_error::EditError;
+use crate::{Access, EditError};
 
 /// An object that is hidden or locked.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]

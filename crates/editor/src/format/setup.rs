@@ -6,11 +6,11 @@ use glam::{DAffine3, DVec3};
 use pliant_deform::{CONTINUITY_RANGE, Holds, Loose, Method, Problem, Role};
 use pliant_mesh::{Model, Surface, SurfaceVertex};
 
+use super::edit_error::EditError;
+use super::edit_file::EditFile;
+use super::exchange::with_pivot;
 use crate::HandleTransform;
 use crate::document::Document;
-use crate::edit_error::EditError;
-use crate::edit_file::EditFile;
-use crate::exchange::with_pivot;
 use crate::region::Region;
 
 /// What [`pliant_deform::Problem`] needs of an edit, and the handles' transforms.

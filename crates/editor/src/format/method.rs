@@ -1,64 +1,61 @@
 //! A method and its options in an edit: `{"name": .., <options>}`, where what is left out has its default.
+//!
+//! The members follow from the method's name, by its declaration, so there is no type that could derive them.
 
 use pliant_deform::{METHODS, Method, OptionDeclaration, OptionKind, OptionValue};
 use serde_json::{Map, Value, json};
 
-use crate::edit_error::EditError;
-use crate::edit_node::Node;
+use super::edit_error::EditError;
+use super::reader::{read, require};
 
 /// Reads a method.
-pub(crate) fn read_method(node: &Node<'_>) -> Result<Method, EditError> {
-    let expected = "an object with the method's `name` and options";
-    let object = node.value().as_object().ok_or_else(|| node.wrong_kind(expected))?;
+pub(crate) fn read_method(value: &Value) -> Result<Method, EditError> {
+    let Some(members) = value.as_object() else {
+        return Err(EditError::wrong_kind(
+            value,
+            "an object with the method's `name` and options",
+        ));
+    };
     // The name first: it decides which options there are.
-    let name = object.get("name").ok_or_else(|| EditError::Missing {
-        member: "name",
-        place: node.place().to_owned(),
-    })?;
-    let name = Node::new(name, &format!("{}.name", node.place()));
-    let text = name.string("a method's name")?;
-    let method = Method::from_name(text).ok_or_else(|| {
+    let name: &str = read(require(members, "name")?).map_err(|error| error.under("name"))?;
+    let method = Method::from_name(name).ok_or_else(|| {
         let names: Vec<&str> = METHODS.iter().map(|declaration| declaration.name).collect();
-        name.unknown_name(text, &names)
+        EditError::unknown_name(name, &names).under("name")
     })?;
     let options = method.declaration().options;
-    let mut known = vec!["name"];
-    known.extend(options.iter().map(|option| option.name));
-    let members = node.object(expected, &known)?;
     let mut values = Vec::new();
-    for option in options {
-        if let Some(node) = members.get(option.name) {
-            values.push((option.name, read_option(option, &node)?));
-        }
+    for (member, value) in members.iter().filter(|(member, _)| *member != "name") {
+        let Some(option) = options.iter().find(|option| option.name == member) else {
+            let known: Vec<&str> = ["name"]
+                .into_iter()
+                .chain(options.iter().map(|option| option.name))
+                .collect();
+            return Err(EditError::unknown_member(member, &known));
+        };
+        values.push((
+            option.name,
+            read_option(option, value).map_err(|error| error.under(member))?,
+        ));
     }
-    method
-        .with(values)
-        .map_err(|refused| match members.get(&refused.option) {
-            Some(node) => node.out_of_range(refused.allowed),
-            None => node.out_of_range(refused),
-        })
+    method.with(values).map_err(|refused| {
+        let value = members.get(&refused.option).unwrap_or(value);
+        EditError::out_of_range(value, &refused.allowed).under(&refused.option)
+    })
 }
 
-fn read_option(option: &OptionDeclaration, node: &Node<'_>) -> Result<OptionValue, EditError> {
-    let value = match option.kind {
-        OptionKind::Number { .. } => OptionValue::Number(node.number()?),
-        OptionKind::Whole { .. } | OptionKind::Numbered { .. } => match u32::try_from(node.whole()?) {
-            Ok(number) => OptionValue::Whole(number),
-            Err(_) => return Err(node.out_of_range(option.kind.allowed())),
-        },
+fn read_option(option: &OptionDeclaration, value: &Value) -> Result<OptionValue, EditError> {
+    match option.kind {
+        OptionKind::Number { .. } => read(value).map(OptionValue::Number),
+        OptionKind::Whole { .. } | OptionKind::Numbered { .. } => read(value).map(OptionValue::Whole),
+        OptionKind::Switch => read(value).map(OptionValue::Switch),
         OptionKind::Named { choices } => {
-            let text = node.string("a name")?;
-            match choices.iter().find(|choice| **choice == text) {
-                Some(choice) => OptionValue::Name(choice),
-                None => return Err(node.unknown_name(text, choices)),
-            }
+            let name: &str = read(value)?;
+            let choice = choices.iter().find(|choice| **choice == name);
+            choice
+                .map(|choice| OptionValue::Name(choice))
+                .ok_or_else(|| EditError::unknown_name(name, choices))
         }
-        OptionKind::Switch => match node.value().as_bool() {
-            Some(on) => OptionValue::Switch(on),
-            None => return Err(node.wrong_kind("true or false")),
-        },
-    };
-    Ok(value)
+    }
 }
 
 /// The method as the edit format has it: its name and what differs from its defaults.
@@ -91,8 +88,8 @@ mod tests {
 
     use super::*;
 
-    fn read(value: &Value) -> Result<Method, EditError> {
-        read_method(&Node::new(value, "method"))
+    fn parsed(value: &Value) -> Result<Method, EditError> {
+        read_method(value).map_err(|error| error.under("method"))
     }
 
     #[test]
@@ -101,7 +98,7 @@ mod tests {
             "name": "bilaplacian", "order": 3, "stretching": 2.5, "bending": 0.5, "discretisation": "uniform",
             "triangulation": "tufted", "anisotropy": 0.25
         });
-        let method = read(&value).unwrap();
+        let method = parsed(&value).unwrap();
         let options = method.options::<Bilaplacian>().unwrap();
         let Bilaplacian {
             stretching, bending, ..
@@ -114,7 +111,7 @@ mod tests {
             json!({ "name": "arap", "energy": "smooth", "smoothness": 0.5, "tolerance": 1e-6, "max_iterations": 40 }),
             json!({ "name": "primo", "thickness": 0.1, "tolerance": 1e-6, "max_iterations": 40 }),
         ] {
-            let method = read(&value).unwrap();
+            let method = parsed(&value).unwrap();
             assert_eq!(method_to_value(&method), value);
             assert_eq!(method.declaration().options.len() + 1, value.as_object().unwrap().len());
         }
@@ -124,10 +121,10 @@ mod tests {
     fn defaults_are_not_written() {
         for declaration in METHODS {
             let value = json!({ "name": declaration.name });
-            assert_eq!(method_to_value(&read(&value).unwrap()), value);
+            assert_eq!(method_to_value(&parsed(&value).unwrap()), value);
         }
         let spelled = json!({ "name": "bilaplacian", "order": 2, "bending": 1, "discretisation": "cotangent-area" });
-        assert_eq!(read(&spelled).unwrap(), Method::default());
+        assert_eq!(parsed(&spelled).unwrap(), Method::default());
     }
 
     #[test]
@@ -147,7 +144,7 @@ mod tests {
                 json!("cotangents"),
                 "did you mean `cotangent`?",
             ),
-            ("bilaplacian", "discretisation", json!(1), "a name"),
+            ("bilaplacian", "discretisation", json!(1), "a string"),
             ("bilaplacian", "triangulation", json!("delaunay"), "as-is"),
             ("bilaplacian", "anisotropy", json!(1.5), "from 0 to 1"),
             ("bilaplacian", "ordre", json!(2), "did you mean `order`?"),
@@ -156,17 +153,19 @@ mod tests {
             ("arap", "tolerance", json!(0.2), "from 1e-12 to 0.1"),
             ("arap", "tolerance", json!("little"), "a number"),
             ("arap", "max_iterations", json!(0), "from 1 to 100000"),
-            ("arap", "max_iterations", json!(9_999_999_999_u64), "from 1 to 100000"),
+            ("arap", "max_iterations", json!(9_999_999_999_u64), "a whole number"),
             ("arap", "max_iterations", json!(1.5), "whole"),
             ("arap", "order", json!(2), "known are"),
             ("primo", "thickness", json!("thin"), "a number"),
             ("primo", "energy", json!("spokes"), "known are"),
         ] {
-            let refused = read(&json!({ "name": method, option: value })).unwrap_err().to_string();
+            let refused = parsed(&json!({ "name": method, option: value }))
+                .unwrap_err()
+                .to_string();
             assert!(refused.contains("method") && refused.contains(option), "{refused}");
             assert!(refused.contains(allowed), "{refused}: {allowed}");
         }
         let membrane = json!({ "name": "bilaplacian", "bending": 0, "stretching": 1 });
-        assert_eq!(read(&membrane).unwrap().ordering_power(), Some(1));
+        assert_eq!(parsed(&membrane).unwrap().ordering_power(), Some(1));
     }
 }
