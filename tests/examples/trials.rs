@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use pliant_deform::Method;
+use pliant_deform::Bilaplacian;
 use pliant_tests::trials::{Outcome, Regularised, Trial, scans};
 
 fn main() {
@@ -17,9 +17,9 @@ fn main() {
     for seed in first..first + count {
         let place = (seed % subjects.len() as u64) as usize;
         let trial = Trial::with(seed, &subjects[place].model, words.get(2).map(String::as_str));
-        let kind = match &trial.method {
-            Method::Bilaplacian(options) => format!("bilaplacian order {}", options.order.number()),
-            method => method.name().to_owned(),
+        let kind = match trial.method.options::<Bilaplacian>() {
+            Some(options) => format!("bilaplacian order {}", options.order.number()),
+            None => trial.method.name().to_owned(),
         };
         let name = subjects[place].name.clone();
         let subject = &mut subjects[place];

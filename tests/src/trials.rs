@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{
-    ArapEnergy, Bilaplacian, Discretisation, Holds, Loose, Method, Ordering, Problem, Role, ShellOrder, SolveError,
-    Triangulation,
+    Arap, ArapEnergy, Bilaplacian, ConstraintKind, Discretisation, Holds, Loose, METHODS, Method, Needs, Ordering,
+    Primo, Problem, Role, ShellOrder, SolveError, Triangulation,
 };
 use pliant_mesh::{Cancel, Model, Progress};
 
@@ -110,10 +110,12 @@ impl Trial {
         if let Some(name) = name {
             method = Method::from_name(name).unwrap();
         }
-        match &mut method {
-            Method::Arap(options) => options.energy = ArapEnergy::ALL[chance.below(ArapEnergy::ALL.len())],
-            Method::Primo(options) => options.thickness = 10_f64.powf(chance.between(-3.0, 0.0)),
-            _ => {}
+        if let Some(mut options) = method.options::<Arap>().cloned() {
+            options.energy = ArapEnergy::ALL[chance.below(ArapEnergy::ALL.len())];
+            method = options.into();
+        } else if let Some(mut options) = method.options::<Primo>().cloned() {
+            options.thickness = 10_f64.powf(chance.between(-3.0, 0.0));
+            method = options.into();
         }
         let around = |centre: DVec3, radius: f64| move |p: DVec3| p.distance(centre) <= radius * diagonal;
         let ball = |chance: &mut Chance, radius: f64| around(model.surface.positions[chance.below(count)], radius);
@@ -244,7 +246,7 @@ impl Trial {
             method: &self.method,
             revision: 0,
         };
-        let ordering = subject.ordering(self.method.operator_power());
+        let ordering = self.method.ordering_power().map(|power| subject.ordering(power));
         let mut bound = match problem.bind(ordering, &Progress::new(), &Cancel::new()) {
             Ok(bound) => bound,
             Err(error) => {
@@ -299,7 +301,7 @@ impl Trial {
     }
 
     fn check(&self, model: &Model, targets: &[DAffine3], displacements: &[DVec3]) {
-        let holds_softly = !matches!(self.method, Method::Primo(_));
+        let holds_softly = self.method.declaration().heeds(ConstraintKind::SoftHandles);
         let size = model.bounds().unwrap().diagonal();
         for ((role, rest), displacement) in self.roles.iter().zip(&model.surface.positions).zip(displacements) {
             assert!(displacement.is_finite(), "{displacement}");
@@ -322,9 +324,10 @@ impl Trial {
 fn method(chance: &mut Chance) -> Method {
     let share = chance.share();
     if share > 0.7 {
-        // Any other method, with its defaults.
-        let others = Method::NAMES.len() - 1;
-        return Method::from_name(Method::NAMES[1 + chance.below(others)]).unwrap();
+        // Any other method for surfaces, with its defaults.
+        let others = METHODS[1..].iter().map(|declaration| (declaration.default)());
+        let others: Vec<Method> = others.filter(|method| method.needs() != Needs::Points).collect();
+        return others[chance.below(others.len())].clone();
     }
     let mut options = Bilaplacian::default();
     options.order = [
@@ -350,7 +353,7 @@ fn method(chance: &mut Chance) -> Method {
     if chance.share() < 0.4 {
         options.anisotropy = chance.share();
     }
-    Method::Bilaplacian(options)
+    Method::from(options)
 }
 
 /// Where a handle goes: scaled and turned about a centre, by up to nearly half a turn, and shifted by up to the model's

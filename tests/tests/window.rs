@@ -18,7 +18,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
 use pliant_app::window::{Application, KeepOriginal, NumpadDigits, Shared, Shell, Source};
-use pliant_deform::{Loose, Method};
+use pliant_deform::{Loose, METHODS};
 use pliant_editor::{BrushMetric, Command, Reach, Shading, ToolMode};
 use pliant_tests::{Folder, assets, open, run};
 
@@ -423,17 +423,18 @@ fn a_whole_session_undone_redone_saved_and_opened_again_is_the_same_document_by_
     }
     session.settle();
     let mut shapes: Vec<Vec<DVec3>> = Vec::new();
-    for &name in Method::NAMES {
-        command(&mut session, Command::SetMethod(Method::from_name(name).unwrap()));
+    for declaration in METHODS {
+        let name = declaration.name;
+        command(&mut session, Command::SetMethod((declaration.default)()));
         assert!(session.harness.state().editor().view().problem.is_none(), "{name}");
         shapes.push(session.shape());
     }
     for (number, shape) in shapes.iter().enumerate() {
-        assert!(moved(shape) > 0, "{}", Method::NAMES[number]);
+        assert!(moved(shape) > 0, "{}", METHODS[number].name);
         assert!(
             shapes[..number].iter().all(|other| other != shape),
             "{}",
-            Method::NAMES[number]
+            METHODS[number].name
         );
     }
     command(&mut session, Command::Apply);

@@ -158,7 +158,7 @@ fn main() {
     timed.binds = true;
     timed.open(&model);
     // Jobs are not counted: the method that is done soonest.
-    timed.command(Command::SetMethod(Method::Bilaplacian(Bilaplacian::default())));
+    timed.command(Command::SetMethod(Method::from(Bilaplacian::default())));
     for _ in 0..ROUNDS {
         strokes(&mut timed);
         regions(&mut timed);

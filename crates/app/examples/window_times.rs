@@ -186,7 +186,7 @@ fn menus(session: &mut Session) {
         Command::Undo,
         Command::Objects(ObjectAction::Hide, vec![0]),
         Command::Undo,
-        Command::SetMethod(Method::Bilaplacian(Bilaplacian::default())),
+        Command::SetMethod(Method::from(Bilaplacian::default())),
         Command::Apply,
         Command::ResetShape,
         Command::ClearRegions,

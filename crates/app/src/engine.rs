@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
-use pliant_deform::{Bound, Method, Ordering, Problem, SolveError};
+use pliant_deform::{Bound, Method, Ordering, SolveError};
 use pliant_editor::{Beginning, Setup};
 use pliant_io::{Format, MorphTarget, Opened, Scene};
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
@@ -107,12 +107,19 @@ pub fn is_project(path: &Path) -> bool {
         .is_some_and(|extension| extension.eq_ignore_ascii_case("pliant"))
 }
 
-/// Orders a model's equations for a method, once for all regions.
+/// Orders a model's equations for a method that needs it, once for all regions.
 ///
 /// # Errors
 /// [`AppError::Interrupted`] soon after `cancel` is raised.
-pub fn order(model: &Model, method: &Method, progress: &Progress, cancel: &Cancel) -> Result<Ordering, AppError> {
-    Ordering::of(&model.topology, method.operator_power(), progress, cancel).map_err(|_| AppError::Interrupted)
+pub fn order(
+    model: &Model,
+    method: &Method,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<Option<Ordering>, AppError> {
+    method
+        .ordering(&model.topology, progress, cancel)
+        .map_err(|_| AppError::Interrupted)
 }
 
 /// Binds a setup.
@@ -123,27 +130,15 @@ pub fn bind(
     file: &Path,
     model: &Model,
     setup: &Setup,
-    ordering: &Ordering,
+    ordering: Option<&Ordering>,
     progress: &Progress,
     cancel: &Cancel,
 ) -> Result<Bound, AppError> {
-    let problem = Problem {
-        surface: setup.rest.as_ref().map_or(&model.surface, |rest| &*rest.surface),
-        topology: &model.topology,
-        roles: &setup.roles,
-        handle_count: setup.handles.len(),
-        stiffness: &setup.stiffness,
-        holds: setup.holds(),
-        loose: setup.loose,
-        method: &setup.method,
-        revision: 0,
-    };
-    problem
-        .bind(ordering, progress, cancel)
-        .map_err(|error| AppError::Bind {
-            file: file.to_owned(),
-            source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
-        })
+    let bound = setup.problem(model).bind(ordering, progress, cancel);
+    bound.map_err(|error| AppError::Bind {
+        file: file.to_owned(),
+        source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
+    })
 }
 
 /// What [`apply`] is to do.
@@ -295,7 +290,7 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
         apply.file,
         model,
         setup,
-        &ordering,
+        ordering.as_ref(),
         &watch.begin("binding"),
         &watch.cancel,
     )?;
@@ -364,7 +359,8 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
         iterations: iterations as f64 / count.max(1) as f64,
         converged: last.converged,
         energy: Energy {
-            rest: finite_or(bound.energy_rest(), 0.0),
+            // Every method's energy is 0 at rest.
+            rest: 0.0,
             r#final: finite_or(last.energy, f64::MAX),
         },
         warnings: bound.warnings().to_vec(),

@@ -21,7 +21,7 @@ use std::time::Duration;
 use desktop::{Desktop, PAUSE, PLIANT, SIZE};
 use pliant_app::engine::{self, Loaded};
 use pliant_app::watch::Watch;
-use pliant_editor::method_title;
+use pliant_deform::Method;
 use pliant_mesh::WeldOptions;
 
 impl Desktop {
@@ -103,7 +103,7 @@ fn pointer_and_keys_make_the_shape_that_the_engine_says() {
     desktop.saves_what_the_engine_makes(&sample, folder.path(), "arap", 1e-3);
     // A linear method has one answer, whichever way it was come to.
     desktop.key("F1");
-    desktop.type_text(&format!("Method: {}", method_title("bilaplacian")));
+    desktop.type_text(&format!("Method: {}", Method::default().declaration().title));
     desktop.key("Return");
     sleep(8 * PAUSE);
     desktop.saves_what_the_engine_makes(&sample, folder.path(), "bilaplacian", 1e-6);

@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use common::{edit, median, ms, name, read, timed};
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_deform::{Arap, ArapEnergy, Bound, Holds, Loose, Method, Ordering, Problem, Step};
+use pliant_deform::{Arap, ArapEnergy, Bound, Holds, Loose, Method, Problem, Step};
 use pliant_mesh::{Cancel, Model, Progress};
 
 /// A frame of a drag, in milliseconds.
@@ -43,9 +43,8 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
     let (roles, target) = edit(file, &model);
     let stiffness = vec![1.0; roles.len()];
     let (progress, cancel) = (Progress::new(), Cancel::new());
-    let exact = Method::Arap(options(energy, 1e-10));
-    let (order_ms, ordering) =
-        timed(|| Ordering::of(&model.topology, exact.operator_power(), &progress, &cancel).unwrap());
+    let exact = Method::from(options(energy, 1e-10));
+    let (order_ms, ordering) = timed(|| exact.ordering(&model.topology, &progress, &cancel).unwrap());
     let bind = |method: &Method| {
         let problem = Problem {
             surface: &model.surface,
@@ -58,9 +57,9 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
             method,
             revision: 0,
         };
-        problem.bind(&ordering, &progress, &cancel).unwrap()
+        problem.bind(ordering.as_ref(), &progress, &cancel).unwrap()
     };
-    let (bind_ms, mut bound) = timed(|| bind(&Method::Arap(options(energy, Arap::default().tolerance))));
+    let (bind_ms, mut bound) = timed(|| bind(&Method::from(options(energy, Arap::default().tolerance))));
     let mut displacements = vec![DVec3::ZERO; roles.len()];
     let mut exactly = bind(&exact);
 
@@ -90,7 +89,7 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
     // An iteration is a local and a global step at full resolution: a coarse level that leads would be beside the point.
     let mut alone = options(energy, 1e-10);
     alone.coarse_above = usize::MAX;
-    let mut iterations_ms = self::steps(&mut bind(&Method::Arap(alone)), target, |_, _| {});
+    let mut iterations_ms = self::steps(&mut bind(&Method::from(alone)), target, |_, _| {});
     let iteration_ms = median(&mut iterations_ms[1..]);
 
     let drag = drag(&mut bound, &model, target, &minimum);

@@ -14,7 +14,7 @@ use std::time::Instant;
 use common::{median, ms, name, peak_mb, peers_edit, read};
 use glam::DVec3;
 use pliant_deform::stages::Operator;
-use pliant_deform::{Holds, Loose, Method, Ordering, Problem, Role};
+use pliant_deform::{Bilaplacian, Holds, Loose, Method, Ordering, Problem, Role};
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, vertex_normals};
 use rayon::prelude::*;
 
@@ -52,9 +52,9 @@ fn measure(file: &Path, threads: usize, clock: fn() -> f64) {
         revision: 0,
     };
     let times = if count > 500_000 { 3 } else { 5 };
-    let order = || Ordering::of(&model.topology, method.operator_power(), &progress, &cancel).unwrap();
+    let order = || Ordering::of(&model.topology, 2, &progress, &cancel).unwrap();
     let (order_ms, ordering) = watch.of(times, order);
-    let Method::Bilaplacian(options) = &method else {
+    let Some(options) = method.options::<Bilaplacian>() else {
         unreachable!()
     };
     let (operator_ms, operator) = watch.of(times, || Operator::of(&problem(&roles), options, &ordering).unwrap());

@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use common::{edit, ms, name, read};
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_deform::{Bound, Holds, Loose, Method, Ordering, Primo, Problem};
+use pliant_deform::{Bound, Holds, Loose, Method, Primo, Problem};
 use pliant_mesh::{Cancel, Progress};
 
 fn main() {
@@ -38,8 +38,7 @@ fn measure(scene: &Path, threads: usize, thickness: f64) {
         options.tolerance = tolerance;
         options.thickness = thickness;
         options.max_iterations = 2000;
-        let method = Method::Primo(options);
-        let ordering = Ordering::of(&model.topology, method.operator_power(), &progress, &cancel).unwrap();
+        let method = Method::from(options);
         let problem = Problem {
             surface: &model.surface,
             topology: &model.topology,
@@ -52,7 +51,7 @@ fn measure(scene: &Path, threads: usize, thickness: f64) {
             revision: 0,
         };
         let start = Instant::now();
-        (problem.bind(&ordering, &progress, &cancel).unwrap(), ms(start))
+        (problem.bind(None, &progress, &cancel).unwrap(), ms(start))
     };
     let energy = |(_, energy): &(f64, f64)| *energy;
     let at_once = solve(&mut bind(1e-9).0, target).last().map_or(f64::NAN, energy);

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use common::{median, name, peers_edit, read, timed};
 use glam::DVec3;
-use pliant_deform::{ArapEnergy, Holds, Loose, Method, Ordering, Problem};
+use pliant_deform::{Arap, ArapEnergy, Holds, Loose, Method, Problem};
 use pliant_mesh::{Cancel, Progress};
 
 /// Steps that are timed, behind the first, which also starts.
@@ -21,8 +21,9 @@ fn main() {
         panic!("usage: steps MESH.off THREADS METHOD [ENERGY]");
     };
     let mut method = Method::from_name(method).unwrap();
-    if let (Method::Arap(options), [energy]) = (&mut method, energy) {
+    if let (Some(mut options), [energy]) = (method.options::<Arap>().cloned(), energy) {
         options.energy = *ArapEnergy::ALL.iter().find(|known| known.name() == energy).unwrap();
+        method = options.into();
     }
     let threads = threads.parse().unwrap();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -33,8 +34,7 @@ fn measure(file: &Path, threads: usize, method: &Method) {
     let model = read(file);
     let (roles, target) = peers_edit(&model);
     let (progress, cancel) = (Progress::new(), Cancel::new());
-    let (order_ms, ordering) =
-        timed(|| Ordering::of(&model.topology, method.operator_power(), &progress, &cancel).unwrap());
+    let (order_ms, ordering) = timed(|| method.ordering(&model.topology, &progress, &cancel).unwrap());
     let problem = Problem {
         surface: &model.surface,
         topology: &model.topology,
@@ -46,16 +46,15 @@ fn measure(file: &Path, threads: usize, method: &Method) {
         method,
         revision: 0,
     };
-    let (bind_ms, mut bound) = timed(|| problem.bind(&ordering, &progress, &cancel).unwrap());
+    let (bind_ms, mut bound) = timed(|| problem.bind(ordering.as_ref(), &progress, &cancel).unwrap());
     // Peers' steps are at full resolution: a coarse level that leads would be beside the point.
-    let mut alone = method.clone();
-    if let Method::Arap(options) = &mut alone {
+    if let Some(mut options) = method.options::<Arap>().cloned() {
         options.coarse_above = usize::MAX;
         bound = Problem {
-            method: &alone,
+            method: &options.into(),
             ..problem
         }
-        .bind(&ordering, &progress, &cancel)
+        .bind(ordering.as_ref(), &progress, &cancel)
         .unwrap();
     }
     bound.set_targets(&[target]).unwrap();

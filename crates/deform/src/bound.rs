@@ -6,15 +6,12 @@ use glam::{DAffine3, DVec3};
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
-use crate::arap::ArapSolver;
 use crate::follow::{Followers, followers};
-use crate::handle::{Handle, Motion};
+use crate::handle::{FRAME_CHUNK, Handle, Motion, clear};
+use crate::method::{BindInput, BoundMethod, Finite, Solve};
 use crate::partition::Partition;
-use crate::primo::PrimoSolver;
-use crate::shell::bases::FRAME_CHUNK;
-use crate::shell::plate::{Finite, Known, Plate, repairs};
 use crate::sparse::cholesky::{Renewable, Renewal};
-use crate::{BindError, Budget, HandleBases, Method, Ordering, Problem, SolveError};
+use crate::{BindError, Budget, HandleBases, Ordering, Problem, SolveError};
 
 /// A bound problem: everything that does not depend on the handles' transforms is solved.
 #[derive(Debug)]
@@ -25,14 +22,15 @@ pub struct Bound {
     handles: Vec<Handle>,
     motions: Vec<Motion>,
     iteration: u32,
-    solver: Solver,
+    solve: Solve,
+    method: Box<dyn BoundMethod>,
     followers: Followers,
     warnings: Vec<String>,
 }
 
 /// The factor of a bound linear shell, of which [`Problem::rebind`] takes over what is the same. Cheap to clone.
 #[derive(Clone, Debug)]
-pub struct Remains(Arc<Renewable>);
+pub struct Remains(pub(crate) Arc<Renewable>);
 
 impl Remains {
     pub(crate) fn factored(&self) -> &Renewable {
@@ -45,18 +43,10 @@ impl Remains {
     }
 }
 
-/// What the method computed; later methods join as variants.
-#[derive(Debug)]
-enum Solver {
-    Plate(Box<Plate>),
-    Arap(Box<ArapSolver>),
-    Primo(Box<PrimoSolver>),
-}
-
-/// How a plate finds what is solved for.
+/// Whether a method may take the short cut that it has.
 #[derive(Clone, Copy, Debug)]
 enum Way {
-    Bases,
+    Shortest,
     BackSubstitution,
 }
 
@@ -78,7 +68,7 @@ pub struct Step {
 impl Bound {
     pub(crate) fn bind(
         problem: &Problem,
-        ordering: &Ordering,
+        ordering: Option<&Ordering>,
         renewal: Renewal,
         budget: Budget,
         progress: &Progress,
@@ -90,7 +80,7 @@ impl Bound {
 
     fn bind_within(
         problem: &Problem,
-        ordering: &Ordering,
+        ordering: Option<&Ordering>,
         renewal: Renewal,
         budget: Budget,
         progress: &Progress,
@@ -99,39 +89,23 @@ impl Bound {
         cancel.check()?;
         let mut partition = Partition::of(problem)?;
         partition.take_budget(budget)?;
-        let (expected, expected_power) = (problem.surface.positions.len(), problem.method.operator_power());
-        if (ordering.vertex_count(), ordering.power()) != (expected, expected_power) {
-            let (found, found_power) = (ordering.vertex_count(), ordering.power());
-            return Err(BindError::Ordering {
-                found,
-                found_power,
-                expected,
-                expected_power,
-            });
-        }
         let positions = &problem.surface.positions;
         let handles: Vec<Handle> = partition
             .handles
             .iter()
             .map(|vertices| Handle::new(vertices.clone(), positions))
             .collect();
-        let solver = match problem.method {
-            Method::Bilaplacian(options) => {
-                let known = Known { ordering, renewal };
-                let plate = Plate::bind(problem, options, &partition, &handles, known, progress, cancel)?;
-                partition.warnings.extend(plate.warnings());
-                Solver::Plate(Box::new(plate))
-            }
-            Method::Arap(options) => {
-                let arap = ArapSolver::bind(problem, options, &partition, &handles, ordering, progress, cancel)?;
-                partition.warnings.extend(repairs(arap.mollified_faces()));
-                Solver::Arap(Box::new(arap))
-            }
-            Method::Primo(options) => {
-                let primo = PrimoSolver::bind(problem, options, &partition, &handles, progress, cancel)?;
-                Solver::Primo(Box::new(primo))
-            }
-        };
+        let method = problem.method.implementation().bind(&BindInput {
+            problem,
+            partition: &partition,
+            handles: &handles,
+            ordering,
+            renewal,
+            progress,
+            cancel,
+        })?;
+        let mut warnings = partition.warnings;
+        warnings.extend(method.warnings());
         Ok(Self {
             revision: problem.revision,
             vertex_count: positions.len(),
@@ -139,24 +113,22 @@ impl Bound {
             motions: vec![Motion::default(); handles.len()],
             handles,
             iteration: 0,
-            solver,
+            solve: problem.method.solve(),
+            method,
             followers: followers(
                 problem.surface,
                 problem.topology,
                 &partition.following,
                 &partition.driven,
             ),
-            warnings: partition.warnings,
+            warnings,
         })
     }
 
     /// What binding a problem that differs in a few vertices' roles can take over, where the method has a factor that
     /// can be renewed: the linear shell. There is much only where [`Problem::rebind`] bound it.
     pub fn remains(&self) -> Option<Remains> {
-        match &self.solver {
-            Solver::Plate(plate) => Some(Remains(Arc::clone(plate.factored()))),
-            Solver::Arap(_) | Solver::Primo(_) => None,
-        }
+        self.method.remains()
     }
 
     /// Sets where the handles are to go: one affine map of world positions a handle, from rest.
@@ -180,7 +152,7 @@ impl Bound {
             .map(|(handle, target)| handle.motion(target))
             .collect();
         // A method that iterates goes on where it is.
-        if matches!(self.solver, Solver::Plate(_)) || motions != self.motions {
+        if self.solve == Solve::Direct || motions != self.motions {
             self.iteration = 0;
         }
         self.motions = motions;
@@ -194,7 +166,7 @@ impl Bound {
     /// # Errors
     /// A wrong length, or a result that is not finite; `displacements` is all zero then.
     pub fn step(&mut self, displacements: &mut [DVec3]) -> Result<Step, SolveError> {
-        self.frame(displacements, Way::Bases)
+        self.frame(displacements, Way::Shortest)
     }
 
     /// As [`Bound::step`], but by solving with the factor in f64 instead of using the handles' bases. What has no bases
@@ -225,48 +197,23 @@ impl Bound {
         let motions = &self.motions;
         if motions.iter().all(Motion::is_rest) {
             clear(displacements);
-            match &mut self.solver {
-                Solver::Plate(_) => {}
-                Solver::Arap(arap) => arap.rest(),
-                Solver::Primo(primo) => primo.rest(),
-            }
+            self.method.rest();
             return Ok(step);
         }
-        let mut finite = Finite::Unknown;
-        match (&mut self.solver, way) {
-            (Solver::Plate(plate), Way::Bases) => {
-                finite = plate.frame(motions, displacements);
-                step.energy = plate.energy(motions);
-            }
-            (Solver::Plate(plate), Way::BackSubstitution) => {
-                clear(displacements);
-                for (handle, motion) in motions.iter().enumerate() {
-                    place(plate.prescribed(handle), motion, displacements);
-                }
-                plate
-                    .back_substitute(displacements)
-                    .inspect_err(|_| displacements.fill(DVec3::ZERO))?;
-                step.energy = plate.energy_of(motions, displacements);
-            }
-            (Solver::Arap(arap), _) => {
-                clear(displacements);
-                for (handle, motion) in motions.iter().enumerate() {
-                    place(arap.prescribed(handle), motion, displacements);
-                }
-                (step.converged, step.energy) = arap.step(motions, displacements);
-                step.finished = step.converged || self.iteration >= arap.max_iterations();
-            }
-            (Solver::Primo(primo), _) => {
-                clear(displacements);
-                for (handle, motion) in motions.iter().enumerate() {
-                    place(primo.prescribed(handle), motion, displacements);
-                }
-                (step.converged, step.energy) = primo.step(motions, displacements);
-                step.finished = step.converged || self.iteration >= primo.max_iterations();
-            }
-        }
+        let stepped = match way {
+            Way::Shortest => self.method.step(motions, displacements),
+            Way::BackSubstitution => self.method.step_by_back_substitution(motions, displacements),
+        };
+        let stepped = stepped.inspect_err(|_| displacements.fill(DVec3::ZERO))?;
+        step.energy = stepped.energy;
+        step.converged = stepped.converged;
+        step.finished = step.converged
+            || match self.solve {
+                Solve::Direct => true,
+                Solve::Iterative { max_iterations } => self.iteration >= max_iterations,
+            };
         self.followers.carry(displacements);
-        if finite == Finite::Unknown || !self.followers.is_empty() {
+        if stepped.finite == Finite::Unknown || !self.followers.is_empty() {
             gate(displacements)?;
         }
         if !step.energy.is_finite() {
@@ -283,27 +230,17 @@ impl Bound {
         if displacements.len() != self.vertex_count {
             return None;
         }
-        match &self.solver {
-            Solver::Plate(plate) => Some(plate.energy_of(&self.motions, displacements)),
-            Solver::Arap(arap) => Some(arap.energy_of(&self.motions, displacements)),
-            // Its energy is the prisms', not the vertices'.
-            Solver::Primo(_) => None,
-        }
+        self.method.energy_of(&self.motions, displacements)
     }
 
-    /// The handles' bases, where the method is linear.
+    /// The handles' bases, where a step is a product with them.
     pub fn handle_bases(&self) -> Option<&HandleBases> {
-        match &self.solver {
-            Solver::Plate(plate) => Some(plate.bases()),
-            Solver::Arap(_) | Solver::Primo(_) => None,
-        }
+        self.method.handle_bases()
     }
 
-    /// The energy of the rest shape, as in [`Step::energy`].
-    pub fn energy_rest(&self) -> f64 {
-        match self.solver {
-            Solver::Plate(_) | Solver::Arap(_) | Solver::Primo(_) => 0.0,
-        }
+    /// How the method comes to its shape.
+    pub fn solve(&self) -> Solve {
+        self.solve
     }
 
     /// Sentences for a person: what components do that lack a handle or a hold, what was repaired.
@@ -323,50 +260,24 @@ impl Bound {
 
     /// How many of them the system is solved for: those that a handle can reach.
     pub fn solved_count(&self) -> usize {
-        match &self.solver {
-            Solver::Plate(plate) => plate.bases().vertices().len(),
-            Solver::Arap(arap) => arap.solved_count(),
-            Solver::Primo(primo) => primo.solved_count(),
-        }
+        self.method.solved_count()
     }
 
     /// About what a step costs, in vertices of a method whose steps are cheap: who shows shapes as they come takes fewer
-    /// steps between two of them where they are dear. Coupled prisms took 17 ms a step on the survey's bar (5,122 solved
-    /// vertices, two cores), so that a shape a step is what keeps a window going.
+    /// steps between two of them where they are dear.
     pub fn step_cost(&self) -> usize {
-        match &self.solver {
-            Solver::Plate(_) | Solver::Arap(_) => self.solved_count(),
-            Solver::Primo(_) => 20 * self.solved_count(),
-        }
+        self.method.step_cost()
     }
 
     /// How many numbers the system's factor stores, 8 bytes each.
     pub fn factor_len(&self) -> usize {
-        match &self.solver {
-            Solver::Plate(plate) => plate.factor_len(),
-            Solver::Arap(arap) => arap.factor_len(),
-            Solver::Primo(primo) => primo.factor_len(),
-        }
+        self.method.factor_len()
     }
 
     /// [`Problem::revision`] of the problem it was bound from.
     pub fn revision(&self) -> u64 {
         self.revision
     }
-}
-
-/// Writes where a handle's vertices go.
-fn place(vertices: impl Iterator<Item = (u32, [f64; 4])>, motion: &Motion, displacements: &mut [DVec3]) {
-    for (vertex, coordinates) in vertices {
-        displacements[vertex as usize] = motion.displace(coordinates);
-    }
-}
-
-/// All zero.
-fn clear(displacements: &mut [DVec3]) {
-    displacements
-        .par_chunks_mut(FRAME_CHUNK)
-        .for_each(|chunk| chunk.fill(DVec3::ZERO));
 }
 
 /// The one way out: no displacement that is not finite passes.

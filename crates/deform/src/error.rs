@@ -77,6 +77,12 @@ pub enum BindError {
         /// The method's power.
         expected_power: u32,
     },
+    /// The method needs an ordering.
+    #[error("the method needs an ordering of power {expected_power}: make one from this surface")]
+    NoOrdering {
+        /// The method's power.
+        expected_power: u32,
+    },
     /// A rest position that is not finite.
     #[error("vertex {vertex} has no finite position: weld the surface again")]
     Position {

@@ -4,6 +4,10 @@
 //! thousand diagonals from the origin; over these 3e-8, wherever the scan stands.
 
 use glam::{DAffine3, DMat3, DVec3};
+use rayon::prelude::*;
+
+/// Surface vertices that one task displaces.
+pub(crate) const FRAME_CHUNK: usize = 4096;
 
 /// A handle's vertices and its frame.
 #[derive(Clone, Debug)]
@@ -81,4 +85,11 @@ impl Motion {
     pub fn is_rest(&self) -> bool {
         *self == Self::default()
     }
+}
+
+/// All zero.
+pub(crate) fn clear(displacements: &mut [DVec3]) {
+    displacements
+        .par_chunks_mut(FRAME_CHUNK)
+        .for_each(|chunk| chunk.fill(DVec3::ZERO));
 }

@@ -16,6 +16,8 @@ mod error;
 mod follow;
 mod handle;
 mod holds;
+#[cfg(feature = "identity-method")]
+mod identity;
 mod lanes;
 mod lbfgs;
 mod method;
@@ -37,7 +39,10 @@ pub use bound::{Bound, Remains, Step};
 pub use budget::Budget;
 pub use error::{BindError, Crowded, SolveError};
 pub use holds::{CONTINUITY_RANGE, Holds};
-pub use method::Method;
+pub use method::{
+    ConstraintKind, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused,
+    OptionValue, Solve,
+};
 pub use operators::Laplacian;
 pub use primo::Primo;
 pub use problem::{Loose, Problem, Role};

@@ -26,6 +26,8 @@ mod tufted;
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
 use rayon::prelude::*;
 
+pub(crate) use self::mollification::repairs;
+
 use crate::Discretisation;
 use crate::operators::face_terms::{FaceTerms, Metric};
 use crate::operators::net::{Graph, Net};
@@ -86,7 +88,7 @@ impl Laplacian {
 
     /// The operator with full rows for the surface vertices `rows` (ascending); their neighbours get empty rows.
     pub fn with_rows(surface: &Surface, topology: &Topology, stiffness: &[f64], rows: &[u32]) -> Self {
-        Self::discretised(surface, topology, stiffness, rows, Discretisation::default())
+        Self::discretised(surface, topology, stiffness, rows, Discretisation::CotangentArea)
     }
 
     /// As [`Laplacian::with_rows`], with other weights and areas than the default.

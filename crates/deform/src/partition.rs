@@ -9,8 +9,10 @@
 use pliant_mesh::SurfaceVertex;
 
 use crate::budget::bytes_of;
+use crate::method::option::joined;
+use crate::method::{ConstraintKind, METHODS, Needs};
 use crate::operators::net::{Graph, Net};
-use crate::{BindError, Budget, CONTINUITY_RANGE, Loose, Method, Problem, Role};
+use crate::{BindError, Budget, CONTINUITY_RANGE, Loose, Problem, Role};
 
 /// The vertices by what happens to them, all lists ascending.
 #[derive(Debug)]
@@ -41,7 +43,8 @@ impl<'a> Partition<'a> {
     /// Checks the problem's tables and sorts its vertices.
     pub fn of(problem: &Problem<'a>) -> Result<Self, BindError> {
         check(problem)?;
-        let net = Net::of_problem(problem);
+        let method = problem.method.implementation();
+        let net = method.net(problem);
         let mut handles = vec![Vec::new(); problem.handle_count];
         let component_count = problem.topology.components().len();
         let mut held = vec![false; component_count];
@@ -67,23 +70,28 @@ impl<'a> Partition<'a> {
                 .map(|c| c as u32)
                 .collect::<Vec<_>>()
         };
-        let loose = indices(&|c| !held[c] && !driven[c]);
         let loose_of = problem.loose_by_component();
-        let mut warnings = warnings(problem, &loose, &loose_of, &indices(&|c| driven[c] && !held[c]));
+        let (loose, mut warnings) = match method.needs() {
+            // Where nothing needs to be connected, nothing is loose.
+            Needs::Points => (Vec::new(), Vec::new()),
+            Needs::Surface { .. } => {
+                let loose = indices(&|c| !held[c] && !driven[c]);
+                let warnings = warnings(problem, &loose, &loose_of, &indices(&|c| driven[c] && !held[c]));
+                (loose, warnings)
+            }
+        };
         let follows = |component: u32| match loose_of[component as usize] {
             Loose::Rest => None,
             how => (!handles.is_empty()).then_some((component, how)),
         };
-        let soft = match problem.method {
-            Method::Bilaplacian(_) | Method::Arap(_) => (0..problem.handle_count)
-                .map(|handle| problem.holds.weight(handle as u16))
-                .collect(),
-            Method::Primo(_) => vec![None; problem.handle_count],
-        };
+        let heeds_soft = problem.method.declaration().heeds(ConstraintKind::SoftHandles);
+        let soft: Vec<Option<f64>> = (0..problem.handle_count)
+            .map(|handle| problem.holds.weight(handle as u16).filter(|_| heeds_soft))
+            .collect();
         warnings.extend(unheeded(problem));
         warnings.extend(net.warning().map(str::to_owned));
         Ok(Self {
-            solved: influenced(problem, &net, &handles, &soft),
+            solved: solved(problem, &net, &handles, &soft),
             net,
             following: loose.into_iter().filter_map(follows).collect(),
             handles,
@@ -161,65 +169,77 @@ fn check(problem: &Problem) -> Result<(), BindError> {
     }
 }
 
-/// The free vertices that handles reach in the graph of Lⁿ, ascending: by walks of which no n successive vertices are
-/// constrained. A soft handle's vertices count as free, and are among them.
-fn influenced(problem: &Problem, net: &Net, handles: &[Vec<u32>], soft: &[Option<f64>]) -> Vec<u32> {
-    let power = match problem.method {
-        // Across a constrained vertex too, whose cell turns with all its neighbours.
-        Method::Arap(_) | Method::Primo(_) => 2,
-        Method::Bilaplacian(_) => problem.method.operator_power(),
-    };
+/// Who is solved for, ascending: of a surface the free vertices that handles reach, by walks of which no `reach`
+/// successive vertices are constrained; of points all free ones. A soft handle's vertices count as free.
+fn solved(problem: &Problem, net: &Net, handles: &[Vec<u32>], soft: &[Option<f64>]) -> Vec<u32> {
     let is_free = |vertex: usize| match problem.roles[vertex] {
         Role::Free => true,
         Role::Fixed => false,
         Role::Handle(handle) => soft[usize::from(handle)].is_some(),
     };
-    // How many edges a walk may go on from here before it must meet a free vertex; at a reached one, `power`.
+    let chosen = |is_chosen: &dyn Fn(usize) -> bool| {
+        (0..problem.roles.len())
+            .filter(|&vertex| is_chosen(vertex))
+            .map(|vertex| vertex as u32)
+            .collect()
+    };
+    let reach = match problem.method.needs() {
+        Needs::Points => return chosen(&is_free),
+        Needs::Surface { reach, .. } => reach,
+    };
+    // How many edges a walk may go on from here before it must meet a free vertex; at a reached one, `reach`.
     let mut left = vec![0; problem.roles.len()];
     let mut queue: Vec<u32> = handles.iter().flatten().copied().collect();
     for &vertex in &queue {
-        left[vertex as usize] = power;
+        left[vertex as usize] = reach;
     }
     while let Some(vertex) = queue.pop() {
         let beyond = left[vertex as usize] - 1;
         for &next in net.neighbours(SurfaceVertex(vertex)) {
-            let allowed = if is_free(next.index()) { power } else { beyond };
+            let allowed = if is_free(next.index()) { reach } else { beyond };
             if allowed > left[next.index()] {
                 left[next.index()] = allowed;
                 queue.push(next.0);
             }
         }
     }
-    (0..left.len())
-        .filter(|&vertex| left[vertex] > 0 && is_free(vertex))
-        .map(|vertex| vertex as u32)
-        .collect()
+    chosen(&|vertex| left[vertex] > 0 && is_free(vertex))
 }
 
-/// What is said where the method has no soft handles or no choice of continuity.
-fn unheeded(problem: &Problem) -> Option<String> {
+/// What is said of constraints that the method does not heed, with the methods that do.
+fn unheeded(problem: &Problem) -> Vec<String> {
+    let holds = &problem.holds;
+    let soft = holds.soft.iter().position(Option::is_some);
+    let has_joints = holds.continuity.iter().any(|&value| value != *CONTINUITY_RANGE.end());
+    let is_painted = problem.stiffness.iter().any(|&value| value != 1.0);
     let name = problem.method.name();
-    let soft = match problem.method {
-        Method::Bilaplacian(_) => return None,
-        Method::Arap(_) => None,
-        Method::Primo(_) => problem.holds.soft.iter().position(Option::is_some),
-    };
-    match soft {
-        Some(handle) => Some(format!(
-            "handle {handle} is soft, and {name} holds every handle hard: take arap or bilaplacian for soft handles"
-        )),
-        None if problem
-            .holds
-            .continuity
-            .iter()
-            .any(|&value| value != *CONTINUITY_RANGE.end()) =>
-        {
-            Some(format!(
-                "{name} has no choice of continuity: take bilaplacian for hinges and smooth joints"
-            ))
-        }
-        None => None,
-    }
+    let asked = [
+        (
+            ConstraintKind::SoftHandles,
+            soft.map(|handle| format!("handle {handle} is soft, and {name} holds every handle hard")),
+            "soft handles",
+        ),
+        (
+            ConstraintKind::Continuity,
+            has_joints.then(|| format!("{name} has no choice of continuity")),
+            "hinges and smooth joints",
+        ),
+        (
+            ConstraintKind::Stiffness,
+            is_painted.then(|| format!("{name} takes no notice of painted stiffness")),
+            "parts that are stiffer than others",
+        ),
+    ];
+    let declaration = problem.method.declaration();
+    asked
+        .into_iter()
+        .filter(|(kind, ..)| !declaration.heeds(*kind))
+        .filter_map(|(kind, what, purpose)| {
+            let others = METHODS.iter().filter(|other| other.heeds(kind));
+            let others = joined(others.map(|other| other.name.to_owned()), "or");
+            Some(format!("{}: take {others} for {purpose}", what?))
+        })
+        .collect()
 }
 
 /// How many components are named one by one before they are only counted.

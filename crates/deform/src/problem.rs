@@ -70,14 +70,19 @@ impl Problem<'_> {
 
     /// Factors and solves whatever does not depend on the handles' transforms.
     ///
-    /// `ordering` must come from the same topology with the power that [`Method::operator_power`] names. Uses rayon's
-    /// current pool; the result is the same bit for bit whatever its size.
+    /// `ordering` must be what [`Method::ordering`] makes of the same topology. A method that needs none takes no notice of
+    /// one. Uses rayon's current pool; the result is the same bit for bit whatever its size.
     ///
     /// # Errors
     /// [`BindError`] names what is wrong with the problem, or where the system could not be solved;
     /// [`BindError::Cancelled`] once `cancel` is raised, which is looked at between the steps and many times within a
     /// factorisation.
-    pub fn bind(&self, ordering: &Ordering, progress: &Progress, cancel: &Cancel) -> Result<Bound, BindError> {
+    pub fn bind<'o>(
+        &self,
+        ordering: impl Into<Option<&'o Ordering>>,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Bound, BindError> {
         self.bind_within(ordering, Budget::default(), progress, cancel)
     }
 
@@ -85,14 +90,14 @@ impl Problem<'_> {
     ///
     /// # Errors
     /// As [`Problem::bind`]; [`BindError::Budget`] where more would be taken.
-    pub fn bind_within(
+    pub fn bind_within<'o>(
         &self,
-        ordering: &Ordering,
+        ordering: impl Into<Option<&'o Ordering>>,
         budget: Budget,
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Bound, BindError> {
-        Bound::bind(self, ordering, Renewal::Never, budget, progress, cancel)
+        Bound::bind(self, ordering.into(), Renewal::Never, budget, progress, cancel)
     }
 
     /// As [`Problem::bind`], and with the same result to the bit, for who binds again and again: what `remains` of an
@@ -101,14 +106,14 @@ impl Problem<'_> {
     ///
     /// # Errors
     /// As [`Problem::bind`].
-    pub fn rebind(
+    pub fn rebind<'o>(
         &self,
-        ordering: &Ordering,
+        ordering: impl Into<Option<&'o Ordering>>,
         remains: Option<&Remains>,
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Bound, BindError> {
         let renewal = Renewal::From(remains.map(Remains::factored));
-        Bound::bind(self, ordering, renewal, Budget::default(), progress, cancel)
+        Bound::bind(self, ordering.into(), renewal, Budget::default(), progress, cancel)
     }
 }

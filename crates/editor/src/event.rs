@@ -9,7 +9,7 @@ use glam::DVec2;
 use pliant_deform::Method;
 use pliant_mesh::Model;
 
-use crate::beginning::Beginning;
+use crate::Beginning;
 use crate::command::{Command, KeyMap};
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::JobDone;

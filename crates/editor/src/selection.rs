@@ -3,8 +3,7 @@
 use glam::DVec3;
 use pliant_mesh::{Drawn, DrawnVertex, Model, SurfaceVertex};
 
-use crate::edit_error::EditError;
-use crate::selector::{Axis, Selector};
+use crate::{Axis, EditError, Selector};
 
 /// A set of a surface's vertices.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pliant_mesh::Model;
 
-use crate::project::{MeshReference, Project};
+use crate::{MeshReference, Project};
 use crate::tool::ToolSettings;
 use crate::view::{Camera, Look};
 use crate::workspace::WorkspaceSnapshot;

@@ -150,3 +150,129 @@ fn loose_parts_are_told_all_at_once_or_one_by_one() {
         assert!(refused.contains(culprit), "{refused}");
     }
 }
+
+#[test]
+fn a_member_that_stands_twice_is_refused_by_name_and_place() {
+    let method = r#""version": 1, "method": {"name": "bilaplacian"}"#;
+    for (text, said) in [
+        (
+            format!(r#"{{{method}, "method": {{"name": "arap"}}}}"#),
+            "`method` stands twice in the edit",
+        ),
+        (
+            format!(
+                r#"{{{method}, "handles": [{{"select": "all", "transform": {{"scale": [1, 1, 1], "scale": [2, 2, 2]}}}}]}}"#
+            ),
+            "`scale` stands twice in handles[0].transform",
+        ),
+        (
+            r#"{"version": 1, "method": {"name": "bilaplacian", "order": 1, "order": 2}}"#.to_owned(),
+            "`order` stands twice in method",
+        ),
+    ] {
+        let refused = EditFile::parse(&text).unwrap_err().to_string();
+        assert!(refused.contains(said), "{refused}");
+    }
+}
+
+#[test]
+fn a_transform_that_can_not_be_undone_is_refused_by_name() {
+    let read = |transform: &str| {
+        let text = format!(
+            r#"{{"version": 1, "method": {{"name": "bilaplacian"}}, "handles": [{{"select": "all", "transform": {transform}}}]}}"#
+        );
+        EditFile::parse(&text)
+    };
+    for (transform, place) in [
+        (r#"{"rotation": [0, 0, 0, 0]}"#, "rotation"),
+        (r#"{"scale": [1, 0, 1]}"#, "scale"),
+        (r#"{"scale": [1, -0.0, 1]}"#, "scale"),
+        (r#"{"scale": [1, null, 1]}"#, "scale[1]"),
+        // A projection, a column of zeros, two columns alike, three in a plane.
+        (
+            r#"{"matrix": [1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}"#,
+            "matrix",
+        ),
+        (
+            r#"{"matrix": [1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}"#,
+            "matrix",
+        ),
+        (
+            r#"{"matrix": [0.1, 0.2, 0.3, 0, 0.3, 0.6, 0.9, 0, 0, 0, 1, 0, 0, 0, 0, 1]}"#,
+            "matrix",
+        ),
+        (
+            r#"{"matrix": [1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 0, 0, 0, 0, 1]}"#,
+            "matrix",
+        ),
+    ] {
+        let refused = read(transform).unwrap_err().to_string();
+        assert!(refused.contains(&format!("handles[0].transform.{place} ")), "{refused}");
+    }
+    // What is uneven, tiny, huge, sheared or mirrored is a transform.
+    for transform in [
+        r#"{"scale": [1e-200, 1, 1e200]}"#,
+        r#"{"scale": [-1, 1, 1]}"#,
+        r#"{"rotation": [1e-200, 0, 0, 0]}"#,
+        r#"{"matrix": [1e-200, 0, 0, 0, 0, 1e200, 0, 0, 0, 0, -3, 0, 5, 6, 7, 1]}"#,
+        r#"{"matrix": [1, 0, 0, 0, 1e6, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}"#,
+    ] {
+        assert!(read(transform).is_ok(), "{transform}: {:?}", read(transform));
+    }
+}
+
+#[test]
+fn a_refusal_names_the_place_the_value_and_what_is_allowed() {
+    let read = |edit: &str| EditFile::parse(&format!(r#"{{"version": 1, "method": {{"name": "arap"}}, {edit}}}"#));
+    for (edit, said) in [
+        (
+            r#""fixed": {"union": ["all", {"sphere": {"center": [0, 0, 0], "radius": "big"}}]}"#,
+            "fixed.union[1].sphere.radius must be a number, not \"big\"",
+        ),
+        (
+            r#""fixed": {"slab": ["x", 0, 1]}"#,
+            "fixed.slab must be an object with `axis`, `from`, `to`, not a list",
+        ),
+        (
+            r#""fixed": {"ranges": [[1, 2, 3]]}"#,
+            "fixed.ranges[0] must be a list of 2 values, not 3 values",
+        ),
+        (
+            r#""fixed": "vertices""#,
+            "fixed must be an object such as {\"vertices\": ..}, not \"vertices\"",
+        ),
+        (
+            r#""handles": [{"select": "all", "soft": null}]"#,
+            "handles[0].soft must be a number, not null",
+        ),
+        (
+            r#""handles": [{"name": "a"}]"#,
+            "handles[0] lacks its member `select`: add it",
+        ),
+        (r#""handles": {}"#, "handles must be"),
+        (
+            r#""stiffness": [{"select": "all", "per_vertex": []}]"#,
+            "stiffness[0] has both `per_vertex` and `select`: keep one of them",
+        ),
+        (
+            r#""stiffness": [{"per_vertex": [1, 0]}]"#,
+            "stiffness[0].per_vertex[1] is 0, which is out of range",
+        ),
+        (
+            r#""continuity": {}"#,
+            "continuity must be a number from 0 to 2, or a list",
+        ),
+        (
+            r#""loose": [{"select": "all", "value": "folow"}]"#,
+            "loose[0].value: did you mean `follow`?",
+        ),
+        (r#""loose": 7"#, "loose"),
+        (
+            r#""regoin": "all""#,
+            "unknown member `regoin` in the edit: did you mean `region`?",
+        ),
+    ] {
+        let refused = read(edit).unwrap_err().to_string();
+        assert!(refused.contains(said), "{refused}\n{said}");
+    }
+}

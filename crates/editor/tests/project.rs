@@ -131,7 +131,12 @@ fn what_a_project_can_not_be_is_refused_in_a_sentence() {
         ("\"version\": 1", "\"version\": 2", "version"),
         ("\"settled\"", "\"setled\"", "setled"),
         ("\"next_handle\": 1", "\"next_handle\": 0", "next_handle"),
-        ("\"next_handle\": 1", "\"next_handle\": -1", "u16"),
+        ("\"next_handle\": 1", "\"next_handle\": -1", "next_handle is -1"),
+        (
+            "\"settled\":",
+            "\"version\": 1, \"settled\":",
+            "`version` stands twice in the project",
+        ),
         ("\"arap\"", "\"arab\"", "arab"),
         ("\"radii\": 3.0", "\"radii\": -3.0", "reach"),
         ("\"loose\": \"follow\"", "\"loose\": \"fly\"", "fly"),
@@ -154,4 +159,25 @@ fn what_a_project_can_not_be_is_refused_in_a_sentence() {
         .map(Beginning::from)
         .and_then(|project| project.resolve(&rig.model));
     assert!(refused.unwrap_err().to_string().contains(&count.to_string()));
+}
+
+/// The format refuses it, so a document must not come to have it.
+#[test]
+fn no_handle_is_flattened_by_a_number_that_is_typed() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    rig.type_keys("s0");
+    rig.key(Key::Enter);
+    assert!(rig.editor.view().problem.is_some_and(|said| said.contains("flatten")));
+    rig.type_keys("s0.5");
+    rig.key(Key::Enter);
+    rig.drain();
+    assert_eq!(rig.editor.view().problem, None);
+    let text = saved(&rig);
+    assert_eq!(
+        reopened(&rig, &text).editor.document().handles(),
+        rig.editor.document().handles()
+    );
+    assert!(text.contains("\"scale\""));
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pliant_deform::Method;
+use pliant_deform::{METHODS, Method};
 use pliant_editor::{Beginning, Project};
 use pliant_io::{Format, MorphTarget};
 
@@ -70,9 +70,7 @@ pub(super) fn read_edit(path: &Path) -> Result<Beginning, AppError> {
 
 fn method_named(name: &str) -> Result<Method, AppError> {
     Method::from_name(name).ok_or_else(|| {
-        AppError::Arguments(format!(
-            "--method {name} is not known: use one of {}",
-            Method::NAMES.join(", ")
-        ))
+        let names: Vec<&str> = METHODS.iter().map(|declaration| declaration.name).collect();
+        AppError::Arguments(format!("--method {name} is not known: use one of {}", names.join(", ")))
     })
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
-use pliant_deform::Method;
+use pliant_deform::{ConstraintKind, METHODS};
 use pliant_editor::Clay;
 
 use crate::version::VERSION;
@@ -241,24 +241,35 @@ pub(crate) fn parse(arguments: Vec<std::ffi::OsString>) -> Result<Arguments, cla
 /// Each method with its options, for the help.
 fn methods_help() -> String {
     let mut help = "Methods and their options, as they stand in the edit's `method`:".to_owned();
-    for name in Method::NAMES {
-        help += &format!("\n  {name}");
-        let options = pliant_editor::method_options(name);
-        if options.is_empty() {
-            help += "\n      has no options";
-        }
-        for option in options {
-            help += &format!("\n      {}: {}", option.name, option.says);
+    for declaration in METHODS {
+        help += &format!("\n  {}: {}", declaration.name, declaration.when_to_use);
+        let default = (declaration.default)();
+        for option in declaration.options {
+            if let Some(default) = default.value(option.name) {
+                help += &format!("\n      {}: {}", option.name, option.sentence(default));
+            }
         }
     }
-    help += "\n\nWhat holds the surface with bilaplacian, as members of the edit:\n  \
-             handles[].soft: weight of a handle that only pulls, 1e-6 to 1e6; at 1 handle and surface give way to each \
-             other; without it the handle holds exactly\n  \
-             handles[].continuity: how the surface joins this handle, 0 a hinge, 1 equal tangents, 2 equal curvature, \
-             or between; at most the order less 1; default 2\n  \
-             continuity: the same for all that is held: a number, or a list of {\"select\": .., \"value\": ..} in \
-             which the later entry wins";
-    help
+    let heeding = |kind: ConstraintKind| {
+        let methods = METHODS.iter().filter(|declaration| declaration.heeds(kind));
+        methods
+            .map(|declaration| declaration.name)
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let (soft, joints) = (
+        heeding(ConstraintKind::SoftHandles),
+        heeding(ConstraintKind::Continuity),
+    );
+    help + &format!(
+        "\n\nWhat holds the surface, as members of the edit:\n  \
+         handles[].soft ({soft}): weight of a handle that only pulls, 1e-6 to 1e6; at 1 handle and surface give way to \
+         each other; without it the handle holds exactly\n  \
+         handles[].continuity ({joints}): how the surface joins this handle, 0 a hinge, 1 equal tangents, 2 equal \
+         curvature, or between; at most the order less 1; default 2\n  \
+         continuity ({joints}): the same for all that is held: a number, or a list of {{\"select\": .., \"value\": ..}} \
+         in which the later entry wins"
+    )
 }
 
 /// The most characters of a refusal: it quotes arguments whole, however long they are.
@@ -358,6 +369,6 @@ mod tests {
     #[test]
     fn the_help_of_apply_lists_every_method() {
         let help = parse_words("pliant apply --help").unwrap_err().render().to_string();
-        assert!(Method::NAMES.iter().all(|name| help.contains(name)), "{help}");
+        assert!(METHODS.iter().all(|method| help.contains(method.name)), "{help}");
     }
 }

@@ -4,13 +4,14 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-use eframe::egui::{self, ComboBox, Rect, RichText, UiBuilder, vec2};
+use eframe::egui::{self, Rect, RichText, UiBuilder, vec2};
 use glam::{DVec2, DVec3};
-use pliant_deform::Method;
-use pliant_editor::{Editor, Event, JobQueue, Revision, method_title, when_to_use};
+use pliant_deform::{METHODS, Method};
+use pliant_editor::{Editor, Event, JobQueue, Revision};
 use pliant_render::RenderError;
 
 use super::message::{Message, Posed};
+use super::method_panel::choose_method;
 use super::viewport::{Smoothness, Viewport};
 use super::workers::{Stage, Workers};
 use crate::drawing::Drawing;
@@ -35,13 +36,13 @@ impl Compare {
         let (sender, messages) = channel();
         let workers = Workers::new(context.clone(), sender);
         let theirs = leader.document().method().name();
-        let other = Method::NAMES.iter().find(|name| **name != theirs);
+        let other = METHODS.iter().find(|declaration| declaration.name != theirs);
         Self {
             editor: Editor::new(Box::new(workers.clone())),
             viewport: beside.beside(),
             workers,
             messages,
-            method: other.and_then(|name| Method::from_name(name)).unwrap_or_default(),
+            method: other.map_or_else(Method::default, |declaration| (declaration.first_choice)()),
             uploading: None,
             poses: JobQueue::default(),
             next_pose: 0,
@@ -208,24 +209,10 @@ impl Compare {
     }
 
     fn choose(&mut self, ui: &mut egui::Ui) {
-        let list = ComboBox::from_id_salt("compared method")
-            .selected_text(method_title(self.method.name()))
-            .width(190.0)
-            .show_ui(ui, |ui| {
-                for &name in Method::NAMES {
-                    let is_chosen = self.method.name() == name;
-                    let choice = ui
-                        .selectable_label(is_chosen, method_title(name))
-                        .on_hover_text(when_to_use(name));
-                    if choice.clicked()
-                        && !is_chosen
-                        && let Some(method) = Method::from_name(name)
-                    {
-                        self.method = method;
-                    }
-                }
-            });
-        list.response
-            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Method of the second view"));
+        let (list, chosen) = choose_method(ui, "compared method", &self.method, 190.0);
+        if let Some(method) = chosen {
+            self.method = method;
+        }
+        list.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Method of the second view"));
     }
 }

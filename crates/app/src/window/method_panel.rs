@@ -1,73 +1,80 @@
-//! The method and its options: widgets made of the editor's list, so that an option that is added there is shown here.
+//! The method and its options: widgets made of the methods' declarations, so that an option that is declared is shown.
 
 use eframe::egui::{self, ComboBox, DragValue, RichText};
-use pliant_deform::Method;
-use pliant_editor::{
-    Command, Editor, MethodOption, OptionKind, method_options, method_title, option_value, when_to_use, with_option,
-};
-use serde_json::{Value, json};
+use pliant_deform::{METHODS, Method, OptionDeclaration, OptionKind, OptionValue};
+use pliant_editor::{Command, Editor};
 
 use super::outbox::Outbox;
 
 /// Shows the method and its options.
 pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let method = editor.document().method();
+    let declaration = method.declaration();
     ui.horizontal(|ui| {
         let label = ui.label("Method");
-        let list = ComboBox::from_id_salt("method")
-            .selected_text(method_title(method.name()))
-            .width(ui.available_width())
-            .show_ui(ui, |ui| {
-                for &name in Method::NAMES {
-                    let chosen = method.name() == name;
-                    let choice = ui
-                        .selectable_label(chosen, method_title(name))
-                        .on_hover_text(when_to_use(name));
-                    if choice.clicked()
-                        && !chosen
-                        && let Some(method) = Method::from_name(name)
-                    {
-                        commands.push(Command::SetMethod(method));
-                    }
-                }
-            });
-        list.response.labelled_by(label.id);
+        let width = ui.available_width();
+        let (list, chosen) = choose_method(ui, "method", method, width);
+        list.labelled_by(label.id);
+        if let Some(chosen) = chosen {
+            commands.push(Command::SetMethod(chosen));
+        }
     });
-    ui.label(RichText::new(when_to_use(method.name())).weak().small());
-    let options = method_options(method.name());
-    if options.is_empty() {
+    ui.label(RichText::new(declaration.when_to_use).weak().small());
+    if declaration.options.is_empty() {
         return;
     }
     egui::CollapsingHeader::new("Options")
         .id_salt("options")
         .show(ui, |ui| {
             egui::Grid::new("method options").num_columns(2).show(ui, |ui| {
-                for option in options {
+                for option in declaration.options {
                     row(ui, method, option, commands);
                     ui.end_row();
                 }
             });
-            let default = Method::from_name(method.name()).filter(|default| default != method);
-            let back = ui.add_enabled(default.is_some(), egui::Button::new("Defaults"));
-            if let (true, Some(default)) = (back.clicked(), default) {
-                commands.push(Command::SetMethod(default));
+            let first_choice = (declaration.first_choice)();
+            let back = ui.add_enabled(first_choice != *method, egui::Button::new("Defaults"));
+            if back.clicked() {
+                commands.push(Command::SetMethod(first_choice));
             }
         });
 }
 
+/// A list of all methods, and the one that was taken from it.
+pub fn choose_method(ui: &mut egui::Ui, id: &str, present: &Method, width: f32) -> (egui::Response, Option<Method>) {
+    let mut chosen = None;
+    let list = ComboBox::from_id_salt(id)
+        .selected_text(present.declaration().title)
+        .width(width)
+        .show_ui(ui, |ui| {
+            for declaration in METHODS {
+                let is_present = present.name() == declaration.name;
+                let choice = ui
+                    .selectable_label(is_present, declaration.title)
+                    .on_hover_text(declaration.when_to_use);
+                if choice.clicked() && !is_present {
+                    chosen = Some((declaration.first_choice)());
+                }
+            }
+        });
+    (list.response, chosen)
+}
+
 /// An option's name and its widget. What the method refuses (nothing resists both bending and stretching, say) is not
 /// sent.
-fn row(ui: &mut egui::Ui, method: &Method, option: &MethodOption, commands: &mut Outbox) {
-    let name = option.name.replace('_', " ");
-    let label = ui.label(title(&name)).on_hover_text(option.says);
-    let value = option_value(method, option);
-    let set = |value: Value| {
-        let method = with_option(method, option.name, value).unwrap_or_else(|_| method.clone());
-        Command::SetMethod(method)
+fn row(ui: &mut egui::Ui, method: &Method, option: &OptionDeclaration, commands: &mut Outbox) {
+    let default = (method.declaration().default)();
+    let (Some(value), Some(default)) = (method.value(option.name), default.value(option.name)) else {
+        return;
     };
-    let widget = match option.takes {
-        OptionKind::Number { range, unit, .. } => {
-            let mut number = value.as_f64().unwrap_or(range[0]);
+    let says = option.sentence(default);
+    let label = ui.label(title(&option.name.replace('_', " "))).on_hover_text(&says);
+    let set = |value: OptionValue| {
+        let set = method.with([(option.name, value)]);
+        Command::SetMethod(set.unwrap_or_else(|_| method.clone()))
+    };
+    let widget = match (option.kind, value) {
+        (OptionKind::Number { range, unit }, OptionValue::Number(mut number)) => {
             // Small numbers go by their own size, so that one drag reaches from 1e-12 to 0.1.
             let speed = (number.abs() * 0.02).max((range[1] - range[0]).min(1.0) * 1e-3);
             let field = DragValue::new(&mut number)
@@ -81,76 +88,62 @@ fn row(ui: &mut egui::Ui, method: &Method, option: &MethodOption, commands: &mut
                 })
                 .update_while_editing(false);
             let field = ui.add(field);
-            commands.adjust(&field, || set(json!(number)));
+            commands.adjust(&field, || set(OptionValue::Number(number)));
             field
         }
-        OptionKind::Whole { range, .. } => {
-            let mut number = value.as_u64().unwrap_or(range[0]);
-            let speed = (number as f64 * 0.02).max(0.1);
+        (OptionKind::Whole { range }, OptionValue::Whole(mut number)) => {
+            let speed = (f64::from(number) * 0.02).max(0.1);
             let field = DragValue::new(&mut number)
                 .range(range[0]..=range[1])
                 .speed(speed)
                 .update_while_editing(false);
             let field = ui.add(field);
-            commands.adjust(&field, || set(json!(number)));
+            commands.adjust(&field, || set(OptionValue::Whole(number)));
             field
         }
-        OptionKind::Numbered { choices, .. } => {
-            let named = |number: &Value| {
-                let found = choices.iter().find(|(choice, _)| Some(*choice) == number.as_u64());
-                found.map_or_else(String::new, |(number, words)| format!("{number} · {words}"))
-            };
-            choose(
-                ui,
-                option.name,
-                named(&value),
-                choices,
-                |(number, _)| named(&json!(number)),
-                |(number, _)| {
-                    commands.push(set(json!(number)));
-                },
-            )
+        (OptionKind::Numbered { choices }, _) => {
+            let named: Vec<(String, OptionValue)> = choices
+                .iter()
+                .map(|(number, word)| (format!("{number} · {word}"), OptionValue::Whole(*number)))
+                .collect();
+            choose(ui, option.name, value, &named, |chosen| commands.push(set(chosen)))
         }
-        OptionKind::Named { choices, .. } => {
-            let present = value.as_str().unwrap_or_default().to_owned();
-            choose(
-                ui,
-                option.name,
-                present,
-                choices,
-                |name| (*name).to_owned(),
-                |name| commands.push(set(json!(name))),
-            )
+        (OptionKind::Named { choices }, _) => {
+            let named: Vec<(String, OptionValue)> = choices
+                .iter()
+                .map(|name| ((*name).to_owned(), OptionValue::Name(name)))
+                .collect();
+            choose(ui, option.name, value, &named, |chosen| commands.push(set(chosen)))
         }
-        OptionKind::Switch { .. } => {
-            let mut on = value.as_bool().unwrap_or_default();
+        (OptionKind::Switch, OptionValue::Switch(mut on)) => {
             let switch = ui.checkbox(&mut on, "");
             if switch.changed() {
-                commands.push(set(json!(on)));
+                commands.push(set(OptionValue::Switch(on)));
             }
             switch
         }
+        // A value is always of its option's kind.
+        _ => return,
     };
-    widget.labelled_by(label.id).on_hover_text(option.says);
+    widget.labelled_by(label.id).on_hover_text(says);
 }
 
 /// A list to choose from.
-fn choose<T>(
+fn choose(
     ui: &mut egui::Ui,
     id: &str,
-    present: String,
-    choices: &[T],
-    name: impl Fn(&T) -> String,
-    mut chosen: impl FnMut(&T),
+    present: OptionValue,
+    choices: &[(String, OptionValue)],
+    mut chosen: impl FnMut(OptionValue),
 ) -> egui::Response {
+    let name = choices.iter().find(|(_, value)| *value == present);
     ComboBox::from_id_salt(id)
-        .selected_text(&present)
+        .selected_text(name.map_or("", |(name, _)| name))
         .width(ui.available_width().min(150.0))
         .show_ui(ui, |ui| {
-            for choice in choices {
-                let name = name(choice);
-                if ui.selectable_label(name == present, &name).clicked() && name != present {
-                    chosen(choice);
+            for (name, value) in choices {
+                if ui.selectable_label(*value == present, name).clicked() && *value != present {
+                    chosen(*value);
                 }
             }
         })

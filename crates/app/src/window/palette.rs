@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use eframe::egui::{self, Id, Key, Modal, RichText, ScrollArea};
-use pliant_deform::Method;
-use pliant_editor::{Command, Editor, method_keywords, method_title, when_to_use};
+use pliant_deform::METHODS;
+use pliant_editor::{Command, Editor};
 
 use super::status;
 use super::top_bar::FileCommand;
@@ -150,19 +150,19 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
         found: Found::File(command.clone()),
         obstacle: None,
     });
-    let methods = Method::NAMES.iter().filter_map(|name| {
-        let command = Command::SetMethod(Method::from_name(name)?);
-        Some(Entry {
-            name: format!("Method: {}", method_title(name)),
-            tooltip: when_to_use(name).to_owned(),
-            keywords: method_keywords(name),
+    let methods = METHODS.iter().map(|declaration| {
+        let command = Command::SetMethod((declaration.first_choice)());
+        Entry {
+            name: format!("Method: {}", declaration.title),
+            tooltip: declaration.when_to_use.to_owned(),
+            keywords: declaration.keywords,
             shortcut: String::new(),
-            obstacle: match editor.document().method().name() == *name {
+            obstacle: match editor.document().method().name() == declaration.name {
                 true => Some("The surface bends by this method already.".to_owned()),
                 false => editor.unavailable_because(&command).map(Cow::into_owned),
             },
             found: Found::Editor(command),
-        })
+        }
     });
     let mut found: Vec<(u8, Entry)> = listed
         .chain(methods)

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Sense, vec2};
 use glam::DVec2;
-use pliant_editor::{Cursor, Event, method_title};
+use pliant_editor::{Cursor, Event};
 
 use super::application::{Application, REST};
 use super::file_names::file_name;
@@ -104,7 +104,7 @@ impl Application {
             if compare.show(ui, second, smooth)? {
                 ui.ctx().request_repaint_after(REST);
             }
-            let name = method_title(self.editor.document().method().name());
+            let name = self.editor.document().method().declaration().title;
             axis_ball::readout(ui.painter(), rect.center_top() + vec2(-60.0, 12.0), name);
         }
         let outline_px = self.editor.view().outline_px;

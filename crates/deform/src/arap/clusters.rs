@@ -131,7 +131,7 @@ mod tests {
                 stiffness: &vec![1.0; roles.len()],
                 holds: Holds::default(),
                 loose: Loose::Rest,
-                method: &Method::Arap(Arap::default()),
+                method: &Method::from(Arap::default()),
                 revision: 0,
             };
             let domain = Domain::of(&model.surface, &model.topology, &order);

@@ -59,7 +59,7 @@ impl Coarse {
         let clusters = Clusters::of(problem, fine, handles, size);
         let mut own = options.clone();
         own.coarse_above = usize::MAX;
-        let method = Method::Arap(own.clone());
+        let method = Method::from(own.clone());
         let coarse = Problem {
             surface: &clusters.surface,
             topology: &clusters.topology,
@@ -76,7 +76,7 @@ impl Coarse {
         };
         let partition = Partition::of(&coarse).ok()?;
         let progress = Progress::new();
-        let ordering = Ordering::of(&clusters.topology, method.operator_power(), &progress, cancel).ok()?;
+        let ordering = Ordering::of(&clusters.topology, own.operator_power(), &progress, cancel).ok()?;
         // In the fine handles' frames, so that the same motions hold.
         let handles: Vec<Handle> = handles
             .iter()

@@ -185,7 +185,13 @@ mod tests {
         assert_eq!(net.warning(), None);
         let count = model.surface.positions.len();
         let rows: Vec<u32> = (0..count as u32).collect();
-        Laplacian::on(&net, &vec![1.0; count], &rows, Discretisation::default(), &|_, _| 1.0)
+        Laplacian::on(
+            &net,
+            &vec![1.0; count],
+            &rows,
+            Discretisation::CotangentArea,
+            &|_, _| 1.0,
+        )
     }
 
     fn least_weight(laplacian: &Laplacian) -> f64 {

@@ -11,3 +11,14 @@ pub(crate) fn lack(lengths: [f64; 3]) -> f64 {
     let longest = lengths[0].max(lengths[1]).max(lengths[2]);
     MOLLIFICATION * longest - (sum - 2.0 * longest)
 }
+
+/// What is said of triangles too flat for cotangents.
+pub(crate) fn repairs(mollified_faces: usize) -> Option<String> {
+    match mollified_faces {
+        0 => None,
+        1 => Some("1 degenerate triangle was given the smallest safe shape".to_owned()),
+        count => Some(format!(
+            "{count} degenerate triangles were given the smallest safe shape"
+        )),
+    }
+}

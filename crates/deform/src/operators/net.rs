@@ -8,7 +8,7 @@ use pliant_mesh::{Surface, SurfaceVertex, Topology};
 use crate::operators::intrinsic::Intrinsic;
 use crate::operators::principal::stretches;
 use crate::operators::surface_net::SurfaceNet;
-use crate::{Bilaplacian, Method, Problem, Triangulation};
+use crate::{Bilaplacian, Problem, Triangulation};
 
 /// Triangles with edge lengths over the surface's vertices.
 #[derive(Clone, Debug)]
@@ -50,15 +50,8 @@ impl<'a> Net<'a> {
         })
     }
 
-    /// What the problem's method asks for.
-    pub fn of_problem(problem: &Problem<'a>) -> Self {
-        match problem.method {
-            Method::Bilaplacian(options) => Self::of_options(problem, options),
-            _ => Self::of_surface(problem.surface, problem.topology),
-        }
-    }
-
-    fn of_options(problem: &Problem<'a>, options: &Bilaplacian) -> Self {
+    /// What the linear shell's options ask for.
+    pub fn of_options(problem: &Problem<'a>, options: &Bilaplacian) -> Self {
         let net = SurfaceNet {
             surface: problem.surface,
             topology: problem.topology,

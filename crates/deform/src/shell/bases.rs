@@ -34,9 +34,6 @@ struct Run {
     reference: Option<u16>,
 }
 
-/// Surface vertices that one task displaces.
-pub(crate) const FRAME_CHUNK: usize = 4096;
-
 impl HandleBases {
     /// The surface vertices that are solved for, ascending: one a row.
     pub fn vertices(&self) -> &[u32] {

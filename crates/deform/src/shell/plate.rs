@@ -3,22 +3,24 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
+use pliant_mesh::{Cancel, SurfaceVertex, bounding_box};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::budget::filled;
-use crate::handle::{Handle, Motion};
+use crate::handle::{FRAME_CHUNK, Handle, Motion};
+use crate::method::{BindInput, Finite};
 use crate::operators::net::{Graph, Net};
+use crate::operators::repairs;
 use crate::partition::Partition;
-use crate::shell::bases::{FRAME_CHUNK, Tables};
+use crate::shell::bases::Tables;
 use crate::shell::continuity::join;
 use crate::shell::factored::{Shell, ShellError};
 use crate::shell::operator::ShellOperator;
 use crate::shell::slender;
-use crate::sparse::cholesky::{Renewable, Renewal};
+use crate::sparse::cholesky::Renewable;
 use crate::sparse::hubs::hub_degree;
-use crate::{Bilaplacian, BindError, HandleBases, Laplacian, Ordering, Problem, SolveError};
+use crate::{Bilaplacian, BindError, HandleBases, Laplacian, Problem, SolveError};
 
 /// The bound linear shell.
 #[derive(Debug)]
@@ -31,48 +33,35 @@ pub(crate) struct Plate {
     energy_blocks: Vec<[[f64; 4]; 4]>,
 }
 
-/// What was computed before.
-#[derive(Clone, Copy)]
-pub(crate) struct Known<'a> {
-    pub ordering: &'a Ordering,
-    pub renewal: Renewal<'a>,
-}
-
 /// A handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
 pub(crate) type Prescribed = Vec<(u32, [f64; 4])>;
 
 /// How far off a solution may be, relative to its largest value.
 const TOLERANCE: f64 = 1e-7;
 
-/// Whether a shape was seen to be finite while it was made.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Finite {
-    Yes,
-    Unknown,
-}
-
 impl Plate {
     /// Assembles, factors, checks, and solves for the bases of `handles`.
-    pub fn bind(
-        problem: &Problem,
-        options: &Bilaplacian,
-        partition: &Partition,
-        handles: &[Handle],
-        known: Known,
-        progress: &Progress,
-        cancel: &Cancel,
-    ) -> Result<Self, BindError> {
+    pub fn bind(options: &Bilaplacian, input: &BindInput<'_>) -> Result<Self, BindError> {
+        let &BindInput {
+            problem,
+            partition,
+            handles,
+            renewal,
+            progress,
+            cancel,
+            ..
+        } = input;
         let solved = &partition.solved;
         let component_of = |vertex: u32| problem.topology.component(SurfaceVertex(vertex));
         let refuse = |error: ShellError| of_order(options, error.into_bind_error(component_of, solved.len()));
         slender::check(&partition.net, solved, options.operator_power())?;
-        let elimination = known.ordering.elimination(solved);
+        let elimination = input.ordering()?.elimination(solved);
         cancel.check()?;
         progress.set(0.1);
         let (operator, prescribed) = operator(problem, options, partition, handles);
         cancel.check()?;
         progress.set(0.2);
-        let mut shell = Shell::new(operator, elimination, known.renewal, partition.budget, cancel).map_err(refuse)?;
+        let mut shell = Shell::new(operator, elimination, renewal, partition.budget, cancel).map_err(refuse)?;
         progress.set(0.7);
         let solved_locals = shell.operator.laplacian.locals(solved);
         // The constant is solved for beside the first handle: one pass over the factor for both.
@@ -304,17 +293,6 @@ fn of_order(options: &Bilaplacian, refused: BindError) -> BindError {
             refused: Box::new(refused),
         },
         _ => refused,
-    }
-}
-
-/// What is said of triangles too flat for cotangents.
-pub(crate) fn repairs(mollified_faces: usize) -> Option<String> {
-    match mollified_faces {
-        0 => None,
-        1 => Some("1 degenerate triangle was given the smallest safe shape".to_owned()),
-        count => Some(format!(
-            "{count} degenerate triangles were given the smallest safe shape"
-        )),
     }
 }
 

@@ -10,7 +10,7 @@ fn method(order: ShellOrder, anisotropy: f64) -> Method {
     let mut options = Bilaplacian::default();
     options.order = order;
     options.anisotropy = anisotropy;
-    Method::Bilaplacian(options)
+    Method::from(options)
 }
 
 /// A sheet 4 long in x and `width` wide, turned away from the axes, its rim held and a patch inside lifted by 1; heights

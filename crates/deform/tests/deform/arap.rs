@@ -95,7 +95,6 @@ fn no_shape_has_less_energy_than_the_rest_shape() {
         for drawn in [obtuse(), shapes::torus(20, 10), shapes::broken(&shapes::icosphere(1))] {
             let scene = scene(drawn, energy).with_ends(true);
             let bound = scene.bind();
-            assert_eq!(bound.energy_rest(), 0.0);
             let rest = vec![DVec3::ZERO; scene.roles.len()];
             assert!(bound.energy_of(&rest).unwrap() < 1e-28);
             for size in [1e-6, 1e-3, 1.0, 100.0] {
@@ -152,7 +151,7 @@ fn spike(energy: ArapEnergy, smoothness: f64, side: usize) -> f64 {
     options.smoothness = smoothness;
     options.tolerance = 1e-8;
     options.max_iterations = 2000;
-    scene.method = Method::Arap(options);
+    scene.method = Method::from(options);
     let bounds = scene.model.bounds().unwrap();
     let (centre, reach) = (bounds.centre(), 0.499 * bounds.extent());
     let middle = |a: &DVec3| a.distance(centre);

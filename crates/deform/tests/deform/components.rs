@@ -252,7 +252,7 @@ fn refusals_name_the_culprit() {
     ));
     let scene = fresh();
     let other = Ordering::of(&scene.model.topology, 1, &Progress::new(), &Cancel::new()).unwrap();
-    let method = Method::Bilaplacian(Bilaplacian::default());
+    let method = Method::from(Bilaplacian::default());
     let refused = scene
         .problem(&method)
         .bind(&other, &Progress::new(), &Cancel::new())
@@ -265,6 +265,11 @@ fn refusals_name_the_culprit() {
             ..
         })
     ));
+    let none = scene
+        .problem(&method)
+        .bind(None, &Progress::new(), &Cancel::new())
+        .err();
+    assert_eq!(none, Some(BindError::NoOrdering { expected_power: 2 }));
 }
 
 #[test]

@@ -100,7 +100,7 @@ fn the_energy_of_a_step_is_the_quadratic_form_of_the_dense_matrix() {
                 for (vertex, stiffness) in scene.stiffness.iter_mut().enumerate() {
                     *stiffness = 0.5 + (vertex % 4) as f64;
                 }
-                scene.method = Method::Bilaplacian(options.clone());
+                scene.method = Method::from(options.clone());
                 if bending == 0.0 {
                     // Nothing but stretching: the order says nothing.
                     options.order = ShellOrder::Membrane;

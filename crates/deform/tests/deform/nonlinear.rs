@@ -38,13 +38,13 @@ impl Iterative {
                 if matches!(self, Self::Led(_)) {
                     options.coarse_above = 0;
                 }
-                Method::Arap(options)
+                Method::from(options)
             }
             Self::Primo => {
                 let mut options = Primo::default();
                 options.tolerance = tolerance;
                 options.max_iterations = max_iterations;
-                Method::Primo(options)
+                Method::from(options)
             }
         }
     }

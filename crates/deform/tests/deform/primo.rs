@@ -53,7 +53,7 @@ fn a_thicker_sheet_bends_more_evenly() {
             .with(Role::Handle(0), |p| p.z > 7.5);
         let mut options = Primo::default();
         options.thickness = thickness;
-        scene.method = Method::Primo(options);
+        scene.method = Method::from(options);
         let (d, _) = settle(&mut scene.bind(), &[turned(DVec3::Z * 7.5, 1.2, DVec3::ZERO)]);
         let moved: Vec<DVec3> = scene.positions().iter().zip(&d).map(|(p, d)| *p + *d).collect();
         let mut normals = Vec::new();

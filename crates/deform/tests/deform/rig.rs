@@ -1,7 +1,7 @@
 //! A problem on a shape, and the verbs the laws need.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Bound, Holds, Loose, Method, Ordering, Problem, Role};
+use pliant_deform::{Bound, Holds, Loose, Method, Problem, Role};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, shapes};
 
 /// A shape and the roles, stiffness and options on it.
@@ -76,15 +76,9 @@ impl Scene {
     }
 
     pub fn try_bind(&self) -> Result<Bound, pliant_deform::BindError> {
-        let ordering = Ordering::of(
-            &self.model.topology,
-            self.method.operator_power(),
-            &Progress::new(),
-            &Cancel::new(),
-        )
-        .unwrap();
-        self.problem(&self.method)
-            .bind(&ordering, &Progress::new(), &Cancel::new())
+        let (topology, progress, cancel) = (&self.model.topology, Progress::new(), Cancel::new());
+        let ordering = self.method.ordering(topology, &progress, &cancel).unwrap();
+        self.problem(&self.method).bind(ordering.as_ref(), &progress, &cancel)
     }
 
     pub fn problem<'a>(&'a self, method: &'a Method) -> Problem<'a> {

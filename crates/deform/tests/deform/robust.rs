@@ -131,7 +131,7 @@ fn adrift(drawn: &Drawn, order: ShellOrder, weight: f64) -> Scene {
     scene.soft = vec![Some(weight)];
     let mut options = Bilaplacian::default();
     options.order = order;
-    scene.method = Method::Bilaplacian(options);
+    scene.method = Method::from(options);
     scene
 }
 

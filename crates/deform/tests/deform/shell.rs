@@ -12,17 +12,17 @@ fn shell(order: ShellOrder, stretching: f64, bending: f64, discretisation: Discr
     options.stretching = stretching;
     options.bending = bending;
     options.discretisation = discretisation;
-    Method::Bilaplacian(options)
+    Method::from(options)
 }
 
 pub fn of_order(order: ShellOrder) -> Method {
-    shell(order, 0.0, 1.0, Discretisation::default())
+    shell(order, 0.0, 1.0, Discretisation::CotangentArea)
 }
 
 /// Heights at the middle of a unit strip of `cells` rows, held over n rows at both ends, of which one is lifted by 1:
 /// at 0, h, .., 1 between the innermost held rows, with h.
 fn strip(cells: usize, method: Method) -> (Vec<f64>, f64) {
-    let Method::Bilaplacian(options) = &method else {
+    let Some(options) = method.options::<Bilaplacian>() else {
         unreachable!()
     };
     let rows = options.order.number() as f64;
@@ -125,7 +125,12 @@ fn stretching_pulls_the_beam_straight_as_the_formula_says() {
         let errors = [16, 32, 64].map(|cells| {
             let (heights, pitch) = strip(
                 cells,
-                shell(ShellOrder::ThinPlate, 3.0 * stretching, 3.0, Discretisation::default()),
+                shell(
+                    ShellOrder::ThinPlate,
+                    3.0 * stretching,
+                    3.0,
+                    Discretisation::CotangentArea,
+                ),
             );
             let length = 1.0 - 2.0 / cells as f64;
             let lambda = (stretching / 2.0).sqrt() * length;
@@ -156,9 +161,9 @@ fn without_bending_the_shell_is_a_membrane_of_any_stretching() {
             ShellOrder::CurvatureVariation,
             stretching,
             0.0,
-            Discretisation::default(),
+            Discretisation::CotangentArea,
         );
-        assert_eq!(scene.method.operator_power(), 1);
+        assert_eq!(scene.method.ordering_power(), Some(1));
         let displacements = scene.moved(&[DAffine3::from_translation(DVec3::Z)]);
         for (p, d) in scene.positions().iter().zip(&displacements) {
             assert!((d.z - p.x).abs() < 1e-6, "{p} {d}");
@@ -186,7 +191,7 @@ fn methods() -> Vec<Method> {
             options.order = order;
             options.triangulation = triangulation;
             options.anisotropy = anisotropy;
-            methods.push(Method::Bilaplacian(options));
+            methods.push(Method::from(options));
         }
     }
     methods
@@ -194,7 +199,7 @@ fn methods() -> Vec<Method> {
 
 /// Whether a system was refused with a place, which only order 3 may be on sound shapes.
 fn refused(scene: &Scene, error: &BindError, label: &str) {
-    let Method::Bilaplacian(options) = &scene.method else {
+    let Some(options) = scene.method.options::<Bilaplacian>() else {
         unreachable!()
     };
     assert!(
@@ -209,7 +214,7 @@ fn refused(scene: &Scene, error: &BindError, label: &str) {
     );
     assert_eq!(
         error.to_string().contains("`order`"),
-        scene.method.operator_power() > 1,
+        options.operator_power() > 1,
         "{label}: {error}"
     );
 }

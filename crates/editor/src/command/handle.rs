@@ -6,7 +6,7 @@ use super::entry::{
     Action, Entry, Scope, alt, always, character, item, plain, shift, unless, when_open, with_selected, with_unlocked,
 };
 use crate::document::{HandleId, HandleTransform, PivotPlace, Reach};
-use crate::exchange::without_pivot;
+use crate::format::without_pivot;
 use crate::input::Key;
 use crate::tool::{Constraint, Context, Gesture, ToolMode, TransformDrag, TransformKind, Widen};
 use crate::view::{GizmoMode, GizmoOrientation};

@@ -62,7 +62,7 @@ impl Content {
             next_handle: 0,
             stiffness: None,
             continuity: None,
-            method: Method::Arap(Arap::default()),
+            method: Arap::first_choice().into(),
             loose: Loose::default(),
             loose_parts: Arc::default(),
             access: Arc::default(),

@@ -1,11 +1,8 @@
 //! How a handle is moved: a translation, rotation and scale about a pivot, or a matrix.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use serde_json::{Value, json};
 
 use super::polar::polar_decomposition;
-use crate::edit_error::EditError;
-use crate::edit_node::Node;
 
 /// A handle's transform, acting on world positions.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -44,6 +41,14 @@ impl HandleTransform {
                 ..
             } => translation == DVec3::ZERO && scale == DVec3::ONE && rotation.xyz() == DVec3::ZERO,
             Self::Matrix(matrix) => matrix == DAffine3::IDENTITY,
+        }
+    }
+
+    /// Whether no direction is flattened: what the formats read, too. A tiny scale is none the worse for that.
+    pub(crate) fn can_be_undone(&self) -> bool {
+        match self {
+            Self::Trs { scale, .. } => scale.is_finite() && !scale.cmpeq(DVec3::ZERO).any(),
+            Self::Matrix(matrix) => matrix.is_finite() && !is_singular(&matrix.matrix3),
         }
     }
 
@@ -111,74 +116,25 @@ impl HandleTransform {
         };
         about(pivot, turned, translation * t)
     }
+}
 
-    pub(crate) fn read(node: &Node<'_>) -> Result<Self, EditError> {
-        const KNOWN: [&str; 5] = ["translation", "rotation", "scale", "pivot", "matrix"];
-        let members = node.object(
-            "an object with `translation`, `rotation`, `scale`, `pivot` or `matrix`",
-            &KNOWN,
-        )?;
-        if let Some(matrix) = members.get("matrix") {
-            if let Some(second) = members.names().find(|&name| name != "matrix") {
-                let place = node.place().to_owned();
-                return Err(EditError::Both {
-                    place,
-                    first: "matrix",
-                    second: second.to_owned(),
-                });
-            }
-            return Ok(Self::Matrix(read_matrix(&matrix)?));
-        }
-        let vector = |name: &str, default: DVec3| match members.get(name) {
-            Some(node) => node.numbers::<3>().map(DVec3::from_array),
-            None => Ok(default),
-        };
-        let rotation = match members.get("rotation") {
-            Some(node) => read_rotation(&node)?,
-            None => DQuat::IDENTITY,
-        };
-        let pivot = members
-            .get("pivot")
-            .map(|node| node.numbers::<3>().map(DVec3::from_array))
-            .transpose()?;
-        Ok(Self::Trs {
-            translation: vector("translation", DVec3::ZERO)?,
-            rotation,
-            scale: vector("scale", DVec3::ONE)?,
-            pivot,
-        })
+impl Default for HandleTransform {
+    fn default() -> Self {
+        Self::IDENTITY
     }
+}
 
-    /// The transform as the edit format has it; what is at its default is left out.
-    pub(crate) fn to_value(self) -> Value {
-        match self {
-            Self::Matrix(matrix) => {
-                let columns = glam::DMat4::from(matrix).to_cols_array();
-                json!({ "matrix": columns })
-            }
-            Self::Trs {
-                translation,
-                rotation,
-                scale,
-                pivot,
-            } => {
-                let mut members = serde_json::Map::new();
-                if translation != DVec3::ZERO {
-                    members.insert("translation".to_owned(), json!(translation.to_array()));
-                }
-                if rotation != DQuat::IDENTITY {
-                    members.insert("rotation".to_owned(), json!(rotation.to_array()));
-                }
-                if scale != DVec3::ONE {
-                    members.insert("scale".to_owned(), json!(scale.to_array()));
-                }
-                if let Some(pivot) = pivot {
-                    members.insert("pivot".to_owned(), json!(pivot.to_array()));
-                }
-                Value::Object(members)
-            }
-        }
-    }
+/// Whether a column is zero or lies in the plane of the other two, as far as f64 can tell. A scale says nothing of it,
+/// however small or uneven.
+fn is_singular(linear: &DMat3) -> bool {
+    let unit = |column: DVec3| {
+        // Scaled first, so that the length of a tiny column is not zero.
+        let largest = column.abs().max_element();
+        (column / largest).normalize()
+    };
+    let directions = DMat3::from_cols(unit(linear.x_axis), unit(linear.y_axis), unit(linear.z_axis));
+    // A NaN, of a zero column, is singular, too.
+    directions.determinant().abs().partial_cmp(&(8.0 * f64::EPSILON)) != Some(std::cmp::Ordering::Greater)
 }
 
 /// p' = pivot + translation + linear·(p − pivot).
@@ -192,35 +148,4 @@ fn about(pivot: DVec3, linear: DMat3, translation: DVec3) -> DAffine3 {
         matrix3: linear,
         translation: shift,
     }
-}
-
-fn read_rotation(node: &Node<'_>) -> Result<DQuat, EditError> {
-    let [x, y, z, w] = node.numbers::<4>()?;
-    // Scaled first, so that neither tiny nor huge numbers leave the range of f64 when squared.
-    let largest = x.abs().max(y.abs()).max(z.abs()).max(w.abs());
-    if largest == 0.0 {
-        return Err(node.out_of_range("a quaternion x, y, z, w whose length is not 0"));
-    }
-    let raw = DQuat::from_xyzw(x / largest, y / largest, z / largest, w / largest);
-    // What is normalised already keeps its bits, so that writing and reading an edit changes nothing.
-    let direct = DQuat::from_xyzw(x, y, z, w);
-    if (direct.length_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
-        Ok(direct)
-    } else {
-        Ok(raw.normalize())
-    }
-}
-
-fn read_matrix(node: &Node<'_>) -> Result<DAffine3, EditError> {
-    let m = node.numbers::<16>()?;
-    if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
-        return Err(EditError::OutOfRange {
-            place: node.place().to_owned(),
-            found: format!("a matrix whose last row is {}, {}, {}, {}", m[3], m[7], m[11], m[15]),
-            allowed: "16 numbers, column by column, with 0, 0, 0, 1 as their last row".to_owned(),
-        });
-    }
-    Ok(DAffine3::from_cols_array(&[
-        m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10], m[12], m[13], m[14],
-    ]))
 }

@@ -9,7 +9,7 @@ use glam::DVec3;
 use pliant_deform::Method;
 use pliant_mesh::Model;
 
-use crate::beginning::Beginning;
+use crate::Beginning;
 use crate::command::{Command, KeyMap, Scope, frame_all};
 use crate::document::Document;
 use crate::event::Event;

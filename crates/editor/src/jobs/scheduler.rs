@@ -241,15 +241,17 @@ impl Jobs {
         if activity != Activity::Dragging && !self.is_picking_current() {
             self.want(JobKind::Pick, |computed| pick_work(computed, &model, document));
         }
-        let power = document.method.operator_power();
-        let has_ordering = self.computed.ordering(power).is_some();
-        if !has_ordering {
+        let missing = document
+            .method
+            .ordering_power()
+            .filter(|&power| self.computed.ordering(power).is_none());
+        if let Some(power) = missing {
             self.want(JobKind::Order, |_| order_work(&model, power));
         }
         if activity != Activity::Painting {
             if !self.is_region_current() {
                 self.want(JobKind::Region, |_| region_work(region_input(&model, document)));
-            } else if has_ordering && !self.is_bound() && !self.computed.region.handles.is_empty() {
+            } else if missing.is_none() && !self.is_bound() && !self.computed.region.handles.is_empty() {
                 let revision = self.problem_revision.0;
                 self.want(JobKind::Bind, |computed| {
                     bind_work(computed, &model, document, revision)

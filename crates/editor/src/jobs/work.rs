@@ -3,12 +3,13 @@
 use std::sync::{Arc, PoisonError};
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{BindError, Bound, Holds, Loose, Ordering, Problem, SolveError, Step};
+use pliant_deform::{BindError, Bound, Ordering, Problem, Solve, SolveError, Step};
 use pliant_mesh::{Bvh, Cancel, Model, SurfaceVertex};
 
 use super::computed::Computed;
 use super::job::{Descent, JobOutcome, Pickable, Solved, Work};
 use super::region::{Region, RegionInput};
+use crate::Setup;
 use crate::document::{Document, HandleId, sum_of_shapes};
 
 /// A solve takes so many vertices' worth of steps before it shows its shape: about what a window's frame has time for.
@@ -67,45 +68,21 @@ pub(super) fn pick_work(computed: &Computed, model: &Arc<Model>, document: &Docu
     }))
 }
 
-/// Factorises; `None` while there is no ordering.
+/// Factorises; `None` while the ordering that the method needs is missing.
 pub(super) fn bind_work(computed: &Computed, model: &Arc<Model>, document: &Document, revision: u64) -> Option<Work> {
-    let ordering = computed.ordering(document.method.operator_power())?;
-    let (model, region) = (Arc::clone(model), computed.region.clone());
-    let (stiffness, loose, method) = (document.stiffness.clone(), document.loose, document.method.clone());
-    let soft: Vec<Option<f64>> = region
-        .handles
-        .iter()
-        .map(|&id| document.handle(id).and_then(|handle| handle.soft))
-        .collect();
-    let joins = document.clone();
+    let ordering = match document.method.ordering_power() {
+        Some(power) => Some(computed.ordering(power)?),
+        None => None,
+    };
+    let (model, document, region) = (Arc::clone(model), document.clone(), computed.region.clone());
     let remains = computed.remains.clone();
     Some(Box::new(move |progress, cancel| {
-        let ones;
-        let stiffness: &[f64] = match &stiffness {
-            Some(field) => field,
-            None => {
-                ones = vec![1.0; region.roles.len()];
-                &ones
-            }
-        };
-        let continuity = joins.joints().unwrap_or_default();
-        let parts: Vec<(u32, Loose)> = joins.loose_parts.iter().map(|(part, loose)| (*part, *loose)).collect();
+        let setup = Setup::of_document(&document, &region);
         let problem = Problem {
-            surface: region.rest_surface.as_deref().unwrap_or(&model.surface),
-            topology: &model.topology,
-            roles: &region.roles,
-            handle_count: region.handles.len(),
-            stiffness,
-            holds: Holds {
-                soft: &soft,
-                continuity: &continuity,
-                parts: &parts,
-            },
-            loose,
-            method: &method,
             revision,
+            ..setup.problem(&model)
         };
-        match problem.rebind(&ordering, remains.as_ref(), progress, cancel) {
+        match problem.rebind(ordering.as_deref(), remains.as_ref(), progress, cancel) {
             Ok(bound) => JobOutcome::Bound(Box::new(bound)),
             Err(BindError::Cancelled(_)) => JobOutcome::Cancelled,
             Err(error) => JobOutcome::Failed(
@@ -142,7 +119,7 @@ pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Wor
                     from_rest,
                     from_file,
                     finished: step.finished,
-                    descent: bound.handle_bases().is_none().then_some(Descent {
+                    descent: (bound.solve() != Solve::Direct).then_some(Descent {
                         energy: step.energy,
                         converged: step.converged,
                         finished: step.finished,

@@ -38,7 +38,13 @@ pub(crate) fn put_handle(workspace: &mut Workspace, id: HandleId, transform: Han
     else {
         return;
     };
+    if !transform.can_be_undone() {
+        workspace.refuse("That would flatten the handle for good: give a scale other than 0.".to_owned());
+        return;
+    }
     let twin = handle.twin;
+    // A number that is typed digit by digit passes through 0.
+    workspace.refusal = None;
     workspace.document.unsettle();
     put_alone(workspace, id, transform);
     if let Some(twin) = twin

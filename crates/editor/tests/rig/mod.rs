@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
-use pliant_deform::{Bound, Holds, Loose, Method, Ordering, Problem, Role};
+use pliant_deform::{Bound, Holds, Loose, Method, Problem, Role};
 use pliant_editor::{
     Access, Button, Command, Document, Editor, Event, GizmoPart, Handle, InlineExecutor, JobKind, Key, Modifiers,
     Paint, Pointer, ToolMode,
@@ -296,8 +296,8 @@ impl Rig {
         }
         let ones = vec![1.0; surface.positions.len()];
         let (progress, cancel) = (Progress::new(), Cancel::new());
-        let power = document.method().operator_power();
-        let ordering = Ordering::of(&self.model.topology, power, &progress, &cancel).unwrap();
+        let method = document.method();
+        let ordering = method.ordering(&self.model.topology, &progress, &cancel).unwrap();
         let soft: Vec<Option<f64>> = handles.iter().map(|handle| handle.soft).collect();
         let parts: Vec<(u32, Loose)> = document
             .loose_parts()
@@ -316,10 +316,10 @@ impl Rig {
                 parts: &parts,
             },
             loose: document.loose(),
-            method: document.method(),
+            method,
             revision: 0,
         };
-        let mut bound = problem.bind(&ordering, &progress, &cancel).unwrap();
+        let mut bound = problem.bind(ordering.as_ref(), &progress, &cancel).unwrap();
         let targets: Vec<DAffine3> = handles.iter().map(|handle| handle.affine()).collect();
         bound.set_targets(&targets).unwrap();
         while !bound.step(&mut displacements).unwrap().finished {}

@@ -3,14 +3,11 @@
 use glam::DVec3;
 use pliant_deform::CONTINUITY_RANGE;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
+use super::field::Ranges;
 use crate::document::{Handle, HandleId, MirrorPlane, PivotPlace, Twin};
 use crate::document::{followed, means};
-use crate::edit_error::EditError;
-use crate::edit_node::Node;
-use crate::project_field::Ranges;
-use crate::{HandleTransform, Reach, SOFT_RANGE};
+use crate::{EditError, HandleTransform, Reach, SOFT_RANGE};
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -19,8 +16,8 @@ pub(super) struct StoredHandle {
     pub(super) name: String,
     colour: [u8; 4],
     pub(super) vertices: Ranges,
-    #[serde(default, skip_serializing_if = "is_empty_object")]
-    transform: Value,
+    #[serde(default, skip_serializing_if = "is_default")]
+    transform: HandleTransform,
     /// The turn as it is counted, in degrees about x, y and z.
     #[serde(default, skip_serializing_if = "is_no_turn")]
     turn_deg: [f64; 3],
@@ -71,7 +68,7 @@ impl StoredHandle {
             name: handle.name.clone(),
             colour: handle.colour,
             vertices,
-            transform: handle.transform.to_value(),
+            transform: handle.transform,
             turn_deg: handle.turn_deg.to_array(),
             pivot: handle.pivot.to_array(),
             pivot_place: match handle.pivot_place {
@@ -97,7 +94,7 @@ impl StoredHandle {
 
     /// Whether it is where it rests.
     pub(super) fn is_at_rest(&self) -> bool {
-        is_empty_object(&self.transform)
+        is_default(&self.transform)
     }
 
     pub(super) fn handle(&self) -> Result<Handle, EditError> {
@@ -111,10 +108,7 @@ impl StoredHandle {
             )));
         }
         let id = HandleId(self.id);
-        let transform = match is_empty_object(&self.transform) {
-            true => HandleTransform::IDENTITY,
-            false => HandleTransform::read(&Node::new(&self.transform, &format!("handles: {}", self.name)))?,
-        };
+        let transform = self.transform;
         let counted = DVec3::from_array(self.turn_deg);
         Ok(Handle {
             colour: self.colour,
@@ -162,6 +156,6 @@ fn is_no_turn(turn_deg: &[f64; 3]) -> bool {
     *turn_deg == [0.0; 3]
 }
 
-fn is_empty_object(value: &Value) -> bool {
-    value.as_object().is_none_or(serde_json::Map::is_empty)
+fn is_default(transform: &HandleTransform) -> bool {
+    *transform == HandleTransform::default()
 }

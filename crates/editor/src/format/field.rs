@@ -3,25 +3,50 @@
 use std::ops::RangeInclusive;
 
 use pliant_mesh::Model;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
-use crate::edit_error::EditError;
-use crate::edit_node::Node;
-use crate::selector::Selector;
+use super::edit_error::EditError;
+use super::selector::Selector;
 
 /// A part of a painted field.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(try_from = "StoredEntry", rename_all = "snake_case")]
 pub enum FieldEntry {
+    /// The whole field: one value for each of the file's vertices. Twins that were welded take the value of the one
+    /// with the lowest number.
+    PerVertex(Vec<f64>),
     /// One value on a selection.
+    #[serde(untagged)]
     Select {
         /// Where.
         select: Selector,
         /// The value there.
         value: f64,
     },
-    /// The whole field: one value for each of the file's vertices. Twins that were welded take the value of the one
-    /// with the lowest number.
-    PerVertex(Vec<f64>),
+}
+
+/// The members as they stand.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredEntry {
+    select: Option<Selector>,
+    value: Option<f64>,
+    per_vertex: Option<Vec<f64>>,
+}
+
+impl TryFrom<StoredEntry> for FieldEntry {
+    type Error = &'static str;
+
+    fn try_from(stored: StoredEntry) -> Result<Self, &'static str> {
+        match (stored.per_vertex, stored.select, stored.value) {
+            (Some(values), None, None) => Ok(Self::PerVertex(values)),
+            (Some(_), Some(_), _) => Err("has both `per_vertex` and `select`: keep one of them"),
+            (Some(_), None, Some(_)) => Err("has both `per_vertex` and `value`: keep one of them"),
+            (None, Some(select), Some(value)) => Ok(Self::Select { select, value }),
+            (None, Some(_), None) => Err("lacks its member `value`: add it"),
+            (None, None, _) => Err("lacks its member `select`: add it, or give `per_vertex`"),
+        }
+    }
 }
 
 /// What a field is of, and what its values may be.
@@ -33,51 +58,42 @@ pub(crate) struct FieldKind {
 }
 
 impl FieldKind {
-    /// A value of this kind.
-    pub(crate) fn value(&self, node: &Node<'_>) -> Result<f64, EditError> {
-        let value = node.number()?;
+    /// Refuses a value that is not of this kind.
+    pub(crate) fn check(&self, value: f64) -> Result<(), EditError> {
         if self.range.contains(&value) {
-            return Ok(value);
+            return Ok(());
         }
         let (name, least, most) = (self.name, self.range.start(), self.range.end());
-        Err(node.out_of_range(format!("{name} from {least} to {most}")))
+        Err(EditError::OutOfRange {
+            place: String::new(),
+            found: value.to_string(),
+            allowed: format!("{name} from {least} to {most}"),
+        })
     }
 
-    /// Reads `{"select": .., "value": ..}` or `{"per_vertex": [..]}`.
-    pub(crate) fn read(&self, node: &Node<'_>) -> Result<FieldEntry, EditError> {
-        let expected = format!(
-            "{} on a selection: an object with `select` and `value`, or with `per_vertex`",
-            self.name
-        );
-        let members = node.object(&expected, &["select", "value", "per_vertex"])?;
-        if let Some(values) = members.get("per_vertex") {
-            if let Some(second) = members.names().find(|&name| name != "per_vertex") {
-                let place = node.place().to_owned();
-                return Err(EditError::Both {
-                    place,
-                    first: "per_vertex",
-                    second: second.to_owned(),
-                });
-            }
-            return Ok(FieldEntry::PerVertex(
-                values.list("a list of numbers", |node| self.value(node))?,
-            ));
+    /// Refuses an entry with such a value, or with a selector that can't be.
+    pub(crate) fn check_all(&self, entries: &[FieldEntry]) -> Result<(), EditError> {
+        for (index, entry) in entries.iter().enumerate() {
+            let checked = match entry {
+                FieldEntry::Select { select, value } => select
+                    .check()
+                    .map_err(|error| error.under("select"))
+                    .and_then(|()| self.check(*value).map_err(|error| error.under("value"))),
+                FieldEntry::PerVertex(values) => {
+                    let refused = values.iter().enumerate().find_map(|(vertex, value)| {
+                        let refused = self.check(*value).err()?;
+                        Some(refused.under(&format!("per_vertex[{vertex}]")))
+                    });
+                    refused.map_or(Ok(()), Err)
+                }
+            };
+            checked.map_err(|error| error.under(&format!("[{index}]")))?;
         }
-        Ok(FieldEntry::Select {
-            select: Selector::read(&members.require("select")?)?,
-            value: self.value(&members.require("value")?)?,
-        })
+        Ok(())
     }
 }
 
 impl FieldEntry {
-    pub(crate) fn to_value(&self) -> Value {
-        match self {
-            Self::Select { select, value } => json!({ "select": select.to_value(), "value": value }),
-            Self::PerVertex(values) => json!({ "per_vertex": values }),
-        }
-    }
-
     /// The entry as it comes from a document: the values of the surface's vertices at the file's, `default` where a
     /// vertex of the file is no vertex of the surface.
     pub(crate) fn of_surface(field: &[f64], default: f64, model: &Model) -> Self {

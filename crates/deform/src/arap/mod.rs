@@ -16,6 +16,7 @@ mod bending;
 mod cells;
 mod clusters;
 mod coarse;
+mod declaration;
 mod descent;
 mod domain;
 mod fit_pass;
@@ -36,6 +37,7 @@ use glam::DVec3;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex};
 use rayon::prelude::*;
 
+pub(crate) use self::declaration::DECLARATION;
 pub use self::options::{Arap, ArapEnergy};
 
 use self::cells::{Cells, quad, vector};
@@ -251,31 +253,9 @@ impl ArapSolver {
         })
     }
 
-    /// How many triangles were too flat for cotangents of their own.
-    pub fn mollified_faces(&self) -> usize {
-        self.mollified_faces
-    }
-
     /// How many numbers the factor stores.
     pub fn factor_len(&self) -> usize {
         self.preconditioner.stored() + self.coarse.as_ref().map_or(0, |coarse| coarse.factor_len())
-    }
-
-    /// How many vertices are solved for.
-    pub fn solved_count(&self) -> usize {
-        self.domain.solved_count
-    }
-
-    /// Most iterations towards one set of targets.
-    pub fn max_iterations(&self) -> u32 {
-        self.options.max_iterations
-    }
-
-    /// The handles' surface vertices and their coordinates.
-    pub fn prescribed(&self, handle: usize) -> impl Iterator<Item = (u32, [f64; 4])> + '_ {
-        self.prescribed[handle]
-            .iter()
-            .map(|p| (p.surface_vertex, p.coordinates))
     }
 
     /// The energy in units of the rest shape's, which a change of the model's scale leaves as it is.

@@ -79,15 +79,21 @@ pub enum EditError {
         /// The range in words.
         allowed: String,
     },
-    /// Two members that exclude each other.
-    #[error("{place} has both `{first}` and `{second}`: keep one of them")]
-    Both {
-        /// Where they stand.
+    /// A member that stands twice in the same object.
+    #[error("`{member}` stands twice in {place}: keep one of them")]
+    Duplicate {
+        /// The member's name.
+        member: String,
+        /// Where it stands.
         place: String,
-        /// The one.
-        first: &'static str,
-        /// The other.
-        second: String,
+    },
+    /// Something else about a value.
+    #[error("{place} {sentence}")]
+    Other {
+        /// Where it stands.
+        place: String,
+        /// What is wrong with it and what would be right, without its subject.
+        sentence: String,
     },
     /// A vertex number that the file does not have.
     #[error("{place} names vertex {vertex}, but the file has {count} vertices: use numbers from 0 to {}", .count.saturating_sub(1))]
@@ -147,6 +153,43 @@ pub enum EditError {
     TooManyHandles(usize),
 }
 
+impl EditError {
+    /// The refusal as seen from outside: what it speaks of stands in this member (`transform`) or element (`[3]`).
+    pub(crate) fn under(mut self, step: &str) -> Self {
+        if let Some(place) = self.place_mut() {
+            *place = match place.chars().next() {
+                None => step.to_owned(),
+                Some('[') => format!("{step}{place}"),
+                Some(_) => format!("{step}.{place}"),
+            };
+        }
+        self
+    }
+
+    /// The refusal of something in `whole`, "the edit" or so.
+    pub(crate) fn at(mut self, whole: &str) -> Self {
+        if let Some(place) = self.place_mut()
+            && place.is_empty()
+        {
+            whole.clone_into(place);
+        }
+        self
+    }
+
+    fn place_mut(&mut self) -> Option<&mut String> {
+        match self {
+            Self::UnknownMember { place, .. }
+            | Self::UnknownName { place, .. }
+            | Self::Missing { place, .. }
+            | Self::WrongKind { place, .. }
+            | Self::OutOfRange { place, .. }
+            | Self::Duplicate { place, .. }
+            | Self::Other { place, .. } => Some(place),
+            _ => None,
+        }
+    }
+}
+
 /// "did you mean `scale`?" where a known name is near, else the list of them.
 pub(crate) fn remedy(name: &str, known: &[&str]) -> String {
     let near = known.iter().map(|known| (edit_distance(name, known), known)).min();
@@ -158,7 +201,8 @@ pub(crate) fn remedy(name: &str, known: &[&str]) -> String {
     }
 }
 
-fn listed(names: &[&str]) -> String {
+/// "`a`, `b`, `c`".
+pub(crate) fn listed(names: &[&str]) -> String {
     names
         .iter()
         .map(|name| format!("`{name}`"))

@@ -21,6 +21,7 @@
 //! where the prisms are and their energy, `system` and `factored` make the matrices, `hierarchy` the cells, `start` chooses where to begin,
 //! `sweep` unfolds, `descent` takes a step, and `vertices` takes the prisms' mean.
 
+mod declaration;
 mod descent;
 mod edges;
 mod factored;
@@ -39,6 +40,7 @@ mod vertices;
 use glam::DVec3;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
 
+pub(crate) use self::declaration::DECLARATION;
 pub use self::options::Primo;
 
 use self::edges::Edges;
@@ -191,21 +193,6 @@ impl PrimoSolver {
         self.preconditioner.stored()
     }
 
-    /// How many vertices follow from solved prisms.
-    pub fn solved_count(&self) -> usize {
-        self.vertices.vertices.len()
-    }
-
-    /// Most iterations towards one set of targets.
-    pub fn max_iterations(&self) -> u32 {
-        self.options.max_iterations
-    }
-
-    /// The handles' surface vertices and their coordinates.
-    pub fn prescribed(&self, handle: usize) -> impl Iterator<Item = (u32, [f64; 4])> + '_ {
-        self.prescribed[handle].iter().copied()
-    }
-
     /// The energy in units of the solved prisms' area, which a change of the model's scale leaves as it is.
     fn relative(&self, energy: f64) -> f64 {
         if self.joints.area > 0.0 {
@@ -275,7 +262,7 @@ mod tests {
             tolerance: 1e-9,
             ..Primo::default()
         };
-        let method = Method::Primo(options.clone());
+        let method = Method::from(options.clone());
         let problem = Problem {
             surface: &model.surface,
             topology: &model.topology,

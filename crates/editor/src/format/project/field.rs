@@ -9,8 +9,8 @@ use base64::engine::general_purpose::STANDARD;
 use pliant_mesh::{DrawnVertex, Model, SurfaceVertex};
 use serde::{Deserialize, Serialize};
 
-use crate::edit_error::EditError;
-use crate::exchange::ranges_of;
+use crate::EditError;
+use crate::format::exchange::ranges_of;
 
 /// First and last drawn vertex of runs, ascending.
 pub(crate) type Ranges = Vec<[u32; 2]>;

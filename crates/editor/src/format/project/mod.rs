@@ -3,9 +3,10 @@
 //! JSON, with a version. The mesh is named by its path (for finding it) and by a hash of its geometry (for knowing it):
 //! the hash takes what vertex numbers mean (positions, triangles and the file's order), so the kept original of a file
 //! that was saved over is known again whatever it is called. Regions are ranges of the file's drawn vertices; only
-//! fields of numbers stand as base64 ([`crate::project_field`]).
+//! fields of numbers stand as base64 ([`field`]).
 
 mod camera;
+mod field;
 mod handle;
 mod objects;
 
@@ -14,25 +15,27 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{CONTINUITY_RANGE, Loose, Method};
+use pliant_deform::{CONTINUITY_RANGE, Method};
 use pliant_mesh::{Cancel, Model, SurfaceVertex};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
+use self::camera::StoredCamera;
+use self::field::{Field, Ranges, for_each_drawn, ranges_where};
+use self::handle::StoredHandle;
+use self::objects::{StoredObject, access, stored_objects};
+use super::edit_error::EditError;
+use super::json::parse;
+use super::loose::StoredLoose;
+use super::method::{method_to_value, read_method};
+use super::reader::read;
+use super::setup::Setup;
 use crate::document::bits_equal;
 use crate::document::{Content, Document, Handle, HandleId, Paint};
-use crate::edit_error::EditError;
-use crate::edit_node::Node;
-use crate::exchange::with_pivot;
 use crate::jobs::region_input;
 use crate::jobs::{Region, displaced};
-use crate::method_form::{method_to_value, read_method};
-use crate::project_field::{Field, Ranges, for_each_drawn, ranges_where};
-use crate::{Camera, HandleSetup, Rest, STIFFNESS_RANGE, Setup};
-use camera::StoredCamera;
-use handle::StoredHandle;
-use objects::{StoredObject, access, stored_objects};
+use crate::{Camera, STIFFNESS_RANGE};
 
 /// The version of the project format that is read and written.
 const PROJECT_VERSION: u64 = 1;
@@ -93,34 +96,6 @@ pub struct MeshReference {
     pub geometry: String,
 }
 
-#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum StoredLoose {
-    Follow,
-    Rest,
-    Bend,
-}
-
-impl From<Loose> for StoredLoose {
-    fn from(loose: Loose) -> Self {
-        match loose {
-            Loose::Follow => Self::Follow,
-            Loose::Rest => Self::Rest,
-            Loose::Bend => Self::Bend,
-        }
-    }
-}
-
-impl From<StoredLoose> for Loose {
-    fn from(stored: StoredLoose) -> Self {
-        match stored {
-            StoredLoose::Follow => Self::Follow,
-            StoredLoose::Rest => Self::Rest,
-            StoredLoose::Bend => Self::Bend,
-        }
-    }
-}
-
 /// `sha256:` and the digest of what vertex numbers mean: the drawn positions' bits, the triangles and the file's
 /// vertices behind the drawn ones.
 pub fn geometry_hash(model: &Model) -> String {
@@ -148,33 +123,27 @@ fn hexadecimal(hash: Sha256) -> String {
 }
 
 impl Project {
-    /// Whether a text is meant as a project: it names its mesh.
-    pub(crate) fn is_project(text: &str) -> bool {
-        #[derive(Deserialize)]
-        struct Named {
-            mesh: Option<serde::de::IgnoredAny>,
-        }
-        serde_json::from_str::<Named>(text).is_ok_and(|named| named.mesh.is_some())
-    }
-
     /// Reads a project's JSON text.
     ///
     /// # Errors
-    /// Whatever the format does not have, by name and line.
+    /// Whatever the format does not have, by its name and place.
     pub fn parse(text: &str) -> Result<Self, EditError> {
-        #[derive(Deserialize)]
-        struct Versioned {
-            version: Option<Value>,
-        }
-        let read = |error: serde_json::Error| EditError::Project(error.to_string());
+        let value = parse(text).map_err(|error| match error {
+            EditError::Json(error) => EditError::Project(error),
+            error => error.at("the project"),
+        })?;
+        Self::from_value(&value)
+    }
+
+    /// Reads a project from a JSON value.
+    pub(crate) fn from_value(value: &Value) -> Result<Self, EditError> {
         // The version first: another one may have members that this one lacks.
-        let versioned: Versioned = serde_json::from_str(text).map_err(read)?;
-        match versioned.version {
+        match value.get("version") {
             Some(version) if version.as_u64() == Some(PROJECT_VERSION) => {}
             Some(version) => return Err(EditError::ProjectVersion(version.to_string())),
             None => return Err(EditError::Project("it has no `version`: add it".to_owned())),
         }
-        serde_json::from_str(text).map_err(read)
+        read(value).map_err(|error| error.at("the project"))
     }
 
     /// The project as JSON text with a newline at its end.
@@ -280,7 +249,7 @@ impl Project {
             });
         }
         let mut document = Content::new(model.surface.positions.len());
-        document.method = read_method(&Node::new(&self.method, "method"))?;
+        document.method = read_method(&self.method).map_err(|error| error.under("method"))?;
         document.loose = self.loose.into();
         document.loose_parts = Arc::new(
             self.loose_parts
@@ -364,39 +333,7 @@ impl Project {
         let document = self.document(model)?;
         let input = region_input(&Arc::new(model.clone()), &document);
         let region = Region::measure(&input, &Cancel::new()).unwrap_or_else(|_| Region::still(document.paint.len()));
-        Ok(Setup {
-            roles: region.roles.to_vec(),
-            handles: region
-                .handles
-                .iter()
-                .filter_map(|&id| document.handle(id))
-                .map(|handle| HandleSetup {
-                    name: handle.name.clone(),
-                    transform: with_pivot(handle),
-                    pivot: handle.pivot,
-                })
-                .collect(),
-            stiffness: document
-                .stiffness()
-                .map_or_else(|| vec![1.0; document.paint.len()], <[f64]>::to_vec),
-            soft: region
-                .handles
-                .iter()
-                .map(|&id| document.handle(id).and_then(|handle| handle.soft))
-                .collect(),
-            continuity: document.joints().unwrap_or_default(),
-            loose: document.loose,
-            loose_parts: document
-                .loose_parts
-                .iter()
-                .map(|(part, loose)| (*part, *loose))
-                .collect(),
-            method: document.method.clone(),
-            rest: document.applied.then(|| Rest {
-                displacements: Arc::clone(&document.rest),
-                surface: Arc::new(displaced(&model.surface, &document.rest)),
-            }),
-        })
+        Ok(Setup::of_document(&document, &region))
     }
 }
 

@@ -3,8 +3,8 @@
 use pliant_mesh::Model;
 use serde::{Deserialize, Serialize};
 
-use crate::Access;
-use crate::edit_error::EditError;
+use super::Project;
+use crate::{Access, EditError};
 
 /// An object that is hidden or locked.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]

@@ -3,12 +3,15 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{CONTINUITY_RANGE, Holds, Loose, Method, Role};
+use pliant_deform::{CONTINUITY_RANGE, Holds, Loose, Method, Problem, Role};
 use pliant_mesh::{Model, Surface, SurfaceVertex};
 
+use super::edit_error::EditError;
+use super::edit_file::EditFile;
+use super::exchange::with_pivot;
 use crate::HandleTransform;
-use crate::edit_error::EditError;
-use crate::edit_file::EditFile;
+use crate::document::Document;
+use crate::jobs::Region;
 
 /// What [`pliant_deform::Problem`] needs of an edit, and the handles' transforms.
 #[derive(Clone, PartialEq, Debug)]
@@ -65,12 +68,52 @@ impl Setup {
         self.roles.iter().filter(|&&role| role == Role::Free).count()
     }
 
-    /// How firmly handles pull and how smoothly the surface joins what holds it.
-    pub fn holds(&self) -> Holds<'_> {
-        Holds {
-            soft: &self.soft,
-            continuity: &self.continuity,
-            parts: &self.loose_parts,
+    /// What is solved on `model`, the one that it was resolved on. The command line and the window both bind this.
+    pub fn problem<'a>(&'a self, model: &'a Model) -> Problem<'a> {
+        Problem {
+            surface: self.rest.as_ref().map_or(&model.surface, |rest| &rest.surface),
+            topology: &model.topology,
+            roles: &self.roles,
+            handle_count: self.handles.len(),
+            stiffness: &self.stiffness,
+            holds: Holds {
+                soft: &self.soft,
+                continuity: &self.continuity,
+                parts: &self.loose_parts,
+            },
+            loose: self.loose,
+            method: &self.method,
+            revision: 0,
+        }
+    }
+
+    /// What a document asks for, with the regions that follow from it.
+    pub(crate) fn of_document(document: &Document, region: &Region) -> Self {
+        let handles = || region.handles.iter().filter_map(|&id| document.handle(id));
+        let stiffness = document.stiffness();
+        Self {
+            roles: region.roles.to_vec(),
+            handles: handles()
+                .map(|handle| HandleSetup {
+                    name: handle.name.clone(),
+                    transform: with_pivot(handle),
+                    pivot: handle.pivot,
+                })
+                .collect(),
+            stiffness: stiffness.map_or_else(|| vec![1.0; region.roles.len()], <[f64]>::to_vec),
+            soft: handles().map(|handle| handle.soft).collect(),
+            continuity: document.joints().unwrap_or_default(),
+            loose: document.loose,
+            loose_parts: document
+                .loose_parts
+                .iter()
+                .map(|(part, loose)| (*part, *loose))
+                .collect(),
+            method: document.method.clone(),
+            rest: region.rest_surface.as_ref().map(|surface| Rest {
+                displacements: Arc::clone(&document.rest),
+                surface: Arc::clone(surface),
+            }),
         }
     }
 

@@ -4,6 +4,7 @@ pub(crate) mod assembly;
 pub(crate) mod bases;
 mod bilaplacian;
 mod continuity;
+mod declaration;
 pub(crate) mod factored;
 pub(crate) mod hubs;
 pub(crate) mod operator;
@@ -14,3 +15,4 @@ mod springs;
 
 pub use bases::HandleBases;
 pub use bilaplacian::{Bilaplacian, Discretisation, ShellOrder, Triangulation};
+pub(crate) use declaration::DECLARATION;

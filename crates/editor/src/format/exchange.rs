@@ -7,11 +7,9 @@ use pliant_mesh::Model;
 
 use crate::document::followed;
 use crate::document::{Content, Document, Handle, HandleId, Paint, PivotPlace, Reach};
-use crate::edit_file::{EditFile, HandleEntry};
-use crate::field_form::FieldEntry;
 use crate::jobs::Region;
 use crate::jobs::region_input;
-use crate::{EditError, HandleTransform, Selector};
+use crate::{EditError, EditFile, FieldEntry, HandleEntry, HandleTransform, Selector};
 
 /// Why a document can't be said as an edit.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]

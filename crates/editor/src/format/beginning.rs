@@ -2,6 +2,7 @@
 
 use pliant_mesh::Model;
 
+use super::json::parse;
 use crate::document::Document;
 use crate::{Camera, EditError, EditFile, Project, Setup};
 
@@ -20,11 +21,10 @@ impl Beginning {
     /// # Errors
     /// Whatever the formats don't have is refused by its name.
     pub fn parse(text: &str) -> Result<Self, EditError> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        if Project::is_project(text) {
-            Ok(Self::Project(Box::new(Project::parse(text)?)))
-        } else {
-            EditFile::parse(text).map(Self::from)
+        let value = parse(text).map_err(|error| error.at("the file"))?;
+        match value.get("mesh") {
+            Some(_) => Project::from_value(&value).map(Self::from),
+            None => EditFile::from_value(&value).map(Self::from),
         }
     }
 
@@ -57,7 +57,7 @@ impl Beginning {
 
     pub(crate) fn document(&self, model: &Model) -> Result<Document, EditError> {
         match self {
-            Self::Edit(edit) => crate::exchange::import(edit, model),
+            Self::Edit(edit) => super::exchange::import(edit, model),
             Self::Project(project) => project.document(model),
         }
     }

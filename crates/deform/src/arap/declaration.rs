@@ -1,0 +1,94 @@
+//! ARAP as one of the methods.
+
+use glam::DVec3;
+
+use super::{Arap, ArapSolver};
+use crate::handle::{Motion, clear};
+use crate::method::{
+    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
+};
+use crate::operators::repairs;
+use crate::{BindError, SolveError};
+
+pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
+    name: "arap",
+    title: "As rigid as possible",
+    when_to_use: "Keeps every neighbourhood as rigid as it can, step by step, for large turns and long drags: with the \
+                  energy \"smooth\" it bends and twists evenly, with \"spokes-and-rims\" it binds sooner and may crease.",
+    keywords: "arap as-rigid-as-possible",
+    options: Arap::OPTIONS,
+    heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
+    default: || Arap::default().into(),
+    first_choice: || Arap::first_choice().into(),
+};
+
+impl DeformMethod for Arap {
+    fn declaration(&self) -> &'static MethodDeclaration {
+        &DECLARATION
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::Surface {
+            // Across a constrained vertex, too, whose cell turns with all its neighbours.
+            reach: 2,
+            ordering_power: Some(self.operator_power()),
+        }
+    }
+
+    fn solve(&self) -> Solve {
+        Solve::Iterative {
+            max_iterations: self.max_iterations,
+        }
+    }
+
+    fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
+        let (ordering, handles) = (input.ordering()?, input.handles);
+        let solver = ArapSolver::bind(
+            input.problem,
+            self,
+            input.partition,
+            handles,
+            ordering,
+            input.progress,
+            input.cancel,
+        )?;
+        Ok(Box::new(solver))
+    }
+}
+
+impl BoundMethod for ArapSolver {
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        clear(displacements);
+        for (own, motion) in self.prescribed.iter().zip(motions) {
+            for vertex in own {
+                displacements[vertex.surface_vertex as usize] = motion.displace(vertex.coordinates);
+            }
+        }
+        let (converged, energy) = ArapSolver::step(self, motions, displacements);
+        Ok(Stepped {
+            converged,
+            energy,
+            finite: Finite::Unknown,
+        })
+    }
+
+    fn rest(&mut self) {
+        ArapSolver::rest(self);
+    }
+
+    fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {
+        Some(ArapSolver::energy_of(self, motions, displacements))
+    }
+
+    fn solved_count(&self) -> usize {
+        self.domain.solved_count
+    }
+
+    fn factor_len(&self) -> usize {
+        ArapSolver::factor_len(self)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        repairs(self.mollified_faces).into_iter().collect()
+    }
+}

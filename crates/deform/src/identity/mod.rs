@@ -1,0 +1,90 @@
+//! The smallest method: handles move, and nothing else does.
+//!
+//! It is here to show what a method must bring (this folder and its line in [`crate::METHODS`]), works on bare points,
+//! and is compiled for tests only (the feature `identity-method`).
+
+use glam::DVec3;
+
+use crate::handle::{Motion, clear};
+use crate::method::option::{Number, options};
+use crate::method::{BindInput, BoundMethod, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped};
+use crate::{BindError, SolveError};
+
+pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
+    name: "identity",
+    title: "Handles alone",
+    when_to_use: "Moves the handles and leaves the rest where it is.",
+    keywords: "identity nothing",
+    options: Identity::OPTIONS,
+    heeds: &[],
+    default: || Identity::default().into(),
+    first_choice: || Identity::default().into(),
+};
+
+options! {
+    /// Options of the identity.
+    pub struct Identity {
+        /// How far the handles go of the way that they are to go.
+        share: f64 = Number {
+            default: 1.0,
+            range: [0.0, 1.0],
+            unit: "",
+            help: "how far the handles go of their way",
+        },
+    }
+}
+
+/// The handles' vertices and their coordinates.
+#[derive(Debug)]
+struct BoundIdentity {
+    share: f64,
+    handles: Vec<Vec<(u32, [f64; 4])>>,
+}
+
+impl DeformMethod for Identity {
+    fn declaration(&self) -> &'static MethodDeclaration {
+        &DECLARATION
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::Points
+    }
+
+    fn solve(&self) -> Solve {
+        Solve::Direct
+    }
+
+    fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
+        let positions = &input.problem.surface.positions;
+        let handles = input.handles.iter().map(|handle| {
+            let vertices = handle.vertices.iter();
+            vertices
+                .map(|&vertex| (vertex, handle.coordinates(positions[vertex as usize])))
+                .collect()
+        });
+        Ok(Box::new(BoundIdentity {
+            share: self.share,
+            handles: handles.collect(),
+        }))
+    }
+}
+
+impl BoundMethod for BoundIdentity {
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        clear(displacements);
+        for (own, motion) in self.handles.iter().zip(motions) {
+            for &(vertex, coordinates) in own {
+                displacements[vertex as usize] = motion.displace(coordinates) * self.share;
+            }
+        }
+        Ok(Stepped {
+            converged: true,
+            energy: 0.0,
+            finite: Finite::Unknown,
+        })
+    }
+
+    fn solved_count(&self) -> usize {
+        0
+    }
+}

@@ -1,0 +1,80 @@
+//! What a method says of itself, for whoever lists, explains, chooses or prepares it.
+
+use super::{Method, OptionDeclaration};
+
+/// A method, as it is listed and explained. Each method's folder has one, and [`super::METHODS`] has them all.
+#[derive(Clone, Copy, Debug)]
+pub struct MethodDeclaration {
+    /// Its name in the edit format and on the command line.
+    pub name: &'static str,
+    /// What a person calls it.
+    pub title: &'static str,
+    /// One sentence on when to take it.
+    pub when_to_use: &'static str,
+    /// What else it is called, in lower case.
+    pub keywords: &'static str,
+    /// Its options, in the order in which they are shown.
+    pub options: &'static [OptionDeclaration],
+    /// What it heeds beyond handles and fixed vertices.
+    pub heeds: &'static [ConstraintKind],
+    /// The method with the defaults of the edit format.
+    pub default: fn() -> Method,
+    /// The method as a person begins with it, which may differ from the defaults: these can't change, since edits leave
+    /// them out.
+    pub first_choice: fn() -> Method,
+}
+
+/// What a problem may ask for, and a method may not heed.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum ConstraintKind {
+    /// Handles that only pull at their vertices.
+    SoftHandles,
+    /// With which continuity the free surface joins what holds it.
+    Continuity,
+    /// Painted stiffness.
+    Stiffness,
+}
+
+/// What a method works on.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Needs {
+    /// Points in space: it bends whatever is there, connected or not. Every free vertex is its own to move.
+    Points,
+    /// A surface's triangles, of which it moves what a handle can reach.
+    Surface {
+        /// How many edges a handle's influence travels at a time, across constrained vertices too; at least 1.
+        reach: u32,
+        /// The power of the Laplacian in whose graph's order its system is eliminated; `None` if it needs no
+        /// [`crate::Ordering`].
+        ordering_power: Option<u32>,
+    },
+}
+
+/// How a bound method comes to its shape.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Solve {
+    /// In one step.
+    Direct,
+    /// Step by step, each going on from the shape of the last one.
+    Iterative {
+        /// The most steps towards one set of targets; at least 1.
+        max_iterations: u32,
+    },
+}
+
+impl MethodDeclaration {
+    /// Whether it heeds this.
+    pub fn heeds(&self, constraint: ConstraintKind) -> bool {
+        self.heeds.contains(&constraint)
+    }
+}
+
+impl Needs {
+    /// The power of the ordering that it needs, if it needs one.
+    pub fn ordering_power(self) -> Option<u32> {
+        match self {
+            Self::Points => None,
+            Self::Surface { ordering_power, .. } => ordering_power,
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! The methods: what each declares and implements, and the list of them all.
+//!
+//! `README.md` beside the sources says how one is added and what later ones bring along.
+
+mod declaration;
+pub(crate) mod iteration;
+pub(crate) mod option;
+mod traits;
+
+use std::fmt;
+
+use pliant_mesh::{Cancel, Cancelled, Progress, Topology};
+
+pub use self::declaration::{ConstraintKind, MethodDeclaration, Needs, Solve};
+pub use self::option::{OptionDeclaration, OptionKind, OptionRefused, OptionValue};
+pub(crate) use self::traits::{BindInput, BoundMethod, DeformMethod, Finite, Options, Stepped};
+use crate::Ordering;
+
+/// Every method, in the order in which they are shown. A new one adds its line here.
+pub const METHODS: &[&MethodDeclaration] = &[
+    &crate::shell::DECLARATION,
+    &crate::arap::DECLARATION,
+    &crate::primo::DECLARATION,
+    #[cfg(feature = "identity-method")]
+    &crate::identity::DECLARATION,
+];
+
+/// A method with its options: how a surface follows its handles.
+pub struct Method(Box<dyn DeformMethod>);
+
+impl Method {
+    pub(crate) fn of(options: impl DeformMethod) -> Self {
+        Self(Box::new(options))
+    }
+
+    /// The method called `name`, with its defaults.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let declaration = METHODS.iter().find(|declaration| declaration.name == name)?;
+        Some((declaration.default)())
+    }
+
+    /// What it says of itself.
+    pub fn declaration(&self) -> &'static MethodDeclaration {
+        self.0.declaration()
+    }
+
+    /// The name that [`Method::from_name`] takes.
+    pub fn name(&self) -> &'static str {
+        self.declaration().name
+    }
+
+    /// What it works on, with its present options.
+    pub fn needs(&self) -> Needs {
+        self.0.needs()
+    }
+
+    /// The power of the Laplacian in whose graph's order its system is eliminated, if it needs an ordering.
+    pub fn ordering_power(&self) -> Option<u32> {
+        self.needs().ordering_power()
+    }
+
+    /// The ordering that it needs, if it needs one.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `cancel` is raised.
+    pub fn ordering(
+        &self,
+        topology: &Topology,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Option<Ordering>, Cancelled> {
+        let power = self.ordering_power();
+        power
+            .map(|power| Ordering::of(topology, power, progress, cancel))
+            .transpose()
+    }
+
+    /// How it comes to its shape, with its present options.
+    pub fn solve(&self) -> Solve {
+        self.0.solve()
+    }
+
+    /// What an option is set to; `None` if the method has none of this name.
+    pub fn value(&self, option: &str) -> Option<OptionValue> {
+        self.0.value(option)
+    }
+
+    /// The method with some of its options set.
+    ///
+    /// # Errors
+    /// An option that it does not have, or a value that it does not take, alone or beside the others.
+    pub fn with<'a>(&self, values: impl IntoIterator<Item = (&'a str, OptionValue)>) -> Result<Self, OptionRefused> {
+        let mut set = self.clone();
+        for (name, value) in values {
+            let options = self.declaration().options;
+            let Some(option) = options.iter().find(|option| option.name == name) else {
+                let names = options.iter().map(|option| format!("`{}`", option.name));
+                return Err(OptionRefused {
+                    option: name.to_owned(),
+                    allowed: format!("nothing: {} has {}", self.name(), option::joined(names, "and")),
+                });
+            };
+            if !option.kind.takes(value) {
+                return Err(option.refused());
+            }
+            set.0.set(name, value).ok_or_else(|| option.refused())?;
+        }
+        set.0.check()?;
+        Ok(set)
+    }
+
+    /// The options as the method's own type, if it is that method.
+    pub fn options<T: 'static>(&self) -> Option<&T> {
+        (&*self.0 as &dyn std::any::Any).downcast_ref()
+    }
+
+    /// The trait behind it.
+    pub(crate) fn implementation(&self) -> &dyn DeformMethod {
+        &*self.0
+    }
+}
+
+impl Default for Method {
+    /// What an edit has that says nothing else.
+    fn default() -> Self {
+        (METHODS[0].default)()
+    }
+}
+
+impl Clone for Method {
+    fn clone(&self) -> Self {
+        Self(self.0.boxed_clone())
+    }
+}
+
+impl PartialEq for Method {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.equals(other.implementation())
+    }
+}
+
+impl fmt::Debug for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_declaration_is_complete_and_its_defaults_are_its_own() {
+        for (number, declaration) in METHODS.iter().enumerate() {
+            let name = declaration.name;
+            assert!(METHODS[..number].iter().all(|other| other.name != name), "{name} twice");
+            for method in [(declaration.default)(), (declaration.first_choice)()] {
+                assert_eq!(method.name(), name);
+            }
+            assert_eq!(Method::from_name(name), Some((declaration.default)()));
+            assert!(
+                !declaration.title.is_empty() && declaration.when_to_use.ends_with('.'),
+                "{name}"
+            );
+            assert_eq!(declaration.keywords, declaration.keywords.to_lowercase());
+        }
+        assert_eq!(Method::from_name("no such method"), None);
+        assert_ne!(Method::from_name("arap"), Method::from_name("primo"));
+    }
+
+    #[test]
+    fn every_option_takes_its_default_and_the_ends_of_its_range_and_refuses_what_lies_beyond() {
+        for declaration in METHODS {
+            let method = (declaration.default)();
+            for option in declaration.options {
+                let name = option.name;
+                let default = method.value(name).unwrap();
+                assert_eq!(method.with([(name, default)]).unwrap(), method, "{name}");
+                let (taken, refused) = match option.kind {
+                    OptionKind::Number {
+                        range: [least, most], ..
+                    } => (
+                        vec![OptionValue::Number(most), OptionValue::Number((least + most) / 2.0)],
+                        [least - 1.0, most * 1.01, f64::NAN].map(OptionValue::Number).to_vec(),
+                    ),
+                    OptionKind::Whole { range: [least, most] } => (
+                        [least, most].map(OptionValue::Whole).to_vec(),
+                        vec![OptionValue::Whole(most + 1)],
+                    ),
+                    OptionKind::Numbered { choices } => (
+                        choices.iter().map(|(number, _)| OptionValue::Whole(*number)).collect(),
+                        vec![OptionValue::Whole(77)],
+                    ),
+                    OptionKind::Named { choices } => (
+                        choices.iter().map(|name| OptionValue::Name(name)).collect(),
+                        vec![OptionValue::Name("banana")],
+                    ),
+                    OptionKind::Switch => ([true, false].map(OptionValue::Switch).to_vec(), Vec::new()),
+                };
+                for value in taken {
+                    let set = method.with([(name, value)]).unwrap();
+                    assert_eq!(set.value(name), Some(value), "{name}");
+                    assert_eq!(set == method, value == default, "{name}");
+                }
+                let other_kind = match option.kind {
+                    OptionKind::Switch => OptionValue::Number(1.0),
+                    _ => OptionValue::Switch(true),
+                };
+                for value in refused.into_iter().chain([other_kind]) {
+                    let said = method.with([(name, value)]).unwrap_err().to_string();
+                    assert!(said.contains(name) && said.contains(&option.kind.allowed()), "{said}");
+                }
+            }
+            let said = method.with([("no such option", OptionValue::Switch(true))]);
+            assert!(said.unwrap_err().to_string().contains("no such option"));
+        }
+    }
+}

@@ -1,0 +1,372 @@
+//! Options of methods: each is declared once, and everything that reads, writes, shows or explains it reads that.
+
+use std::fmt;
+
+/// One option of a method.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct OptionDeclaration {
+    /// Its name in the edit format.
+    pub name: &'static str,
+    /// What it does, as a phrase. Values, range, unit and default are not part of it: [`OptionKind`] has them.
+    pub help: &'static str,
+    /// Which values it takes.
+    pub kind: OptionKind,
+}
+
+/// Which values an option takes.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum OptionKind {
+    /// A finite number.
+    Number {
+        /// The smallest and the largest.
+        range: [f64; 2],
+        /// What it is counted in; empty for a plain number.
+        unit: &'static str,
+    },
+    /// A whole number.
+    Whole {
+        /// The smallest and the largest.
+        range: [u32; 2],
+    },
+    /// One of a few whole numbers.
+    Numbered {
+        /// The numbers, each with what it stands for.
+        choices: &'static [(u32, &'static str)],
+    },
+    /// One of a few names.
+    Named {
+        /// The names.
+        choices: &'static [&'static str],
+    },
+    /// Yes or no.
+    Switch,
+}
+
+/// What an option is set to.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum OptionValue {
+    /// Of [`OptionKind::Number`].
+    Number(f64),
+    /// Of [`OptionKind::Whole`] and [`OptionKind::Numbered`].
+    Whole(u32),
+    /// Of [`OptionKind::Named`].
+    Name(&'static str),
+    /// Of [`OptionKind::Switch`].
+    Switch(bool),
+}
+
+/// An option was given a value that it does not take.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+#[error("the option `{option}` takes {allowed}")]
+pub struct OptionRefused {
+    /// The option's name.
+    pub option: String,
+    /// What it takes, e.g. "a number from 0 to 1".
+    pub allowed: String,
+}
+
+impl OptionKind {
+    /// Whether `value` is of this kind and within its range.
+    pub fn takes(&self, value: OptionValue) -> bool {
+        match (self, value) {
+            (
+                Self::Number {
+                    range: [least, most], ..
+                },
+                OptionValue::Number(number),
+            ) => (*least..=*most).contains(&number),
+            (Self::Whole { range: [least, most] }, OptionValue::Whole(number)) => (*least..=*most).contains(&number),
+            (Self::Numbered { choices }, OptionValue::Whole(number)) => choices.iter().any(|(own, _)| *own == number),
+            (Self::Named { choices }, OptionValue::Name(name)) => choices.contains(&name),
+            (Self::Switch, OptionValue::Switch(_)) => true,
+            _ => false,
+        }
+    }
+
+    /// What it takes, for a refusal: "a number from 0 to 1".
+    pub fn allowed(&self) -> String {
+        match self {
+            Self::Number {
+                range: [least, most], ..
+            } => format!("a number from {} to {}", Short(*least), Short(*most)),
+            Self::Whole { range: [least, most] } => format!("a whole number from {least} to {most}"),
+            Self::Numbered { choices } => joined(choices.iter().map(|(number, _)| number.to_string()), "or"),
+            Self::Named { choices } => joined(choices.iter().map(|name| format!("\"{name}\"")), "or"),
+            Self::Switch => "true or false".to_owned(),
+        }
+    }
+
+    /// The values and the unit, for the help: "0 to 1 diagonals".
+    fn values(&self) -> String {
+        match self {
+            Self::Number {
+                range: [least, most],
+                unit,
+            } => {
+                let range = format!("{} to {}", Short(*least), Short(*most));
+                if unit.is_empty() {
+                    range
+                } else {
+                    format!("{range} {unit}")
+                }
+            }
+            Self::Whole { range: [least, most] } => format!("{least} to {most}"),
+            Self::Numbered { choices } => joined(choices.iter().map(|(number, word)| format!("{number} {word}")), "or"),
+            Self::Named { .. } | Self::Switch => self.allowed(),
+        }
+    }
+}
+
+impl OptionDeclaration {
+    /// What it does, its values, unit and default, on one line.
+    pub fn sentence(&self, default: OptionValue) -> String {
+        format!("{}; {}; default {default}", self.help, self.kind.values())
+    }
+
+    /// The refusal of a value that it does not take.
+    pub(crate) fn refused(&self) -> OptionRefused {
+        OptionRefused {
+            option: self.name.to_owned(),
+            allowed: self.kind.allowed(),
+        }
+    }
+}
+
+impl fmt::Display for OptionValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => Short(*number).fmt(f),
+            Self::Whole(number) => number.fmt(f),
+            Self::Name(name) => write!(f, "\"{name}\""),
+            Self::Switch(on) => on.fmt(f),
+        }
+    }
+}
+
+/// A number with an exponent where it would have many zeros: 1e-6, 0.05, 1e12.
+struct Short(f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0.abs() {
+            size if size == 0.0 || (1e-3..1e6).contains(&size) => write!(f, "{}", self.0),
+            _ => write!(f, "{:e}", self.0),
+        }
+    }
+}
+
+/// "a, b or c".
+pub(crate) fn joined(words: impl IntoIterator<Item = String>, last: &str) -> String {
+    let words: Vec<String> = words.into_iter().collect();
+    match words.split_last() {
+        Some((end, [])) => end.clone(),
+        Some((end, others)) => format!("{} {last} {end}", others.join(", ")),
+        None => String::new(),
+    }
+}
+
+/// Declares a number; what [`options!`] takes.
+pub(crate) struct Number {
+    pub default: f64,
+    pub range: [f64; 2],
+    pub unit: &'static str,
+    pub help: &'static str,
+}
+
+/// Declares a whole number.
+pub(crate) struct Whole {
+    pub default: u32,
+    pub range: [u32; 2],
+    pub help: &'static str,
+}
+
+/// Declares a choice.
+pub(crate) struct Choice<T> {
+    pub default: T,
+    pub help: &'static str,
+}
+
+impl Number {
+    pub const fn declare(&self, name: &'static str) -> OptionDeclaration {
+        OptionDeclaration {
+            name,
+            help: self.help,
+            kind: OptionKind::Number {
+                range: self.range,
+                unit: self.unit,
+            },
+        }
+    }
+}
+
+impl Whole {
+    pub const fn declare(&self, name: &'static str) -> OptionDeclaration {
+        OptionDeclaration {
+            name,
+            help: self.help,
+            kind: OptionKind::Whole { range: self.range },
+        }
+    }
+}
+
+impl<T: Choices> Choice<T> {
+    pub const fn declare(&self, name: &'static str) -> OptionDeclaration {
+        OptionDeclaration {
+            name,
+            help: self.help,
+            kind: T::KIND,
+        }
+    }
+}
+
+/// The type of an option's field.
+pub(crate) trait OptionType: Copy {
+    fn to_value(self) -> OptionValue;
+    /// `None` for a value of another kind.
+    fn of_value(value: OptionValue) -> Option<Self>;
+}
+
+/// A type whose values are a few choices.
+pub(crate) trait Choices: OptionType {
+    const KIND: OptionKind;
+}
+
+impl OptionType for f64 {
+    fn to_value(self) -> OptionValue {
+        OptionValue::Number(self)
+    }
+
+    fn of_value(value: OptionValue) -> Option<Self> {
+        match value {
+            OptionValue::Number(number) => Some(number),
+            _ => None,
+        }
+    }
+}
+
+impl OptionType for u32 {
+    fn to_value(self) -> OptionValue {
+        OptionValue::Whole(self)
+    }
+
+    fn of_value(value: OptionValue) -> Option<Self> {
+        match value {
+            OptionValue::Whole(number) => Some(number),
+            _ => None,
+        }
+    }
+}
+
+/// An enum whose variants are names in the edit format: `Variant = "its-name"`.
+macro_rules! named_choices {
+    ($(#[$meta:meta])* pub enum $type:ident { $($(#[$doc:meta])* $variant:ident = $name:literal),+ $(,)? }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+        pub enum $type {
+            $($(#[$doc])* $variant),+
+        }
+
+        impl $type {
+            /// Every choice, in the order in which they are shown.
+            pub const ALL: [Self; [$($name),+].len()] = [$(Self::$variant),+];
+
+            /// Its name in the edit format.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name),+
+                }
+            }
+        }
+
+        impl $crate::method::option::OptionType for $type {
+            fn to_value(self) -> $crate::OptionValue {
+                $crate::OptionValue::Name(self.name())
+            }
+
+            fn of_value(value: $crate::OptionValue) -> Option<Self> {
+                match value {
+                    $($crate::OptionValue::Name($name) => Some(Self::$variant),)+
+                    _ => None,
+                }
+            }
+        }
+
+        impl $crate::method::option::Choices for $type {
+            const KIND: $crate::OptionKind = $crate::OptionKind::Named { choices: &[$($name),+] };
+        }
+    };
+}
+
+/// The options of a method: a struct with its defaults, its list of declarations, and access by name.
+///
+/// A field `name: type = declaration` is an option; the declaration is a [`Number`], a [`Whole`] or a [`Choice`]. What
+/// follows in `beside { .. }` is no option, but for tests and measurements.
+macro_rules! options {
+    (
+        $(#[$meta:meta])*
+        pub struct $type:ident {
+            $($(#[$doc:meta])* $option:ident: $kind:ty = $declaration:expr,)*
+        }
+        $(beside { $($(#[$beside_doc:meta])* $beside:ident: $beside_kind:ty = $beside_default:expr,)* })?
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, PartialEq, Debug)]
+        #[non_exhaustive]
+        pub struct $type {
+            $($(#[$doc])* pub $option: $kind,)*
+            $($($(#[$beside_doc])* pub $beside: $beside_kind,)*)?
+        }
+
+        impl $type {
+            pub(crate) const OPTIONS: &'static [$crate::OptionDeclaration] =
+                &[$($declaration.declare(stringify!($option))),*];
+        }
+
+        impl Default for $type {
+            fn default() -> Self {
+                Self {
+                    $($option: $declaration.default,)*
+                    $($($beside: $beside_default,)*)?
+                }
+            }
+        }
+
+        impl $crate::method::Options for $type {
+            fn value(&self, option: &str) -> Option<$crate::OptionValue> {
+                match option {
+                    $(stringify!($option) => Some($crate::method::option::OptionType::to_value(self.$option)),)*
+                    _ => None,
+                }
+            }
+
+            fn set(&mut self, option: &str, value: $crate::OptionValue) -> Option<()> {
+                match option {
+                    $(stringify!($option) => {
+                        self.$option = $crate::method::option::OptionType::of_value(value)?;
+                        Some(())
+                    })*
+                    _ => {
+                        let _ = value;
+                        None
+                    }
+                }
+            }
+
+            fn boxed_clone(&self) -> Box<dyn $crate::method::DeformMethod> {
+                Box::new(self.clone())
+            }
+
+            fn equals(&self, other: &dyn $crate::method::DeformMethod) -> bool {
+                (other as &dyn std::any::Any).downcast_ref() == Some(self)
+            }
+        }
+
+        impl From<$type> for $crate::Method {
+            fn from(options: $type) -> Self {
+                Self::of(options)
+            }
+        }
+    };
+}
+
+pub(crate) use {named_choices, options};

@@ -1,0 +1,163 @@
+//! What each method implements: once for its options, once for what binding makes of them.
+
+use std::any::Any;
+use std::fmt::Debug;
+
+use glam::DVec3;
+use pliant_mesh::{Cancel, Progress};
+
+use super::{MethodDeclaration, Needs, OptionRefused, OptionValue, Solve};
+use crate::handle::{Handle, Motion};
+use crate::operators::net::Net;
+use crate::partition::Partition;
+use crate::sparse::cholesky::Renewal;
+use crate::{BindError, HandleBases, Ordering, Problem, Remains, SolveError};
+
+/// Options by name; [`super::option::options!`] implements it.
+pub(crate) trait Options: Any + Debug + Send + Sync {
+    /// What an option is set to; `None` if there is none of this name.
+    fn value(&self, option: &str) -> Option<OptionValue>;
+
+    /// Sets an option, whatever its range; `None` if there is none of this name and kind.
+    fn set(&mut self, option: &str, value: OptionValue) -> Option<()>;
+
+    /// A copy.
+    fn boxed_clone(&self) -> Box<dyn DeformMethod>;
+
+    /// Whether `other` is the same method with the same options.
+    fn equals(&self, other: &dyn DeformMethod) -> bool;
+}
+
+/// A method: its options, and how to bind them.
+pub(crate) trait DeformMethod: Options {
+    /// What it says of itself.
+    fn declaration(&self) -> &'static MethodDeclaration;
+
+    /// What it works on.
+    fn needs(&self) -> Needs;
+
+    /// How it comes to its shape once it is bound.
+    fn solve(&self) -> Solve;
+
+    /// Refuses options that exclude each other; each one's own range is checked already.
+    fn check(&self) -> Result<(), OptionRefused> {
+        Ok(())
+    }
+
+    /// The triangles that its operator is made on.
+    fn net<'a>(&self, problem: &Problem<'a>) -> Net<'a> {
+        Net::of_surface(problem.surface, problem.topology)
+    }
+
+    /// Computes what does not depend on the handles' transforms.
+    fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError>;
+}
+
+/// What a method is bound from. The problem is checked already.
+#[derive(Clone, Copy)]
+pub(crate) struct BindInput<'a> {
+    pub problem: &'a Problem<'a>,
+    /// Who is solved for, who is prescribed.
+    pub partition: &'a Partition<'a>,
+    pub handles: &'a [Handle],
+    /// The one that [`Needs`] asks for.
+    pub ordering: Option<&'a Ordering>,
+    /// What of the factor is kept or taken over, where there is one that can be.
+    pub renewal: Renewal<'a>,
+    pub progress: &'a Progress,
+    pub cancel: &'a Cancel,
+}
+
+impl<'a> BindInput<'a> {
+    /// The ordering of the method's power.
+    ///
+    /// # Errors
+    /// There is none, or it is another mesh's or power's.
+    pub fn ordering(&self) -> Result<&'a Ordering, BindError> {
+        let expected_power = self.problem.method.needs().ordering_power().unwrap_or(1);
+        let ordering = self.ordering.ok_or(BindError::NoOrdering { expected_power })?;
+        let expected = self.problem.surface.positions.len();
+        let (found, found_power) = (ordering.vertex_count(), ordering.power());
+        if (found, found_power) == (expected, expected_power) {
+            Ok(ordering)
+        } else {
+            Err(BindError::Ordering {
+                found,
+                found_power,
+                expected,
+                expected_power,
+            })
+        }
+    }
+}
+
+/// A bound method: motions of the handles in, displacements out.
+///
+/// `motions` has one entry a handle, `displacements` one a surface vertex. At least one handle moves.
+pub(crate) trait BoundMethod: Debug + Send + Sync {
+    /// One step: fills *all* of `displacements`, handles' vertices and zeros included.
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError>;
+
+    /// As `step`, by solving where the step takes a short cut.
+    fn step_by_back_substitution(
+        &mut self,
+        motions: &[Motion],
+        displacements: &mut [DVec3],
+    ) -> Result<Stepped, SolveError> {
+        self.step(motions, displacements)
+    }
+
+    /// No handle moves any more: the next step begins at rest.
+    fn rest(&mut self) {}
+
+    /// The energy of any displacements, if it is one of the vertices.
+    fn energy_of(&self, _motions: &[Motion], _displacements: &[DVec3]) -> Option<f64> {
+        None
+    }
+
+    /// The handles' bases, where a step is a product with them.
+    fn handle_bases(&self) -> Option<&HandleBases> {
+        None
+    }
+
+    /// The factor, where the next binding can take over parts of it.
+    fn remains(&self) -> Option<Remains> {
+        None
+    }
+
+    /// How many vertices are solved for.
+    fn solved_count(&self) -> usize;
+
+    /// How many numbers its factors store, 8 bytes each.
+    fn factor_len(&self) -> usize {
+        0
+    }
+
+    /// About what a step costs, in vertices of a method whose steps are cheap.
+    fn step_cost(&self) -> usize {
+        self.solved_count()
+    }
+
+    /// Sentences about what had to be repaired.
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
+}
+
+/// What a step did.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stepped {
+    /// Whether further steps to the same motions would change nothing.
+    pub converged: bool,
+    /// As in [`crate::Step::energy`].
+    pub energy: f64,
+    /// What was seen of the displacements while they were made.
+    pub finite: Finite,
+}
+
+/// Whether a shape was seen to be finite while it was made.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Finite {
+    Yes,
+    Unknown,
+}

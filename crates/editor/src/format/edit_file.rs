@@ -1,0 +1,280 @@
+//! An edit as it stands in `EDIT.json`: regions, handles, stiffness and method, described so that they fit any mesh.
+
+use pliant_deform::{CONTINUITY_RANGE, Loose, Method};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::edit_error::EditError;
+use super::field::{FieldEntry, FieldKind};
+use super::json::parse;
+use super::loose::{OneOrList, StoredLoose};
+use super::method::{method_to_value, read_method};
+use super::reader::read;
+use super::selector::Selector;
+use crate::HandleTransform;
+
+/// The version of the edit format that is read and written.
+pub const EDIT_VERSION: u64 = 1;
+
+/// The smallest and the largest stiffness that an edit may give.
+pub const STIFFNESS_RANGE: std::ops::RangeInclusive<f64> = 0.001..=1000.0;
+
+/// The smallest and the largest weight of a soft handle.
+pub const SOFT_RANGE: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
+
+/// An edit, as stored.
+#[derive(Clone, PartialEq, Debug)]
+pub struct EditFile {
+    /// The method and its options.
+    pub method: Method,
+    /// The vertices that may move; those outside are fixed.
+    pub region: Selector,
+    /// The vertices that are held still; they win over `region`.
+    pub fixed: Selector,
+    /// The handles; they win over both.
+    pub handles: Vec<HandleEntry>,
+    /// Painted stiffness; the later entry wins, and it is 1 where no entry speaks.
+    pub stiffness: Vec<FieldEntry>,
+    /// With which continuity the free surface joins what is fixed and the handles (0 to 2); the later entry wins, and it
+    /// is 2 where no entry speaks.
+    pub continuity: Vec<FieldEntry>,
+    /// What components that nothing holds do.
+    pub loose: Loose,
+    /// What some of them do in place of that: those with a selected vertex; the later entry wins.
+    pub loose_parts: Vec<(Selector, Loose)>,
+}
+
+/// A handle: which vertices move, and how.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HandleEntry {
+    /// Its name, for a person. An edit that gives none gets "handle 1", "handle 2", ..
+    #[serde(default)]
+    pub name: String,
+    /// Its vertices.
+    pub select: Selector,
+    /// How they move.
+    #[serde(default)]
+    pub transform: HandleTransform,
+    /// Its weight, in [`SOFT_RANGE`], if it only pulls at its vertices.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub soft: Option<f64>,
+    /// The continuity of its own border, over whatever [`EditFile::continuity`] says.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub continuity: Option<f64>,
+}
+
+/// The members as they stand.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredEdit {
+    version: u64,
+    method: Value,
+    #[serde(default = "everything")]
+    region: Selector,
+    #[serde(default = "nothing")]
+    fixed: Selector,
+    #[serde(default)]
+    handles: Vec<HandleEntry>,
+    #[serde(default)]
+    stiffness: Vec<FieldEntry>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    continuity: Option<OneOrList<f64, FieldEntry>>,
+    #[serde(default = "follow")]
+    loose: OneOrList<StoredLoose, LooseEntry>,
+}
+
+/// What the loose parts of a selection do.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LooseEntry {
+    select: Selector,
+    value: StoredLoose,
+}
+
+fn everything() -> Selector {
+    Selector::All
+}
+
+fn nothing() -> Selector {
+    Selector::None
+}
+
+fn follow() -> OneOrList<StoredLoose, LooseEntry> {
+    OneOrList::One(StoredLoose::Follow)
+}
+
+impl Default for EditFile {
+    /// The edit with nothing but a version and a method.
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            region: everything(),
+            fixed: nothing(),
+            handles: Vec::new(),
+            stiffness: Vec::new(),
+            continuity: Vec::new(),
+            loose: Loose::Follow,
+            loose_parts: Vec::new(),
+        }
+    }
+}
+
+impl EditFile {
+    /// Reads an edit's JSON text.
+    ///
+    /// # Errors
+    /// Whatever the format does not have is refused by its name and place.
+    pub fn parse(text: &str) -> Result<Self, EditError> {
+        let value = parse(text).map_err(|error| error.at("the edit"))?;
+        Self::from_value(&value)
+    }
+
+    /// Reads an edit from a JSON value.
+    ///
+    /// # Errors
+    /// As [`EditFile::parse`].
+    pub fn from_value(value: &Value) -> Result<Self, EditError> {
+        // The version first: another one may have members that this one lacks.
+        if let Some(found) = value.get("version")
+            && found.as_u64() != Some(EDIT_VERSION)
+        {
+            return Err(EditError::Version {
+                found: found.to_string(),
+            });
+        }
+        read(value)
+            .and_then(Self::of_stored)
+            .map_err(|error| error.at("the edit"))
+    }
+
+    /// What serde can't tell: options of the method, and values that are out of range or exclude each other.
+    fn of_stored(stored: StoredEdit) -> Result<Self, EditError> {
+        let method = read_method(&stored.method).map_err(|error| error.under("method"))?;
+        stored.region.check().map_err(|error| error.under("region"))?;
+        stored.fixed.check().map_err(|error| error.under("fixed"))?;
+        let mut handles = stored.handles;
+        for (index, handle) in handles.iter_mut().enumerate() {
+            if handle.name.is_empty() {
+                handle.name = format!("handle {}", index + 1);
+            }
+            handle
+                .check()
+                .map_err(|error| error.under(&format!("handles[{index}]")))?;
+        }
+        let stiffness = FieldKind {
+            name: "a stiffness",
+            range: STIFFNESS_RANGE,
+        };
+        stiffness
+            .check_all(&stored.stiffness)
+            .map_err(|error| error.under("stiffness"))?;
+        let continuity = match stored.continuity {
+            Some(OneOrList::One(value)) => {
+                continuity_kind()
+                    .check(value)
+                    .map_err(|error| error.under("continuity"))?;
+                let select = Selector::All;
+                vec![FieldEntry::Select { select, value }]
+            }
+            Some(OneOrList::List(entries)) => entries,
+            None => Vec::new(),
+        };
+        continuity_kind()
+            .check_all(&continuity)
+            .map_err(|error| error.under("continuity"))?;
+        let (mut loose, mut loose_parts) = (Loose::Follow, Vec::new());
+        match stored.loose {
+            OneOrList::One(does) => loose = does.into(),
+            OneOrList::List(entries) => {
+                for (index, LooseEntry { select, value }) in entries.into_iter().enumerate() {
+                    select
+                        .check()
+                        .map_err(|error| error.under(&format!("loose[{index}].select")))?;
+                    if select == Selector::All {
+                        // What was said of some before is said anew.
+                        loose = value.into();
+                        loose_parts.clear();
+                    } else {
+                        loose_parts.push((select, value.into()));
+                    }
+                }
+            }
+        }
+        Ok(Self {
+            method,
+            region: stored.region,
+            fixed: stored.fixed,
+            handles,
+            stiffness: stored.stiffness,
+            continuity,
+            loose,
+            loose_parts,
+        })
+    }
+
+    /// The edit as a JSON value; reading it back gives an equal edit.
+    pub fn to_value(&self) -> Value {
+        let entry = |select: &Selector, loose: Loose| LooseEntry {
+            select: select.clone(),
+            value: loose.into(),
+        };
+        let stored = StoredEdit {
+            version: EDIT_VERSION,
+            method: method_to_value(&self.method),
+            region: self.region.clone(),
+            fixed: self.fixed.clone(),
+            handles: self.handles.clone(),
+            stiffness: self.stiffness.clone(),
+            continuity: (!self.continuity.is_empty()).then(|| OneOrList::List(self.continuity.clone())),
+            loose: match self.loose_parts.is_empty() {
+                true => OneOrList::One(self.loose.into()),
+                false => {
+                    let parts = self.loose_parts.iter().map(|(select, loose)| entry(select, *loose));
+                    OneOrList::List(
+                        std::iter::once(entry(&Selector::All, self.loose))
+                            .chain(parts)
+                            .collect(),
+                    )
+                }
+            },
+        };
+        json!(stored)
+    }
+
+    /// The edit as JSON text with a newline at its end.
+    pub fn to_json(&self) -> String {
+        format!("{:#}\n", self.to_value())
+    }
+
+    /// Whether no handle of the edit moves anything.
+    pub fn changes_nothing(&self) -> bool {
+        self.handles.iter().all(|handle| handle.transform.is_identity())
+    }
+}
+
+impl HandleEntry {
+    fn check(&self) -> Result<(), EditError> {
+        let weight = FieldKind {
+            name: "a weight",
+            range: SOFT_RANGE,
+        };
+        self.select.check().map_err(|error| error.under("select"))?;
+        if let Some(value) = self.soft {
+            weight.check(value).map_err(|error| error.under("soft"))?;
+        }
+        if let Some(value) = self.continuity {
+            continuity_kind()
+                .check(value)
+                .map_err(|error| error.under("continuity"))?;
+        }
+        Ok(())
+    }
+}
+
+fn continuity_kind() -> FieldKind {
+    FieldKind {
+        name: "a continuity",
+        range: CONTINUITY_RANGE,
+    }
+}

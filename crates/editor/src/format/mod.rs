@@ -1,0 +1,29 @@
+//! The edit format and the project format: what a document and an edit are as JSON, and an edit resolved on a model.
+//!
+//! `json` reads text, `reader` gives its values to what serde derives and names the place of whatever is refused;
+//! `edit_file` and `project` are the two formats, of `selector`s, `field`s, `transform`s and a `method`. `setup` is an
+//! edit or a document on a model, as the solver takes it, and `exchange` goes between documents and edits.
+
+mod beginning;
+mod edit_error;
+mod edit_file;
+mod exchange;
+mod field;
+mod json;
+mod loose;
+mod method;
+mod project;
+mod reader;
+mod selector;
+mod setup;
+mod transform;
+
+pub use beginning::Beginning;
+pub use edit_error::EditError;
+pub use edit_file::{EDIT_VERSION, EditFile, HandleEntry, SOFT_RANGE, STIFFNESS_RANGE};
+pub use exchange::ExportError;
+pub(crate) use exchange::{export, without_pivot};
+pub use field::FieldEntry;
+pub use project::{MeshReference, Project, geometry_hash};
+pub use selector::{Axis, Selector};
+pub use setup::{HandleSetup, Rest, Setup};

@@ -1,0 +1,172 @@
+//! What a new method must bring is its folder and its line in `METHODS`: `identity`, which is compiled for tests, brings
+//! no more, and is in the help, the edit format, the panel and the palette, and works.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stderr,
+    reason = "tests fail by panicking and say what they skip"
+)]
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use egui::{Event, Key, Modifiers, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use glam::DVec3;
+use pliant_app::window::{Application, Source};
+use pliant_deform::METHODS;
+use pliant_mesh::shapes;
+use pliant_tests::{Folder, bend, open, run};
+use serde_json::{Value, json};
+
+#[test]
+fn no_file_of_the_program_but_its_folder_its_module_and_the_list_names_it() {
+    fn search(folder: &Path, found: &mut Vec<String>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                search(&path, found);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                let text = std::fs::read_to_string(&path).unwrap();
+                if text.contains("identity::") || text.contains("mod identity") || text.contains("\"identity\"") {
+                    found.push(
+                        path.strip_prefix(env!("CARGO_MANIFEST_DIR"))
+                            .map_or_else(|_| path.display().to_string(), |path| path.display().to_string()),
+                    );
+                }
+            }
+        }
+    }
+    let mut found = Vec::new();
+    for name in ["app", "deform", "editor", "io", "mesh", "render"] {
+        let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
+        search(&crates.join(name).join("src"), &mut found);
+    }
+    found.sort();
+    let ends = [
+        "deform/src/identity/mod.rs",
+        "deform/src/lib.rs",
+        "deform/src/method/mod.rs",
+    ];
+    assert_eq!(found.len(), ends.len(), "{found:?}");
+    for (path, end) in found.iter().zip(ends) {
+        assert!(path.ends_with(end), "{found:?}");
+    }
+}
+
+#[test]
+fn the_help_lists_it_with_its_options() {
+    let help = run(["apply", "--help"]).done().out;
+    let declaration = METHODS.iter().find(|method| method.name == "identity").unwrap();
+    assert!(
+        help.contains("  identity: Moves the handles and leaves the rest where it is."),
+        "{help}"
+    );
+    assert!(
+        help.contains("share: how far the handles go of their way; 0 to 1; default 1"),
+        "{help}"
+    );
+    assert_eq!(declaration.options.len(), 1);
+}
+
+#[test]
+fn an_edit_names_it_and_its_options_and_moves_the_handles_alone() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("mesh.off", &shapes::icosphere(3));
+    let out = folder.at("out.off");
+    let rest = open(&file).model.rest_positions();
+    let by = |method: Value| {
+        let mut edit = bend(&json!({ "translation": [0, 0, 2] }));
+        edit["method"] = method;
+        edit
+    };
+    let moved = |edit: &Value, more: &[&str]| -> Vec<DVec3> {
+        folder.apply(&file, edit, &out, more).done();
+        let positions = open(&out).model.rest_positions();
+        positions
+            .iter()
+            .zip(&rest)
+            .map(|(moved, rest)| *moved - *rest)
+            .collect()
+    };
+    let whole = moved(&by(json!({ "name": "identity" })), &[]);
+    let count = whole.iter().filter(|way| **way == DVec3::new(0.0, 0.0, 2.0)).count();
+    assert!(count > 0 && count < whole.len());
+    assert!(whole.iter().all(|way| way.z == 2.0 || *way == DVec3::ZERO));
+    let half = moved(&by(json!({ "name": "identity", "share": 0.5 })), &[]);
+    assert!(half.iter().zip(&whole).all(|(half, whole)| *half == *whole * 0.5));
+    // By its name, with its defaults, in place of the edit's.
+    let named = moved(&by(json!({ "name": "bilaplacian" })), &["--method", "identity"]);
+    assert!(named == whole);
+
+    for (method, words) in [
+        (
+            json!({ "name": "identity", "share": 2 }),
+            ["method.share", "from 0 to 1"],
+        ),
+        (
+            json!({ "name": "identity", "shear": 1 }),
+            ["shear", "did you mean `share`?"],
+        ),
+        (json!({ "name": "identiti" }), ["identiti", "did you mean `identity`?"]),
+    ] {
+        folder.apply(&file, &by(method), &out, &[]).refused(1, &words);
+    }
+
+    // What it takes no notice of is said, with the methods that do.
+    let mut soft = by(json!({ "name": "identity" }));
+    soft["handles"][0]["soft"] = json!(1);
+    soft["stiffness"] = json!([{ "select": "all", "value": 10 }]);
+    let report = folder.at("report.json");
+    folder
+        .apply(&file, &soft, &out, &["--report", report.to_str().unwrap()])
+        .done();
+    let report: Value = serde_json::from_str(&std::fs::read_to_string(report).unwrap()).unwrap();
+    let said = report["warnings"].to_string();
+    assert!(said.contains("take bilaplacian or arap for soft handles"), "{said}");
+    assert!(
+        said.contains("take bilaplacian, arap or primo for parts that are stiffer"),
+        "{said}"
+    );
+    assert_eq!(report["converged"], true);
+}
+
+#[test]
+fn the_palette_and_the_panel_have_it() {
+    if let Err(error) = pliant_render::Headless::new() {
+        eprintln!("skipped: the panel and the palette ({error})");
+        return;
+    }
+    let mut harness = Harness::builder()
+        .with_size(vec2(1000.0, 900.0))
+        .with_max_steps(64)
+        .wgpu()
+        .build_eframe(|context| Application::new(context, Source::Sample).expect("the device was just there"));
+    settle(&mut harness);
+    harness.key_press_modifiers(Modifiers::NONE, Key::F1);
+    harness.step();
+    harness.event(Event::Text("Handles alone".to_owned()));
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::NONE, Key::Enter);
+    settle(&mut harness);
+    assert_eq!(harness.state().editor().document().method().name(), "identity");
+
+    // Its sentence stands in the panel, and below that a widget for its option.
+    harness.get_by_label("Moves the handles and leaves the rest where it is.");
+    harness.get_by_label("Options").click();
+    harness.run_steps(8);
+    assert!(harness.query_all_by_label("Share").next().is_some());
+}
+
+fn settle(harness: &mut Harness<'static, Application>) {
+    let start = Instant::now();
+    harness.step();
+    while !harness.state().is_settled() {
+        assert!(start.elapsed() < Duration::from_secs(120), "still busy");
+        std::thread::sleep(Duration::from_millis(5));
+        harness.step();
+    }
+    harness.step();
+}
