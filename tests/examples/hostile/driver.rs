@@ -199,9 +199,14 @@ impl Worker {
         } else {
             law
         };
-        // The culprit is the first of ours in the backtrace.
-        let of_ours = |line: &&str| line.contains("pliant_") && !line.contains("counting") && !line.contains("hostile");
-        let ours: Vec<&str> = errors.lines().filter(of_ours).map(str::trim).take(2).collect();
+        // The culprit is the first of ours in the backtrace, whose lines begin with a number.
+        let ours: Vec<&str> = errors
+            .lines()
+            .filter_map(|line| line.trim().split_once(": "))
+            .filter(|(_, place)| place.trim_start_matches('<').starts_with("pliant_") && !place.contains("hostile"))
+            .map(|(_, place)| place.split(">::").last().unwrap_or(place))
+            .take(3)
+            .collect();
         let said: String = errors
             .lines()
             .rev()

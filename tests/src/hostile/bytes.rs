@@ -101,7 +101,7 @@ fn lines(bytes: &mut Vec<u8>, chance: &mut Chance) {
         1 => lines.swap(a, b),
         2 => {
             let times = *chance.of(&[1, 2, 300]);
-            let copy = vec![lines[a].clone(); times];
+            let copy = vec![lines[a].clone(); times.min(1 + 300_000 / lines[a].len())];
             lines.splice(b..b, copy);
         }
         _ => {

@@ -132,7 +132,8 @@ pub fn mutate(text: &mut Vec<u8>, chance: &mut Chance) {
         10 if !places.elements.is_empty() => {
             let element = chance.of(&places.elements).clone();
             let times = *chance.of(&[1, 1, 2, 3, 50, 3000]);
-            let copy = [b",", &text[element.clone()]].concat().repeat(times);
+            let copy = [b",", &text[element.clone()]].concat();
+            let copy = copy.repeat(times.min(1 + 300_000 / copy.len()));
             text.splice(element.end..element.end, copy);
         }
         _ => {
