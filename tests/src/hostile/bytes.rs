@@ -59,6 +59,9 @@ pub fn mutate(bytes: &mut Vec<u8>, chance: &mut Chance) {
 
 /// Bits, bytes, pieces left out and repeated.
 pub fn plain(bytes: &mut Vec<u8>, chance: &mut Chance) {
+    if bytes.is_empty() {
+        return;
+    }
     let at = chance.below(bytes.len());
     let end = bytes.len().min(at + chance.below(40));
     match chance.below(6) {
