@@ -9,6 +9,8 @@
     reason = "the rig is a part of tests: it fails by panicking, says what it skips, and its names are its words"
 )]
 
+#[cfg(unix)]
+pub mod hostile;
 pub mod sources;
 pub mod trials;
 

@@ -2,7 +2,8 @@
 #![allow(dead_code, reason = "each example asks for some of it")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::ptr::null_mut;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// The system's allocator, which notes the largest allocation and how much is held.
 pub struct Counting;
@@ -15,27 +16,54 @@ pub static ALLOCATED: AtomicUsize = AtomicUsize::new(0);
 pub static HELD: AtomicUsize = AtomicUsize::new(0);
 /// The most that was held at once since it was last set.
 pub static PEAK: AtomicUsize = AtomicUsize::new(0);
+/// What may be held; an allocation beyond it fails, as where the machine has no more.
+pub static LIMIT: AtomicUsize = AtomicUsize::new(usize::MAX);
 
-fn count(bytes: usize) {
+/// Counts an allocation; `false` where it is beyond the limit.
+fn admit(bytes: usize) -> bool {
+    let held = HELD.load(Ordering::Relaxed).saturating_add(bytes);
+    let limit = LIMIT.load(Ordering::Relaxed);
+    if held > limit {
+        tell(bytes, limit);
+        return false;
+    }
     LARGEST.fetch_max(bytes, Ordering::Relaxed);
     ALLOCATED.fetch_add(bytes, Ordering::Relaxed);
     let held = HELD.fetch_add(bytes, Ordering::Relaxed) + bytes;
     PEAK.fetch_max(held, Ordering::Relaxed);
+    true
+}
+
+/// Tells who asked for too much, the first time. That itself takes memory, so the limit is off meanwhile.
+#[cold]
+fn tell(bytes: usize, limit: usize) {
+    static TOLD: AtomicBool = AtomicBool::new(false);
+    if !TOLD.swap(true, Ordering::Relaxed) {
+        LIMIT.store(usize::MAX, Ordering::Relaxed);
+        let backtrace = std::backtrace::Backtrace::force_capture();
+        eprintln!("{bytes} bytes are beyond the limit of {limit}:\n{backtrace}");
+        LIMIT.store(limit, Ordering::Relaxed);
+    }
 }
 
 #[expect(
     unsafe_code,
     reason = "each call is handed to the system's allocator with the very arguments that came in"
 )]
-// SAFETY: as `System`, to which everything is handed on; counting neither allocates nor touches the memory.
+// SAFETY: as `System`, to which everything is handed on; counting does not touch the memory, a null pointer says that
+// an allocation failed and leaves an old one as it was, and `tell` runs into itself at most once.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count(layout.size());
+        if !admit(layout.size()) {
+            return null_mut();
+        }
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        count(layout.size());
+        if !admit(layout.size()) {
+            return null_mut();
+        }
         unsafe { System.alloc_zeroed(layout) }
     }
 
@@ -46,7 +74,10 @@ unsafe impl GlobalAlloc for Counting {
 
     unsafe fn realloc(&self, at: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         HELD.fetch_sub(layout.size(), Ordering::Relaxed);
-        count(size);
+        if !admit(size) {
+            HELD.fetch_add(layout.size(), Ordering::Relaxed);
+            return null_mut();
+        }
         unsafe { System.realloc(at, layout, size) }
     }
 }

@@ -1,0 +1,252 @@
+//! A case: what stands in a folder, and what the program is asked to do there. It is a description and nothing else, so
+//! that a number alone makes it again anywhere.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use pliant_deform::Method;
+
+use super::models::{self, Model};
+use super::{bytes, edits, json_text, links, neighbours, projects};
+use crate::trials::Chance;
+
+/// What is hostile about a case.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Kind {
+    Edit,
+    Project,
+    Neighbour,
+    Link,
+    Mesh,
+    File,
+}
+
+impl Kind {
+    pub const ALL: [Self; 6] = [
+        Self::Edit,
+        Self::Project,
+        Self::Neighbour,
+        Self::Link,
+        Self::Mesh,
+        Self::File,
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Edit => "edit",
+            Self::Project => "project",
+            Self::Neighbour => "neighbour",
+            Self::Link => "link",
+            Self::Mesh => "mesh",
+            Self::File => "file",
+        }
+    }
+
+    pub fn of_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+}
+
+/// How large the meshes may be.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Size {
+    /// Up to a few hundred triangles.
+    Small,
+    /// Mostly thousands of triangles, now and then a hundred thousand.
+    Full,
+}
+
+/// What stands at a place in the folder.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Entry {
+    File(Vec<u8>),
+    ReadOnly(Vec<u8>),
+    Folder,
+    /// A symbolic link; `@ROOT@` in it is the case's folder.
+    Link(OsString),
+    /// Another name for what stands at that place.
+    Hard(PathBuf),
+    Fifo,
+    Socket,
+}
+
+/// A folder and a command. Entries' places are relative to the case's folder, the command's paths to `work` in it.
+#[derive(Clone, Debug)]
+pub struct Case {
+    pub seed: u64,
+    pub kind: Kind,
+    /// What kind of mesh or file it is about, for the table.
+    pub class: String,
+    pub entries: BTreeMap<PathBuf, Entry>,
+    pub input: PathBuf,
+    pub edit: PathBuf,
+    pub output: PathBuf,
+    pub report: Option<PathBuf>,
+    /// Further arguments of `pliant apply`.
+    pub more: Vec<OsString>,
+    /// How many changes by chance its base went through, those that are left out among them.
+    pub mutation_count: usize,
+}
+
+impl Case {
+    /// The case of a number. `without` are changes by chance that are left out, by their place in the row.
+    pub fn new(seed: u64, kind: Kind, size: Size, without: &[usize]) -> Self {
+        let chance = &mut Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ kind as u64);
+        let model = match kind {
+            Kind::Mesh => models::hard(size, chance),
+            Kind::File => models::any(chance),
+            Kind::Neighbour => models::with_neighbours(chance),
+            Kind::Project => models::alone(chance),
+            Kind::Edit | Kind::Link => models::sound(chance),
+        };
+        let mut case = Self::of(seed, kind, model, chance);
+        case.mutation_count = match kind {
+            Kind::Mesh => 0,
+            Kind::Edit | Kind::Project | Kind::File => 1 + chance.below(3) * chance.below(2),
+            Kind::Neighbour | Kind::Link => 1 + chance.below(3),
+        };
+        for mutation in 0..case.mutation_count {
+            if !without.contains(&mutation) {
+                case.mutate(&mut Chance(seed.rotate_left(17) ^ (mutation as u64 + 1)));
+            }
+        }
+        case
+    }
+
+    /// How many bytes the files hold that the program is given.
+    pub fn byte_count(&self) -> usize {
+        let files = self.entries.values().map(|entry| match entry {
+            Entry::File(bytes) | Entry::ReadOnly(bytes) => bytes.len(),
+            _ => 0,
+        });
+        files.sum()
+    }
+
+    /// A sound model with a sound edit, and the command with arguments by chance.
+    fn of(seed: u64, kind: Kind, model: Model, chance: &mut Chance) -> Self {
+        let mut entries = BTreeMap::new();
+        for folder in ["work/sub", "outside", "target"] {
+            entries.insert(folder.into(), Entry::Folder);
+        }
+        entries.insert("outside/secret.bin".into(), Entry::File(vec![0x5e; 4096]));
+        let extension = models::extension(&model.input);
+        let edit = match kind {
+            Kind::Project => {
+                entries.insert("work/pose.pliant".into(), Entry::File(project_of(&model, chance)));
+                "pose.pliant"
+            }
+            Kind::Edit => {
+                let edit = edits::rich(model.vertices, chance);
+                entries.insert("work/edit.json".into(), Entry::File(edit.to_string().into_bytes()));
+                "edit.json"
+            }
+            _ => {
+                let edit = edits::plain(chance);
+                entries.insert("work/edit.json".into(), Entry::File(edit.to_string().into_bytes()));
+                "edit.json"
+            }
+        };
+        let output = output(&model.input, &extension, chance);
+        let input = model.input.clone();
+        entries.extend(model.entries);
+        Self {
+            seed,
+            kind,
+            class: model.class,
+            entries,
+            input,
+            edit: edit.into(),
+            output,
+            report: chance.one_in(3).then(|| "report.json".into()),
+            more: more(chance),
+            mutation_count: 0,
+        }
+    }
+
+    fn mutate(&mut self, chance: &mut Chance) {
+        match self.kind {
+            Kind::Edit | Kind::Project => {
+                let place = PathBuf::from("work").join(&self.edit);
+                if let Some(Entry::File(text)) = self.entries.get_mut(&place) {
+                    json_text::mutate(text, chance);
+                }
+            }
+            Kind::Neighbour => neighbours::mutate(self, chance),
+            Kind::Link => links::mutate(self, chance),
+            Kind::Mesh => {}
+            Kind::File => {
+                let names: Vec<PathBuf> = self
+                    .entries
+                    .keys()
+                    .filter(|place| place.starts_with("work"))
+                    .cloned()
+                    .collect();
+                let input = PathBuf::from("work").join(&self.input);
+                let place = if chance.one_in(4) {
+                    chance.of(&names).clone()
+                } else {
+                    input
+                };
+                if let Some(Entry::File(file)) = self.entries.get_mut(&place) {
+                    bytes::mutate(file, chance);
+                }
+            }
+        }
+    }
+}
+
+/// A project on a model that needs no neighbours.
+fn project_of(model: &Model, chance: &mut Chance) -> Vec<u8> {
+    let input = PathBuf::from("work").join(&model.input);
+    let Some((_, Entry::File(file))) = model.entries.iter().find(|(place, _)| *place == input) else {
+        return Vec::new();
+    };
+    let loaded = pliant_app::engine::load_bytes(file.clone(), &model.input, &Default::default(), &Default::default());
+    let (hash, drawn) = match &loaded {
+        Ok(loaded) => (
+            pliant_editor::geometry_hash(&loaded.model),
+            loaded.model.rest().positions.len(),
+        ),
+        Err(_) => ("sha256:00".to_owned(), 4),
+    };
+    let project = projects::project(&hash, &model.input.to_string_lossy(), drawn, chance);
+    project.to_string().into_bytes()
+}
+
+/// Where the result goes: beside the input, in its place, into another folder, as another format.
+fn output(input: &std::path::Path, extension: &str, chance: &mut Chance) -> PathBuf {
+    let other = *chance.of(&["glb", "gltf", "obj", "ply", "stl", "off"]);
+    let extension = if chance.one_in(3) { other } else { extension };
+    match chance.below(8) {
+        0 => input.to_owned(),
+        1 => format!("../target/in.{extension}").into(),
+        2 => format!("../target/out.{extension}").into(),
+        3 => format!("sub/out.{extension}").into(),
+        4 => format!("@ROOT@/work/out.{extension}").into(),
+        _ => format!("out.{extension}").into(),
+    }
+}
+
+fn more(chance: &mut Chance) -> Vec<OsString> {
+    let mut words: Vec<OsString> = Vec::new();
+    if chance.one_in(3) {
+        words.extend(["--method".into(), (*chance.of(&Method::NAMES)).into()]);
+    }
+    if chance.one_in(8) {
+        words.extend(["--frames".into(), (*chance.of(&["1", "2", "5"])).into()]);
+    }
+    if chance.one_in(3) {
+        words.extend(["--threads".into(), (*chance.of(&["1", "2", "3", "8"])).into()]);
+    }
+    if chance.one_in(10) {
+        words.extend([
+            "--as-morph".into(),
+            (*chance.of(&["bent", "\u{1b}[31m", "smile"])).into(),
+        ]);
+        if chance.one_in(2) {
+            words.extend(["--morph-weight".into(), "0.25".into()]);
+        }
+    }
+    words
+}

@@ -1,0 +1,405 @@
+//! A case's run: the folder is made, the commands are given, and every law is looked at.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use glam::DVec3;
+use serde_json::Value;
+
+use super::case::{Case, Entry, Kind};
+use super::laws::{self, Law, Places, Violation, shortened, violation};
+use super::tree::{Tree, lay, look, with_root};
+use crate::trials::Chance;
+use crate::{Ended, run};
+
+/// What a command took.
+#[derive(Clone, Copy, PartialEq, Default, Debug)]
+pub struct Used {
+    /// The most memory held at once, in bytes.
+    pub peak: u64,
+    /// The processor's time, of all threads.
+    pub cpu_ms: u64,
+}
+
+/// Measures commands.
+pub trait Meter {
+    /// A command begins; it is handed its words.
+    fn begin(&mut self, words: &[OsString]);
+    /// What it took since.
+    fn end(&mut self) -> Used;
+}
+
+/// Measures nothing.
+pub struct Unmetered;
+
+impl Meter for Unmetered {
+    fn begin(&mut self, _words: &[OsString]) {}
+    fn end(&mut self) -> Used {
+        Used::default()
+    }
+}
+
+/// The limits of a command: 2 GB, 10 s, and 20 s where something is bound.
+const MEMORY: u64 = 2 << 30;
+const SECONDS: u64 = 10;
+const BINDING_SECONDS: u64 = 20;
+
+/// What came of a case.
+#[derive(Clone, Default, Debug)]
+pub struct Exercised {
+    pub done: usize,
+    pub refused: usize,
+    pub violations: Vec<Violation>,
+    /// The most that any of its commands took, each for itself.
+    pub worst: Used,
+}
+
+static PANIC: Mutex<String> = Mutex::new(String::new());
+
+/// Keeps where and why a panic happened, for the violation that tells it, and keeps it from standard error.
+pub fn listen_for_panics() {
+    std::panic::set_hook(Box::new(|panic| {
+        *PANIC.lock().unwrap_or_else(PoisonError::into_inner) = panic.to_string().replace('\n', " ");
+    }));
+}
+
+struct Runner<'a> {
+    meter: &'a mut dyn Meter,
+    result: Exercised,
+}
+
+impl Runner<'_> {
+    /// Gives a command in the present folder. `None` where it panicked.
+    fn run(&mut self, words: &[OsString]) -> Option<Ended> {
+        self.meter.begin(words);
+        let ended = catch_unwind(AssertUnwindSafe(|| run(words.iter().cloned())));
+        let used = self.meter.end();
+        let found = &mut self.result.violations;
+        self.result.worst.peak = self.result.worst.peak.max(used.peak);
+        self.result.worst.cpu_ms = self.result.worst.cpu_ms.max(used.cpu_ms);
+        if used.peak > MEMORY {
+            found.push(violation(Law::InMemory, format!("{} MB by {words:?}", used.peak >> 20)));
+        }
+        let binds = words.first().is_some_and(|word| word == "apply");
+        if used.cpu_ms > 1000 * if binds { BINDING_SECONDS } else { SECONDS } {
+            found.push(violation(Law::InTime, format!("{} ms by {words:?}", used.cpu_ms)));
+        }
+        let Ok(ended) = ended else {
+            let panic = PANIC.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            found.push(violation(Law::NoPanic, shortened(&panic)));
+            return None;
+        };
+        match ended.status {
+            0 => self.result.done += 1,
+            _ => self.result.refused += 1,
+        }
+        laws::of_words(&ended, found);
+        Some(ended)
+    }
+
+    /// Gives a command that only reads.
+    fn look(&mut self, words: &[OsString], root: &Path, tree: &Tree) -> Option<Ended> {
+        let ended = self.run(words)?;
+        self.untouched(root, tree, "a command that reads");
+        Some(ended)
+    }
+
+    fn untouched(&mut self, root: &Path, tree: &Tree, who: &str) {
+        let changed = laws::changed(tree, &look(root));
+        if let Some(first) = changed.first() {
+            self.result
+                .violations
+                .push(violation(Law::Untouched, format!("{who} changed {first:?}")));
+        }
+    }
+}
+
+/// Puts a case through the program's commands in new folders below `scratch`, an empty folder that `lay` fills. The
+/// process's own folder is the case's meanwhile.
+pub fn exercise(case: &Case, scratch: &Path, meter: &mut dyn Meter) -> Exercised {
+    let scratch = std::fs::canonicalize(scratch).unwrap();
+    let mut runner = Runner {
+        meter,
+        result: Exercised::default(),
+    };
+    whole(case, &scratch, &mut runner);
+    let _ = std::env::set_current_dir(&scratch);
+    runner.result
+}
+
+fn whole(case: &Case, scratch: &Path, runner: &mut Runner<'_>) {
+    let mut chance = Chance(case.seed ^ 0x00c0_ffee);
+    let root = scratch.join("case");
+    enter(case, &root);
+    let input = with_root(&case.input, &root);
+    let mut before = look(&root);
+    if chance.one_in(2) {
+        let words = ["info".into(), "--".into(), input.clone().into_os_string()];
+        runner.look(&words, &root, &before);
+    }
+    let old = told(&input, &root, &before, runner);
+
+    let at = |path: &Path| root.join("work").join(with_root(path, &root));
+    let (output, report) = (at(&case.output), case.report.as_deref().map(at));
+    let places = Places::before(&at(&case.input), &at(&case.edit), &output, report.as_deref());
+    let models: BTreeMap<PathBuf, Shape> = if case.kind == Kind::Mesh {
+        BTreeMap::new()
+    } else {
+        shapes(case, &root)
+    };
+    let Some(ended) = runner.run(&apply_words(case, &case.output, &root, None)) else {
+        return;
+    };
+    if ended.status != 0 {
+        runner.untouched(&root, &before, "a refusal");
+        if chance.one_in(8) {
+            again(case, &ended, None, scratch, runner);
+        }
+        return;
+    }
+    let after = look(&root);
+    laws::of_save(&root, &before, &after, &places, &mut runner.result.violations);
+    strangers(&models, &places, runner);
+    if let Some(text) = report.and_then(|path| std::fs::read(path).ok()) {
+        laws::of_report(&String::from_utf8_lossy(&text), &mut runner.result.violations);
+    }
+    before = after.clone();
+    reads_back(old.as_ref(), &output, &root, &before, runner);
+    if chance.one_in(3) {
+        let output = with_root(&case.output, &root).into_os_string();
+        runner.look(&["diff".into(), "--".into(), input.into(), output], &root, &before);
+    }
+    let is_morph = case.more.iter().any(|word| word == "--as-morph");
+    match chance.below(6) {
+        0 => again(case, &ended, Some(&after), scratch, runner),
+        1 if !is_morph => same_shape(case, &output, scratch, runner, &mut chance),
+        _ => {}
+    }
+}
+
+/// Makes a case's folder and goes into it.
+fn enter(case: &Case, root: &Path) {
+    std::fs::create_dir_all(root).unwrap();
+    lay(case, root);
+    std::env::set_current_dir(root.join("work")).unwrap();
+}
+
+fn apply_words(case: &Case, output: &Path, root: &Path, threads: Option<&str>) -> Vec<OsString> {
+    let at = |path: &Path| with_root(path, root).into_os_string();
+    let joined = |name: &str, path: &Path| {
+        let mut word = OsString::from(name);
+        word.push(at(path));
+        word
+    };
+    let mut words: Vec<OsString> = vec![
+        "apply".into(),
+        joined("--edit=", &case.edit),
+        joined("--output=", output),
+    ];
+    if let Some(report) = &case.report {
+        words.push(joined("--report=", report));
+    }
+    let mut more = case.more.iter();
+    while let Some(word) = more.next() {
+        if threads.is_some() && word == "--threads" {
+            more.next();
+        } else {
+            words.push(word.clone());
+        }
+    }
+    words.extend(
+        threads
+            .into_iter()
+            .map(|count| OsString::from(format!("--threads={count}"))),
+    );
+    words.extend(["--".into(), at(&case.input)]);
+    words
+}
+
+/// The same command in another folder of the same content.
+fn again(case: &Case, first: &Ended, after: Option<&Tree>, scratch: &Path, runner: &mut Runner<'_>) {
+    let root = scratch.join("again");
+    enter(case, &root);
+    let Some(ended) = runner.run(&apply_words(case, &case.output, &root, Some("5"))) else {
+        return;
+    };
+    let plain = |text: &str, root: &Path| text.replace(&*root.to_string_lossy(), "@ROOT@");
+    let (one, two) = (plain(&first.err, &scratch.join("case")), plain(&ended.err, &root));
+    if (first.status, &one) != (ended.status, &two) {
+        runner
+            .result
+            .violations
+            .push(violation(Law::Again, shortened(&format!("{one:?} and then {two:?}"))));
+    } else if let Some(after) = after {
+        let tree = look(&root);
+        // Reports tell times, and links of the whole path lead to either folder.
+        let report = case.report.as_ref().and_then(|report| report.file_name());
+        let differs = laws::changed(after, &tree).into_iter().find(|place| {
+            let is_file = |tree: &Tree| {
+                matches!(
+                    tree.get(place).map(|node| &node.what),
+                    Some(super::tree::What::File(..))
+                )
+            };
+            let names_root = matches!(case.entries.get(place), Some(Entry::File(bytes)) if names_root(bytes));
+            place.file_name() != report && (is_file(after) || is_file(&tree)) && !names_root
+        });
+        if let Some(place) = differs.filter(|_| {
+            !case
+                .entries
+                .values()
+                .any(|entry| matches!(entry, Entry::File(bytes) if names_root(bytes)))
+        }) {
+            runner
+                .result
+                .violations
+                .push(violation(Law::Again, format!("{place:?} is another")));
+        }
+    }
+}
+
+fn names_root(bytes: &[u8]) -> bool {
+    bytes.windows(6).any(|window| window == b"@ROOT@")
+}
+
+/// What `pliant info` tells of a file; `None` where it is refused.
+fn told(path: &Path, root: &Path, tree: &Tree, runner: &mut Runner<'_>) -> Option<Value> {
+    let words = ["info".into(), "--json".into(), "--".into(), path.as_os_str().to_owned()];
+    let ended = runner.look(&words, root, tree).filter(|ended| ended.status == 0)?;
+    serde_json::from_str(&ended.out).ok()
+}
+
+/// The result can be read, and has what was drawn.
+fn reads_back(old: Option<&Value>, output: &Path, root: &Path, tree: &Tree, runner: &mut Runner<'_>) {
+    let Some(new) = told(output, root, tree, runner) else {
+        runner
+            .result
+            .violations
+            .push(violation(Law::ReadsBack, "the result is refused"));
+        return;
+    };
+    let Some(old) = old else {
+        runner
+            .result
+            .violations
+            .push(violation(Law::ReadsBack, "what can't be read was bent"));
+        return;
+    };
+    // A glTF can't hold numbers that are not finite, and leaves out what has one.
+    let is_finite = old["findings"]["non_finite_vertices"]["count"] == 0;
+    let mut members = if is_finite { vec!["drawn_triangles"] } else { Vec::new() };
+    if old["format"] == new["format"] {
+        members.push("drawn_vertices");
+    }
+    for member in members {
+        if old[member] != new[member] {
+            let what = format!(
+                "{member}: {} in {}, {} in {}",
+                old[member], old["format"], new[member], new["format"]
+            );
+            runner.result.violations.push(violation(Law::ReadsBack, what));
+        }
+    }
+}
+
+type Shape = Vec<[DVec3; 3]>;
+
+/// Whether two shapes are the same to the bit: no number equals one that is none.
+fn is_same(a: &Shape, b: &Shape) -> bool {
+    let bits = |p: &DVec3| p.to_array().map(f64::to_bits);
+    a.as_flattened().iter().map(bits).eq(b.as_flattened().iter().map(bits))
+}
+
+/// The corners of a model's triangles, or `None` where it can't be read.
+fn shape(path: &Path) -> Option<Shape> {
+    let opened = catch_unwind(|| pliant_app::engine::open(path, &Default::default()).ok()).ok()??;
+    let drawn = opened.drawn;
+    let corners = |triangle: &[pliant_mesh::DrawnVertex; 3]| triangle.map(|vertex| drawn.positions[vertex.index()]);
+    Some(drawn.triangles.iter().map(corners).collect())
+}
+
+/// Every model of a folder that shows something.
+fn shapes(case: &Case, root: &Path) -> BTreeMap<PathBuf, Shape> {
+    let is_model = |place: &&PathBuf| pliant_io::Format::of_name(&place.to_string_lossy()).is_ok();
+    let paths = case.entries.keys().filter(is_model).map(|place| root.join(place));
+    paths.filter_map(|path| Some((path.clone(), shape(&path)?))).collect()
+}
+
+/// Models that are not the result show what they did.
+fn strangers(models: &BTreeMap<PathBuf, Shape>, places: &Places, runner: &mut Runner<'_>) {
+    for (path, old) in models {
+        let place = super::tree::place_of(path);
+        if place.is_some() && (place == places.output || place == places.report) {
+            continue;
+        }
+        let is_other_name = place.is_some_and(|place| same_file(&place, places.output.as_deref()));
+        if !is_other_name && !shape(path).is_some_and(|new| is_same(&new, old)) {
+            let name = path.file_name().unwrap_or_default();
+            runner
+                .result
+                .violations
+                .push(violation(Law::Strangers, format!("{name:?} lost its shape")));
+        }
+    }
+}
+
+fn same_file(a: &Path, b: Option<&Path>) -> bool {
+    use std::os::unix::fs::MetadataExt as _;
+    let identity = |path: &Path| {
+        std::fs::metadata(path)
+            .ok()
+            .map(|metadata| (metadata.dev(), metadata.ino()))
+    };
+    b.is_some_and(|b| identity(a).is_some() && identity(a) == identity(b))
+}
+
+/// The same command with a result of another format gives the same shape.
+fn same_shape(case: &Case, output: &Path, scratch: &Path, runner: &mut Runner<'_>, chance: &mut Chance) {
+    let root = scratch.join("shape");
+    enter(case, &root);
+    let other = PathBuf::from("../target/shape").with_extension(*chance.of(&["ply", "glb", "off", "stl", "obj"]));
+    let Some(ended) = runner.run(&apply_words(case, &other, &root, None)) else {
+        return;
+    };
+    if ended.status != 0 {
+        return;
+    }
+    let is_finite = |shape: &Shape| shape.as_flattened().iter().all(|p| p.is_finite());
+    let second = root.join("work").join(&other);
+    let (Some(one), Some(two)) = (shape(output).filter(is_finite), shape(&second)) else {
+        return;
+    };
+    let size = one
+        .iter()
+        .flatten()
+        .map(|p| p.abs().max_element())
+        .filter(|size| size.is_finite())
+        .fold(0.0, f64::max);
+    if one.len() != two.len() {
+        let what = format!("{} and {} triangles, the latter in {other:?}", one.len(), two.len());
+        runner.result.violations.push(violation(Law::SameShape, what));
+    } else if let Some((a, b)) = farthest(&one, &two, 1e-5 * size) {
+        let what = format!("{a} in the place of {b}, in {other:?}");
+        runner
+            .result
+            .violations
+            .push(violation(Law::SameShape, shortened(&what)));
+    }
+}
+
+/// Two coordinates of triangles' middles that should be equal and are farther apart. Formats order triangles in their
+/// own ways, so the coordinates are compared sorted, axis by axis.
+fn farthest(one: &Shape, two: &Shape, tolerance: f64) -> Option<(f64, f64)> {
+    let sorted = |shape: &Shape, axis: usize| {
+        let mut middles: Vec<f64> = shape.iter().map(|t| (t[0] + t[1] + t[2])[axis] / 3.0).collect();
+        middles.sort_by(f64::total_cmp);
+        middles
+    };
+    (0..3).find_map(|axis| {
+        let mut pairs = sorted(one, axis).into_iter().zip(sorted(two, axis));
+        pairs.find(|(a, b)| (a - b).abs() > tolerance)
+    })
+}

@@ -1,0 +1,323 @@
+//! What holds after every command, whatever the folder held.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::json_text;
+use super::tree::{Node, Tree, What, place_of};
+use crate::Ended;
+
+/// A law that was broken.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Law {
+    /// No command panics.
+    NoPanic,
+    /// No command ends the process by running out of memory or stack, or by a signal.
+    NoDeath,
+    /// A command ends within its time.
+    InTime,
+    /// A command gets by with 2 GB.
+    InMemory,
+    /// The status is 0, 1 or 2.
+    Status,
+    /// A refusal is one line of at most 1000 characters, without control characters; success says nothing there.
+    OneLine,
+    /// Standard output has no control characters but line ends.
+    PlainOutput,
+    /// A refusal and a command that only reads leave every file as it was.
+    Untouched,
+    /// A save changes the result, its own neighbours and the report, and nothing else.
+    OnlyItsOwn,
+    /// No file or result is given up for the report, no input for the result.
+    NothingGivenUp,
+    /// Every other model in the folder still shows the shape that it had.
+    Strangers,
+    /// A link in the result's place stays a link.
+    LinkStays,
+    /// A replaced file keeps its rights.
+    Rights,
+    /// Nothing temporary is left.
+    NothingLeft,
+    /// The result can be read, and has as many vertices and triangles as were drawn.
+    ReadsBack,
+    /// The report is JSON with all of its members.
+    Report,
+    /// The same command on the same folder gives the same, on any number of threads.
+    Again,
+    /// Another format gets the same shape.
+    SameShape,
+}
+
+/// A law, and what broke it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Violation {
+    pub law: Law,
+    pub what: String,
+}
+
+/// The most characters that a refusal may have.
+const LONGEST_LINE: usize = 1000;
+
+pub fn violation(law: Law, what: impl Into<String>) -> Violation {
+    Violation { law, what: what.into() }
+}
+
+/// What a command says.
+pub fn of_words(ended: &Ended, found: &mut Vec<Violation>) {
+    if ended.status > 2 {
+        found.push(violation(Law::Status, format!("status {}", ended.status)));
+    }
+    let is_hidden = |c: char| c.is_control();
+    let line = ended.err.strip_suffix('\n').unwrap_or(&ended.err);
+    let as_it_should = match ended.status {
+        0 => ended.err.is_empty(),
+        _ => {
+            let length = line.chars().count();
+            line.starts_with("pliant: ") && length <= LONGEST_LINE && !line.contains(is_hidden)
+        }
+    };
+    if !as_it_should {
+        found.push(violation(
+            Law::OneLine,
+            shortened(&format!("{} characters: {line:?}", line.chars().count())),
+        ));
+    }
+    if let Some(at) = ended.out.lines().position(|line| line.contains(is_hidden)) {
+        let line = ended.out.lines().nth(at).unwrap_or_default();
+        found.push(violation(Law::PlainOutput, shortened(&format!("{line:?}"))));
+    }
+}
+
+/// A text cut after 300 characters.
+pub fn shortened(text: &str) -> String {
+    text.chars().take(300).collect()
+}
+
+/// Where two trees differ.
+pub fn changed(before: &Tree, after: &Tree) -> Vec<PathBuf> {
+    let all: BTreeSet<&PathBuf> = before.keys().chain(after.keys()).collect();
+    let content = |node: &Node| (node.what.clone(), node.mode);
+    all.into_iter()
+        .filter(|place| before.get(*place).map(content) != after.get(*place).map(content))
+        .cloned()
+        .collect()
+}
+
+/// The paths that a save speaks of, each where it leads to.
+#[derive(Clone, Default, Debug)]
+pub struct Places {
+    pub output: Option<PathBuf>,
+    pub report: Option<PathBuf>,
+    /// The input, the edit, and what the input names.
+    pub inputs: BTreeSet<PathBuf>,
+    /// What stood in the result's place named these.
+    pub old_neighbours: BTreeSet<PathBuf>,
+}
+
+impl Places {
+    /// Looks before the save. All paths begin with the case's folder.
+    pub fn before(input: &Path, edit: &Path, output: &Path, report: Option<&Path>) -> Self {
+        let mut inputs = neighbours_of(input);
+        inputs.extend([input, edit].into_iter().filter_map(place_of));
+        Self {
+            output: place_of(output),
+            report: report.and_then(place_of),
+            inputs,
+            old_neighbours: neighbours_of(output),
+        }
+    }
+}
+
+/// Judges what a successful save changed. `root` is the case's folder, without links in its path.
+pub fn of_save(root: &Path, before: &Tree, after: &Tree, places: &Places, found: &mut Vec<Violation>) {
+    let within = |path: &PathBuf| path.strip_prefix(root).ok().map(Path::to_owned);
+    let output = places.output.as_ref().and_then(within);
+    let report = places.report.as_ref().and_then(within);
+    let identity = |tree: &Tree, place: &Option<PathBuf>| tree.get(place.as_ref()?).map(|node| node.identity);
+    let input_files: BTreeSet<(u64, u64)> = places
+        .inputs
+        .iter()
+        .filter_map(|path| identity(before, &within(path)))
+        .collect();
+    // An output that is a file which was read is a loss, unless a result stands in its input's place.
+    if let Some(id) = identity(before, &report) {
+        if input_files.contains(&id) {
+            found.push(violation(
+                Law::NothingGivenUp,
+                format!("the report is {report:?}, which was read"),
+            ));
+        }
+    }
+    if report.is_some() && report == output {
+        found.push(violation(Law::NothingGivenUp, "the report is the result"));
+    }
+    let new_neighbours: BTreeSet<PathBuf> = match &places.output {
+        Some(output) => neighbours_of(output).iter().filter_map(within).collect(),
+        None => BTreeSet::new(),
+    };
+    let old_neighbours: BTreeSet<PathBuf> = places.old_neighbours.iter().filter_map(within).collect();
+    if report.as_ref().is_some_and(|report| new_neighbours.contains(report)) {
+        found.push(violation(
+            Law::NothingGivenUp,
+            format!("the report is the result's neighbour {report:?}"),
+        ));
+    }
+    let own = |place: &PathBuf| {
+        let is_kept = !before.contains_key(place) || old_neighbours.contains(place);
+        Some(place) == output.as_ref() || Some(place) == report.as_ref() || (new_neighbours.contains(place) && is_kept)
+    };
+    let own_files: BTreeSet<(u64, u64)> = before
+        .iter()
+        .filter(|(place, _)| own(place))
+        .map(|(_, node)| node.identity)
+        .collect();
+    for place in changed(before, after) {
+        let name = place.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let (was, is) = (before.get(&place), after.get(&place));
+        if name.starts_with(".pliant") {
+            found.push(violation(Law::NothingLeft, format!("{}", place.display())));
+        } else if own(&place) {
+            let (Some(was), Some(is)) = (was, is) else { continue };
+            if was.mode & 0o777 != is.mode & 0o777 && matches!(was.what, What::File(..)) {
+                found.push(violation(
+                    Law::Rights,
+                    format!("{place:?} had {:o} and has {:o}", was.mode, is.mode),
+                ));
+            }
+            if matches!(was.what, What::Other) {
+                found.push(violation(
+                    Law::OnlyItsOwn,
+                    format!("{place:?} was no plain file, and was replaced"),
+                ));
+            }
+        } else if matches!(was.map(|node| &node.what), Some(What::Link(_))) {
+            found.push(violation(Law::LinkStays, format!("{place:?} was a link")));
+        } else if is.is_some_and(|node| node.what == What::Folder) && was.is_none() {
+            let holds_own = after.keys().any(|inside| inside.starts_with(&place) && own(inside));
+            if !holds_own {
+                found.push(violation(Law::NothingLeft, format!("the folder {place:?}")));
+            }
+        } else if was.is_some_and(|node| own_files.contains(&node.identity)) && is.is_some() {
+            // Another name of a file that is the save's own.
+        } else {
+            found.push(violation(Law::OnlyItsOwn, described(&place, was, is)));
+        }
+    }
+}
+
+fn described(place: &Path, was: Option<&Node>, is: Option<&Node>) -> String {
+    let what = match (was, is) {
+        (None, _) => "appeared",
+        (_, None) => "is gone",
+        _ => "was changed",
+    };
+    format!("{place:?} {what}")
+}
+
+/// The report's members, each number finite: JSON has no others.
+pub fn of_report(text: &str, found: &mut Vec<Violation>) {
+    let report: Value = match serde_json::from_str(text) {
+        Ok(report) => report,
+        Err(error) => {
+            found.push(violation(Law::Report, shortened(&format!("{error}: {text}"))));
+            return;
+        }
+    };
+    let numbers = [
+        "vertices",
+        "welded_vertices",
+        "free_vertices",
+        "load_ms",
+        "bind_ms",
+        "save_ms",
+        "iterations",
+    ];
+    let is_whole = numbers.iter().all(|name| report[name].is_number())
+        && report["energy"]["final"].is_number()
+        && report["distortion"]["edge_stretch_max"].is_number()
+        && report["warnings"].is_array();
+    if !is_whole {
+        found.push(violation(Law::Report, "a member is missing"));
+    }
+    let energy = report["energy"]["final"].as_f64().unwrap_or(f64::MAX);
+    if report["converged"] == true && energy >= f64::MAX {
+        found.push(violation(Law::Report, "an infinite energy is told as converged"));
+    }
+}
+
+/// Where the files stand that a model names: a glTF's or GLB's buffers and images, an OBJ's libraries and theirs.
+pub fn neighbours_of(path: &Path) -> BTreeSet<PathBuf> {
+    let mut found = BTreeSet::new();
+    let kind = crate::extension(path);
+    let is_plain = fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
+    let Some(bytes) = is_plain.then(|| fs::read(path).ok()).flatten() else {
+        return found;
+    };
+    if kind == "obj" || kind == "mtl" {
+        for line in String::from_utf8_lossy(&bytes).lines() {
+            let Some((word, rest)) = line.trim().split_once(' ') else {
+                continue;
+            };
+            if word == "mtllib" || word.starts_with("map_") {
+                // Options stand before a picture's name.
+                let names = [rest, rest.rsplit(' ').next().unwrap_or(rest)];
+                found.extend(
+                    names
+                        .iter()
+                        .filter_map(|name| place_of(&path.with_file_name("").join(name.trim()))),
+                );
+            }
+        }
+        if kind == "obj" {
+            let libraries: Vec<PathBuf> = found
+                .iter()
+                .filter(|place| crate::extension(place) == "mtl")
+                .cloned()
+                .collect();
+            found.extend(libraries.iter().flat_map(|library| neighbours_of(library)));
+        }
+        return found;
+    }
+    let text = if bytes.starts_with(b"glTF") {
+        let length = bytes
+            .get(12..)
+            .and_then(|rest| rest.first_chunk())
+            .map_or(0, |word| u32::from_le_bytes(*word));
+        bytes.get(20..20 + length as usize).unwrap_or_default()
+    } else {
+        &bytes[..]
+    };
+    // Anything called so counts: a file that is broken elsewhere may be read.
+    for uri in json_text::texts_of(text, "uri")
+        .iter()
+        .filter(|uri| !uri.starts_with("data:"))
+    {
+        found.extend(place_of(&path.with_file_name("").join(decoded(uri))));
+        found.extend(place_of(&path.with_file_name("").join(decoded(uri).replace('\\', "/"))));
+    }
+    found
+}
+
+/// A URI without its percent signs.
+fn decoded(uri: &str) -> String {
+    let bytes = uri.as_bytes();
+    let mut out = Vec::new();
+    let mut at = 0;
+    while at < bytes.len() {
+        let hex = (bytes[at] == b'%').then(|| uri.get(at + 1..at + 3)).flatten();
+        match hex.and_then(|digits| u8::from_str_radix(digits, 16).ok()) {
+            Some(byte) => {
+                out.push(byte);
+                at += 3;
+            }
+            None => {
+                out.push(bytes[at]);
+                at += 1;
+            }
+        }
+    }
+    String::from_utf8(out).unwrap_or_else(|_| uri.to_owned())
+}

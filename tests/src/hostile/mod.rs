@@ -1,0 +1,26 @@
+//! Hostile cases by the hundred thousand: a folder with a model, an edit or a project, links and strangers beside them,
+//! broken by chance in ways that know how each is built; the program's commands run on it, and laws that hold whatever
+//! the folder holds.
+//!
+//! A [`Case`] follows from its number alone. The test `hostile` does a few hundred, the example `hostile` goes on for
+//! as long as it is asked to, each command under a limit of memory and time.
+
+mod bytes;
+mod case;
+mod edits;
+mod exercise;
+mod formats;
+mod gltf;
+mod json_text;
+mod laws;
+mod links;
+mod meshes;
+mod models;
+mod names;
+mod neighbours;
+mod projects;
+mod tree;
+
+pub use case::{Case, Kind, Size};
+pub use exercise::{Exercised, Meter, Unmetered, Used, exercise, listen_for_panics};
+pub use laws::{Law, Violation};

@@ -1,0 +1,50 @@
+//! A few hundred hostile cases: a folder with a broken model, edit or project, links and strangers, the program's
+//! commands on it, and the laws that hold whatever the folder holds.
+//!
+//! `cargo run --release -p pliant-tests --example hostile -- 0 100000` goes on from here, under limits of memory and
+//! time, which a test can't have.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::collections::BTreeMap;
+
+use pliant_tests::hostile::{Case, Kind, Law, Size, Unmetered, exercise, listen_for_panics};
+
+/// How many cases of each kind.
+const CASES: u64 = 50;
+
+/// Laws that are broken still. Each goes from here with the last of what breaks it.
+const OPEN: [Law; 6] = [
+    Law::OneLine,
+    Law::OnlyItsOwn,
+    Law::NothingGivenUp,
+    Law::LinkStays,
+    Law::ReadsBack,
+    Law::Report,
+];
+
+#[test]
+fn three_hundred_hostile_cases_lose_nothing_and_are_refused_in_words() {
+    listen_for_panics();
+    let here = std::env::current_dir().unwrap();
+    let mut broken: BTreeMap<Law, Vec<String>> = BTreeMap::new();
+    let (mut done, mut refused) = (0, 0);
+    for kind in Kind::ALL {
+        for seed in 0..CASES {
+            let case = Case::new(seed, kind, Size::Small, &[]);
+            let folder = tempfile::tempdir().unwrap();
+            let result = exercise(&case, folder.path(), &mut Unmetered);
+            done += result.done;
+            refused += result.refused;
+            for violation in result.violations.into_iter().filter(|found| !OPEN.contains(&found.law)) {
+                let told = format!("`hostile {seed} 1 {}`: {}", kind.name(), violation.what);
+                broken.entry(violation.law).or_default().push(told);
+            }
+        }
+    }
+    std::env::set_current_dir(here).unwrap();
+    drop(std::panic::take_hook());
+    assert!(broken.is_empty(), "{broken:#?}");
+    // Cases that are all refused, or none of them, would try nothing.
+    assert!(done > 300 && refused > 50, "{done} done and {refused} refused");
+}
