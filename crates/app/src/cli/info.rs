@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use pliant_io::{Opened, Scene, quoted};
+use pliant_io::{Opened, Scene};
 use pliant_mesh::{FindingKind, Survey, WeldOptions};
 use serde_json::{Value, json};
 
