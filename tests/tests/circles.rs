@@ -50,7 +50,14 @@ fn no_file_needs_itself_through_others() {
     for folder in folders {
         let modules = modules_of(&folder);
         let is_strict = STRICT.iter().any(|name| folder.ends_with(Path::new(name).join("src")));
-        let arrows = arrows(&modules, if is_strict { Counted::All } else { Counted::BesideFolders });
+        let arrows = arrows(
+            &modules,
+            if is_strict {
+                Counted::All
+            } else {
+                Counted::BesideFolders
+            },
+        );
         let count: usize = arrows.values().map(BTreeSet::len).sum();
         assert!(count > 0 || modules.len() < 3, "{} has arrows", folder.display());
         for circle in circles(&arrows) {
@@ -70,9 +77,18 @@ fn the_scan_sees_grouped_paths_and_follows_what_is_handed_on() {
         modules.insert(path.clone(), module(file, &path, text));
     };
     add(&[], "mod a; mod b; pub use a::{A, inner::Deep}; pub use b::B;");
-    add(&["a"], "mod inner; use crate::{B as Other, b::C}; /* use crate::z::Z; */ pub struct A;");
-    add(&["a", "inner"], "use super::A; // use crate::b::B;\npub struct Deep(A);");
-    add(&["b"], "pub struct C; fn f() -> crate::Deep { \"crate::a::A\" }\n#[cfg(test)]\nmod tests { use crate::A; }");
+    add(
+        &["a"],
+        "mod inner; use crate::{B as Other, b::C}; /* use crate::z::Z; */ pub struct A;",
+    );
+    add(
+        &["a", "inner"],
+        "use super::A; // use crate::b::B;\npub struct Deep(A);",
+    );
+    add(
+        &["b"],
+        "pub struct C; fn f() -> crate::Deep { \"crate::a::A\" }\n#[cfg(test)]\nmod tests { use crate::A; }",
+    );
     let arrows = arrows(&modules, Counted::All);
     let to = |from: &str| -> Vec<&str> {
         let to = arrows.get(Path::new(from)).into_iter().flatten();
@@ -80,7 +96,11 @@ fn the_scan_sees_grouped_paths_and_follows_what_is_handed_on() {
     };
     assert_eq!(to("a.rs"), ["b.rs"]);
     assert_eq!(to("a/inner.rs"), ["a.rs"]);
-    assert_eq!(to("b.rs"), ["a/inner.rs"], "through the root, and not what its test names");
+    assert_eq!(
+        to("b.rs"),
+        ["a/inner.rs"],
+        "through the root, and not what its test names"
+    );
     assert_eq!(to(".rs"), Vec::<&str>::new(), "handing on is not needing");
     let names: Vec<Vec<PathBuf>> = circles(&arrows);
     assert_eq!(names.len(), 1);
@@ -126,7 +146,9 @@ fn module(file: PathBuf, own: &[String], text: &str) -> Module {
     let mut statements = code;
     while let Some(start) = next_use(statements) {
         rest.push_str(&statements[..start]);
-        let end = statements[start..].find(';').map_or(statements.len(), |end| start + end);
+        let end = statements[start..]
+            .find(';')
+            .map_or(statements.len(), |end| start + end);
         let is_handed_on = rest.trim_end().ends_with("pub") || rest.trim_end().ends_with(')');
         for (path, name) in expanded(&statements[start + 4..end]) {
             let path = absolute(&path, own);
@@ -272,7 +294,8 @@ fn arrows(modules: &Modules, counted: Counted) -> BTreeMap<PathBuf, BTreeSet<Pat
             let is_module = modules.contains_key(path);
             match definer(modules, path, counted, 8) {
                 Some(file) if file != module.file && !(is_module && path.starts_with(own)) => {
-                    let is_above = || (0..own.len()).any(|length| modules.get(&own[..length]).is_some_and(|m| m.file == file));
+                    let is_above =
+                        || (0..own.len()).any(|length| modules.get(&own[..length]).is_some_and(|m| m.file == file));
                     if counted == Counted::BesideFolders && is_above() {
                         continue;
                     }
@@ -301,7 +324,9 @@ fn circles(arrows: &BTreeMap<PathBuf, BTreeSet<PathBuf>>) -> Vec<Vec<PathBuf>> {
     let all: BTreeMap<&PathBuf, BTreeSet<PathBuf>> = arrows.keys().map(|file| (file, reached(file))).collect();
     let mut circles = BTreeSet::new();
     for (file, reaches) in all.iter().filter(|(file, reaches)| reaches.contains(**file)) {
-        let both = reaches.iter().filter(|other| all.get(other).is_some_and(|back| back.contains(*file)));
+        let both = reaches
+            .iter()
+            .filter(|other| all.get(other).is_some_and(|back| back.contains(*file)));
         circles.insert(both.cloned().collect::<Vec<_>>());
     }
     circles.into_iter().collect()
@@ -311,7 +336,11 @@ fn circles(arrows: &BTreeMap<PathBuf, BTreeSet<PathBuf>>) -> Vec<Vec<PathBuf>> {
 fn told(circle: &[PathBuf], arrows: &BTreeMap<PathBuf, BTreeSet<PathBuf>>, crates: &Path) -> String {
     let short = |file: &PathBuf| file.strip_prefix(crates).unwrap_or(file).display().to_string();
     let lines = circle.iter().map(|file| {
-        let to: Vec<String> = arrows[file].iter().filter(|to| circle.contains(to)).map(short).collect();
+        let to: Vec<String> = arrows[file]
+            .iter()
+            .filter(|to| circle.contains(to))
+            .map(short)
+            .collect();
         format!("  {} names {}", short(file), to.join(", "))
     });
     format!("{} files:\n{}", circle.len(), lines.collect::<Vec<_>>().join("\n"))

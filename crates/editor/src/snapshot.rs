@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use pliant_mesh::Model;
 
-use crate::{MeshReference, Project};
 use crate::tool::ToolSettings;
 use crate::view::{Camera, Look};
 use crate::workspace::WorkspaceSnapshot;
+use crate::{MeshReference, Project};
 
 /// A document that nobody changes any more, and how it is shown. Taking one costs next to nothing: its long vectors
 /// are shared.

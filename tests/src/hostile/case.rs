@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use pliant_deform::Method;
+use pliant_deform::METHODS;
 
 use super::models::{self, Model};
 use super::{bytes, edits, json_text, links, neighbours, projects};
@@ -131,22 +131,16 @@ impl Case {
         }
         entries.insert("outside/secret.bin".into(), Entry::File(vec![0x5e; 4096]));
         let extension = models::extension(&model.input);
-        let edit = match kind {
-            Kind::Project => {
-                entries.insert("work/pose.pliant".into(), Entry::File(project_of(&model, chance)));
-                "pose.pliant"
-            }
-            Kind::Edit => {
-                let edit = edits::rich(model.vertices, chance);
-                entries.insert("work/edit.json".into(), Entry::File(edit.to_string().into_bytes()));
-                "edit.json"
-            }
-            _ => {
-                let edit = edits::plain(chance);
-                entries.insert("work/edit.json".into(), Entry::File(edit.to_string().into_bytes()));
-                "edit.json"
-            }
+        let (edit, text) = match kind {
+            Kind::Project => ("pose.pliant", project_of(&model, chance)),
+            Kind::Edit => (
+                "edit.json",
+                edits::rich(model.vertices, chance).to_string().into_bytes(),
+            ),
+            Kind::Mesh => ("edit.json", edits::short(chance).to_string().into_bytes()),
+            Kind::Neighbour | Kind::Link | Kind::File => ("edit.json", edits::plain(chance).to_string().into_bytes()),
         };
+        entries.insert(PathBuf::from("work").join(edit), Entry::File(text));
         let output = output(&model.input, &extension, chance);
         let input = model.input.clone();
         entries.extend(model.entries);
@@ -159,7 +153,7 @@ impl Case {
             edit: edit.into(),
             output,
             report: chance.one_in(3).then(|| "report.json".into()),
-            more: more(chance),
+            more: more(kind, chance),
             mutation_count: 0,
         }
     }
@@ -228,10 +222,11 @@ fn output(input: &std::path::Path, extension: &str, chance: &mut Chance) -> Path
     }
 }
 
-fn more(chance: &mut Chance) -> Vec<OsString> {
+/// Further arguments. A large mesh keeps its edit's method, whose iterations are few.
+fn more(kind: Kind, chance: &mut Chance) -> Vec<OsString> {
     let mut words: Vec<OsString> = Vec::new();
-    if chance.one_in(3) {
-        words.extend(["--method".into(), (*chance.of(&Method::NAMES)).into()]);
+    if kind != Kind::Mesh && chance.one_in(3) {
+        words.extend(["--method".into(), chance.of(METHODS).name.into()]);
     }
     if chance.one_in(8) {
         words.extend(["--frames".into(), (*chance.of(&["1", "2", "5"])).into()]);

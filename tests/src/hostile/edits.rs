@@ -1,7 +1,6 @@
 //! Edits by chance, sound ones: every method with its options, every kind of selector and transform.
 
-use pliant_deform::Method;
-use pliant_editor::{OptionKind, method_options};
+use pliant_deform::{METHODS, OptionKind};
 use serde_json::{Map, Value, json};
 
 use crate::trials::Chance;
@@ -16,6 +15,20 @@ pub fn plain(chance: &mut Chance) -> Value {
             "transform": { "translation": [0.1, 0.2, 0.3], "rotation": [0.0, 0.0, 0.2, 0.98] },
         }],
     })
+}
+
+/// The same with few iterations: on a large mesh their number is the person's, and what is bound before them the
+/// program's.
+pub fn short(chance: &mut Chance) -> Value {
+    let mut edit = plain(chance);
+    let name = edit["method"]["name"].as_str().unwrap_or_default();
+    if method_options(name)
+        .iter()
+        .any(|option| option.name == "max_iterations")
+    {
+        edit["method"]["max_iterations"] = 20.into();
+    }
+    edit
 }
 
 /// An edit with all that the format has, by chance.
@@ -50,14 +63,14 @@ pub fn rich(vertices: usize, chance: &mut Chance) -> Value {
 
 /// A method with options by chance, each within its range.
 pub fn method(chance: &mut Chance) -> Value {
-    let name = *chance.of(&Method::NAMES);
+    let method = *chance.of(METHODS);
     let mut members = Map::new();
-    members.insert("name".to_owned(), name.into());
-    for option in method_options(name) {
+    members.insert("name".to_owned(), method.name.into());
+    for option in method.options {
         if !chance.one_in(3) {
             continue;
         }
-        let value = match option.takes {
+        let value = match option.kind {
             OptionKind::Number { range: [low, high], .. } => {
                 let even = chance.between(0.0, 1.0);
                 // Most ranges go over powers of ten.
@@ -68,10 +81,10 @@ pub fn method(chance: &mut Chance) -> Value {
                     low.max(high * 10_f64.powf(-12.0 * even))
                 ]))
             }
-            OptionKind::Whole { range: [low, high], .. } => json!(*chance.of(&[low, low + 1, high.min(low + 20)])),
-            OptionKind::Numbered { choices, .. } => json!(chance.of(choices).0),
-            OptionKind::Named { choices, .. } => json!(chance.of(choices)),
-            OptionKind::Switch { .. } => json!(chance.one_in(2)),
+            OptionKind::Whole { range: [low, high] } => json!(*chance.of(&[low, low + 1, high.min(low + 20)])),
+            OptionKind::Numbered { choices } => json!(chance.of(choices).0),
+            OptionKind::Named { choices } => json!(chance.of(choices)),
+            OptionKind::Switch => json!(chance.one_in(2)),
         };
         members.insert(option.name.to_owned(), value);
     }

@@ -8,18 +8,18 @@ use pliant_deform::Role;
 use pliant_mesh::{ContourLine, SurfaceVertex};
 
 use super::Editor;
+use crate::EditFile;
 use crate::command::{Command, Shortcut, State};
 use crate::document::{Document, History};
-use crate::EditFile;
 use crate::format::{ExportError, export};
 use crate::jobs::{JobKind, Revision, Rim};
-use crate::{MeshReference, geometry_hash};
 use crate::scene_view::{Cursor, SceneView};
 use crate::snapshot::Snapshot;
 use crate::status::status;
 use crate::tool::{Gesture, ToolMode};
 use crate::view::Pick;
 use crate::workspace::{SnapshotKey, WorkspaceSnapshot, region_colour, rims};
+use crate::{MeshReference, geometry_hash};
 
 impl Editor {
     /// What the window must show now.

@@ -33,8 +33,7 @@ use super::reader::read;
 use super::setup::Setup;
 use crate::document::bits_equal;
 use crate::document::{Content, Document, Handle, HandleId, Paint};
-use crate::jobs::region_input;
-use crate::jobs::{Region, displaced};
+use crate::jobs::{Region, region_input};
 use crate::{Camera, STIFFNESS_RANGE};
 
 /// The version of the project format that is read and written.

@@ -3,7 +3,6 @@
 use pliant_mesh::Model;
 use serde::{Deserialize, Serialize};
 
-use super::Project;
 use crate::{Access, EditError};
 
 /// An object that is hidden or locked.
