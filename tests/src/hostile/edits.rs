@@ -21,11 +21,9 @@ pub fn plain(chance: &mut Chance) -> Value {
 /// program's.
 pub fn short(chance: &mut Chance) -> Value {
     let mut edit = plain(chance);
-    let name = edit["method"]["name"].as_str().unwrap_or_default();
-    if method_options(name)
-        .iter()
-        .any(|option| option.name == "max_iterations")
-    {
+    let declaration = METHODS.iter().find(|method| edit["method"]["name"] == method.name);
+    let mut options = declaration.into_iter().flat_map(|method| method.options);
+    if options.any(|option| option.name == "max_iterations") {
         edit["method"]["max_iterations"] = 20.into();
     }
     edit

@@ -130,10 +130,10 @@ impl EncodedMaterials {
         numbers.sort_unstable();
         numbers.dedup();
         let encoded: Vec<&[u8]> = (numbers.iter())
-            .map(|&number| self.images.get(number).map_or(&[][..], |image| &image.encoded))
+            .map(|&number| self.images.get(number).map_or(&[][..], |image| &*image.encoded))
             .collect();
         let decoded = decode_images(&encoded, self.budget, cancel)?;
-        let (mut images, mut notes) = (Vec::new(), Vec::new());
+        let (mut images, mut notes): (Vec<DecodedImage>, Vec<String>) = (Vec::new(), Vec::new());
         let mut place_of: HashMap<usize, usize> = HashMap::new();
         for (&number, result) in numbers.iter().zip(decoded) {
             let name = self

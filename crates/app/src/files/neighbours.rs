@@ -142,7 +142,9 @@ fn relative(uri: &str) -> Result<String, String> {
     for step in uri.split(|letter| letter == '/' || cfg!(windows) && letter == '\\') {
         match step {
             "" | "." => {}
-            ".." if steps.last().is_some_and(|last| *last != "..") => drop(steps.pop()),
+            ".." if steps.last().is_some_and(|last| *last != "..") => {
+                steps.pop();
+            }
             step if is_reserved(step) => return Err(format!("{step} is no file's name on this system")),
             step => steps.push(step),
         }
