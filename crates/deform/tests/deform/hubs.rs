@@ -38,7 +38,7 @@ fn scene(drawn: Drawn, method: Method) -> Scene {
 fn shell(order: ShellOrder) -> Method {
     let mut shell = Bilaplacian::default();
     shell.order = order;
-    Method::Bilaplacian(shell)
+    shell.into()
 }
 
 fn methods() -> Vec<Method> {
@@ -46,12 +46,12 @@ fn methods() -> Vec<Method> {
         let mut arap = Arap::default();
         arap.energy = energy;
         arap.coarse_above = 500;
-        Method::Arap(arap)
+        arap.into()
     };
     let energies = [ArapEnergy::Spokes, ArapEnergy::SpokesAndRims, ArapEnergy::Smooth];
     let mut methods: Vec<Method> = ShellOrder::ALL.into_iter().map(shell).collect();
     methods.extend(energies.map(arap));
-    methods.push(Method::Primo(Primo::default()));
+    methods.push(Primo::default().into());
     methods
 }
 
@@ -98,10 +98,10 @@ fn what_exceeds_the_budget_is_refused_in_words_that_name_the_crowded_vertex() {
     for method in methods() {
         let scene = scene(fan(800), method.clone());
         let (progress, cancel) = (Progress::new(), Cancel::new());
-        let ordering = Ordering::of(&scene.model.topology, method.operator_power(), &progress, &cancel).unwrap();
+        let ordering = method.ordering(&scene.model.topology, &progress, &cancel).unwrap();
         let bind = |bytes| {
             let problem = scene.problem(&method);
-            problem.bind_within(&ordering, Budget { bytes }, &progress, &cancel)
+            problem.bind_within(ordering.as_ref(), Budget { bytes }, &progress, &cancel)
         };
         let refused = bind(100_000).err();
         let Some(BindError::Budget {
@@ -129,8 +129,10 @@ fn what_exceeds_the_budget_is_refused_in_words_that_name_the_crowded_vertex() {
 #[test]
 fn an_energy_beyond_all_numbers_is_refused_by_every_method() {
     for mut method in methods() {
-        if let Method::Arap(arap) = &mut method {
+        if let Some(arap) = method.options::<Arap>() {
+            let mut arap = arap.clone();
             arap.coarse_above = usize::MAX;
+            method = arap.into();
         }
         let scene = scene(shapes::grid(8, 8), method.clone());
         let bound = &mut scene.bind();
