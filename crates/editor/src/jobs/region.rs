@@ -81,23 +81,9 @@ impl Region {
             .as_ref()
             .map(|rest| Arc::new(displaced(&input.model.surface, rest)));
         let surface = rest_surface.as_deref().unwrap_or(&input.model.surface);
-        let mut members: Vec<Vec<SurfaceVertex>> = vec![Vec::new(); input.handles.len()];
         let locked = input.access.locked_vertices(&input.model);
         let is_locked = |vertex: usize| locked.as_ref().is_some_and(|locked| locked[vertex]);
-        let mut held = vec![false; topology.components().len()];
-        for (vertex, paint) in input.paint.iter().enumerate() {
-            let is_locked = is_locked(vertex);
-            let vertex = SurfaceVertex(vertex as u32);
-            if *paint != Paint::Bare || is_locked {
-                held[topology.component(vertex) as usize] = true;
-            }
-            if let Paint::Handle(id) = *paint
-                && !is_locked
-                && let Some(index) = input.handles.iter().position(|(handle, _)| *handle == id)
-            {
-                members[index].push(vertex);
-            }
-        }
+        let (members, held) = painted(input, is_locked);
         let mut roles = vec![Role::Fixed; input.paint.len()];
         let mut handles = Vec::new();
         let mut search = DistanceSearch::default();
@@ -168,6 +154,27 @@ impl Region {
             rest_surface,
         })
     }
+}
+
+/// The vertices of each handle that are not locked, and which components carry paint or a lock.
+fn painted(input: &RegionInput, is_locked: impl Fn(usize) -> bool) -> (Vec<Vec<SurfaceVertex>>, Vec<bool>) {
+    let topology = &input.model.topology;
+    let mut members: Vec<Vec<SurfaceVertex>> = vec![Vec::new(); input.handles.len()];
+    let mut held = vec![false; topology.components().len()];
+    for (vertex, paint) in input.paint.iter().enumerate() {
+        let is_locked = is_locked(vertex);
+        let vertex = SurfaceVertex(vertex as u32);
+        if *paint != Paint::Bare || is_locked {
+            held[topology.component(vertex) as usize] = true;
+        }
+        if let Paint::Handle(id) = *paint
+            && !is_locked
+            && let Some(index) = input.handles.iter().position(|(handle, _)| *handle == id)
+        {
+            members[index].push(vertex);
+        }
+    }
+    (members, held)
 }
 
 /// What a handle reaches through space.

@@ -132,7 +132,8 @@ impl Gesture for StiffnessStroke {
         if pointer.position_px != self.last_px {
             self.dab(context, pointer.position_px);
         }
-        context.workspace.document.drop_plain_stiffness();
+        let before = self.transaction.before();
+        context.workspace.document.drop_plain_stiffness(before);
         context.workspace.commit(&self.transaction);
         Next::End
     }

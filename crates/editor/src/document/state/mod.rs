@@ -217,12 +217,16 @@ impl Document {
         note(&mut self.repainted, changed);
     }
 
-    /// Forgets a field of stiffness that is 1 everywhere.
-    pub(crate) fn drop_plain_stiffness(&mut self) {
+    /// Forgets a field of stiffness that is 1 everywhere. Where `before` had none, nothing has changed.
+    pub(crate) fn drop_plain_stiffness(&mut self, before: &Self) {
         let field = self.content.stiffness.as_ref();
-        if field.is_some_and(|field| field.iter().all(|&value| value == 1.0)) {
-            self.content.stiffness = None;
-            self.marks.mark(&[Aspect::Stiffness]);
+        if !field.is_some_and(|field| field.iter().all(|&value| value == 1.0)) {
+            return;
+        }
+        self.content.stiffness = None;
+        match before.content.stiffness {
+            None => self.marks.go_back(before.versions(), Aspect::Stiffness),
+            Some(_) => self.marks.mark(&[Aspect::Stiffness]),
         }
     }
 }
