@@ -247,7 +247,7 @@ fn legends() {
         };
         let scale = Scale::of(field, &stage.model);
         let legend = legend::picture(&stage.renderer, &scale, 0.6).unwrap();
-        legend::lay_over(&mut image, &legend, 3);
+        legend::composite(&mut image, &legend, 3);
         compare(&stage.renderer, name, &image);
     }
 }

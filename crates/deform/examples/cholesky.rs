@@ -18,7 +18,7 @@ use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, SymmetricOrdering, 
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Par, Side};
 use pliant_deform::stages::{Matrix, Operator};
-use pliant_deform::{Bilaplacian, Holds, Loose, Method, Ordering, Problem};
+use pliant_deform::{Bilaplacian, Holds, Loose, Method, Problem};
 use pliant_mesh::{Cancel, Progress};
 
 fn main() {
@@ -70,8 +70,8 @@ fn system(file: &Path) -> (Operator, Matrix) {
     let (roles, _) = peers_edit(&model);
     let (progress, cancel) = (Progress::new(), Cancel::new());
     let options = Bilaplacian::default();
-    let method = Method::Bilaplacian(options.clone());
-    let ordering = Ordering::of(&model.topology, method.operator_power(), &progress, &cancel).unwrap();
+    let method = Method::from(options.clone());
+    let ordering = method.ordering(&model.topology, &progress, &cancel).unwrap().unwrap();
     let problem = Problem {
         surface: &model.surface,
         topology: &model.topology,
@@ -84,7 +84,7 @@ fn system(file: &Path) -> (Operator, Matrix) {
         revision: 0,
     };
     let operator = Operator::of(&problem, &options, &ordering).unwrap();
-    let matrix = operator.assemble();
+    let matrix = operator.assemble().unwrap();
     (operator, matrix)
 }
 
