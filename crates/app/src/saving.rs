@@ -91,7 +91,7 @@ pub fn stage(
     let is_alone = saved.files.len() > 1 || save.format == Format::Gltf;
     let share = if is_alone { Share::Alone } else { Share::Together };
     let beside = what.beside.map(|(_, beside)| (beside, Share::Together));
-    let _held = staging.hold([(&to, share)].into_iter().chain(beside), cancel)?;
+    let held = staging.hold([(&to, share)].into_iter().chain(beside), cancel)?;
     let settled = placement::settle(&mut saved, save.format, &to)?;
     if let Some((role, beside)) = what.beside {
         let neighbours = settled
@@ -100,6 +100,7 @@ pub fn stage(
         files::refuse_shared((role, &beside.given), neighbours)?;
     }
     let (staged, names) = write(&saved, &settled, &to, staging, &of_writing, cancel)?;
+    let staged = staged.holding(held);
     let Saved {
         files,
         mut warnings,

@@ -111,6 +111,27 @@ fn cut_off_at_any_step_the_old_file_or_the_new_one_stands_there_whole() {
 }
 
 #[test]
+fn what_waits_for_its_place_has_no_more_rights_than_what_it_replaces() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    write_scan(folder.path());
+    let scan = folder.path().join("scan.gltf");
+    for name in ["scan.gltf", "a scan.bin"] {
+        fs::set_permissions(folder.path().join(name), fs::Permissions::from_mode(0o600)).unwrap();
+    }
+    let loaded = load(&scan);
+    let staged = stage(&loaded, &lifted(&loaded.model.rest_positions()), &scan).unwrap();
+    let waiting: Vec<_> = fs::read_dir(folder.path())
+        .unwrap()
+        .map(|entry| entry.unwrap())
+        .filter(|entry| entry.file_name().to_string_lossy().ends_with(".tmp"))
+        .map(|entry| entry.metadata().unwrap().permissions().mode() & 0o777)
+        .collect();
+    assert_eq!(waiting, [0o600; 3], "the buffer, the file and its bridge");
+    staged.commit().unwrap();
+}
+
+#[test]
 fn stopped_at_any_look_every_file_is_as_it_was() {
     let folder = tempfile::tempdir().unwrap();
     write_scan(folder.path());

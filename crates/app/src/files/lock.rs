@@ -69,7 +69,8 @@ impl FolderLock {
                     }
                 }
                 Err(TryLockError::WouldBlock) => share == Share::Together && file.try_lock_shared().is_ok(),
-                Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {
+                Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Interrupted => false,
+                Err(TryLockError::Error(_)) => {
                     let _ = fs::remove_file(&path);
                     return Ok(Self {
                         folder: folder.to_owned(),
@@ -77,7 +78,6 @@ impl FolderLock {
                         file: None,
                     });
                 }
-                Err(TryLockError::Error(error)) => return Err(error),
             };
             if held && is_at(&file, &path) {
                 return Ok(Self {

@@ -25,7 +25,7 @@ pub(crate) use leftovers::passing_name;
 pub use lock::Share;
 pub use neighbours::{NEIGHBOUR_BYTES, Neighbours};
 pub use read::{read, read_text};
-pub use staging::{Bridge, NewFile, Staged, Staging};
+pub use staging::{Bridge, Held, NewFile, Staged, Staging};
 
 use std::path::Path;
 

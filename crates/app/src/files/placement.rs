@@ -62,7 +62,12 @@ pub enum Action {
 /// # Errors
 /// Where a neighbour can't be called otherwise, or a thousand names are taken.
 pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result<Vec<Settled>, AppError> {
-    adopt_passing(saved, output)?;
+    if matches!(format, Format::Glb | Format::Gltf) {
+        adopt_passing(saved, output)?;
+    }
+    if saved.files.len() == 1 {
+        return Ok(Vec::new());
+    }
     let mut folder = Folder::of(output, &saved.files[0].bytes, format);
     let mut settled = Vec::new();
     // Textures come behind the libraries that name them, whose bytes change with those names.

@@ -316,6 +316,12 @@ impl Staged {
         self
     }
 
+    /// Keeps folders locked until the commit.
+    pub fn holding(mut self, mut held: Held) -> Self {
+        self.held.0.append(&mut held.0);
+        self
+    }
+
     /// Where the bytes of a file wait, by its place among those that were staged.
     pub fn temporary(&self, file: usize) -> &Path {
         &self.files[file].temporary

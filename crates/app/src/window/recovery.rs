@@ -416,6 +416,40 @@ mod tests {
         assert_eq!(recovered, KILLS);
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn what_is_kept_can_be_read_by_its_owner_alone() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let file = mesh(folder.path());
+        let kept = folder.path().join("kept");
+        // As an earlier version left it.
+        fs::create_dir(&kept).unwrap();
+        fs::set_permissions(&kept, fs::Permissions::from_mode(0o755)).unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
+        let recovery = Recovery::begin(&kept).unwrap();
+        assert_eq!((mode(&kept), mode(&recovery.lock_path)), (0o700, 0o600));
+        fs::write(&recovery.project, "").unwrap();
+        fs::set_permissions(&recovery.project, fs::Permissions::from_mode(0o644)).unwrap();
+        let mut editor = Editor::new(Box::new(InlineExecutor::new()));
+        let loaded = loaded(&file);
+        editor.handle(Event::Opened {
+            model: Arc::clone(&loaded.model),
+            name: "ball".to_owned(),
+            beginning: None,
+        });
+        let work = Work {
+            snapshot: editor.snapshot().unwrap(),
+            loaded,
+            // Gone: the mesh is kept beside the project.
+            source: MeshSource::Gone,
+            project: recovery.project.clone(),
+        };
+        work.write().unwrap();
+        let source = recovery.project.with_extension("source.off");
+        assert_eq!((mode(&recovery.project), mode(&source)), (0o600, 0o600));
+    }
+
     #[test]
     fn a_session_that_lives_is_not_taken_for_one_that_is_gone_and_one_that_closes_leaves_nothing() {
         let folder = tempfile::tempdir().unwrap();

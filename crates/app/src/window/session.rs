@@ -384,7 +384,10 @@ fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Canc
             let keeps = keep_original == KeepOriginal::Yes && !original.exists();
             let split = if keeps { 0.5 } else { 1.0 };
             let (of_save, of_original) = (progress.part(0.0, split), progress.part(split, 1.0));
-            let neighbours = loaded.sources().skip(1);
+            let neighbours = loaded
+                .neighbours
+                .iter()
+                .map(|path| ("a file that the open one needs", &**path));
             files::refuse_shared(("the file to be saved,", &path), neighbours)?;
             let save = SaveAs::shape(&positions, &path);
             let saved = saving::stage(&loaded, &save, &staging, &of_save, cancel)?;
