@@ -385,14 +385,27 @@ fn names_that_are_not_utf_8_stay_what_they_are() {
     let mesh = folder.write_mesh("mesh.off", &shapes::torus(12, 8));
     let edit = folder.write("edit.json", lift(1.0).to_string());
     let named = |name: &[u8]| folder.path().join(OsStr::from_bytes(name));
-    for kind in ["glb", "gltf", "ply"] {
+    for kind in ["glb", "gltf"] {
         let out = named(&[b"caf\xe9.".as_slice(), kind.as_bytes()].concat());
         let report = named(b"r\xe9port.json");
         apply(&mesh, &edit, &out, &["--report".as_ref(), report.as_ref()]).done();
         assert!(shape(&out).iter().any(|p| p.z > 0.9));
         assert!(report.is_file());
+        assert_eq!(named(b"caf\xe9.bin").is_file(), kind != "glb");
         apply(&out, &edit, &out, &[]).done();
     }
+    // As a neighbour it comes along under its name.
+    fs::create_dir(folder.at("out")).unwrap();
+    let out = folder.at("out/plain.gltf");
+    apply(&named(b"caf\xe9.gltf"), &edit, &out, &[]).done();
+    assert!(
+        folder
+            .path()
+            .join("out")
+            .join(OsStr::from_bytes(b"caf\xe9.bin"))
+            .is_file()
+    );
+    assert!(shape(&out).iter().any(|p| p.z > 2.7));
 }
 
 #[test]

@@ -72,12 +72,17 @@ pub fn stage(
     // Making the bytes takes about as long as a disk takes to keep them; reading them back takes less.
     let (of_making, of_writing) = (progress.part(0.0, 0.4), progress.part(0.4, 0.8));
     let of_check = progress.part(0.8, 1.0);
-    let name = to.name().to_string_lossy();
+    let format = Format::of_name(&what.output.to_string_lossy())?;
+    // Only URIs have a way to name what is not UTF-8.
+    let name = match format {
+        Format::Glb | Format::Gltf => files::name_as_text(to.name()),
+        _ => to.name().to_string_lossy().into_owned(),
+    };
     let drawn = loaded.model.rest();
     let save = Save {
         drawn: &drawn,
         positions: what.positions,
-        format: Format::of_name(&what.output.to_string_lossy())?,
+        format,
         name: &name,
         placement: placement::placement(&loaded.path, &to),
     };

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
 use pliant_deform::{
-    Arap, ArapEnergy, Bilaplacian, BindError, Budget, Holds, Loose, Method, Ordering, Primo, Problem, Role, ShellOrder,
+    Arap, ArapEnergy, Bilaplacian, BindError, Budget, Holds, Loose, Method, Primo, Problem, Role, ShellOrder,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 
@@ -132,24 +132,24 @@ impl Scene {
         let before = HELD.load(Relaxed);
         PEAK.store(before, Relaxed);
         ALLOCATED.store(0, Relaxed);
-        let ordering = Ordering::of(&self.model.topology, self.method.operator_power(), &progress, &cancel).unwrap();
-        let bound = problem.bind_within(&ordering, Budget { bytes }, &progress, &cancel);
+        let ordering = self.method.ordering(&self.model.topology, &progress, &cancel).unwrap();
+        let bound = problem.bind_within(ordering.as_ref(), Budget { bytes }, &progress, &cancel);
         let (peak, allocated) = (PEAK.load(Relaxed) - before, ALLOCATED.load(Relaxed));
         (bound.map(|bound| bound.factor_len()), peak, allocated)
     }
 }
 
 fn methods() -> Vec<Method> {
-    let mut methods = vec![Method::Primo(Primo::default())];
+    let mut methods = vec![Method::from(Primo::default())];
     for order in ShellOrder::ALL {
         let mut shell = Bilaplacian::default();
         shell.order = order;
-        methods.push(Method::Bilaplacian(shell));
+        methods.push(shell.into());
     }
     for energy in ArapEnergy::ALL {
         let mut arap = Arap::default();
         arap.energy = energy;
-        methods.push(Method::Arap(arap));
+        methods.push(arap.into());
     }
     methods
 }

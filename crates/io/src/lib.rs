@@ -44,7 +44,7 @@ pub use bytes::Bytes;
 pub use difference::{Difference, What};
 pub use error::{ImageError, ReadError, SaveError, UnknownFormat};
 pub use format::Format;
-pub use gltf::{is_same_document, neighbours_named, with_neighbours_renamed};
+pub use gltf::{bytes_of_name, is_same_document, name_of_bytes, neighbours_named, with_neighbours_renamed};
 pub use image::decode_image;
 pub use images::{DecodedImage, IMAGE_BYTES, decode_images};
 pub use pixels::Rgba8;

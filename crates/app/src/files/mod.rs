@@ -27,7 +27,8 @@ pub use neighbours::{NEIGHBOUR_BYTES, Neighbours};
 pub use read::{read, read_text};
 pub use staging::{Bridge, Held, NewFile, Staged, Staging};
 
-use std::path::Path;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 
 /// The folder that a path stands in, "." for a bare name.
 pub fn folder_of(path: &Path) -> &Path {
@@ -35,6 +36,39 @@ pub fn folder_of(path: &Path) -> &Path {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     }
+}
+
+/// A file's name as a glTF's URIs hold it: one that is not UTF-8 percent-encoded.
+pub fn name_as_text(name: &OsStr) -> String {
+    #[cfg(unix)]
+    {
+        pliant_io::name_of_bytes(std::os::unix::ffi::OsStrExt::as_bytes(name))
+    }
+    #[cfg(not(unix))]
+    {
+        name.to_string_lossy().into_owned()
+    }
+}
+
+/// The path in `folder` that a neighbour's name stands for; see [`name_as_text`]. A file that is there by the very
+/// letters goes first.
+pub(crate) fn neighbour_path(folder: &Path, name: &str) -> PathBuf {
+    let literal = folder.join(name);
+    #[cfg(unix)]
+    if name.contains('%') && std::fs::symlink_metadata(&literal).is_err() {
+        use std::os::unix::ffi::OsStringExt;
+        let step = |step: &str| match pliant_io::bytes_of_name(step) {
+            Some(bytes) if !bytes.contains(&b'/') && !bytes.contains(&0) => std::ffi::OsString::from_vec(bytes),
+            _ => step.into(),
+        };
+        let mut path = folder.to_owned();
+        if name.starts_with('/') {
+            path.push("/");
+        }
+        path.extend(name.split('/').filter(|step| !step.is_empty()).map(step));
+        return path;
+    }
+    literal
 }
 
 /// A path for a message: on one line, and nothing in it that steers a terminal.

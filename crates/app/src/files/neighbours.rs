@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use pliant_io::{Bytes, Resolver};
 
 use super::error::{in_words, reason};
-use super::{folder_of, follow};
+use super::{folder_of, follow, neighbour_path};
 
 /// What a file's neighbours may take in all, unless the caller says otherwise: 16 GiB, several times what the largest
 /// scans bring.
@@ -71,7 +71,7 @@ impl Neighbours {
     }
 
     fn read_in(&self, folder: &Path, path: &str) -> io::Result<Bytes> {
-        let full = folder.join(path);
+        let full = neighbour_path(folder, path);
         // Files are looked at before they are opened: opening a pipe or a device may wait, or do something.
         refuse_strange(&fs::metadata(&full)?)?;
         let place = fs::canonicalize(&full)?;

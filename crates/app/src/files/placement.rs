@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use pliant_io::{Format, Placement, Role, Saved, is_same_document, neighbours_named, numbered, quoted};
 
 use super::leftovers::{is_passing, real_name};
-use super::{Destination, FileError, folder_of, follow, is_same};
+use super::{Destination, FileError, folder_of, follow, is_same, neighbour_path};
 use crate::AppError;
 
 /// Where `output` stands as seen from `source`.
@@ -106,7 +106,7 @@ pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result
                 quoted(&name)
             ));
         }
-        let given = folder_of(&output.given).join(&name);
+        let given = neighbour_path(folder_of(&output.given), &name);
         let (action, target) = match there {
             There::Nothing(target) | There::Own(target) => (Action::Write, target),
             There::Same(target) => (Action::Share, target),
@@ -190,7 +190,7 @@ impl<'a> Folder<'a> {
 
     fn look_at(&mut self, name: &str, bytes: &[u8], role: Role) -> There {
         let home = &self.output.home;
-        let path = home.join(name);
+        let path = neighbour_path(home, name);
         // Its folder may lead elsewhere, or be no folder.
         let mut parent = home.clone();
         let steps: Vec<&str> = name.split('/').collect();

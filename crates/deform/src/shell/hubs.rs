@@ -296,7 +296,7 @@ mod tests {
         };
         let roles: Vec<Role> = surface.positions.iter().map(role).collect();
         let stiffness: Vec<f64> = (0..roles.len()).map(|v| 1.0 + (v % 4) as f64).collect();
-        let method = Method::Bilaplacian(options.clone());
+        let method = Method::from(options.clone());
         let problem = Problem {
             surface,
             topology: &topology,

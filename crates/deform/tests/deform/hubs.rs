@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Arap, ArapEnergy, Bilaplacian, BindError, Budget, Method, Ordering, Primo, Role, ShellOrder};
+use pliant_deform::{Arap, ArapEnergy, Bilaplacian, BindError, Budget, Method, Primo, Role, ShellOrder};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Progress, SurfaceVertex, shapes};
 
 use crate::rig::{Scene, settle};

@@ -30,6 +30,7 @@ use glam::DVec3;
 use pliant_mesh::{Drawn, Object};
 
 pub use neighbours::{is_same_document, neighbours_named, with_neighbours_renamed};
+pub use uri::{bytes_of_name, name_of_bytes};
 
 use self::document::Document;
 use self::fault::Fault;

@@ -3,7 +3,7 @@
 use base64::Engine as _;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
-use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
+use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, percent_encode, utf8_percent_encode};
 
 /// Where a URI points.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -87,9 +87,28 @@ pub(super) fn inside(path: &str) -> Option<String> {
     (!steps.is_empty()).then(|| steps.join("/"))
 }
 
-/// A path as a URI.
+/// A path as a URI. One whose name is not UTF-8 is such already, see [`name_of_bytes`].
 pub(super) fn encoded(path: &str) -> String {
+    if percent_decode_str(path).decode_utf8().is_err() {
+        return path.to_owned();
+    }
     utf8_percent_encode(path, ESCAPED).to_string()
+}
+
+/// A file's name as text. Where it is not UTF-8 its bytes stand percent-encoded, as a URI has them: no other text
+/// decodes to them.
+pub fn name_of_bytes(name: &[u8]) -> String {
+    match std::str::from_utf8(name) {
+        Ok(name) => name.to_owned(),
+        Err(_) => percent_encode(name, ESCAPED).to_string(),
+    }
+}
+
+/// The bytes of a name that [`name_of_bytes`] or a URI gives percent-encoded because they are not UTF-8; `None` for
+/// every other name, which is its own bytes.
+pub fn bytes_of_name(name: &str) -> Option<Vec<u8>> {
+    let bytes: Vec<u8> = percent_decode_str(name).collect();
+    std::str::from_utf8(&bytes).is_err().then_some(bytes)
 }
 
 /// A path as a JSON string that holds its URI.
@@ -136,6 +155,19 @@ mod tests {
             assert_eq!(inside(path), None, "{path}");
         }
         assert_eq!(inside("./a//b/../c.bin").as_deref(), Some("a/c.bin"));
+    }
+
+    #[test]
+    fn a_name_that_is_not_utf_8_survives_its_uri() {
+        for bytes in [b"caf\xe9.bin".as_slice(), b"\xff%41:.bin"] {
+            let name = name_of_bytes(bytes);
+            assert_eq!(bytes_of_name(&name).as_deref(), Some(bytes));
+            assert_eq!(address(&encoded(&name)), Ok(Address::Neighbour(name)));
+        }
+        assert_eq!(
+            (name_of_bytes("é%41".as_bytes()).as_str(), bytes_of_name("é%41")),
+            ("é%41", None)
+        );
     }
 
     #[test]
