@@ -126,6 +126,6 @@ fn a_project_on_another_mesh_and_a_project_as_the_mesh_are_refused() {
     apply(&other, &project, &output).refused(1, &["bar.pliant", "another mesh"]);
     apply(&project, &project, &output).refused(1, &["bar.pliant", "--edit"]);
     let broken = folder.write("broken.pliant", "{\"mesh\": {}, \"version\": 1}");
-    apply(&file, &broken, &output).refused(1, &["broken.pliant", "project"]);
+    apply(&file, &broken, &output).refused(1, &["broken.pliant", "mesh", "geometry"]);
     assert!(!output.exists());
 }

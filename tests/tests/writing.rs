@@ -203,12 +203,9 @@ fn a_buffer_that_two_files_share_is_edited_for_one_alone() {
 fn images_are_shared_where_they_are_the_same_and_kept_apart_where_they_are_not() {
     let folder = Folder::new();
     let a = download(&folder, "a", 8);
-    let with_image = |uri: &str| format!("{{\"images\":[{{\"uri\":\"{uri}\"}}],\"asset\":");
-    let text = fs::read_to_string(&a)
-        .unwrap()
-        .replacen('{', "", 1)
-        .replacen("\"asset\":", "", 1);
-    fs::write(&a, with_image("tex/skin.png") + &text).unwrap();
+    let mut json: serde_json::Value = serde_json::from_str(&fs::read_to_string(&a).unwrap()).unwrap();
+    json["images"] = serde_json::json!([{ "uri": "tex/skin.png" }]);
+    fs::write(&a, json.to_string()).unwrap();
     fs::create_dir(folder.at("a/tex")).unwrap();
     folder.write("a/tex/skin.png", "ours");
     fs::create_dir_all(folder.at("out/tex")).unwrap();

@@ -4,108 +4,21 @@
 //! Each part is a function of its own, so that the window can keep what has not changed; [`apply`] is all of them in a
 //! row with a clock beside them.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
 use pliant_deform::{Bound, Method, Ordering, SolveError};
 use pliant_editor::{Beginning, Setup};
-use pliant_io::{Format, MorphTarget, Opened, Scene};
+use pliant_io::MorphTarget;
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 
 use crate::AppError;
-use crate::files::{self, Destination, Neighbours, NewFile, Staging};
-use crate::report::{Distortion, Energy, FrameTimes, Report, finite_or};
+use crate::files::{self, Destination, NewFile, Staging};
+pub use crate::loading::{Loaded, is_project, load, load_bytes, open};
+use crate::report::{Distortion, Energy, FrameTimes, Report, finite_or, ms_since};
 use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
-
-/// A file, read and welded.
-#[derive(Debug)]
-pub struct Loaded {
-    /// Where it was read from.
-    pub path: PathBuf,
-    /// The file as stored.
-    pub scene: Scene,
-    /// Its geometry.
-    pub model: Arc<Model>,
-    /// The files beside it that were read with it.
-    pub neighbours: Vec<PathBuf>,
-}
-
-impl Loaded {
-    /// Every file that it was read from, each with what it is, for refusals of outputs that would overwrite one.
-    pub fn sources(&self) -> impl Iterator<Item = (&'static str, &Path)> {
-        let neighbours = self.neighbours.iter().map(|path| ("a file that FILE needs", &**path));
-        std::iter::once(("FILE", &*self.path)).chain(neighbours)
-    }
-}
-
-/// Reads and welds a file.
-///
-/// # Errors
-/// A file that can't be read; [`AppError::Interrupted`] soon after `cancel` is raised.
-pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
-    load_bytes(read_mesh(path, watch)?, path, weld, watch)
-}
-
-/// Reads a file without welding it.
-///
-/// # Errors
-/// As [`load`].
-pub fn open(path: &Path, watch: &Watch) -> Result<Opened, AppError> {
-    open_bytes(read_mesh(path, watch)?, path, &Neighbours::of(path), watch)
-}
-
-/// The bytes of a mesh's file.
-fn read_mesh(path: &Path, watch: &Watch) -> Result<Vec<u8>, AppError> {
-    if is_project(path) {
-        return Err(AppError::ProjectAsFile(path.to_owned()));
-    }
-    Format::of_name(&path.to_string_lossy())?;
-    watch.begin("reading");
-    Ok(files::read(path)?)
-}
-
-/// Reads and welds a file's bytes; `path` is where its neighbours stand and what it is called.
-///
-/// # Errors
-/// As [`load`].
-pub fn load_bytes(bytes: Vec<u8>, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
-    let neighbours = Neighbours::of(path);
-    let opened = open_bytes(bytes, path, &neighbours, watch)?;
-    let loaded = welded(opened, path, weld, watch)?;
-    Ok(Loaded {
-        neighbours: neighbours.were_read(),
-        ..loaded
-    })
-}
-
-fn open_bytes(bytes: Vec<u8>, path: &Path, neighbours: &Neighbours, watch: &Watch) -> Result<Opened, AppError> {
-    let name = path.to_string_lossy();
-    let format = Format::of_name(&name)?;
-    let progress = watch.begin("reading");
-    let opened = pliant_io::read(bytes, format, &name, neighbours, &progress, &watch.cancel);
-    opened.map_err(AppError::Read)
-}
-
-fn welded(opened: Opened, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
-    let progress = watch.begin("welding");
-    let model = Model::weld(opened.drawn, weld, &progress, &watch.cancel).map_err(|_| AppError::Interrupted)?;
-    let model = model.with_objects(opened.scene.objects());
-    Ok(Loaded {
-        path: path.to_owned(),
-        scene: opened.scene,
-        model: Arc::new(model),
-        neighbours: Vec::new(),
-    })
-}
-
-/// Whether a path is called a project.
-pub fn is_project(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("pliant"))
-}
 
 /// Orders a model's equations for a method that needs it, once for all regions.
 ///
@@ -365,9 +278,4 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
         },
         warnings: bound.warnings().to_vec(),
     })
-}
-
-/// Milliseconds since `start`.
-pub(crate) fn ms_since(start: Instant) -> f64 {
-    start.elapsed().as_secs_f64() * 1e3
 }

@@ -6,6 +6,7 @@ pub mod engine;
 mod error;
 pub mod files;
 pub mod legend;
+mod loading;
 mod picture_file;
 pub mod report;
 pub mod saving;

@@ -1,5 +1,7 @@
 //! REPORT.json: what an edit did and how long each part took (`cli.md`). Times are in milliseconds.
 
+use std::time::Instant;
+
 use serde::Serialize;
 
 /// What an edit did. Every number is finite.
@@ -106,6 +108,11 @@ impl Report {
 /// JSON has no infinity and no NaN: they become `instead`.
 pub fn finite_or(value: f64, instead: f64) -> f64 {
     if value.is_finite() { value } else { instead }
+}
+
+/// Milliseconds since `start`.
+pub(crate) fn ms_since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
 }
 
 #[cfg(test)]

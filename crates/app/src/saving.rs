@@ -8,10 +8,11 @@ use pliant_io::{Format, MorphTarget, Role, Save, SaveError, Saved, with_neighbou
 use pliant_mesh::{Cancel, Progress};
 
 use crate::AppError;
-use crate::engine::{Loaded, ms_since};
 use crate::files::check::{self, Written};
 use crate::files::placement::{self, Action, Settled};
 use crate::files::{self, Bridge, Destination, NewFile, Share, Staged, Staging};
+use crate::loading::Loaded;
+use crate::report::ms_since;
 
 /// What is saved, and where.
 #[derive(Clone, Copy, Debug)]

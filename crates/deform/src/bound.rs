@@ -286,7 +286,17 @@ fn gate(displacements: &mut [DVec3]) -> Result<(), SolveError> {
         .par_chunks(FRAME_CHUNK)
         .all(|chunk| chunk.iter().all(|displacement| displacement.is_finite()));
     if finite {
-        return Ok(());
+        // Beyond the root of the largest number no energy can be told.
+        let is_measurable = displacements.par_chunks(FRAME_CHUNK).all(|chunk| {
+            chunk
+                .iter()
+                .all(|displacement| displacement.length_squared().is_finite())
+        });
+        if is_measurable {
+            return Ok(());
+        }
+        displacements.fill(DVec3::ZERO);
+        return Err(SolveError::EnergyNotFinite);
     }
     let vertex = displacements
         .iter()

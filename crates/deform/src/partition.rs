@@ -10,9 +10,8 @@ use pliant_mesh::SurfaceVertex;
 
 use crate::budget::bytes_of;
 use crate::method::option::joined;
-use crate::method::{ConstraintKind, METHODS, Needs};
 use crate::operators::net::{Graph, Net};
-use crate::{BindError, Budget, CONTINUITY_RANGE, Loose, Problem, Role};
+use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, METHODS, Needs, Problem, Role};
 
 /// The vertices by what happens to them, all lists ascending.
 #[derive(Debug)]

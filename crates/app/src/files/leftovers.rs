@@ -9,7 +9,7 @@ use std::fs;
 use std::hash::{BuildHasher, Hasher as _, RandomState};
 use std::path::Path;
 
-use super::placement::names_in_folder;
+use super::named::names_in_folder;
 
 /// What all of them begin with.
 pub(super) const PREFIX: &str = ".pliant-";

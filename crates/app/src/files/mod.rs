@@ -10,21 +10,22 @@ mod attributes;
 pub mod check;
 mod destination;
 mod error;
-mod identity;
 mod leftovers;
 mod lock;
+mod named;
 mod neighbours;
 pub mod placement;
 mod read;
+mod same_file;
 mod staging;
 
 pub use destination::Destination;
 pub use error::FileError;
-pub use identity::{follow, is_same, refuse_shared};
 pub(crate) use leftovers::passing_name;
 pub use lock::Share;
 pub use neighbours::{NEIGHBOUR_BYTES, Neighbours};
 pub use read::{read, read_text};
+pub use same_file::{follow, is_same, refuse_shared};
 pub use staging::{Bridge, Held, NewFile, Staged, Staging};
 
 use std::ffi::OsStr;

@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 use pliant_io::{Format, Placement, Role, Saved, is_same_document, neighbours_named, numbered, quoted};
 
 use super::leftovers::{is_passing, real_name};
+use super::named::names_in_folder;
 use super::{Destination, FileError, folder_of, follow, is_same, neighbour_path};
 use crate::AppError;
 
@@ -268,48 +269,4 @@ fn holds(path: &Path, bytes: &[u8]) -> bool {
             Err(_) => return false,
         }
     }
-}
-
-/// A glTF's text beyond this size is not looked through.
-const LONGEST_TEXT: u64 = 256 << 20;
-
-/// What the glTF in a folder name, but for one of them; `None` where one is too large to be looked through. Those that
-/// can't be read name nothing that anybody could follow.
-pub(super) fn names_in_folder(folder: &Path, except: Option<&Path>) -> Option<BTreeSet<String>> {
-    let mut names = BTreeSet::new();
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let path = entry.path();
-        let is_kind = |kind: &str| {
-            path.extension()
-                .is_some_and(|extension| extension.eq_ignore_ascii_case(kind))
-        };
-        let is_file = fs::metadata(&path).is_ok_and(|metadata| metadata.is_file());
-        if !is_file || !(is_kind("gltf") || is_kind("glb")) || except.is_some_and(|except| is_same(except, &path)) {
-            continue;
-        }
-        match text_of(&path) {
-            Ok(Some(text)) => names.extend(neighbours_named(&text).into_iter().flatten()),
-            Ok(None) => return None,
-            Err(_) => {}
-        }
-    }
-    Some(names)
-}
-
-/// The text of a glTF, of a GLB the JSON chunk alone; `None` where it is too long.
-fn text_of(path: &Path) -> io::Result<Option<Vec<u8>>> {
-    let mut file = File::open(path)?;
-    let mut length = file.metadata()?.len();
-    let mut head = Vec::new();
-    Read::by_ref(&mut file).take(20).read_to_end(&mut head)?;
-    if let [b'g', b'l', b'T', b'F', _, _, _, _, _, _, _, _, a, b, c, d, ..] = head[..] {
-        length = u64::from(u32::from_le_bytes([a, b, c, d]));
-        head.clear();
-    }
-    if length > LONGEST_TEXT {
-        return Ok(None);
-    }
-    let left = length.saturating_sub(head.len() as u64);
-    file.take(left).read_to_end(&mut head)?;
-    Ok(Some(head))
 }

@@ -14,7 +14,7 @@ use pliant_deform::{Loose, Role};
 use pliant_mesh::{Cancel, Cancelled, ContourLine, DistanceSearch, Model, Surface, SurfaceVertex, Topology, face_area};
 
 use super::rim::rims;
-use crate::document::{Access, HandleId, Paint, Reach};
+use crate::document::{Access, Document, HandleId, Paint, Reach};
 
 /// What the region follows from; shared with the job that measures it.
 #[derive(Clone, Debug)]
@@ -250,6 +250,23 @@ pub(crate) fn centroid(positions: &[DVec3], vertices: impl Iterator<Item = Surfa
         count += 1.0;
     }
     if count > 0.0 { sum / count } else { DVec3::ZERO }
+}
+
+/// Everything that the region follows from.
+pub(crate) fn region_input(model: &Arc<Model>, document: &Document) -> RegionInput {
+    RegionInput {
+        model: Arc::clone(model),
+        paint: Arc::clone(&document.paint),
+        handles: document
+            .handles
+            .iter()
+            .map(|handle| (handle.id, handle.reach))
+            .collect(),
+        rest: document.applied.then(|| Arc::clone(&document.rest)),
+        loose: document.loose,
+        loose_parts: Arc::clone(&document.loose_parts),
+        access: Arc::clone(&document.access),
+    }
 }
 
 #[cfg(test)]

@@ -14,7 +14,8 @@ use super::computed::Computed;
 use super::job::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, ShownTriangles, Solved, Work};
 use super::job_queue::{JobQueue, Running};
 use super::region::Region;
-use super::work::{bind_work, order_work, pick_work, region_input, region_work, solve_work};
+use super::region::region_input;
+use super::work::{bind_work, order_work, pick_work, region_work, solve_work};
 use crate::document::Document;
 
 /// What the person is doing, as far as jobs care.

@@ -155,20 +155,3 @@ fn targets(document: &Document, handles: &[HandleId]) -> Option<Vec<DAffine3>> {
         .map(|&id| document.handle(id).map(|handle| handle.affine()))
         .collect()
 }
-
-/// Everything that the region follows from.
-pub(crate) fn region_input(model: &Arc<Model>, document: &Document) -> RegionInput {
-    RegionInput {
-        model: Arc::clone(model),
-        paint: Arc::clone(&document.paint),
-        handles: document
-            .handles
-            .iter()
-            .map(|handle| (handle.id, handle.reach))
-            .collect(),
-        rest: document.applied.then(|| Arc::clone(&document.rest)),
-        loose: document.loose,
-        loose_parts: Arc::clone(&document.loose_parts),
-        access: Arc::clone(&document.access),
-    }
-}

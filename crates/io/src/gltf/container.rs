@@ -101,6 +101,12 @@ pub(super) fn join(json: &[u8], bin: Option<&[u8]>, further_chunks: &[u8], trail
     Some(out)
 }
 
+/// A JSON chunk's content without the spaces that pad it.
+pub(super) fn without_padding(text: &[u8]) -> &[u8] {
+    let end = text.iter().rposition(|&byte| byte != b' ').map_or(0, |last| last + 1);
+    &text[..end]
+}
+
 #[cfg(test)]
 #[expect(clippy::unwrap_used, reason = "tests")]
 mod tests {

@@ -98,7 +98,7 @@ pub(super) fn in_its_kind(document: &Document, patched: Patched<'_>, save: &Save
             let bin = bin.or_else(|| parts.bin.clone().map(|range| &document.file[range]));
             let further = &document.file[parts.further_chunks.clone()];
             let trailing = &document.file[parts.trailing.clone()];
-            container::join(without_padding(&text), bin, further, trailing)
+            container::join(container::without_padding(&text), bin, further, trailing)
                 .ok_or(SaveError::TooLarge { format: save.format })?
         }
         None => with_mark(document, &text),
@@ -146,7 +146,12 @@ pub(super) fn unpacked(document: &Document, patched: Patched<'_>, save: &Save<'_
         bring_images(document, &json, &image_uris, &mut gathered, &mut edits, &mut warnings)?;
     }
     let text = edits.apply(json.text(), 0..json.text().len());
-    Ok(saved(save, without_padding(&text).to_vec(), gathered.files, warnings))
+    Ok(saved(
+        save,
+        container::without_padding(&text).to_vec(),
+        gathered.files,
+        warnings,
+    ))
 }
 
 pub(super) fn saved(save: &Save<'_>, bytes: Vec<u8>, neighbours: Vec<OutputFile>, warnings: Vec<String>) -> Saved {
@@ -162,12 +167,6 @@ pub(super) fn reparsed(text: &[u8]) -> Result<Json, SaveError> {
         format: Format::Gltf,
         remedy: "this is a fault of the program, so report it with the file".to_owned(),
     })
-}
-
-/// A JSON chunk's content without the spaces that pad it.
-pub(super) fn without_padding(text: &[u8]) -> &[u8] {
-    let end = text.iter().rposition(|&byte| byte != b' ').map_or(0, |last| last + 1);
-    &text[..end]
 }
 
 fn with_mark(document: &Document, text: &[u8]) -> Vec<u8> {

@@ -12,12 +12,12 @@ use std::sync::{Arc, OnceLock};
 use ::gltf::json::validation::USize64;
 use ::gltf::json::{self, Accessor, Material, Texture, texture::Sampler};
 
-use super::accessor::Layout;
 use super::container::{self, Container};
 use super::fault::Fault;
 use super::json::{At, Json};
-use super::maps::MaterialMaps;
+use super::layout::Layout;
 use super::uri::{self, Address};
+use super::uv_sets::MaterialMaps;
 use crate::notes::Notes;
 use crate::quote::quoted;
 use crate::source::Source;
@@ -59,7 +59,7 @@ pub(super) struct Document {
     /// Which texture coordinates each material's images take.
     pub material_maps: Vec<MaterialMaps>,
     /// Each accessor's layout once it was asked for: checking it looks at all its sparse elements.
-    layouts: Vec<OnceLock<Result<Layout, String>>>,
+    pub layouts: Vec<OnceLock<Result<Layout, String>>>,
 }
 
 /// A buffer's bytes and where they came from.
@@ -161,10 +161,6 @@ impl Document {
         document.fetch_buffers(source)?;
         document.fetch_images(source)?;
         document.loaded_bytes = document.count_loaded_bytes();
-        let count = document.materials_at.len();
-        document.material_maps = (0..count)
-            .map(|material| MaterialMaps::of(&document, material))
-            .collect();
         Ok(document)
     }
 
@@ -241,14 +237,6 @@ impl Document {
         });
         let bytes = self.loaded_bytes.saturating_add(decoded.sum());
         bytes.saturating_mul(MOST_DRAWN).saturating_add(DRAWN_ANYWAY)
-    }
-
-    /// An accessor's shape and place, checked; in words what is wrong.
-    pub fn layout(&self, accessor: usize) -> Result<Layout, String> {
-        match self.layouts.get(accessor) {
-            Some(layout) => layout.get_or_init(|| Layout::of(self, accessor)).clone(),
-            None => Layout::of(self, accessor),
-        }
     }
 
     /// Lets a buffer view of the file point at bytes that were decoded from it.

@@ -11,6 +11,7 @@ mod draco;
 mod fault;
 mod geometry;
 mod json;
+mod layout;
 mod look;
 mod maps;
 mod meshopt;
@@ -23,6 +24,7 @@ mod primitive;
 mod tree;
 mod unpack;
 mod uri;
+mod uv_sets;
 
 use std::ops::Range;
 
@@ -62,6 +64,7 @@ pub(crate) fn read(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn
 
 fn open(source: &Source<'_>, format: Format) -> Result<(Stored, Drawn), Fault> {
     let mut document = Document::read(source, format)?;
+    document.material_maps = maps::of_materials(&document);
     let mut notes = std::mem::take(&mut document.notes);
     meshopt::decode(&mut document, source.cancel)?;
     let meshes = primitive::primitives(&document, source.cancel)?;

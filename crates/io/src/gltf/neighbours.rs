@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::container;
-use super::deliver::without_padding;
+use super::container::without_padding;
 use super::document::{Buffer, Document, ImageFile};
 use super::json::{At, Edits, Json};
 use super::uri::{self, Address};

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
-use super::container;
-use super::deliver::{reparsed, saved, without_padding};
+use super::container::{self, without_padding};
+use super::deliver::{reparsed, saved};
 use super::document::{Buffer, Document, ImageFile};
 use super::json::{At, Edits, Json};
 use super::patch::Patched;
