@@ -1,7 +1,11 @@
 //! What a save may write over, where it goes, and what it keeps: nothing of anybody's is lost.
 
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "a test fails by panicking, and says what it skips"
+)]
 
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
@@ -203,8 +207,8 @@ fn a_buffer_that_two_files_share_is_edited_for_one_alone() {
 fn images_are_shared_where_they_are_the_same_and_kept_apart_where_they_are_not() {
     let folder = Folder::new();
     let a = download(&folder, "a", 8);
-    let mut json: serde_json::Value = serde_json::from_str(&fs::read_to_string(&a).unwrap()).unwrap();
-    json["images"] = serde_json::json!([{ "uri": "tex/skin.png" }]);
+    let mut json: Value = serde_json::from_str(&fs::read_to_string(&a).unwrap()).unwrap();
+    json["images"] = json!([{ "uri": "tex/skin.png" }]);
     fs::write(&a, json.to_string()).unwrap();
     fs::create_dir(folder.at("a/tex")).unwrap();
     folder.write("a/tex/skin.png", "ours");

@@ -66,7 +66,7 @@ pub fn plain(bytes: &mut Vec<u8>, chance: &mut Chance) {
     let end = bytes.len().min(at + chance.below(40));
     match chance.below(6) {
         0 => bytes[at] ^= 1 << chance.below(8),
-        1 => bytes[at] = chance.next() as u8,
+        1 => bytes[at] = chance.bits() as u8,
         2 => bytes.truncate(at),
         3 => drop(bytes.drain(at..end)),
         4 => {

@@ -143,13 +143,11 @@ pub fn of_save(root: &Path, before: &Tree, after: &Tree, places: &Places, found:
         .filter_map(|path| identity(before, &within(path)))
         .collect();
     // An output that is a file which was read is a loss, unless a result stands in its input's place.
-    if let Some(id) = identity(before, &report) {
-        if input_files.contains(&id) {
-            found.push(violation(
-                Law::NothingGivenUp,
-                format!("the report is {report:?}, which was read"),
-            ));
-        }
+    if identity(before, &report).is_some_and(|id| input_files.contains(&id)) {
+        found.push(violation(
+            Law::NothingGivenUp,
+            format!("the report is {report:?}, which was read"),
+        ));
     }
     if report.is_some() && report == output {
         found.push(violation(Law::NothingGivenUp, "the report is the result"));

@@ -37,7 +37,7 @@ pub fn mutate(case: &mut Case, chance: &mut Chance) {
             case.output = (*chance.of(&["out", "in", "other", "../target/in", "../target/other", "sub/in"])).into();
             case.output.set_extension(extension);
         }
-        _ => change_json(case, |text, chance| json_text::mutate(text, chance), chance),
+        _ => change_json(case, json_text::mutate, chance),
     }
 }
 

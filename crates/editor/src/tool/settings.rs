@@ -7,7 +7,7 @@ use crate::document::{HandleId, Paint};
 use crate::view::{GizmoMode, GizmoOrientation};
 
 /// The tool, its brushes and the gizmo.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct ToolSettings {
     pub(crate) mode: ToolMode,
     pub(crate) stroke_shape: StrokeShape,
@@ -20,22 +20,6 @@ pub(crate) struct ToolSettings {
     pub(crate) orientation: GizmoOrientation,
     /// Whether the next click puts the selected handle's pivot.
     pub(crate) wants_pivot: bool,
-}
-
-impl Default for ToolSettings {
-    fn default() -> Self {
-        Self {
-            mode: ToolMode::default(),
-            stroke_shape: StrokeShape::default(),
-            depth: Depth::default(),
-            brush: BrushSize::default(),
-            stiffness_brush: StiffnessBrush::default(),
-            pressure: None,
-            gizmo_mode: GizmoMode::default(),
-            orientation: GizmoOrientation::default(),
-            wants_pivot: false,
-        }
-    }
 }
 
 impl ToolSettings {

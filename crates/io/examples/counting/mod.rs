@@ -41,7 +41,10 @@ fn tell(bytes: usize, limit: usize) {
     if !TOLD.swap(true, Ordering::Relaxed) {
         LIMIT.store(usize::MAX, Ordering::Relaxed);
         let backtrace = std::backtrace::Backtrace::force_capture();
-        eprintln!("{bytes} bytes are beyond the limit of {limit}:\n{backtrace}");
+        #[expect(clippy::print_stderr, reason = "whoever set the limit wants to know who exceeded it")]
+        {
+            eprintln!("{bytes} bytes are beyond the limit of {limit}:\n{backtrace}");
+        }
         LIMIT.store(limit, Ordering::Relaxed);
     }
 }

@@ -78,7 +78,7 @@ pub(super) fn decode(document: &mut Document, meshes: &[Vec<Primitive>], cancel:
     let size = |view: Option<usize>| view.and_then(|view| document.view(view)).map_or(0, <[u8]>::len);
     let all: usize = by_view.keys().map(|&view| size(view)).sum();
     let budget = document.decoding_budget() as f64 / all.max(1) as f64;
-    let decoded: Vec<Vec<(usize, Result<Vec<FilledBytes>, String>)>> = by_view
+    let decoded: Vec<Vec<(usize, DecodedPrimitive)>> = by_view
         .par_iter()
         .map(|(&view, places)| {
             if cancel.is_cancelled() {
@@ -119,6 +119,9 @@ pub(super) fn decode(document: &mut Document, meshes: &[Vec<Primitive>], cancel:
 
 /// An accessor and its bytes.
 type FilledBytes = (usize, Vec<u8>);
+
+/// A primitive's accessors with their bytes, or what is wrong.
+type DecodedPrimitive = Result<Vec<FilledBytes>, String>;
 
 /// What a primitive's compressed data holds, if that is no more than `budget` bytes.
 fn decoded_mesh(document: &Document, extension: At, budget: usize) -> Result<Mesh, String> {
