@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{
-    Arap, ArapEnergy, Bilaplacian, ConstraintKind, Discretisation, Holds, Loose, METHODS, Method, Needs, Ordering,
-    Primo, Problem, Role, ShellOrder, SolveError, Triangulation,
+    Arap, ArapEnergy, Bilaplacian, ConstraintKind, Constraints, Discretisation, Loose, METHODS, Method, Needs,
+    Ordering, Primo, Problem, Role, ShellOrder, SolveError, Triangulation,
 };
 use pliant_mesh::{Cancel, Model, Progress};
 
@@ -237,7 +237,7 @@ impl Trial {
             roles: &self.roles,
             handle_count: self.aims.len(),
             stiffness: &self.stiffness,
-            holds: Holds {
+            constraints: Constraints {
                 soft: &self.soft,
                 continuity: &self.continuity,
                 parts: &[],

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::{DAffine3, DMat3, DVec3};
-use pliant_deform::{Bound, Holds, Loose, Method, Ordering, Problem, Role};
+use pliant_deform::{Bound, Constraints, Loose, Method, Ordering, Problem, Role};
 use pliant_mesh::{Cancel, Model, Progress, Surface};
 use pliant_tests::largest_distance;
 use pliant_tests::trials::scans;
@@ -46,7 +46,7 @@ impl<'a> Setting<'a> {
             roles: &self.roles,
             handle_count: 2,
             stiffness: &self.stiffness,
-            holds: Holds::default(),
+            constraints: Constraints::default(),
             loose: Loose::Follow,
             method: &Method::default(),
             revision: 0,

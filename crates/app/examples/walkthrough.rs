@@ -17,7 +17,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
-use pliant_app::window::{Application, Places, Source};
+use pliant_app::window::{AppDirectories, Application, Source};
 use pliant_deform::Method;
 use pliant_editor::{Command, RegionAction, StiffnessBrush, StrokeShape, ToolMode};
 
@@ -115,7 +115,7 @@ fn main() {
     let folder = PathBuf::from(std::env::args_os().nth(1).expect("give a folder"));
     std::fs::create_dir_all(&folder).unwrap();
     let own = tempfile::tempdir().unwrap();
-    let places = Places {
+    let places = AppDirectories {
         settings: Some(own.path().join("settings.json")),
         recovery: None,
     };

@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use common::{edit, median, ms, name, read, timed};
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_deform::{Arap, ArapEnergy, Bound, Holds, Loose, Method, Problem, Step};
+use pliant_deform::{Arap, ArapEnergy, Bound, Constraints, Loose, Method, Problem, Step};
 use pliant_mesh::{Cancel, Model, Progress};
 
 /// A frame of a drag, in milliseconds.
@@ -53,7 +53,7 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
             handle_count: 1,
             stiffness: &stiffness,
             loose: Loose::Rest,
-            holds: Holds::default(),
+            constraints: Constraints::default(),
             method,
             revision: 0,
         };

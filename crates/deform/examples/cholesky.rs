@@ -18,7 +18,7 @@ use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, SymmetricOrdering, 
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Par, Side};
 use pliant_deform::stages::{Matrix, Operator};
-use pliant_deform::{Bilaplacian, Holds, Loose, Method, Problem};
+use pliant_deform::{Bilaplacian, Constraints, Loose, Method, Problem};
 use pliant_mesh::{Cancel, Progress};
 
 fn main() {
@@ -78,7 +78,7 @@ fn system(file: &Path) -> (Operator, Matrix) {
         roles: &roles,
         handle_count: 1,
         stiffness: &vec![1.0; roles.len()],
-        holds: Holds::default(),
+        constraints: Constraints::default(),
         loose: Loose::Rest,
         method: &method,
         revision: 0,

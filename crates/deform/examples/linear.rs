@@ -14,7 +14,7 @@ use std::time::Instant;
 use common::{median, ms, name, peak_mb, peers_edit, read};
 use glam::DVec3;
 use pliant_deform::stages::Operator;
-use pliant_deform::{Bilaplacian, Holds, Loose, Method, Ordering, Problem, Role};
+use pliant_deform::{Bilaplacian, Constraints, Loose, Method, Ordering, Problem, Role};
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, vertex_normals};
 use rayon::prelude::*;
 
@@ -46,7 +46,7 @@ fn measure(file: &Path, threads: usize, clock: fn() -> f64) {
         roles,
         handle_count: 1,
         stiffness: &stiffness,
-        holds: Holds::default(),
+        constraints: Constraints::default(),
         loose: Loose::Rest,
         method: &method,
         revision: 0,
@@ -86,14 +86,14 @@ fn measure(file: &Path, threads: usize, clock: fn() -> f64) {
     // From here on another bound problem stands beside this one, as it does in the window while a stroke is bound.
     let peak_mb = peak_mb();
     let former = problem(&roles).rebind(&ordering, None, &progress, &cancel).unwrap();
-    let remains = former.remains();
+    let reusable_factor = former.reusable_factor();
     drop(former);
     let (rebind_ms, _) = watch.of(times, || {
         problem(&stroked)
-            .rebind(&ordering, remains.as_ref(), &progress, &cancel)
+            .rebind(&ordering, reusable_factor.as_ref(), &progress, &cancel)
             .unwrap()
     });
-    drop(remains);
+    drop(reusable_factor);
     let (name, read_gb_s) = (name(file), bandwidth(&watch));
     let solve_share = 2e-6 * 8.0 * bound.factor_len() as f64 / substitute_ms / read_gb_s;
     let factor_mb = bound.factor_len() as f64 * 8e-6;

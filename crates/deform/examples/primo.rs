@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use common::{edit, ms, name, read};
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_deform::{Bound, Holds, Loose, Method, Primo, Problem};
+use pliant_deform::{Bound, Constraints, Loose, Method, Primo, Problem};
 use pliant_mesh::{Cancel, Progress};
 
 fn main() {
@@ -45,7 +45,7 @@ fn measure(scene: &Path, threads: usize, thickness: f64) {
             roles: &roles,
             handle_count: 1,
             stiffness: &stiffness,
-            holds: Holds::default(),
+            constraints: Constraints::default(),
             loose: Loose::Rest,
             method: &method,
             revision: 0,

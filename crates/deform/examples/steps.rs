@@ -9,7 +9,7 @@ use std::path::Path;
 
 use common::{median, name, peers_edit, read, timed};
 use glam::DVec3;
-use pliant_deform::{Arap, ArapEnergy, Holds, Loose, Method, Problem};
+use pliant_deform::{Arap, ArapEnergy, Constraints, Loose, Method, Problem};
 use pliant_mesh::{Cancel, Progress};
 
 /// Steps that are timed, behind the first, which also starts.
@@ -41,7 +41,7 @@ fn measure(file: &Path, threads: usize, method: &Method) {
         roles: &roles,
         handle_count: 1,
         stiffness: &vec![1.0; roles.len()],
-        holds: Holds::default(),
+        constraints: Constraints::default(),
         loose: Loose::Rest,
         method,
         revision: 0,

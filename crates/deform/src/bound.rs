@@ -10,7 +10,7 @@ use crate::follow::{Followers, followers};
 use crate::handle::{FRAME_CHUNK, Handle, Motion, clear};
 use crate::method::{BindInput, BoundMethod, Finite, Solve};
 use crate::partition::Partition;
-use crate::sparse::cholesky::{Renewable, Renewal};
+use crate::sparse::cholesky::{Refactorisation, RenewableFactor};
 use crate::{BindError, Budget, HandleBases, Ordering, Problem, SolveError};
 
 /// A bound problem: everything that does not depend on the handles' transforms is solved.
@@ -30,10 +30,10 @@ pub struct Bound {
 
 /// The factor of a bound linear shell, of which [`Problem::rebind`] takes over what is the same. Cheap to clone.
 #[derive(Clone, Debug)]
-pub struct Remains(pub(crate) Arc<Renewable>);
+pub struct ReusableFactor(pub(crate) Arc<RenewableFactor>);
 
-impl Remains {
-    pub(crate) fn factored(&self) -> &Renewable {
+impl ReusableFactor {
+    pub(crate) fn factored(&self) -> &RenewableFactor {
         &self.0
     }
 
@@ -69,19 +69,19 @@ impl Bound {
     pub(crate) fn bind(
         problem: &Problem,
         ordering: Option<&Ordering>,
-        renewal: Renewal,
+        refactorisation: Refactorisation,
         budget: Budget,
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
-        let bound = Self::bind_within(problem, ordering, renewal, budget, progress, cancel);
+        let bound = Self::bind_within(problem, ordering, refactorisation, budget, progress, cancel);
         bound.map_err(|refused| refused.with_culprit(problem.topology, budget))
     }
 
     fn bind_within(
         problem: &Problem,
         ordering: Option<&Ordering>,
-        renewal: Renewal,
+        refactorisation: Refactorisation,
         budget: Budget,
         progress: &Progress,
         cancel: &Cancel,
@@ -100,7 +100,7 @@ impl Bound {
             partition: &partition,
             handles: &handles,
             ordering,
-            renewal,
+            refactorisation,
             progress,
             cancel,
         })?;
@@ -127,8 +127,8 @@ impl Bound {
 
     /// What binding a problem that differs in a few vertices' roles can take over, where the method has a factor that
     /// can be renewed: the linear shell. There is much only where [`Problem::rebind`] bound it.
-    pub fn remains(&self) -> Option<Remains> {
-        self.method.remains()
+    pub fn reusable_factor(&self) -> Option<ReusableFactor> {
+        self.method.reusable_factor()
     }
 
     /// Sets where the handles are to go: one affine map of world positions a handle, from rest.

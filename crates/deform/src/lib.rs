@@ -12,10 +12,10 @@ mod arap;
 mod blend;
 mod bound;
 mod budget;
+mod constraints;
 mod error;
 mod follow;
 mod handle;
-mod holds;
 #[cfg(feature = "identity-method")]
 mod identity;
 mod lanes;
@@ -35,10 +35,10 @@ pub mod stages;
 mod sums;
 
 pub use arap::{Arap, ArapEnergy};
-pub use bound::{Bound, Remains, Step};
+pub use bound::{Bound, ReusableFactor, Step};
 pub use budget::Budget;
+pub use constraints::{CONTINUITY_RANGE, Constraints};
 pub use error::{BindError, Crowded, SolveError};
-pub use holds::{CONTINUITY_RANGE, Holds};
 pub use method::{
     ConstraintKind, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused,
     OptionValue, Solve,

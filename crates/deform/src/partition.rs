@@ -85,7 +85,7 @@ impl<'a> Partition<'a> {
         };
         let heeds_soft = problem.method.declaration().heeds(ConstraintKind::SoftHandles);
         let soft: Vec<Option<f64>> = (0..problem.handle_count)
-            .map(|handle| problem.holds.weight(handle as u16).filter(|_| heeds_soft))
+            .map(|handle| problem.constraints.weight(handle as u16).filter(|_| heeds_soft))
             .collect();
         warnings.extend(unheeded(problem));
         warnings.extend(net.warning().map(str::to_owned));
@@ -137,7 +137,7 @@ fn check(problem: &Problem) -> Result<(), BindError> {
             return Err(BindError::Length { table, found, expected });
         }
     }
-    problem.holds.check(problem)?;
+    problem.constraints.check(problem)?;
     for (vertex, role) in problem.roles.iter().enumerate() {
         if let Role::Handle(handle) = *role
             && usize::from(handle) >= problem.handle_count
@@ -207,9 +207,12 @@ fn solved(problem: &Problem, net: &Net, handles: &[Vec<u32>], soft: &[Option<f64
 
 /// What is said of constraints that the method does not heed, with the methods that do.
 fn unheeded(problem: &Problem) -> Vec<String> {
-    let holds = &problem.holds;
-    let soft = holds.soft.iter().position(Option::is_some);
-    let has_joints = holds.continuity.iter().any(|&value| value != *CONTINUITY_RANGE.end());
+    let constraints = &problem.constraints;
+    let soft = constraints.soft.iter().position(Option::is_some);
+    let has_joints = constraints
+        .continuity
+        .iter()
+        .any(|&value| value != *CONTINUITY_RANGE.end());
     let is_painted = problem.stiffness.iter().any(|&value| value != 1.0);
     let name = problem.method.name();
     let asked = [

@@ -2,8 +2,8 @@
 
 use pliant_mesh::{Cancel, Progress, Surface, Topology};
 
-use crate::sparse::cholesky::Renewal;
-use crate::{BindError, Bound, Budget, Holds, Method, Ordering, Remains};
+use crate::sparse::cholesky::Refactorisation;
+use crate::{BindError, Bound, Budget, Constraints, Method, Ordering, ReusableFactor};
 
 /// What a surface vertex does.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -47,8 +47,8 @@ pub struct Problem<'a> {
     /// energy's density there. A face is as stiff as the mean of its three vertices.
     pub stiffness: &'a [f64],
     /// How firmly handles pull and how smoothly the surface joins what holds it.
-    pub holds: Holds<'a>,
-    /// What components do that nothing holds; [`Holds::parts`] tells of single ones.
+    pub constraints: Constraints<'a>,
+    /// What components do that nothing holds; [`Constraints::parts`] tells of single ones.
     pub loose: Loose,
     /// The method and its options.
     pub method: &'a Method,
@@ -60,7 +60,7 @@ impl Problem<'_> {
     /// What each component does if nothing holds it.
     pub(crate) fn loose_by_component(&self) -> Vec<Loose> {
         let mut loose = vec![self.loose; self.topology.components().len()];
-        for &(part, own) in self.holds.parts {
+        for &(part, own) in self.constraints.parts {
             if let Some(loose) = loose.get_mut(part as usize) {
                 *loose = own;
             }
@@ -97,10 +97,10 @@ impl Problem<'_> {
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Bound, BindError> {
-        Bound::bind(self, ordering.into(), Renewal::Never, budget, progress, cancel)
+        Bound::bind(self, ordering.into(), Refactorisation::Never, budget, progress, cancel)
     }
 
-    /// As [`Problem::bind`], and with the same result to the bit, for who binds again and again: what `remains` of an
+    /// As [`Problem::bind`], and with the same result to the bit, for who binds again and again: what `reusable_factor` of an
     /// earlier binding and is not touched by what changed since is not factored again. What is kept for that takes at
     /// most as much memory as the factor, and is then what spares most operations a byte.
     ///
@@ -109,11 +109,18 @@ impl Problem<'_> {
     pub fn rebind<'o>(
         &self,
         ordering: impl Into<Option<&'o Ordering>>,
-        remains: Option<&Remains>,
+        reusable_factor: Option<&ReusableFactor>,
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Bound, BindError> {
-        let renewal = Renewal::From(remains.map(Remains::factored));
-        Bound::bind(self, ordering.into(), renewal, Budget::default(), progress, cancel)
+        let refactorisation = Refactorisation::From(reusable_factor.map(ReusableFactor::factored));
+        Bound::bind(
+            self,
+            ordering.into(),
+            refactorisation,
+            Budget::default(),
+            progress,
+            cancel,
+        )
     }
 }

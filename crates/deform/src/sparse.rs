@@ -1,12 +1,12 @@
 //! Sparse symmetric systems: the order of elimination, the scaled matrix, its Cholesky factor and the solves with it.
 
+mod assembly_tree;
 mod bisection;
 pub(crate) mod cholesky;
 mod crumbs;
 mod dissection;
 mod elimination;
 pub(crate) mod factor_error;
-mod forest;
 mod front;
 pub(crate) mod graph;
 pub(crate) mod hubs;

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
 use pliant_deform::{
-    Arap, ArapEnergy, Bilaplacian, BindError, Budget, Holds, Loose, Method, Primo, Problem, Role, ShellOrder,
+    Arap, ArapEnergy, Bilaplacian, BindError, Budget, Constraints, Loose, Method, Primo, Problem, Role, ShellOrder,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 
@@ -114,7 +114,7 @@ impl Scene {
             roles: &self.roles,
             handle_count: 1,
             stiffness: &stiffness,
-            holds: Holds::default(),
+            constraints: Constraints::default(),
             loose: Loose::Follow,
             method: &self.method,
             revision: 0,

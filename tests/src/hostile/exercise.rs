@@ -10,7 +10,7 @@ use glam::DVec3;
 use serde_json::Value;
 
 use super::case::{Case, Entry, Kind};
-use super::laws::{self, Law, Places, Violation, shortened, violation};
+use super::laws::{self, AppDirectories, Law, Violation, shortened, violation};
 use super::tree::{Tree, lay, look, with_root};
 use crate::trials::Chance;
 use crate::{Ended, run};
@@ -144,7 +144,7 @@ fn whole(case: &Case, scratch: &Path, runner: &mut Runner<'_>) {
 
     let at = |path: &Path| root.join("work").join(with_root(path, &root));
     let (output, report) = (at(&case.output), case.report.as_deref().map(at));
-    let places = Places::before(&at(&case.input), &at(&case.edit), &output, report.as_deref());
+    let places = AppDirectories::before(&at(&case.input), &at(&case.edit), &output, report.as_deref());
     let models: BTreeMap<PathBuf, Shape> = if case.kind == Kind::Mesh {
         BTreeMap::new()
     } else {
@@ -329,7 +329,7 @@ fn shapes(case: &Case, root: &Path) -> BTreeMap<PathBuf, Shape> {
 }
 
 /// Models that are not the result show what they did.
-fn strangers(models: &BTreeMap<PathBuf, Shape>, places: &Places, runner: &mut Runner<'_>) {
+fn strangers(models: &BTreeMap<PathBuf, Shape>, places: &AppDirectories, runner: &mut Runner<'_>) {
     for (path, old) in models {
         let place = super::tree::place_of(path);
         if place.is_some() && (place == places.output || place == places.report) {

@@ -108,7 +108,7 @@ pub fn changed(before: &Tree, after: &Tree) -> Vec<PathBuf> {
 
 /// The paths that a save speaks of, each where it leads to.
 #[derive(Clone, Default, Debug)]
-pub struct Places {
+pub struct AppDirectories {
     pub output: Option<PathBuf>,
     pub report: Option<PathBuf>,
     /// The input, the edit, and what the input names.
@@ -117,7 +117,7 @@ pub struct Places {
     pub old_neighbours: BTreeSet<PathBuf>,
 }
 
-impl Places {
+impl AppDirectories {
     /// Looks before the save. All paths begin with the case's folder.
     pub fn before(input: &Path, edit: &Path, output: &Path, report: Option<&Path>) -> Self {
         let mut inputs = neighbours_of(input);
@@ -132,7 +132,7 @@ impl Places {
 }
 
 /// Judges what a successful save changed. `root` is the case's folder, without links in its path.
-pub fn of_save(root: &Path, before: &Tree, after: &Tree, places: &Places, found: &mut Vec<Violation>) {
+pub fn of_save(root: &Path, before: &Tree, after: &Tree, places: &AppDirectories, found: &mut Vec<Violation>) {
     let within = |path: &PathBuf| path.strip_prefix(root).ok().map(Path::to_owned);
     let output = places.output.as_ref().and_then(within);
     let report = places.report.as_ref().and_then(within);

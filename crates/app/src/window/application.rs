@@ -11,9 +11,11 @@ use eframe::egui::{self, CentralPanel, Panel};
 use glam::DVec3;
 use pliant_editor::{Command, Editor, Event, JobQueue, KeyMap};
 
+use super::app_directories::AppDirectories;
 use super::compare::Compare;
 use super::dialog::{self, Question, Then};
 use super::input::Input;
+use super::interface_pool;
 use super::keys_window::{self, KeysWindow};
 use super::log::{self, Log};
 use super::message::Message;
@@ -22,8 +24,6 @@ use super::outbox::Outbox;
 use super::own_keys;
 use super::palette::{Found, Outcome, Palette};
 use super::panels;
-use super::places::Places;
-use super::promptly;
 use super::recovery::{self, Recovery};
 use super::session::{KeepOriginal, OpenFile, Session, Source};
 use super::settings::SettingsFile;
@@ -79,7 +79,7 @@ impl Application {
     /// # Errors
     /// Where there is no graphics device, or it can't run our pipelines.
     pub fn new(context: &eframe::CreationContext<'_>, source: Source) -> Result<Self, AppError> {
-        Self::with_places(context, source, &Places::default())
+        Self::with_places(context, source, &AppDirectories::default())
     }
 
     /// The same, with a person's settings, and unsaved work kept for a recovery.
@@ -89,9 +89,9 @@ impl Application {
     pub fn with_places(
         context: &eframe::CreationContext<'_>,
         source: Source,
-        places: &Places,
+        places: &AppDirectories,
     ) -> Result<Self, AppError> {
-        promptly::take_this_thread();
+        interface_pool::install();
         let Some(state) = context.wgpu_render_state.clone() else {
             return Err(AppError::System(
                 "the window has no graphics device: install a Vulkan driver".to_owned(),
@@ -401,7 +401,7 @@ impl Application {
 impl eframe::App for Application {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         debug_assert!(
-            promptly::has_this_thread(),
+            interface_pool::is_installed(),
             "the window's loops would wait behind jobs' on this thread"
         );
         let (start, drawn_before) = (Instant::now(), self.drawing_time());

@@ -1,6 +1,7 @@
 //! The window: eframe around the editor. Panels show what the editor says and send it events; files, dialogs, threads
 //! and the clock are here; egui meets the renderer in `viewport.rs` alone.
 
+mod app_directories;
 mod application;
 mod arrivals;
 mod axis_ball;
@@ -20,6 +21,7 @@ mod hints;
 mod history_panel;
 mod icon;
 mod input;
+mod interface_pool;
 mod keys_window;
 mod log;
 mod loose_panel;
@@ -31,9 +33,7 @@ mod outbox;
 mod own_keys;
 mod palette;
 mod panels;
-mod places;
 mod project_file;
-mod promptly;
 mod recovery;
 mod session;
 mod settings;
@@ -58,9 +58,9 @@ use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use winit::event_loop::EventLoop;
 use winit::platform::run_on_demand::EventLoopExtRunOnDemand;
 
+pub use app_directories::AppDirectories;
 pub use application::Application;
 pub use file_names::original_name;
-pub use places::Places;
 pub use session::{KeepOriginal, Source};
 pub use shell::{NumpadDigits, Shared, Shell};
 
@@ -84,7 +84,7 @@ pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
             DISPLAYS.join(", ")
         )));
     }
-    let places = Places::of_person();
+    let places = AppDirectories::of_user();
     if let Some(folder) = &places.recovery {
         fault::listen(folder.clone());
     }
@@ -149,7 +149,7 @@ pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
     }
 }
 
-fn options(places: &Places) -> eframe::NativeOptions {
+fn options(places: &AppDirectories) -> eframe::NativeOptions {
     let remembered = places
         .settings
         .as_deref()

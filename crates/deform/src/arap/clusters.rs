@@ -104,7 +104,7 @@ mod tests {
     use super::Clusters;
     use crate::arap::domain::{ABSENT, Domain};
     use crate::handle::Handle;
-    use crate::{Arap, Holds, Loose, Method, Problem, Role};
+    use crate::{Arap, Constraints, Loose, Method, Problem, Role};
 
     #[test]
     fn clusters_keep_to_one_role_and_have_their_centre() {
@@ -129,7 +129,7 @@ mod tests {
                 roles: &roles,
                 handle_count: 1,
                 stiffness: &vec![1.0; roles.len()],
-                holds: Holds::default(),
+                constraints: Constraints::default(),
                 loose: Loose::Rest,
                 method: &Method::from(Arap::default()),
                 revision: 0,

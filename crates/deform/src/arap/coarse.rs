@@ -19,7 +19,7 @@ use crate::blend::Origin;
 use crate::handle::{Handle, Motion};
 use crate::operators::CHUNK;
 use crate::partition::Partition;
-use crate::{Arap, Holds, Loose, Method, Ordering, Problem};
+use crate::{Arap, Constraints, Loose, Method, Ordering, Problem};
 
 /// Vertices in a cluster at least: the smaller, the less stiff against bending, the more like the fine surface, and the
 /// dearer. At the end of a drag of a scan of 173k vertices the energy is 4% above the minimum with 12, 5% with 16, 3%
@@ -66,9 +66,9 @@ impl Coarse {
             roles: &clusters.roles,
             handle_count: problem.handle_count,
             stiffness: &clusters.stiffness,
-            holds: Holds {
-                soft: problem.holds.soft,
-                ..Holds::default()
+            constraints: Constraints {
+                soft: problem.constraints.soft,
+                ..Constraints::default()
             },
             loose: Loose::Rest,
             method: &method,
@@ -130,7 +130,7 @@ impl Coarse {
 
     /// Takes over the fine shape for `motions`, whose gradient in `unit` is known: every centre stands where it does
     /// there, and loads make the coarse gradient the fine one's.
-    pub fn learn(&mut self, fine: &Shape, unit: f64, motions: &[Motion]) {
+    pub fn restrict(&mut self, fine: &Shape, unit: f64, motions: &[Motion]) {
         let solver = &mut *self.solver;
         solver.leave(motions);
         for (own, &place) in solver.current.displacements.iter_mut().zip(&self.fine_of) {

@@ -72,7 +72,7 @@ impl ArapSolver {
             return;
         }
         self.finish_step();
-        coarse.learn(&self.current, self.unit, &self.motions);
+        coarse.restrict(&self.current, self.unit, &self.motions);
         let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
         let screws = match coarse.start(motions, STEPS) {
             Origin::Current => onwards,
@@ -90,7 +90,7 @@ impl ArapSolver {
         } else {
             self.carry_unmeasured(&screws, Origin::Current);
         }
-        self.follow(coarse);
+        self.prolongate(coarse);
         std::mem::swap(&mut self.current, &mut self.trial);
         self.end = End::Unknown;
         self.state = State::Descending;
@@ -102,11 +102,11 @@ impl ArapSolver {
         // The memory takes in the step before, and knows the mapped gradient where this one begins.
         self.map_gradient();
         self.history.factors(&self.trial.gradient, &self.current.gradient);
-        coarse.learn(&self.current, self.unit, &self.motions);
+        coarse.restrict(&self.current, self.unit, &self.motions);
         coarse.go_on(CORRECTING_STEPS);
         self.trial.displacements.copy_from_slice(&self.current.displacements);
         self.trial.rotations.copy_from_slice(&self.current.rotations);
-        self.follow(coarse);
+        self.prolongate(coarse);
         let gained = self.current.energy - self.trial.energy;
         let is_worth_it = gained > 2.0 * self.corrections.gained;
         let every = if is_worth_it { 1 } else { 2 * self.corrections.every };
@@ -132,7 +132,7 @@ impl ArapSolver {
 
     /// Turns the trial shape's cells as the coarse level has turned since the current shape, and takes one global step to
     /// the least of the quadratic that those turns make of the energy.
-    fn follow(&mut self, coarse: &mut Coarse) {
+    fn prolongate(&mut self, coarse: &mut Coarse) {
         let Self {
             current,
             trial,

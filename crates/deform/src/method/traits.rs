@@ -10,8 +10,8 @@ use super::{MethodDeclaration, Needs, OptionRefused, OptionValue, Solve};
 use crate::handle::{Handle, Motion};
 use crate::operators::net::Net;
 use crate::partition::Partition;
-use crate::sparse::cholesky::Renewal;
-use crate::{BindError, HandleBases, Ordering, Problem, Remains, SolveError};
+use crate::sparse::cholesky::Refactorisation;
+use crate::{BindError, HandleBases, Ordering, Problem, ReusableFactor, SolveError};
 
 /// Options by name; [`super::option::options!`] implements it.
 pub(crate) trait Options: Any + Debug + Send + Sync {
@@ -63,7 +63,7 @@ pub(crate) struct BindInput<'a> {
     /// The one that [`Needs`] asks for.
     pub ordering: Option<&'a Ordering>,
     /// What of the factor is kept or taken over, where there is one that can be.
-    pub renewal: Renewal<'a>,
+    pub refactorisation: Refactorisation<'a>,
     pub progress: &'a Progress,
     pub cancel: &'a Cancel,
 }
@@ -121,7 +121,7 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
     }
 
     /// The factor, where the next binding can take over parts of it.
-    fn remains(&self) -> Option<Remains> {
+    fn reusable_factor(&self) -> Option<ReusableFactor> {
         None
     }
 

@@ -28,7 +28,7 @@ pub(crate) fn stretches(problem: &Problem, anisotropy: f64) -> Vec<DMat3> {
     }
     let is_free = |corner: SurfaceVertex| match problem.roles.get(corner.index()) {
         Some(Role::Free) => true,
-        Some(Role::Handle(handle)) => problem.holds.weight(*handle).is_some(),
+        Some(Role::Handle(handle)) => problem.constraints.weight(*handle).is_some(),
         Some(Role::Fixed) | None => false,
     };
     let mut moments = vec![Moments::NONE; problem.topology.components().len()];

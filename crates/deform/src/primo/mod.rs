@@ -245,7 +245,7 @@ mod tests {
     use super::{Primo, PrimoSolver, State};
     use crate::handle::{Handle, Motion};
     use crate::partition::Partition;
-    use crate::{Holds, Loose, Method, Problem, Role};
+    use crate::{Constraints, Loose, Method, Problem, Role};
 
     /// A solver with the lowest tenth of z fixed and the highest a handle, and the handle's motion.
     fn solver(drawn: Drawn) -> (PrimoSolver, Vec<Motion>, usize) {
@@ -269,7 +269,7 @@ mod tests {
             roles: &roles,
             handle_count: 1,
             stiffness: &vec![1.0; roles.len()],
-            holds: Holds::default(),
+            constraints: Constraints::default(),
             loose: Loose::Rest,
             method: &method,
             revision: 0,

@@ -15,7 +15,7 @@ use crate::operators::net::Net;
 use crate::shell::operator::ShellOperator;
 use crate::{Bilaplacian, Laplacian, Problem, Role};
 
-/// Damps the operator at constrained vertices as [`crate::Holds::continuity`] says; `rows` are its full rows.
+/// Damps the operator at constrained vertices as [`crate::Constraints::continuity`] says; `rows` are its full rows.
 pub(super) fn join(
     operator: &mut ShellOperator,
     net: &Net,
@@ -24,13 +24,13 @@ pub(super) fn join(
     rows: &[u32],
     diagonal: f64,
 ) {
-    let continuity = problem.holds.continuity;
+    let continuity = problem.constraints.continuity;
     if continuity.is_empty() || operator.power == 1 {
         return;
     }
     let of = |vertex: u32| match problem.roles[vertex as usize] {
         Role::Free => None,
-        Role::Handle(handle) if problem.holds.weight(handle).is_some() => None,
+        Role::Handle(handle) if problem.constraints.weight(handle).is_some() => None,
         Role::Fixed | Role::Handle(_) => Some(continuity[vertex as usize]),
     };
     if operator.power == 3 {

@@ -12,7 +12,7 @@ use crate::method::{
     Stepped,
 };
 use crate::operators::net::Net;
-use crate::{BindError, HandleBases, Problem, Remains, SolveError};
+use crate::{BindError, HandleBases, Problem, ReusableFactor, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "bilaplacian",
@@ -101,8 +101,8 @@ impl BoundMethod for Plate {
         Some(self.bases())
     }
 
-    fn remains(&self) -> Option<Remains> {
-        Some(Remains(Arc::clone(self.factored())))
+    fn reusable_factor(&self) -> Option<ReusableFactor> {
+        Some(ReusableFactor(Arc::clone(self.factored())))
     }
 
     fn solved_count(&self) -> usize {

@@ -15,7 +15,7 @@ use crate::shell::assembly::assemble_shell;
 use crate::shell::hubs::Hubs;
 use crate::shell::operator::ShellOperator;
 use crate::sparse::Elimination;
-use crate::sparse::cholesky::{Renewable, Renewal};
+use crate::sparse::cholesky::{Refactorisation, RenewableFactor};
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::low_rank::LowRank;
 use crate::sparse::matrix::CONSTRAINED;
@@ -28,7 +28,7 @@ pub(crate) struct Shell {
     columns: Vec<u32>,
     /// The column of each of the operator's springs.
     spring_columns: Vec<u32>,
-    factored: Arc<Renewable>,
+    factored: Arc<RenewableFactor>,
     /// What hubs add to the factor; none without hubs.
     low_rank: Option<LowRank>,
     /// How slowly refinement went at the check: [`crate::shell::refine`].
@@ -55,7 +55,7 @@ impl Shell {
     pub fn new(
         operator: ShellOperator,
         elimination: Elimination,
-        renewal: Renewal,
+        refactorisation: Refactorisation,
         budget: Budget,
         cancel: &Cancel,
     ) -> Result<Self, ShellError> {
@@ -99,7 +99,8 @@ impl Shell {
         };
         let plate = assemble_shell(&operator, &columns, &column_of, &hubs, budget).map_err(refused)?;
         cancel.check().map_err(|_| ShellError::Cancelled)?;
-        let factored = Renewable::of(plate, elimination, &SHIFTS, renewal, budget, cancel).map_err(refused)?;
+        let factored =
+            RenewableFactor::of(plate, elimination, &SHIFTS, refactorisation, budget, cancel).map_err(refused)?;
         let mut low_rank = None;
         if !hubs.is_empty() {
             let (vectors, c) = hubs.correction(&operator, &column_of, factored.scale());
@@ -134,7 +135,7 @@ impl Shell {
     }
 
     /// What a shell that is nearly the same can take over.
-    pub fn factored(&self) -> &Arc<Renewable> {
+    pub fn factored(&self) -> &Arc<RenewableFactor> {
         &self.factored
     }
 

@@ -224,8 +224,8 @@ mod tests {
     use crate::partition::Partition;
     use crate::shell::factored::Shell;
     use crate::shell::plate::operator;
-    use crate::sparse::cholesky::Renewal;
-    use crate::{Bilaplacian, Budget, Holds, Loose, Method, Ordering, Problem, Role, ShellOrder};
+    use crate::sparse::cholesky::Refactorisation;
+    use crate::{Bilaplacian, Budget, Constraints, Loose, Method, Ordering, Problem, Role, ShellOrder};
 
     /// Rings of `count` vertices around one in the middle, on a bumpy dish.
     fn wheel(count: usize, rings: usize) -> Surface {
@@ -303,7 +303,7 @@ mod tests {
             roles: &roles,
             handle_count: 1,
             stiffness: &stiffness,
-            holds: Holds::default(),
+            constraints: Constraints::default(),
             loose: Loose::Rest,
             method: &method,
             revision: 0,
@@ -315,7 +315,14 @@ mod tests {
         let (mut operator, prescribed) = operator(&problem, options, &partition, &handles);
         operator.hub_degree = hub_degree;
         let elimination = ordering.elimination(&partition.solved);
-        let mut shell = Shell::new(operator, elimination, Renewal::Never, Budget::default(), &cancel).unwrap();
+        let mut shell = Shell::new(
+            operator,
+            elimination,
+            Refactorisation::Never,
+            Budget::default(),
+            &cancel,
+        )
+        .unwrap();
         let mut d = vec![[0.0, 0.0, 0.0, 0.0, 1.0]; shell.operator.field_len()];
         for &(place, [x, y, z, w]) in &prescribed[0] {
             d[place as usize] = [x, y, z, w, 1.0];

@@ -82,7 +82,7 @@ impl ShellOperator {
         }
     }
 
-    /// Hangs a handle's local vertices on springs of a weight (see [`crate::Holds`]); returns their places in a field.
+    /// Hangs a handle's local vertices on springs of a weight (see [`crate::Constraints`]); returns their places in a field.
     pub fn soften(&mut self, locals: &[u32], weight: f64) -> Vec<u32> {
         let area = |local: u32| self.laplacian.inverse_areas()[local as usize].recip();
         let square_wave_number = std::f64::consts::PI.powi(2) / locals.iter().map(|&local| area(local)).sum::<f64>();

@@ -18,7 +18,7 @@ use crate::shell::continuity::join;
 use crate::shell::factored::{Shell, ShellError};
 use crate::shell::operator::ShellOperator;
 use crate::shell::slender;
-use crate::sparse::cholesky::Renewable;
+use crate::sparse::cholesky::RenewableFactor;
 use crate::sparse::hubs::hub_degree;
 use crate::{Bilaplacian, BindError, HandleBases, Laplacian, Problem, SolveError};
 
@@ -46,7 +46,7 @@ impl Plate {
             problem,
             partition,
             handles,
-            renewal,
+            refactorisation,
             progress,
             cancel,
             ..
@@ -61,7 +61,7 @@ impl Plate {
         let (operator, prescribed) = operator(problem, options, partition, handles);
         cancel.check()?;
         progress.set(0.2);
-        let mut shell = Shell::new(operator, elimination, renewal, partition.budget, cancel).map_err(refuse)?;
+        let mut shell = Shell::new(operator, elimination, refactorisation, partition.budget, cancel).map_err(refuse)?;
         progress.set(0.7);
         let solved_locals = shell.operator.laplacian.locals(solved);
         // The constant is solved for beside the first handle: one pass over the factor for both.
@@ -131,7 +131,7 @@ impl Plate {
     }
 
     /// What binding nearly the same problem can take over.
-    pub fn factored(&self) -> &Arc<Renewable> {
+    pub fn factored(&self) -> &Arc<RenewableFactor> {
         self.shell.factored()
     }
 

@@ -1,7 +1,7 @@
 //! The sparse Cholesky factor L Lᵀ, block by block, in the order that the matrix already has.
 //!
 //! The order comes in blocks of columns (`dissection`, `leaf`). `symbolic` finds their rows, `multifrontal` factors over
-//! the parts that `forest` cuts, `triangular` solves over the same.
+//! the parts that `assembly_tree` cuts, `triangular` solves over the same.
 //!
 //! A simplicial factorisation of the same systems took 720 and 12,300 ms at 45,797 and 183,208 free vertices where a
 //! supernodal one took 114 and 840 (horse.ply and once subdivided, one core).
@@ -12,9 +12,9 @@ use std::sync::Arc;
 use pliant_mesh::Cancel;
 
 use crate::budget::Budget;
+use crate::sparse::assembly_tree::AssemblyTree;
 use crate::sparse::elimination::Elimination;
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::forest::Forest;
 use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::multifrontal::Numbers;
 use crate::sparse::reuse::{Named, equal_parts, worth_keeping};
@@ -26,26 +26,26 @@ use crate::sparse::{multifrontal, triangular};
 #[derive(Debug)]
 pub(crate) struct Factor {
     symbolic: Symbolic,
-    forest: Forest,
+    assembly_tree: AssemblyTree,
     /// One a part; none before the factor is filled.
     numbers: Vec<Numbers>,
 }
 
 /// What of a factor is for the next one, of nearly the same matrix.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Renewal<'a> {
+pub(crate) enum Refactorisation<'a> {
     /// Nothing: there will be none. Half the memory.
     Never,
     /// What parts left is kept, as far as it is [worth it](worth_keeping); what the former factor, if there is one, has
     /// to the bit is taken from there.
-    From(Option<&'a Renewable>),
+    From(Option<&'a RenewableFactor>),
 }
 
 /// A factor that remembers what it was made from, so that one of nearly the same matrix can take over what is equal.
 #[derive(Debug)]
-pub(crate) struct Renewable {
+pub(crate) struct RenewableFactor {
     pub factor: Factor,
-    plate: ScaledMatrix,
+    matrix: ScaledMatrix,
     elimination: Elimination,
     /// What was added to the matrix' unit diagonal.
     pub shift: f64,
@@ -57,27 +57,27 @@ const SHIFTS: [f64; 6] = [0.0, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5];
 impl Factor {
     /// Factors the matrix, whose columns stand in blocks that end at `ends`, with `shift` added to its unit diagonal.
     #[cfg(test)]
-    pub fn of(plate: &ScaledMatrix, ends: &[u32], shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
-        let mut factor = Self::analysed(plate, ends, Budget::default())?;
-        factor.fill(plate, shift, cancel)?;
+    pub fn of(matrix: &ScaledMatrix, ends: &[u32], shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
+        let mut factor = Self::analysed(matrix, ends, Budget::default())?;
+        factor.fill(matrix, shift, cancel)?;
         Ok(factor)
     }
 
     /// As [`Factor::of`] for a method that only descends by it: something is added to the unit diagonal until that can
     /// be factored. Steps get shorter by it; results stay the same. The refusal is that of the matrix as it is.
     pub fn to_descend_by(
-        plate: &ScaledMatrix,
+        matrix: &ScaledMatrix,
         ends: &[u32],
         budget: Budget,
         cancel: &Cancel,
     ) -> Result<Self, FactorError> {
         let mut refused = None;
-        let mut factor = Self::analysed(plate, ends, budget)?;
+        let mut factor = Self::analysed(matrix, ends, budget)?;
         for shift in SHIFTS {
             if cancel.is_cancelled() {
                 return Err(FactorError::Cancelled);
             }
-            match factor.fill(plate, shift, cancel) {
+            match factor.fill(matrix, shift, cancel) {
                 Err(error @ FactorError::Pivot(_)) => refused = refused.or(Some(error)),
                 other => return other.map(|()| factor),
             }
@@ -89,20 +89,20 @@ impl Factor {
     ///
     /// # Errors
     /// Where its factorisation takes more than the budget.
-    pub fn analysed(plate: &ScaledMatrix, ends: &[u32], budget: Budget) -> Result<Self, FactorError> {
-        let symbolic = Symbolic::of(plate, ends, budget)?;
-        let forest = Forest::of(&symbolic);
+    pub fn analysed(matrix: &ScaledMatrix, ends: &[u32], budget: Budget) -> Result<Self, FactorError> {
+        let symbolic = Symbolic::of(matrix, ends, budget)?;
+        let assembly_tree = AssemblyTree::of(&symbolic);
         Ok(Self {
             symbolic,
-            forest,
+            assembly_tree,
             numbers: Vec::new(),
         })
     }
 
     /// Factors into what [`Factor::analysed`] left empty.
-    pub fn fill(&mut self, plate: &ScaledMatrix, shift: f64, cancel: &Cancel) -> Result<(), FactorError> {
-        let (symbolic, forest) = (&self.symbolic, &self.forest);
-        self.numbers = multifrontal::factor(plate, shift, symbolic, forest, &[], &[], cancel)?;
+    pub fn fill(&mut self, matrix: &ScaledMatrix, shift: f64, cancel: &Cancel) -> Result<(), FactorError> {
+        let (symbolic, assembly_tree) = (&self.symbolic, &self.assembly_tree);
+        self.numbers = multifrontal::factor(matrix, shift, symbolic, assembly_tree, &[], &[], cancel)?;
         Ok(())
     }
 
@@ -111,7 +111,7 @@ impl Factor {
     /// # Errors
     /// [`FactorError::Memory`].
     pub fn substitution<T: Real>(&self) -> Result<Substitution<T>, FactorError> {
-        Substitution::new(&self.symbolic, &self.forest, &self.numbers)
+        Substitution::new(&self.symbolic, &self.assembly_tree, &self.numbers)
     }
 
     /// How many numbers the factor stores.
@@ -130,51 +130,53 @@ impl Factor {
     }
 
     #[cfg(test)]
-    pub fn parts(&self) -> (&Symbolic, &Forest) {
-        (&self.symbolic, &self.forest)
+    pub fn parts(&self) -> (&Symbolic, &AssemblyTree) {
+        (&self.symbolic, &self.assembly_tree)
     }
 
     /// Solves for K right-hand sides in place.
     pub fn solve<const K: usize>(&self, x: &mut [[f64; K]]) {
-        triangular::solve_in_place(&self.symbolic, &self.forest, &self.numbers, x);
+        triangular::solve_in_place(&self.symbolic, &self.assembly_tree, &self.numbers, x);
     }
 }
 
-impl Renewable {
+impl RenewableFactor {
     /// Factors the matrix whose columns are those of `elimination`, with the first of `shifts` with which that goes.
     /// The refusal is that of the first.
     pub fn of(
-        plate: ScaledMatrix,
+        matrix: ScaledMatrix,
         elimination: Elimination,
         shifts: &[f64],
-        renewal: Renewal,
+        refactorisation: Refactorisation,
         budget: Budget,
         cancel: &Cancel,
     ) -> Result<Self, FactorError> {
-        let mut factor = Factor::analysed(&plate, &elimination.ends, budget)?;
+        let mut factor = Factor::analysed(&matrix, &elimination.ends, budget)?;
         let new = Named {
-            plate: &plate,
+            matrix: &matrix,
             elimination: &elimination,
             symbolic: &factor.symbolic,
-            forest: &factor.forest,
+            assembly_tree: &factor.assembly_tree,
         };
         let mut refused = None;
-        let kept = match renewal {
-            Renewal::Never => Vec::new(),
-            Renewal::From(_) => worth_keeping(&factor.symbolic, &factor.forest),
+        let kept = match refactorisation {
+            Refactorisation::Never => Vec::new(),
+            Refactorisation::From(_) => worth_keeping(&factor.symbolic, &factor.assembly_tree),
         };
         for &shift in shifts {
-            let known = match renewal {
-                Renewal::From(Some(former)) if former.shift.to_bits() == shift.to_bits() => former.known_to(new),
-                Renewal::Never | Renewal::From(_) => Vec::new(),
+            let known = match refactorisation {
+                Refactorisation::From(Some(former)) if former.shift.to_bits() == shift.to_bits() => {
+                    former.known_to(new)
+                }
+                Refactorisation::Never | Refactorisation::From(_) => Vec::new(),
             };
-            let (symbolic, forest) = (&factor.symbolic, &factor.forest);
-            match multifrontal::factor(&plate, shift, symbolic, forest, &known, &kept, cancel) {
+            let (symbolic, assembly_tree) = (&factor.symbolic, &factor.assembly_tree);
+            match multifrontal::factor(&matrix, shift, symbolic, assembly_tree, &known, &kept, cancel) {
                 Ok(numbers) => {
                     factor.numbers = numbers;
                     return Ok(Self {
                         factor,
-                        plate,
+                        matrix,
                         elimination,
                         shift,
                     });
@@ -189,10 +191,10 @@ impl Renewable {
     /// The numbers of the parts that another matrix has to the bit.
     fn known_to(&self, new: Named) -> Vec<Option<Numbers>> {
         let old = Named {
-            plate: &self.plate,
+            matrix: &self.matrix,
             elimination: &self.elimination,
             symbolic: &self.factor.symbolic,
-            forest: &self.factor.forest,
+            assembly_tree: &self.factor.assembly_tree,
         };
         let equal = equal_parts(new, old);
         equal
@@ -218,7 +220,7 @@ impl Renewable {
 
     /// S: the scale of each column.
     pub fn scale(&self) -> &[f64] {
-        &self.plate.scale
+        &self.matrix.scale
     }
 
     /// How many numbers are kept beside the factor for the next one.
@@ -231,7 +233,7 @@ impl Renewable {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 pub(crate) mod tests {
-    use super::{Factor, Renewable, Renewal};
+    use super::{Factor, Refactorisation, RenewableFactor};
     use crate::Bilaplacian;
     use crate::Budget;
     use crate::Laplacian;
@@ -243,13 +245,13 @@ pub(crate) mod tests {
     use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
     use pliant_mesh::{Cancel, Drawn, Progress, shapes};
 
-    /// The plate's factor with every ninth vertex held, in the order that binding takes.
+    /// The matrix's factor with every ninth vertex held, in the order that binding takes.
     pub(crate) fn factor_of(drawn: Drawn) -> Factor {
-        let (plate, ends) = plate_of(drawn);
-        Factor::of(&plate, &ends, 0.0, &Cancel::new()).unwrap()
+        let (matrix, ends) = plate_of(drawn);
+        Factor::of(&matrix, &ends, 0.0, &Cancel::new()).unwrap()
     }
 
-    fn plate() -> (ScaledMatrix, Vec<u32>) {
+    fn matrix() -> (ScaledMatrix, Vec<u32>) {
         plate_of(shapes::torus(14, 9))
     }
 
@@ -265,15 +267,15 @@ pub(crate) mod tests {
             column_of[vertex as usize] = column as u32;
         }
         let operator = ShellOperator::new(laplacian, &Bilaplacian::default(), 1.0);
-        let plate = assemble_shell(&operator, &columns, &column_of, &Hubs::default(), Budget::default());
-        (plate.unwrap(), ends)
+        let matrix = assemble_shell(&operator, &columns, &column_of, &Hubs::default(), Budget::default());
+        (matrix.unwrap(), ends)
     }
 
-    fn product<const K: usize>(plate: &ScaledMatrix, x: &[[f64; K]]) -> Vec<[f64; K]> {
+    fn product<const K: usize>(matrix: &ScaledMatrix, x: &[[f64; K]]) -> Vec<[f64; K]> {
         let mut y = vec![[0.0; K]; x.len()];
         for column in 0..x.len() {
-            for entry in plate.lower_offsets[column] as usize..plate.lower_offsets[column + 1] as usize {
-                let (row, value) = (plate.lower_rows[entry] as usize, plate.lower_values[entry]);
+            for entry in matrix.lower_offsets[column] as usize..matrix.lower_offsets[column + 1] as usize {
+                let (row, value) = (matrix.lower_rows[entry] as usize, matrix.lower_values[entry]);
                 for k in 0..K {
                     y[row][k] += value * x[column][k];
                     if row != column {
@@ -286,12 +288,12 @@ pub(crate) mod tests {
     }
 
     fn solving_undoes_multiplying<const K: usize>() {
-        let (plate, ends) = plate();
-        let factor = Factor::of(&plate, &ends, 0.0, &Cancel::new()).unwrap();
-        let x: Vec<[f64; K]> = (0..plate.scale.len())
+        let (matrix, ends) = matrix();
+        let factor = Factor::of(&matrix, &ends, 0.0, &Cancel::new()).unwrap();
+        let x: Vec<[f64; K]> = (0..matrix.scale.len())
             .map(|i| std::array::from_fn(|k| ((i * 7 + k * 3) % 11) as f64 - 5.0))
             .collect();
-        let mut y = product(&plate, &x);
+        let mut y = product(&matrix, &x);
         factor.solve(&mut y);
         for (x, y) in x.iter().zip(&y) {
             for k in 0..K {
@@ -309,10 +311,10 @@ pub(crate) mod tests {
 
     #[test]
     fn a_matrix_that_is_not_positive_definite_is_refused_with_its_column() {
-        let (mut plate, ends) = plate();
-        let diagonal = plate.lower_offsets[5] as usize;
-        plate.lower_values[diagonal] = -1.0;
-        let refused = Factor::of(&plate, &ends, 0.0, &Cancel::new()).err();
+        let (mut matrix, ends) = matrix();
+        let diagonal = matrix.lower_offsets[5] as usize;
+        matrix.lower_values[diagonal] = -1.0;
+        let refused = Factor::of(&matrix, &ends, 0.0, &Cancel::new()).err();
         assert!(
             matches!(refused, Some(super::FactorError::Pivot(column)) if column >= 5),
             "{refused:?}"
@@ -324,7 +326,7 @@ pub(crate) mod tests {
         let cancel = Cancel::new();
         cancel.cancel();
         assert_eq!(
-            Factor::of(&plate().0, &plate().1, 0.0, &cancel).err(),
+            Factor::of(&matrix().0, &matrix().1, 0.0, &cancel).err(),
             Some(super::FactorError::Cancelled)
         );
     }
@@ -332,12 +334,12 @@ pub(crate) mod tests {
     #[test]
     fn the_bits_of_factor_and_solution_do_not_depend_on_the_number_of_threads() {
         // Large enough for tasks, and for supernodes of more than one block.
-        let (plate, ends) = plate_of(shapes::icosphere(5));
+        let (matrix, ends) = plate_of(shapes::icosphere(5));
         let outcome = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let factor = Factor::of(&plate, &ends, 0.0, &Cancel::new()).unwrap();
-                let mut x: Vec<[f64; 3]> = (0..plate.scale.len()).map(|i| [1.0, i as f64, -0.3]).collect();
+                let factor = Factor::of(&matrix, &ends, 0.0, &Cancel::new()).unwrap();
+                let mut x: Vec<[f64; 3]> = (0..matrix.scale.len()).map(|i| [1.0, i as f64, -0.3]).collect();
                 factor.solve(&mut x);
                 let lines = factor.numbers.iter().flat_map(|numbers| numbers.panels.iter());
                 (lines.flat_map(|line| line.0).collect::<Vec<f64>>(), x)
@@ -372,38 +374,38 @@ pub(crate) mod tests {
             column_of[vertex as usize] = column as u32;
         }
         let operator = ShellOperator::new(laplacian, &Bilaplacian::default(), 1.0);
-        let mut plate = assemble_shell(&operator, &order, &column_of, &Hubs::default(), Budget::default()).unwrap();
+        let mut matrix = assemble_shell(&operator, &order, &column_of, &Hubs::default(), Budget::default()).unwrap();
         // Nothing is held: let every vertex be held a little.
         for column in 0..count {
-            plate.lower_values[plate.lower_offsets[column] as usize] += 0.1;
+            matrix.lower_values[matrix.lower_offsets[column] as usize] += 0.1;
         }
         let ends = (1..=count as u32)
             .filter(|end| end % 8 == 0 || *end == count as u32)
             .collect();
-        (plate, Elimination { order, ends })
+        (matrix, Elimination { order, ends })
     }
 
     #[test]
     fn what_is_kept_for_the_next_factor_is_no_more_than_the_factor_and_is_worth_it() {
-        let (plate, elimination) = badly_ordered();
+        let (matrix, elimination) = badly_ordered();
         let cancel = Cancel::new();
-        let bind = |renewal| {
-            let (plate, elimination) = badly_ordered();
-            Renewable::of(plate, elimination, &[0.0], renewal, Budget::default(), &cancel).unwrap()
+        let bind = |refactorisation| {
+            let (matrix, elimination) = badly_ordered();
+            RenewableFactor::of(matrix, elimination, &[0.0], refactorisation, Budget::default(), &cancel).unwrap()
         };
         let all = {
-            let factor = Factor::analysed(&plate, &elimination.ends, Budget::default()).unwrap();
-            let lines = |part: &crate::sparse::forest::Part| {
+            let factor = Factor::analysed(&matrix, &elimination.ends, Budget::default()).unwrap();
+            let lines = |part: &crate::sparse::assembly_tree::Part| {
                 crate::sparse::symbolic::lines_left(factor.symbolic.pattern(part.blocks.end - 1).len())
             };
-            8 * factor.forest.parts.iter().map(lines).sum::<usize>()
+            8 * factor.assembly_tree.parts.iter().map(lines).sum::<usize>()
         };
-        let first = bind(Renewal::From(None));
+        let first = bind(Refactorisation::From(None));
         assert!(all > 2 * first.factor.stored(), "all of it is {all}");
         assert!(first.kept() <= first.factor.stored());
         assert!(2 * first.kept() > first.factor.stored());
         // Nothing changed: all is taken over, whatever was kept of it.
-        assert_eq!(bind(Renewal::From(Some(&first))).share_of(&first), 1.0);
-        assert_eq!(bind(Renewal::Never).kept(), 0);
+        assert_eq!(bind(Refactorisation::From(Some(&first))).share_of(&first), 1.0);
+        assert_eq!(bind(Refactorisation::Never).kept(), 0);
     }
 }

@@ -1,7 +1,7 @@
 //! The numeric factorisation, block by block from the leaves (Duff & Reid 1983).
 //!
 //! A block gathers its columns of the matrix and what its children left, is factored densely (`front`), and leaves to
-//! its parent what it takes from the rows below. The parts that `forest` cuts need nothing from each other but what
+//! its parent what it takes from the rows below. The parts that `assembly_tree` cuts need nothing from each other but what
 //! children leave, so they run beside each other; large fronts are worked on by several threads inside.
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -9,8 +9,8 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use pliant_mesh::Cancel;
 
 use crate::budget::reserved;
+use crate::sparse::assembly_tree::AssemblyTree;
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::forest::Forest;
 use crate::sparse::front::{factor_panel, square};
 use crate::sparse::line::{LANES, Line, Shape, strips, triangle};
 use crate::sparse::matrix::ScaledMatrix;
@@ -35,10 +35,10 @@ impl Numbers {
 
 /// What is factored.
 struct Job<'a> {
-    plate: &'a ScaledMatrix,
+    matrix: &'a ScaledMatrix,
     shift: f64,
     symbolic: &'a Symbolic,
-    forest: &'a Forest,
+    assembly_tree: &'a AssemblyTree,
     cancel: &'a Cancel,
     done: Vec<OnceLock<Arc<Vec<Line>>>>,
     left: Vec<Mutex<Option<Arc<Vec<Line>>>>>,
@@ -50,28 +50,28 @@ struct Job<'a> {
 /// Factors the matrix, with `shift` added to its unit diagonal; takes over the parts that are `known`, one entry a part,
 /// and keeps what the parts in `kept` leave.
 pub(crate) fn factor(
-    plate: &ScaledMatrix,
+    matrix: &ScaledMatrix,
     shift: f64,
     symbolic: &Symbolic,
-    forest: &Forest,
+    assembly_tree: &AssemblyTree,
     known: &[Option<Numbers>],
     kept: &[bool],
     cancel: &Cancel,
 ) -> Result<Vec<Numbers>, FactorError> {
-    let count = forest.parts.len();
+    let count = assembly_tree.parts.len();
     // What a part leaves is needed where the part above is not taken over.
     let mut is_known = vec![false; count];
     for part in (0..count).rev() {
-        let above = forest.parts[part].parent;
+        let above = assembly_tree.parts[part].parent;
         let own = known.get(part).and_then(Option::as_ref);
         is_known[part] = own.is_some_and(|own| own.left.is_some() || above.is_none_or(|above| is_known[above]));
     }
     let known = |part: usize| is_known[part].then(|| known[part].as_ref()).flatten();
     let job = Job {
-        plate,
+        matrix,
         shift,
         symbolic,
-        forest,
+        assembly_tree,
         cancel,
         done: (0..count)
             .map(|part| known(part).map_or_else(OnceLock::new, |numbers| OnceLock::from(Arc::clone(&numbers.panels))))
@@ -83,7 +83,7 @@ pub(crate) fn factor(
         rooms: Mutex::default(),
     };
     let failures = Mutex::new(Vec::new());
-    forest.upwards(|part| {
+    assembly_tree.upwards(|part| {
         if job.done[part].get().is_some() {
             return;
         }
@@ -151,7 +151,7 @@ impl Job<'_> {
     }
 
     fn part(&self, part: usize) -> Result<(), FactorError> {
-        let children = &self.forest.parts[part].children;
+        let children = &self.assembly_tree.parts[part].children;
         if children.iter().any(|&child| self.done[child].get().is_none()) {
             // Whatever befell it has been said.
             return Ok(());
@@ -161,7 +161,7 @@ impl Job<'_> {
             .map(|&child| {
                 let mut left = self.left[child].lock().unwrap_or_else(PoisonError::into_inner);
                 let given = if self.keeps(child) { left.clone() } else { left.take() };
-                (self.forest.parts[child].blocks.end - 1, given)
+                (self.assembly_tree.parts[child].blocks.end - 1, given)
             })
             .collect();
         let given: Vec<(usize, &[Line])> = given
@@ -170,8 +170,8 @@ impl Job<'_> {
             .collect();
         let pooled = self.rooms.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut room = pooled.unwrap_or_default();
-        room.place.resize(self.plate.scale.len(), 0);
-        let blocks = self.forest.parts[part].blocks.clone();
+        room.place.resize(self.matrix.scale.len(), 0);
+        let blocks = self.assembly_tree.parts[part].blocks.clone();
         let lines = blocks.clone().map(|s| self.symbolic.shape(s).lines()).sum();
         let mut panels = reserved(lines)?;
         for s in blocks.clone() {
@@ -221,7 +221,7 @@ impl Job<'_> {
         panels.resize(start + shape.lines(), Line::ZERO);
         let panel = &mut panels[start..];
         for (c, column) in own.clone().enumerate() {
-            let (rows, values) = self.plate.column(column);
+            let (rows, values) = self.matrix.column(column);
             for (&row, &value) in rows.iter().zip(values) {
                 let place = room.place[row as usize] as usize;
                 let (strip, lane) = shape.row(place);

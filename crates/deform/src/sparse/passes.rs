@@ -1,8 +1,8 @@
-//! Up the parts of a forest and down again, with rows of right-hand sides.
+//! Up the parts of an assembly tree and down again, with rows of right-hand sides.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::sparse::forest::Forest;
+use crate::sparse::assembly_tree::AssemblyTree;
 
 /// What one part works on.
 struct Desk<'a, R> {
@@ -18,7 +18,7 @@ struct Desk<'a, R> {
 /// A part hands what it changes to the part above and gets what it needs from there, so nothing is shared, and nothing is
 /// added up in an order that could vary. `desks` is room, kept from one time to the next.
 pub(crate) fn up_and_down<R: Copy + Send + Sync>(
-    forest: &Forest,
+    assembly_tree: &AssemblyTree,
     x: &mut [R],
     desks: &mut Vec<Vec<R>>,
     zero: R,
@@ -26,9 +26,9 @@ pub(crate) fn up_and_down<R: Copy + Send + Sync>(
     up: impl Fn(usize, &mut [R]) + Sync,
     down: impl Fn(usize, &mut [R]) + Sync,
 ) {
-    desks.resize_with(forest.parts.len(), Vec::new);
+    desks.resize_with(assembly_tree.parts.len(), Vec::new);
     let mut rest = x;
-    let desks: Vec<Mutex<Desk<R>>> = forest
+    let desks: Vec<Mutex<Desk<R>>> = assembly_tree
         .parts
         .iter()
         .zip(desks)
@@ -39,14 +39,14 @@ pub(crate) fn up_and_down<R: Copy + Send + Sync>(
         })
         .collect();
     let desk = |part: usize| -> MutexGuard<Desk<R>> { desks[part].lock().unwrap_or_else(PoisonError::into_inner) };
-    forest.upwards(|index| {
-        let part = &forest.parts[index];
+    assembly_tree.upwards(|index| {
+        let part = &assembly_tree.parts[index];
         let Desk { own, rows } = &mut *desk(index);
         rows.clear();
         rows.extend_from_slice(own);
         rows.resize(own.len() + part.outside.len(), zero);
         for &child in &part.children {
-            let child_part = &forest.parts[child];
+            let child_part = &assembly_tree.parts[child];
             let changes = &desk(child).rows[child_part.columns.len()..];
             for (&place, &change) in child_part.outside.iter().zip(changes) {
                 add(&mut rows[place as usize], change);
@@ -54,8 +54,8 @@ pub(crate) fn up_and_down<R: Copy + Send + Sync>(
         }
         up(index, rows);
     });
-    forest.downwards(|index| {
-        let part = &forest.parts[index];
+    assembly_tree.downwards(|index| {
+        let part = &assembly_tree.parts[index];
         let Desk { own, rows } = &mut *desk(index);
         if let Some(above) = part.parent {
             let above = desk(above);

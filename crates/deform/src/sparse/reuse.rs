@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use crate::sparse::Elimination;
-use crate::sparse::forest::Forest;
+use crate::sparse::assembly_tree::AssemblyTree;
 use crate::sparse::line::LANES;
 use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::symbolic::{Symbolic, lines_left};
@@ -22,17 +22,17 @@ const KEPT: usize = 1;
 
 /// Of each part, whether what it leaves is kept for the next factor: first where that spares most operations a byte, up
 /// to [`KEPT`] times the factor.
-pub(crate) fn worth_keeping(symbolic: &Symbolic, forest: &Forest) -> Vec<bool> {
-    let count = forest.parts.len();
+pub(crate) fn worth_keeping(symbolic: &Symbolic, assembly_tree: &AssemblyTree) -> Vec<bool> {
+    let count = assembly_tree.parts.len();
     // What is spared is the whole subtree's work.
     let mut work: Vec<f64> = vec![0.0; count];
-    for (part, own) in forest.parts.iter().enumerate() {
+    for (part, own) in assembly_tree.parts.iter().enumerate() {
         work[part] += own.blocks.clone().map(|s| symbolic.work(s)).sum::<f64>();
         if let Some(above) = own.parent {
             work[above] += work[part];
         }
     }
-    let lines = |part: usize| lines_left(symbolic.pattern(forest.parts[part].blocks.end - 1).len());
+    let lines = |part: usize| lines_left(symbolic.pattern(assembly_tree.parts[part].blocks.end - 1).len());
     let mut by_worth: Vec<usize> = (0..count).filter(|&part| lines(part) > 0).collect();
     let worth = |part: usize| work[part] / lines(part) as f64;
     by_worth.sort_by(|&a, &b| worth(b).total_cmp(&worth(a)).then(a.cmp(&b)));
@@ -50,18 +50,20 @@ pub(crate) fn worth_keeping(symbolic: &Symbolic, forest: &Forest) -> Vec<bool> {
 /// What is factored, with the names of its columns: the same column of two matrices has the same name.
 #[derive(Clone, Copy)]
 pub(crate) struct Named<'a> {
-    pub plate: &'a ScaledMatrix,
+    pub matrix: &'a ScaledMatrix,
     pub elimination: &'a Elimination,
     pub symbolic: &'a Symbolic,
-    pub forest: &'a Forest,
+    pub assembly_tree: &'a AssemblyTree,
 }
 
 /// Of each part of `new`, the part of `old` that it equals to the bit.
 pub(crate) fn equal_parts(new: Named, old: Named) -> Vec<Option<usize>> {
-    let first = |part: usize| old.elimination.order[old.forest.parts[part].columns.start];
-    let part_by_name: BTreeMap<u32, usize> = (0..old.forest.parts.len()).map(|part| (first(part), part)).collect();
+    let first = |part: usize| old.elimination.order[old.assembly_tree.parts[part].columns.start];
+    let part_by_name: BTreeMap<u32, usize> = (0..old.assembly_tree.parts.len())
+        .map(|part| (first(part), part))
+        .collect();
     let mut equal: Vec<Option<usize>> = new
-        .forest
+        .assembly_tree
         .parts
         .par_iter()
         .enumerate()
@@ -72,9 +74,9 @@ pub(crate) fn equal_parts(new: Named, old: Named) -> Vec<Option<usize>> {
         .collect();
     // Children come before parents.
     for part in 0..equal.len() {
-        let children = &new.forest.parts[part].children;
+        let children = &new.assembly_tree.parts[part].children;
         let same = |other: usize| {
-            let others = old.forest.parts[other].children.iter().map(|&child| Some(child));
+            let others = old.assembly_tree.parts[other].children.iter().map(|&child| Some(child));
             children.iter().map(|&child| equal[child]).eq(others)
         };
         equal[part] = equal[part].filter(|&other| same(other));
@@ -84,7 +86,7 @@ pub(crate) fn equal_parts(new: Named, old: Named) -> Vec<Option<usize>> {
 
 /// Whether two parts have the same columns of the matrix, in the same blocks over the same rows.
 fn equals(new: Named, new_part: usize, old: Named, old_part: usize) -> bool {
-    let (new_part, old_part) = (&new.forest.parts[new_part], &old.forest.parts[old_part]);
+    let (new_part, old_part) = (&new.assembly_tree.parts[new_part], &old.assembly_tree.parts[old_part]);
     let new_shapes = new_part.blocks.clone().map(|s| new.symbolic.shape(s));
     if new_part.columns.len() != old_part.columns.len()
         || new.elimination.order[new_part.columns.clone()] != old.elimination.order[old_part.columns.clone()]
@@ -103,8 +105,8 @@ fn equals(new: Named, new_part: usize, old: Named, old_part: usize) -> bool {
         .clone()
         .zip(old_part.columns.clone())
         .all(|(new_column, old_column)| {
-            let (new_rows, new_values) = new.plate.column(new_column);
-            let (old_rows, old_values) = old.plate.column(old_column);
+            let (new_rows, new_values) = new.matrix.column(new_column);
+            let (old_rows, old_values) = old.matrix.column(old_column);
             let bits = |value: &f64| value.to_bits();
             new_rows.iter().map(new_name).eq(old_rows.iter().map(old_name))
                 && new_values.iter().map(bits).eq(old_values.iter().map(bits))

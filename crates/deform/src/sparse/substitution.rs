@@ -3,7 +3,7 @@
 //! An iterative method solves once a step and only needs a direction, so half the bytes are enough. Each supernode's
 //! columns stand in blocks of up to four, row by row: a row's four numbers meet four finished values in registers, and
 //! what is below is read and written once for four columns. The right-hand sides are rows of four, x, y, z and nothing,
-//! which is one vector in single precision. The parts that `forest` cuts run beside each other, as in `triangular`.
+//! which is one vector in single precision. The parts that `assembly_tree` cuts run beside each other, as in `triangular`.
 
 use std::ops::{Add, Mul, Sub};
 use std::sync::{Mutex, PoisonError};
@@ -12,8 +12,8 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::budget::reserved;
 use crate::prefetch::Prefetch;
+use crate::sparse::assembly_tree::AssemblyTree;
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::forest::Forest;
 use crate::sparse::line::{Line, Shape};
 use crate::sparse::multifrontal::Numbers;
 use crate::sparse::passes::up_and_down;
@@ -62,7 +62,7 @@ pub(crate) type Row<T> = [T; 4];
 pub(crate) struct Substitution<T> {
     nodes: Vec<Node>,
     values: Vec<T>,
-    forest: Forest,
+    assembly_tree: AssemblyTree,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +70,7 @@ struct Node {
     /// Its first column within its part.
     start: u32,
     width: u32,
-    /// Where its rows below begin among the forest's places, and how many they are.
+    /// Where its rows below begin among the tree's places, and how many they are.
     pattern: (u32, u32),
     values: usize,
 }
@@ -89,10 +89,10 @@ impl<T: Real> Substitution<T> {
     ///
     /// # Errors
     /// [`FactorError::Memory`].
-    pub fn new(symbolic: &Symbolic, forest: &Forest, numbers: &[Numbers]) -> Result<Self, FactorError> {
+    pub fn new(symbolic: &Symbolic, assembly_tree: &AssemblyTree, numbers: &[Numbers]) -> Result<Self, FactorError> {
         let mut nodes = Vec::with_capacity(symbolic.block_count());
         let mut copied = reserved(symbolic.stored())?;
-        for (part, numbers) in forest.parts.iter().zip(numbers) {
+        for (part, numbers) in assembly_tree.parts.iter().zip(numbers) {
             let mut panels = numbers.panels.as_slice();
             for s in part.blocks.clone() {
                 let below = symbolic.pattern_range(s);
@@ -111,7 +111,7 @@ impl<T: Real> Substitution<T> {
         Ok(Self {
             nodes,
             values: copied,
-            forest: forest.clone(),
+            assembly_tree: assembly_tree.clone(),
         })
     }
 
@@ -133,7 +133,7 @@ impl<T: Real> Substitution<T> {
                 .unwrap_or_default();
             arch.dispatch(Pass {
                 factor: self,
-                nodes: &self.nodes[self.forest.parts[part].blocks.clone()],
+                nodes: &self.nodes[self.assembly_tree.parts[part].blocks.clone()],
                 way,
                 x,
                 below: &mut below,
@@ -141,7 +141,7 @@ impl<T: Real> Substitution<T> {
             spare.lock().unwrap_or_else(PoisonError::into_inner).push(below);
         };
         up_and_down(
-            &self.forest,
+            &self.assembly_tree,
             x,
             desks,
             Row::default(),
@@ -209,7 +209,7 @@ impl<T: Real> Substitution<T> {
     #[inline(always)]
     fn places_of(&self, node: &Node) -> &[u32] {
         let (start, count) = node.pattern;
-        &self.forest.places[start as usize..(start + count) as usize]
+        &self.assembly_tree.places[start as usize..(start + count) as usize]
     }
 }
 

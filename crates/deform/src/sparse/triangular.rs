@@ -1,7 +1,7 @@
 //! Solving with a factor, several right-hand sides at once.
 //!
 //! The limit is memory: each solve reads the factor twice. So it is read in the order in which it lies, a line meeting
-//! all right-hand sides at once. The parts that `forest` cuts are solved beside each other: a part hands what its
+//! all right-hand sides at once. The parts that `assembly_tree` cuts are solved beside each other: a part hands what its
 //! rows take to the part above on the way up, and gets what it needs from there on the way down, so nothing is shared
 //! and nothing is added up in an order that could vary. faer's own parallel solve was 3 to 40 times slower than its
 //! sequential one on such factors.
@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 
 use pulp::Arch;
 
-use crate::sparse::forest::Forest;
+use crate::sparse::assembly_tree::AssemblyTree;
 use crate::sparse::kernels::{Backward, Forward, Strip};
 use crate::sparse::line::{LANES, Line, Shape};
 use crate::sparse::multifrontal::Numbers;
@@ -28,7 +28,7 @@ struct Room<const K: usize> {
 /// Solves L Lᵀ x = b in place; `x` has one row a column of the factor.
 pub(crate) fn solve_in_place<const K: usize>(
     symbolic: &Symbolic,
-    forest: &Forest,
+    assembly_tree: &AssemblyTree,
     numbers: &[Numbers],
     x: &mut [[f64; K]],
 ) {
@@ -40,13 +40,17 @@ pub(crate) fn solve_in_place<const K: usize>(
         rooms.lock().unwrap_or_else(PoisonError::into_inner).push(room);
     };
     let block = |part: usize, s: usize| {
-        let first = symbolic.columns(s).start - forest.parts[part].columns.start;
-        (symbolic.shape(s), first, &forest.places[symbolic.pattern_range(s)])
+        let first = symbolic.columns(s).start - assembly_tree.parts[part].columns.start;
+        (
+            symbolic.shape(s),
+            first,
+            &assembly_tree.places[symbolic.pattern_range(s)],
+        )
     };
     let up = |part: usize, rows: &mut [[f64; K]]| {
         with_room(&mut |room| {
             let mut panels = numbers[part].panels.as_slice();
-            for s in forest.parts[part].blocks.clone() {
+            for s in assembly_tree.parts[part].blocks.clone() {
                 let (shape, first, places) = block(part, s);
                 let (panel, tail) = panels.split_at(shape.lines());
                 panels = tail;
@@ -57,7 +61,7 @@ pub(crate) fn solve_in_place<const K: usize>(
     let down = |part: usize, rows: &mut [[f64; K]]| {
         with_room(&mut |room| {
             let mut panels = numbers[part].panels.as_slice();
-            for s in forest.parts[part].blocks.clone().rev() {
+            for s in assembly_tree.parts[part].blocks.clone().rev() {
                 let (shape, first, places) = block(part, s);
                 let (tail, panel) = panels.split_at(panels.len() - shape.lines());
                 panels = tail;
@@ -70,7 +74,7 @@ pub(crate) fn solve_in_place<const K: usize>(
             row[k] += change[k];
         }
     };
-    up_and_down(forest, x, &mut Vec::new(), [0.0; K], add, up, down);
+    up_and_down(assembly_tree, x, &mut Vec::new(), [0.0; K], add, up, down);
 }
 
 /// x ← L⁻¹ x for the block's columns, their effect subtracted from the rows below.

@@ -42,19 +42,24 @@ fn binding_again_gives_what_binding_gives_to_the_bit() {
         .problem(&first.method)
         .rebind(&ordering, None, &progress, &cancel)
         .unwrap();
-    let remains = bound.remains();
+    let reusable_factor = bound.reusable_factor();
     for (name, change, least) in strokes {
         let mut scene = scene();
         change(&mut scene);
         let problem = scene.problem(&scene.method);
         let mut fresh = problem.bind(&ordering, &progress, &cancel).unwrap();
-        let mut again = problem.rebind(&ordering, remains.as_ref(), &progress, &cancel).unwrap();
+        let mut again = problem
+            .rebind(&ordering, reusable_factor.as_ref(), &progress, &cancel)
+            .unwrap();
         assert!(bits(&mut fresh) == bits(&mut again), "{name}");
-        let kept = again.remains().unwrap().share_of(remains.as_ref().unwrap());
+        let kept = again
+            .reusable_factor()
+            .unwrap()
+            .share_of(reusable_factor.as_ref().unwrap());
         assert!(kept >= least && (kept < 1.0 || least == 1.0), "{name}: {kept}");
         // Once more, from what was made with what was left.
         let mut third = problem
-            .rebind(&ordering, again.remains().as_ref(), &progress, &cancel)
+            .rebind(&ordering, again.reusable_factor().as_ref(), &progress, &cancel)
             .unwrap();
         assert!(bits(&mut fresh) == bits(&mut third), "{name}");
     }
@@ -74,12 +79,20 @@ fn stroke(scene: &mut Scene, role: Role, z: f64) {
 fn remains_of_another_mesh_are_of_no_use_and_no_harm() {
     let (progress, cancel) = (Progress::new(), Cancel::new());
     let other = Scene::new(shapes::torus(40, 30)).with_ends(true);
-    let remains = other.bind().remains();
+    let reusable_factor = other.bind().reusable_factor();
     let scene = scene();
     let problem = scene.problem(&scene.method);
     let ordering = Ordering::of(&scene.model.topology, 2, &progress, &cancel).unwrap();
     let mut fresh = problem.bind(&ordering, &progress, &cancel).unwrap();
-    let mut again = problem.rebind(&ordering, remains.as_ref(), &progress, &cancel).unwrap();
+    let mut again = problem
+        .rebind(&ordering, reusable_factor.as_ref(), &progress, &cancel)
+        .unwrap();
     assert!(bits(&mut fresh) == bits(&mut again));
-    assert_eq!(again.remains().unwrap().share_of(remains.as_ref().unwrap()), 0.0);
+    assert_eq!(
+        again
+            .reusable_factor()
+            .unwrap()
+            .share_of(reusable_factor.as_ref().unwrap()),
+        0.0
+    );
 }

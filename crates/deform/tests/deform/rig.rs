@@ -1,7 +1,7 @@
 //! A problem on a shape, and the verbs the laws need.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Bound, Holds, Loose, Method, Problem, Role};
+use pliant_deform::{Bound, Constraints, Loose, Method, Problem, Role};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, shapes};
 
 /// A shape and the roles, stiffness and options on it.
@@ -88,7 +88,7 @@ impl Scene {
             roles: &self.roles,
             handle_count: self.handle_count,
             stiffness: &self.stiffness,
-            holds: Holds {
+            constraints: Constraints {
                 soft: &self.soft,
                 continuity: &self.continuity,
                 parts: &self.parts,

@@ -1,7 +1,7 @@
 //! Soft handles: weights that mean the same on every mesh, hard handles at one end and none at the other.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{ArapEnergy, BindError, Holds, Role, ShellOrder};
+use pliant_deform::{ArapEnergy, BindError, Constraints, Role, ShellOrder};
 use pliant_mesh::{Cancel, Progress, shapes};
 
 use crate::nonlinear::{Iterative, scene};
@@ -205,7 +205,7 @@ fn a_weight_that_is_none_is_refused_and_another_method_says_that_it_holds_hard()
         bound.warnings()
     );
     let problem = pliant_deform::Problem {
-        holds: Holds::default(),
+        constraints: Constraints::default(),
         ..scene.problem(&scene.method)
     };
     let ordering = pliant_deform::Ordering::of(&scene.model.topology, 1, &Progress::new(), &Cancel::new()).unwrap();

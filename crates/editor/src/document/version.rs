@@ -30,7 +30,7 @@ pub(crate) enum Aspect {
     /// Anything about handles.
     Handles,
     /// Which handles there are, how far they reach and how they hold.
-    Holds,
+    Constraints,
     /// Where the handles want the surface.
     Targets,
     /// How handles look: colours, what is shown.
@@ -50,7 +50,7 @@ impl Aspect {
         Self::Access,
         Self::Locks,
         Self::Handles,
-        Self::Holds,
+        Self::Constraints,
         Self::Targets,
         Self::Appearance,
     ];
@@ -64,7 +64,7 @@ impl Aspect {
         Self::Loose,
         Self::Rest,
         Self::Locks,
-        Self::Holds,
+        Self::Constraints,
     ];
 }
 
@@ -144,7 +144,7 @@ mod tests {
         let mut marks = Marks::default();
         marks.mark(&[Aspect::Paint]);
         let before = *marks.versions();
-        marks.mark(&[Aspect::Paint, Aspect::Holds]);
+        marks.mark(&[Aspect::Paint, Aspect::Constraints]);
         let during = *marks.versions();
         assert!(during.are_other_problem(&before) && !during.differ(&before, Aspect::Method));
         marks.go_back_to(&before);

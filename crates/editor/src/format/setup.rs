@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{CONTINUITY_RANGE, Holds, Loose, Method, Problem, Role};
+use pliant_deform::{CONTINUITY_RANGE, Constraints, Loose, Method, Problem, Role};
 use pliant_mesh::{Model, Surface, SurfaceVertex};
 
 use super::edit_error::EditError;
@@ -76,7 +76,7 @@ impl Setup {
             roles: &self.roles,
             handle_count: self.handles.len(),
             stiffness: &self.stiffness,
-            holds: Holds {
+            constraints: Constraints {
                 soft: &self.soft,
                 continuity: &self.continuity,
                 parts: &self.loose_parts,

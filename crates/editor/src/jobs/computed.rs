@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use pliant_deform::{Bound, Ordering, Remains};
+use pliant_deform::{Bound, Ordering, ReusableFactor};
 use pliant_mesh::Model;
 
 use super::job::{Pickable, ShownTriangles};
@@ -19,7 +19,7 @@ pub(crate) struct Computed {
     pub(crate) region: Region,
     pub(super) bound: Option<Arc<Mutex<Bound>>>,
     /// What the next binding can take over of the last one.
-    pub(super) remains: Option<Remains>,
+    pub(super) reusable_factor: Option<ReusableFactor>,
     /// Sentences about the last binding.
     pub(crate) warnings: Vec<String>,
 }
@@ -33,7 +33,7 @@ impl Default for Computed {
             orderings: Vec::new(),
             region: Region::still(0),
             bound: None,
-            remains: None,
+            reusable_factor: None,
             warnings: Vec::new(),
         }
     }

@@ -294,7 +294,7 @@ impl Jobs {
             }
             JobOutcome::Bound(bound) if stamp == self.problem_revision => {
                 self.computed.warnings = bound.warnings().to_vec();
-                self.computed.remains = bound.remains();
+                self.computed.reusable_factor = bound.reusable_factor();
                 self.computed.bound = Some(Arc::new(Mutex::new(*bound)));
                 self.bound_revision = stamp;
             }

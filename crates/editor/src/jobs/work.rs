@@ -75,14 +75,14 @@ pub(super) fn bind_work(computed: &Computed, model: &Arc<Model>, document: &Docu
         None => None,
     };
     let (model, document, region) = (Arc::clone(model), document.clone(), computed.region.clone());
-    let remains = computed.remains.clone();
+    let reusable_factor = computed.reusable_factor.clone();
     Some(Box::new(move |progress, cancel| {
         let setup = Setup::of_document(&document, &region);
         let problem = Problem {
             revision,
             ..setup.problem(&model)
         };
-        match problem.rebind(ordering.as_deref(), remains.as_ref(), progress, cancel) {
+        match problem.rebind(ordering.as_deref(), reusable_factor.as_ref(), progress, cancel) {
             Ok(bound) => JobOutcome::Bound(Box::new(bound)),
             Err(BindError::Cancelled(_)) => JobOutcome::Cancelled,
             Err(error) => JobOutcome::Failed(

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
-use pliant_deform::{Bound, Holds, Loose, Method, Problem, Role};
+use pliant_deform::{Bound, Constraints, Loose, Method, Problem, Role};
 use pliant_editor::{
     Access, Button, Command, Document, Editor, Event, GizmoPart, Handle, InlineExecutor, JobKind, Key, Modifiers,
     Paint, Pointer, ToolMode,
@@ -310,7 +310,7 @@ impl Rig {
             roles,
             handle_count: handles.len(),
             stiffness: document.stiffness().unwrap_or(&ones),
-            holds: Holds {
+            constraints: Constraints {
                 soft: &soft,
                 continuity: &document.joints().unwrap_or_default(),
                 parts: &parts,

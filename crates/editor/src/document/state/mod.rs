@@ -247,7 +247,12 @@ impl Document {
         self.change_handles(|handles| handles.retain(|handle| before.handle(handle.id).is_some()));
         self.content.next_handle = before.content.next_handle;
         if self.content.handles == before.content.handles {
-            for aspect in [Aspect::Handles, Aspect::Holds, Aspect::Targets, Aspect::Appearance] {
+            for aspect in [
+                Aspect::Handles,
+                Aspect::Constraints,
+                Aspect::Targets,
+                Aspect::Appearance,
+            ] {
                 self.marks.go_back(before.versions(), aspect);
             }
         }
@@ -274,7 +279,7 @@ impl Document {
         }
         let mut changed = vec![Aspect::Handles];
         if !are_same(before, after, |h| (h.id, h.reach, h.soft, h.continuity)) {
-            changed.push(Aspect::Holds);
+            changed.push(Aspect::Constraints);
         }
         if !are_same(before, after, Handle::affine) {
             changed.push(Aspect::Targets);

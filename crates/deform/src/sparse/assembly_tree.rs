@@ -16,7 +16,7 @@ const PART: f64 = 3e7;
 
 /// The blocks' tree and its cut.
 #[derive(Clone, Debug)]
-pub(crate) struct Forest {
+pub(crate) struct AssemblyTree {
     /// Runs of blocks, ascending and without gaps, children before parents.
     pub parts: Vec<Part>,
     /// The blocks' patterns, one after the other as the factor has them, in the coordinates of their part: its own
@@ -37,7 +37,7 @@ pub(crate) struct Part {
     pub outside: Vec<u32>,
 }
 
-impl Forest {
+impl AssemblyTree {
     /// Cuts the tree of the factor's blocks.
     pub fn of(symbolic: &Symbolic) -> Self {
         let count = symbolic.block_count();
@@ -197,9 +197,9 @@ mod tests {
             ("two", shapes::together(&[shapes::torus(70, 50), shapes::grid(40, 40)])),
         ] {
             let factor = factor_of(drawn);
-            let (symbolic, forest) = factor.parts();
+            let (symbolic, assembly_tree) = factor.parts();
             let mut next = 0;
-            for part in &forest.parts {
+            for part in &assembly_tree.parts {
                 let range = part.blocks.clone();
                 assert_eq!(range.start, next, "{name}");
                 next = range.end;
@@ -215,7 +215,7 @@ mod tests {
                         .filter(|row| **row as usize >= part.columns.end);
                     assert!(is_root || beyond.all(|row| outside.contains(row)), "{name}");
                 }
-                if let Some(above) = part.parent.map(|above| &forest.parts[above]) {
+                if let Some(above) = part.parent.map(|above| &assembly_tree.parts[above]) {
                     let pattern = symbolic.pattern(above.blocks.end - 1);
                     for (&row, &place) in outside.iter().zip(&part.outside) {
                         let found = match (place as usize).checked_sub(above.columns.len()) {
@@ -227,7 +227,10 @@ mod tests {
                 }
             }
             assert_eq!(next, symbolic.block_count(), "{name}");
-            assert!(forest.parts.len() > 1 && symbolic.parent.contains(&ROOT), "{name}");
+            assert!(
+                assembly_tree.parts.len() > 1 && symbolic.parent.contains(&ROOT),
+                "{name}"
+            );
             assert!((0..next).all(|s| symbolic.pattern(s).is_sorted()), "{name}");
         }
     }
@@ -235,19 +238,19 @@ mod tests {
     #[test]
     fn children_come_before_parents_on_the_way_up_and_after_them_on_the_way_down() {
         let factor = factor_of(shapes::torus(60, 50));
-        let forest = factor.parts().1;
+        let assembly_tree = factor.parts().1;
         let seen = Mutex::new(Vec::new());
-        forest.upwards(|part| seen.lock().unwrap().push(part));
+        assembly_tree.upwards(|part| seen.lock().unwrap().push(part));
         let up = std::mem::take(&mut *seen.lock().unwrap());
-        forest.downwards(|part| seen.lock().unwrap().push(part));
+        assembly_tree.downwards(|part| seen.lock().unwrap().push(part));
         let down = std::mem::take(&mut *seen.lock().unwrap());
         for order in [&up, &down] {
             let mut sorted = order.clone();
             sorted.sort_unstable();
-            assert!(sorted.into_iter().eq(0..forest.parts.len()));
+            assert!(sorted.into_iter().eq(0..assembly_tree.parts.len()));
         }
         let place = |order: &[usize], part: usize| order.iter().position(|&other| other == part);
-        for (part, above) in forest.parts.iter().enumerate() {
+        for (part, above) in assembly_tree.parts.iter().enumerate() {
             let Some(above) = above.parent else { continue };
             assert!(place(&up, part) < place(&up, above));
             assert!(place(&down, part) > place(&down, above));

@@ -5,8 +5,8 @@ use rayon::ThreadPoolBuilder;
 /// Gives the thread that calls it threads of its own: from now on its parallel loops run on those, whoever wrote them.
 /// On those that jobs share a loop waits in line until one of them comes to a pause, which has kept the window still for
 /// a third of a second.
-pub fn take_this_thread() {
-    if has_this_thread() {
+pub fn install() {
+    if is_installed() {
         return;
     }
     let builder = ThreadPoolBuilder::new().use_current_thread();
@@ -18,6 +18,6 @@ pub fn take_this_thread() {
 }
 
 /// Whether the thread that calls it has threads of its own.
-pub fn has_this_thread() -> bool {
+pub fn is_installed() -> bool {
     rayon::current_thread_index().is_some()
 }

@@ -4,16 +4,16 @@ use std::path::PathBuf;
 
 /// Folders of the program's own; `None` where the system names none, and in tests that must not touch a person's.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub struct Places {
+pub struct AppDirectories {
     /// The file of settings.
     pub settings: Option<PathBuf>,
     /// The folder of sessions that may have to be recovered, and of reports of faults.
     pub recovery: Option<PathBuf>,
 }
 
-impl Places {
+impl AppDirectories {
     /// The person's own.
-    pub fn of_person() -> Self {
+    pub fn of_user() -> Self {
         Self {
             settings: dirs::config_dir().map(|folder| folder.join("pliant").join("settings.json")),
             recovery: dirs::state_dir()

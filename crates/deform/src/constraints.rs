@@ -6,7 +6,7 @@ use crate::{BindError, Loose, Problem};
 
 /// What constrained vertices do beyond their roles. The default is hard handles, joined as smoothly as the method can.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct Holds<'a> {
+pub struct Constraints<'a> {
     /// Of each handle: `None` where its vertices go exactly where it goes; for a *soft* one its weight, a number above
     /// 0 without unit. Empty: all are hard.
     ///
@@ -30,7 +30,7 @@ pub struct Holds<'a> {
 /// What a continuity may be.
 pub const CONTINUITY_RANGE: RangeInclusive<f64> = 0.0..=2.0;
 
-impl Holds<'_> {
+impl Constraints<'_> {
     /// The weight of a handle, if it is soft.
     pub(crate) fn weight(&self, handle: u16) -> Option<f64> {
         self.soft.get(usize::from(handle)).copied().flatten()
