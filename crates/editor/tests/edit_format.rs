@@ -276,3 +276,15 @@ fn a_refusal_names_the_place_the_value_and_what_is_allowed() {
         assert!(refused.contains(said), "{refused}\n{said}");
     }
 }
+
+/// Whatever a version is, its refusal is one short line.
+#[test]
+fn a_version_that_is_no_number_is_not_quoted_whole() {
+    let text = format!(
+        "{{\"version\": \"{}\\u001b[31m\", \"method\": {{\"name\": \"arap\"}}}}",
+        "x".repeat(5000)
+    );
+    let said = EditFile::parse(&text).unwrap_err().to_string();
+    assert!(said.contains("`version`") && said.len() < 200, "{said}");
+    assert!(!said.chars().any(char::is_control), "{said:?}");
+}

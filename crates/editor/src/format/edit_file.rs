@@ -9,7 +9,7 @@ use super::field::{FieldEntry, FieldKind};
 use super::json::parse;
 use super::loose::{OneOrList, StoredLoose};
 use super::method::{method_to_value, read_method};
-use super::reader::read;
+use super::reader::{read, shortened};
 use super::selector::Selector;
 use crate::HandleTransform;
 
@@ -140,7 +140,7 @@ impl EditFile {
             && found.as_u64() != Some(EDIT_VERSION)
         {
             return Err(EditError::Version {
-                found: found.to_string(),
+                found: shortened(&found.to_string()),
             });
         }
         read(value)

@@ -29,7 +29,7 @@ use super::edit_error::EditError;
 use super::json::parse;
 use super::loose::StoredLoose;
 use super::method::{method_to_value, read_method};
-use super::reader::read;
+use super::reader::{self, read};
 use super::setup::Setup;
 use crate::document::bits_equal;
 use crate::document::{Content, Document, Handle, HandleId, Paint};
@@ -139,7 +139,7 @@ impl Project {
         // The version first: another one may have members that this one lacks.
         match value.get("version") {
             Some(version) if version.as_u64() == Some(PROJECT_VERSION) => {}
-            Some(version) => return Err(EditError::ProjectVersion(version.to_string())),
+            Some(version) => return Err(EditError::ProjectVersion(reader::shortened(&version.to_string()))),
             None => return Err(EditError::Project("it has no `version`: add it".to_owned())),
         }
         read(value).map_err(|error| error.at("the project"))
