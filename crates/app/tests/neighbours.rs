@@ -92,3 +92,17 @@ fn what_would_wait_or_never_end_is_not_opened() {
     std::os::unix::fs::symlink("/proc/self/maps", folder.path().join("in/maps.bin")).unwrap();
     assert!(self::neighbours(folder.path()).within(16).read("maps.bin").is_err());
 }
+
+/// What a save through a link has written is what is read through it again.
+#[cfg(unix)]
+#[test]
+fn behind_a_link_the_neighbours_of_its_target_count() {
+    let folder = folder();
+    fs::write(folder.path().join("a.bin"), b"beside the link").unwrap();
+    fs::write(folder.path().join("c.bin"), b"beside the link alone").unwrap();
+    fs::write(folder.path().join("in/scan.gltf"), b"{}").unwrap();
+    std::os::unix::fs::symlink("in/scan.gltf", folder.path().join("link.gltf")).unwrap();
+    let neighbours = Neighbours::of(&folder.path().join("link.gltf"));
+    assert_eq!(*neighbours.read("a.bin").unwrap(), *b"inside");
+    assert_eq!(*neighbours.read("c.bin").unwrap(), *b"beside the link alone");
+}

@@ -63,10 +63,13 @@ impl Neighbours {
         places
     }
 
+    /// Where both folders have one, the one that a save through the link writes counts.
     fn read_once(&self, path: &str) -> io::Result<Bytes> {
-        match (self.read_in(&self.folder, path), &self.folder_behind) {
-            (Err(error), Some(behind)) if error.kind() == ErrorKind::NotFound => self.read_in(behind, path),
-            (bytes, _) => bytes,
+        let behind = self.folder_behind.as_deref().map(|folder| self.read_in(folder, path));
+        match behind {
+            Some(Err(error)) if error.kind() == ErrorKind::NotFound => self.read_in(&self.folder, path),
+            Some(bytes) => bytes,
+            None => self.read_in(&self.folder, path),
         }
     }
 
