@@ -14,6 +14,7 @@ use pliant_editor::{Command, Editor, Event, JobQueue, KeyMap};
 use super::app_directories::AppDirectories;
 use super::compare::Compare;
 use super::dialog::{self, Question, Then};
+use super::event_queue::EventQueue;
 use super::input::Input;
 use super::interface_pool;
 use super::keys_window::{self, KeysWindow};
@@ -67,8 +68,6 @@ pub struct Application {
     longest_frame: Duration,
     /// Whether the open file's images were asked for.
     pub(super) has_requested_materials: bool,
-    /// Whether a widget had the keys in the last frame.
-    pub(super) had_focus: bool,
     pub(super) view_rect: egui::Rect,
     title: String,
 }
@@ -102,6 +101,7 @@ impl Application {
         let workers = Workers::new(context.egui_ctx.clone(), sender);
         let settings = SettingsFile::open(places.settings.clone());
         theme::apply(&context.egui_ctx, settings.get());
+        context.egui_ctx.add_plugin(EventQueue::default());
         let mut notes = Notes {
             headline: settings.problem.clone().map(Note::Failed),
             ..Notes::default()
@@ -141,7 +141,6 @@ impl Application {
             recovered_from: None,
             longest_frame: Duration::ZERO,
             has_requested_materials: false,
-            had_focus: false,
             view_rect: egui::Rect::ZERO,
             title: String::new(),
         };
@@ -156,6 +155,7 @@ impl Application {
     /// As [`Application::new`].
     pub fn revive(&mut self, context: &eframe::CreationContext<'_>) -> Result<(), AppError> {
         theme::apply(&context.egui_ctx, self.settings.get());
+        context.egui_ctx.add_plugin(EventQueue::default());
         let Some(state) = context.wgpu_render_state.clone() else {
             return Err(AppError::System(
                 "the window has no graphics device any more".to_owned(),
@@ -184,7 +184,7 @@ impl Application {
 
     /// Digits of the numeric pad that went down since the last frame, in order.
     pub(super) fn press_numpad(&mut self, digits: VecDeque<u8>) {
-        self.input.numpad = digits;
+        self.input.numpad.extend(digits);
     }
 
     /// Whether the graphics device is gone, so that the window must be opened anew.
@@ -344,6 +344,7 @@ impl Application {
             || self.keys.takes_keys()
             || egui::Popup::is_any_open(context)
             || context.egui_wants_keyboard_input()
+            || EventQueue::is_typing(context)
             || self.editor.is_acting();
         let open = [
             self.keys.open.then_some(keys_window::ID),

@@ -7,6 +7,7 @@ use pliant_editor::{
 };
 
 use super::command_button::{choices, command_button, command_choice};
+use super::number_field::number_field;
 use super::outbox::Outbox;
 
 /// Shows what belongs to the tool in hand.
@@ -32,9 +33,11 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             StrokeShape::Brush => {
                 let label = ui.label("Radius");
                 let mut radius_px = view.brush_radius_px;
-                let slider = Slider::new(&mut radius_px, 4.0..=200.0).suffix(" px").fixed_decimals(0);
-                let slider = ui
-                    .add(slider)
+                let slider = number_field(ui, &mut radius_px, |ui, radius_px| {
+                    let slider = Slider::new(radius_px, 4.0..=200.0).suffix(" px").fixed_decimals(0);
+                    ui.add(slider.update_while_editing(false))
+                });
+                let slider = slider
                     .labelled_by(label.id)
                     .on_hover_text("[ and ] make it smaller and larger.");
                 if slider.changed() {
@@ -111,11 +114,11 @@ fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressur
         .show(ui, |ui| {
             let label = ui.label("Value");
             let speed = 0.02 * changed.value;
-            let field = DragValue::new(&mut changed.value)
-                .range(STIFFNESS_RANGE)
-                .speed(speed)
-                .max_decimals(3);
-            ui.add(field)
+            let field = number_field(ui, &mut changed.value, |ui, value| {
+                let field = DragValue::new(value).range(STIFFNESS_RANGE).speed(speed);
+                ui.add(field.max_decimals(3).update_while_editing(false))
+            });
+            field
                 .labelled_by(label.id)
                 .on_hover_text("0.001 gives way like cloth, 1 is as everywhere, 1000 keeps its shape.");
             ui.end_row();
@@ -132,9 +135,11 @@ fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressur
                 ),
             ] {
                 let label = ui.label(name);
-                ui.add(Slider::new(value, 0.0..=1.0).fixed_decimals(2))
-                    .labelled_by(label.id)
-                    .on_hover_text(hover);
+                let slider = number_field(ui, value, |ui, value| {
+                    let slider = Slider::new(value, 0.0..=1.0).fixed_decimals(2);
+                    ui.add(slider.update_while_editing(false))
+                });
+                slider.labelled_by(label.id).on_hover_text(hover);
                 ui.end_row();
             }
         });

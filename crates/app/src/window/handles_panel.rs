@@ -9,6 +9,7 @@ use pliant_editor::{
 
 use super::command_button::command_button;
 use super::icon::{Icon, toggle};
+use super::number_field::number_field;
 use super::outbox::Outbox;
 
 /// Shows the list and the selected handle's numbers.
@@ -190,12 +191,11 @@ fn triple(
         ui.spacing_mut().interact_size.x = 54.0;
         for axis in 0..3 {
             let mut changed = value;
-            let field = DragValue::new(&mut changed[axis])
-                .speed(speed)
-                .max_decimals(3)
-                .suffix(suffix)
-                .update_while_editing(false);
-            let field = ui.add(field).labelled_by(name.id).on_hover_text(["x", "y", "z"][axis]);
+            let field = number_field(ui, &mut changed[axis], |ui, value| {
+                let field = DragValue::new(value).speed(speed).max_decimals(3).suffix(suffix);
+                ui.add(field.update_while_editing(false))
+            });
+            let field = field.labelled_by(name.id).on_hover_text(["x", "y", "z"][axis]);
             commands.adjust(&field, || set(changed));
         }
     });
@@ -248,14 +248,12 @@ fn reach(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
         Reach::Length(length) => (length, "", f64::MAX, Reach::Length),
     };
     let speed = (0.02 * value).max(1e-4);
-    let field = DragValue::new(&mut value)
-        .range(0.0..=most)
-        .speed(speed)
-        .max_decimals(3)
-        .suffix(suffix)
-        .update_while_editing(false);
     let hover = "How far along the surface this handle takes the surface along.";
-    let field = ui.add(field).labelled_by(label.id).on_hover_text(hover);
+    let field = number_field(ui, &mut value, |ui, value| {
+        let field = DragValue::new(value).range(0.0..=most).speed(speed);
+        ui.add(field.max_decimals(3).suffix(suffix).update_while_editing(false))
+    });
+    let field = field.labelled_by(label.id).on_hover_text(hover);
     commands.adjust(&field, || Command::SetReach(handle.id, make(value)));
     ui.end_row();
 }
@@ -272,17 +270,16 @@ fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Out
     };
     ui.add_enabled_ui(has_choice, |ui| {
         ui.horizontal(|ui| {
-            let field = DragValue::new(&mut value)
-                .range(CONTINUITY_RANGE)
-                .speed(0.02)
-                .max_decimals(2)
-                .update_while_editing(false);
             let hover = if has_choice {
                 "How smoothly the surface joins this handle: 0 folds like a hinge, 1 keeps its tangents, 2 its curvature."
             } else {
                 "Only the bi-Laplacian has a choice of how smoothly the surface joins a handle."
             };
-            let field = ui.add(field).labelled_by(label.id).on_hover_text(hover).on_disabled_hover_text(hover);
+            let field = number_field(ui, &mut value, |ui, value| {
+                let field = DragValue::new(value).range(CONTINUITY_RANGE).speed(0.02);
+                ui.add(field.max_decimals(2).update_while_editing(false))
+            });
+            let field = field.labelled_by(label.id).on_hover_text(hover).on_disabled_hover_text(hover);
             commands.adjust(&field, || Command::SetContinuity(handle.id, Some(value)));
             ui.label(RichText::new(word).weak());
         });
@@ -299,12 +296,12 @@ fn softness(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
     }
     if let Some(mut weight) = handle.soft {
         let speed = 0.02 * weight;
-        let field = DragValue::new(&mut weight)
-            .range(SOFT_RANGE)
-            .speed(speed)
-            .update_while_editing(false);
         let hover = "Its weight: at 1 the handle and the surface give way to each other; the larger, the firmer.";
-        let field = ui.add(field).on_hover_text(hover);
+        let field = number_field(ui, &mut weight, |ui, weight| {
+            let field = DragValue::new(weight).range(SOFT_RANGE).speed(speed);
+            ui.add(field.update_while_editing(false))
+        });
+        let field = field.on_hover_text(hover);
         commands.adjust(&field, || Command::SetSoft(handle.id, Some(weight)));
     }
 }

@@ -14,7 +14,7 @@ const POINTS_PER_LINE: f64 = 50.0;
 pub struct Input {
     held: Vec<PointerButton>,
     inside: bool,
-    /// Digits of the numeric pad that went down in this frame.
+    /// Digits of the numeric pad that went down and have not been heard yet.
     pub numpad: VecDeque<u8>,
 }
 
@@ -31,6 +31,8 @@ pub struct Attention {
     pub follows_pointer: bool,
     /// Whether keys are for the view: nobody types into a field and no question is open.
     pub keys: bool,
+    /// Whether events of this moment wait for the next frame.
+    pub more_to_come: bool,
 }
 
 impl Input {
@@ -42,7 +44,9 @@ impl Input {
             self.translate(&event, modifiers, attention, &mut out);
         }
         // What went elsewhere, into a field to type in, is no command.
-        self.numpad.clear();
+        if !attention.more_to_come {
+            self.numpad.clear();
+        }
         if self.inside && !attention.pointer_over && !attention.follows_pointer && self.held.is_empty() {
             self.inside = false;
             out.push(Event::PointerLeft);

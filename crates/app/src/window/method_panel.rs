@@ -4,6 +4,7 @@ use eframe::egui::{self, ComboBox, DragValue, RichText};
 use pliant_deform::{METHODS, Method, OptionDeclaration, OptionKind, OptionValue};
 use pliant_editor::{Command, Editor};
 
+use super::number_field::number_field;
 use super::outbox::Outbox;
 
 /// Shows the method and its options.
@@ -77,27 +78,25 @@ fn row(ui: &mut egui::Ui, method: &Method, option: &OptionDeclaration, commands:
         (OptionKind::Number { range, unit }, OptionValue::Number(mut number)) => {
             // Small numbers go by their own size, so that one drag reaches from 1e-12 to 0.1.
             let speed = (number.abs() * 0.02).max((range[1] - range[0]).min(1.0) * 1e-3);
-            let field = DragValue::new(&mut number)
-                .range(range[0]..=range[1])
-                .speed(speed)
-                .custom_formatter(|number, _| short(number))
-                .suffix(if unit.is_empty() {
-                    String::new()
-                } else {
-                    format!(" {unit}")
-                })
-                .update_while_editing(false);
-            let field = ui.add(field);
+            let suffix = if unit.is_empty() {
+                String::new()
+            } else {
+                format!(" {unit}")
+            };
+            let field = number_field(ui, &mut number, |ui, number| {
+                let field = DragValue::new(number).range(range[0]..=range[1]).speed(speed);
+                let field = field.custom_formatter(|number, _| short(number)).suffix(suffix);
+                ui.add(field.update_while_editing(false))
+            });
             commands.adjust(&field, || set(OptionValue::Number(number)));
             field
         }
         (OptionKind::Whole { range }, OptionValue::Whole(mut number)) => {
             let speed = (f64::from(number) * 0.02).max(0.1);
-            let field = DragValue::new(&mut number)
-                .range(range[0]..=range[1])
-                .speed(speed)
-                .update_while_editing(false);
-            let field = ui.add(field);
+            let field = number_field(ui, &mut number, |ui, number| {
+                let field = DragValue::new(number).range(range[0]..=range[1]).speed(speed);
+                ui.add(field.update_while_editing(false))
+            });
             commands.adjust(&field, || set(OptionValue::Whole(number)));
             field
         }

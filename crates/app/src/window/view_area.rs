@@ -7,6 +7,7 @@ use glam::DVec2;
 use pliant_editor::{Cursor, Event};
 
 use super::application::{Application, REST};
+use super::event_queue::EventQueue;
 use super::file_names::file_name;
 use super::input::Attention;
 use super::viewport::Smoothness;
@@ -16,13 +17,12 @@ use crate::legend;
 impl Application {
     /// With the pointer over the view and the keys with it, Tab is the view's: it selects the next handle. Elsewhere it
     /// goes from one widget to the next.
-    fn keep_tab(&mut self, ui: &egui::Ui, is_over_view: bool) {
+    fn keep_tab(ui: &egui::Ui, is_over_view: bool, typing: bool) {
         let focused = ui.memory(egui::Memory::focused);
         let is_tab = ui.input(|input| input.key_pressed(egui::Key::Tab));
-        if let Some(widget) = focused.filter(|_| is_tab && is_over_view && !self.had_focus) {
+        if let Some(widget) = focused.filter(|_| is_tab && is_over_view && !typing) {
             ui.memory_mut(|memory| memory.surrender_focus(widget));
         }
-        self.had_focus = ui.memory(egui::Memory::focused).is_some();
     }
 
     /// The 3D view: input first, then the picture.
@@ -50,7 +50,8 @@ impl Application {
                 }
             });
         }
-        self.keep_tab(ui, response.contains_pointer());
+        let typing = EventQueue::is_typing(ui.ctx());
+        Self::keep_tab(ui, response.contains_pointer(), typing);
         let over_ball = axis_ball::contains(rect, ui.input(|input| input.pointer.latest_pos()));
         let attention = Attention {
             rect,
@@ -66,7 +67,9 @@ impl Application {
             keys: self.question.is_none()
                 && self.palette.is_none()
                 && !self.keys.takes_keys()
+                && !typing
                 && !ui.ctx().egui_wants_keyboard_input(),
+            more_to_come: EventQueue::has_more(ui.ctx()),
         };
         let events = self.input.events(ui.ctx(), attention);
         if !events.is_empty() {
