@@ -11,28 +11,28 @@ use eframe::egui::{self, CentralPanel, Panel};
 use glam::DVec3;
 use pliant_editor::{Command, Editor, Event, JobQueue, KeyMap};
 
-use super::app_directories::AppDirectories;
-use super::compare::Compare;
-use super::dialog::{self, Question, Then};
-use super::event_queue::EventQueue;
+use super::bars::status;
+use super::bars::top_bar;
+use super::dialogs::keys_window::{self, KeysWindow};
+use super::dialogs::log::{self, Log};
+use super::dialogs::palette::{Found, Outcome, Palette};
+use super::dialogs::question::{self, Question, Then};
+use super::files::app_directories::AppDirectories;
+use super::files::recovery::{self, Recovery};
+use super::files::session::{KeepOriginal, OpenFile, Session, Source};
+use super::files::settings::SettingsFile;
 use super::input::Input;
-use super::interface_pool;
-use super::keys_window::{self, KeysWindow};
-use super::log::{self, Log};
-use super::message::Message;
-use super::notes::{Note, Notes};
-use super::outbox::Outbox;
-use super::own_keys;
-use super::palette::{Found, Outcome, Palette};
+use super::input::event_queue::EventQueue;
+use super::input::own_keys;
 use super::panels;
-use super::recovery::{self, Recovery};
-use super::session::{KeepOriginal, OpenFile, Session, Source};
-use super::settings::SettingsFile;
-use super::status;
-use super::theme;
-use super::top_bar;
+use super::panels::notes::{Note, Notes};
+use super::threads::interface_pool;
+use super::threads::message::Message;
+use super::threads::workers::Workers;
 use super::viewport::Viewport;
-use super::workers::Workers;
+use super::viewport::compare::Compare;
+use super::widgets::outbox::Outbox;
+use super::widgets::theme;
 use crate::AppError;
 
 /// How long the view must rest before it is drawn with smooth borders on a software device.
@@ -483,7 +483,7 @@ impl eframe::App for Application {
         if let Some(answer) = self
             .question
             .as_mut()
-            .and_then(|question| dialog::ask(&context, question))
+            .and_then(|question| question::ask(&context, question))
         {
             self.answer(answer);
             context.request_repaint();

@@ -8,7 +8,7 @@ use std::panic::{PanicHookInfo, set_hook, take_hook};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use super::recovery;
+use super::files::recovery;
 use crate::version::VERSION;
 
 /// From now on a panic on this thread keeps the newest work and writes a report into `folder`.

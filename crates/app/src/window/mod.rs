@@ -1,52 +1,17 @@
 //! The window: eframe around the editor. Panels show what the editor says and send it events; files, dialogs, threads
-//! and the clock are here; egui meets the renderer in `viewport.rs` alone.
+//! and the clock are here; egui meets the renderer in `viewport` alone.
 
-mod app_directories;
 mod application;
-mod arrivals;
-mod axis_ball;
-mod brush_panel;
-mod coarseness;
-mod command_button;
-mod compare;
-mod dialog;
-mod drawn_key;
-mod event_queue;
+mod bars;
+mod dialogs;
 mod fault;
-mod file_actions;
-mod file_names;
-mod file_panel;
-mod gpu;
-mod handles_panel;
-mod hints;
-mod history_panel;
-mod icon;
+mod files;
 mod input;
-mod interface_pool;
-mod keys_window;
-mod log;
-mod loose_panel;
-mod message;
-mod method_panel;
-mod notes;
-mod number_field;
-mod objects_panel;
-mod outbox;
-mod own_keys;
-mod palette;
 mod panels;
-mod project_file;
-mod recovery;
-mod session;
-mod settings;
 mod shell;
-mod shown;
-mod status;
-mod theme;
-mod top_bar;
-mod view_area;
+mod threads;
 mod viewport;
-mod workers;
+mod widgets;
 
 use std::cell::{Cell, RefCell};
 use std::path::PathBuf;
@@ -60,13 +25,13 @@ use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use winit::event_loop::EventLoop;
 use winit::platform::run_on_demand::EventLoopExtRunOnDemand;
 
-pub use app_directories::AppDirectories;
 pub use application::Application;
-pub use file_names::original_name;
-pub use session::{KeepOriginal, Source};
+pub use files::app_directories::AppDirectories;
+pub use files::names::original_name;
+pub use files::session::{KeepOriginal, Source};
 pub use shell::{NumpadDigits, Shared, Shell};
 
-use settings::Settings;
+use files::settings::Settings;
 use shell::Listener;
 
 use crate::error::AppError;

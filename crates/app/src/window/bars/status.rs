@@ -1,0 +1,84 @@
+//! The line below the view: what the program is doing, what one can do next, and what went wrong.
+
+use eframe::egui::{self, Color32, ProgressBar, RichText};
+use pliant_editor::{Command, Editor};
+
+use crate::window::panels::notes::Note;
+use crate::window::widgets::outbox::Outbox;
+
+/// The colour of what went wrong, legible on a dim and on a bright ground.
+pub fn failed(ui: &egui::Ui) -> Color32 {
+    if ui.visuals().dark_mode {
+        Color32::from_rgb(255, 138, 122)
+    } else {
+        Color32::from_rgb(176, 32, 20)
+    }
+}
+
+/// The colour of what went well.
+fn done(ui: &egui::Ui) -> Color32 {
+    if ui.visuals().dark_mode {
+        Color32::from_rgb(150, 210, 140)
+    } else {
+        Color32::from_rgb(30, 108, 36)
+    }
+}
+
+/// Shows the line. True if the person asks to stop opening or saving a file.
+pub fn show(
+    ui: &mut egui::Ui,
+    editor: &Editor,
+    file_work: Option<(&'static str, f32)>,
+    headline: &mut Option<Note>,
+    software_device: Option<&str>,
+    commands: &mut Outbox,
+) -> bool {
+    let view = editor.view();
+    let mut stop_file_work = false;
+    if let Some(problem) = view.problem {
+        ui.add(egui::Label::new(RichText::new(problem).color(failed(ui))).wrap());
+    }
+    if let Some(note) = headline.clone() {
+        ui.horizontal(|ui| {
+            if ui.small_button("×").on_hover_text("Dismiss").clicked() {
+                *headline = None;
+            }
+            let (sentence, colour) = match note {
+                Note::Done(sentence) => (sentence, done(ui)),
+                Note::Failed(sentence) => (sentence, failed(ui)),
+            };
+            ui.add(egui::Label::new(RichText::new(sentence).color(colour)).wrap());
+        });
+    }
+    ui.horizontal(|ui| {
+        if let Some((doing, share)) = file_work {
+            progress(ui, doing, share);
+            stop_file_work = ui.small_button("Stop").clicked();
+        }
+        for (kind, share) in &view.jobs {
+            // What takes no time to notice is not worth a bar.
+            if *share > 0.0 {
+                progress(ui, kind.doing(), *share);
+            }
+        }
+        ui.label(&view.status);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if let Some(name) = software_device {
+                ui.label(RichText::new("software drawing").weak())
+                    .on_hover_text(format!(
+                        "No graphics card was found; {name} draws on the processor, slowly."
+                    ));
+            }
+            if !view.jobs.is_empty() && ui.small_button("Stop").clicked() {
+                commands.push(Command::CancelJobs);
+            }
+        });
+    });
+    stop_file_work
+}
+
+fn progress(ui: &mut egui::Ui, doing: &str, share: f32) {
+    ui.add(ProgressBar::new(share).desired_width(110.0).desired_height(14.0))
+        .on_hover_text(doing);
+    ui.label(RichText::new(format!("{doing}…")).weak());
+}

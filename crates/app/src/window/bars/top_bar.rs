@@ -1,0 +1,422 @@
+//! The bar above the view: menus, the tools, the gizmo's modes and the shading.
+
+use std::path::PathBuf;
+
+use eframe::egui::{self, Key, KeyboardShortcut, MenuBar, Modifiers, RichText};
+use pliant_editor::{Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, ToolMode, UpAxis};
+
+use crate::window::threads::message::{Ground, PictureKind};
+use crate::window::widgets::command_button::{command_button, command_choice};
+use crate::window::widgets::outbox::Outbox;
+
+/// What is done with files; the window's own, since the editor knows no paths.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum FileCommand {
+    /// Open a file, by dialog.
+    Open,
+    /// Open this file.
+    OpenPath(PathBuf),
+    /// Save.
+    Save,
+    /// Save under another name.
+    SaveAs,
+    /// Save the project.
+    SaveProject,
+    /// Save the project under another name.
+    SaveProjectAs,
+    /// Write the regions, handles and transforms as an edit for the command line.
+    ExportEdit,
+    /// Find a command by its name.
+    Palette,
+    /// Show what was said.
+    Log,
+    /// Show the commands' keys, to be changed.
+    Keys,
+    /// Light, dark, or as the system is.
+    NextTheme,
+    /// Everything larger (above 0) or smaller, in tenths.
+    Scale(i8),
+    /// Show a second view bent by another method, or not.
+    Compare,
+    /// Show the first steps again.
+    Hints,
+    /// Save a picture of the view.
+    SavePicture(PictureKind),
+    /// Close the window.
+    Quit,
+}
+
+impl FileCommand {
+    /// The ones that have a key.
+    pub const WITH_SHORTCUTS: [Self; 9] = [
+        Self::SaveAs,
+        Self::SaveProject,
+        Self::Open,
+        Self::Save,
+        Self::ExportEdit,
+        Self::Palette,
+        Self::Scale(1),
+        Self::Scale(-1),
+        Self::Quit,
+    ];
+
+    /// The key.
+    pub fn shortcut(&self) -> Option<KeyboardShortcut> {
+        let command = |key| Some(KeyboardShortcut::new(Modifiers::COMMAND, key));
+        match self {
+            Self::Open => command(Key::O),
+            Self::Save => command(Key::S),
+            Self::SaveAs => Some(KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::S)),
+            Self::Quit => command(Key::Q),
+            Self::ExportEdit => command(Key::E),
+            Self::SaveProject => Some(KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::ALT, Key::S)),
+            Self::Palette => Some(KeyboardShortcut::new(Modifiers::NONE, Key::F1)),
+            Self::Scale(1..) => command(Key::Num9),
+            Self::Scale(_) => command(Key::Num0),
+            Self::SaveProjectAs
+            | Self::Log
+            | Self::Keys
+            | Self::NextTheme
+            | Self::Compare
+            | Self::Hints
+            | Self::OpenPath(_)
+            | Self::SavePicture(_) => None,
+        }
+    }
+
+    /// All that need no path, in the order of the menu.
+    pub const LISTED: [Self; 14] = [
+        Self::Open,
+        Self::Save,
+        Self::SaveAs,
+        Self::SaveProject,
+        Self::SaveProjectAs,
+        Self::ExportEdit,
+        Self::SavePicture(PictureKind {
+            scale: 1,
+            ground: Ground::AsShown,
+        }),
+        Self::Palette,
+        Self::Log,
+        Self::Keys,
+        Self::NextTheme,
+        Self::Compare,
+        Self::Hints,
+        Self::Quit,
+    ];
+
+    /// What a menu calls it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Open | Self::OpenPath(_) => "Open…",
+            Self::Save => "Save model",
+            Self::SaveAs => "Save model as…",
+            Self::SaveProject => "Save project",
+            Self::SaveProjectAs => "Save project as…",
+            Self::Palette => "Find a command…",
+            Self::Log => "Log…",
+            Self::Keys => "Keys…",
+            Self::NextTheme => "Light or dark",
+            Self::Scale(_) => "Size of everything",
+            Self::Compare => "Compare two methods",
+            Self::Hints => "Hints on the canvas",
+            Self::ExportEdit => "Export edit…",
+            Self::SavePicture(_) => "Save picture…",
+            Self::Quit => "Quit",
+        }
+    }
+
+    /// What else people call it, in lower case.
+    pub fn keywords(&self) -> &'static str {
+        match self {
+            Self::Open | Self::OpenPath(_) => "load import file",
+            Self::Save | Self::SaveAs => "write file",
+            Self::SaveProject | Self::SaveProjectAs => "pliant file document",
+            Self::Palette => "palette search",
+            Self::Log => "messages errors",
+            Self::Keys => "shortcuts bindings keyboard rebind",
+            Self::NextTheme => "theme dark mode",
+            Self::Scale(_) => "ui zoom",
+            Self::Compare => "split view side by side",
+            Self::Hints => "help first steps",
+            Self::ExportEdit => "json command line",
+            Self::SavePicture(_) => "screenshot render image png",
+            Self::Quit => "exit close",
+        }
+    }
+}
+
+/// Shows the bar. Commands for the editor are added to `commands`; one for files is returned.
+pub fn show(
+    ui: &mut egui::Ui,
+    editor: &Editor,
+    file_name: &str,
+    recent: &[PathBuf],
+    commands: &mut Outbox,
+) -> Option<FileCommand> {
+    let mut chosen = None;
+    MenuBar::new().ui(ui, |ui| {
+        ui.menu_button("File", |ui| chosen = file_menu(ui, editor, recent));
+        ui.menu_button("Edit", |ui| edit_menu(ui, editor, commands));
+        ui.menu_button("Region", |ui| region_menu(ui, editor, commands));
+        ui.menu_button("View", |ui| view_menu(ui, editor, commands));
+        ui.menu_button("Window", |ui| window_menu(ui, &mut chosen));
+        let unsaved = if editor.view().unsaved { " •" } else { "" };
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.label(RichText::new(format!("{file_name}{unsaved}")).weak());
+        });
+    });
+    ui.separator();
+    ui.horizontal_wrapped(|ui| tools(ui, editor, commands));
+    ui.add_space(2.0);
+    chosen
+}
+
+fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &[PathBuf]) -> Option<FileCommand> {
+    let mut chosen = None;
+    let is_open = editor.view().model.is_some();
+    for command in [
+        FileCommand::Open,
+        FileCommand::Save,
+        FileCommand::SaveAs,
+        FileCommand::SaveProject,
+        FileCommand::SaveProjectAs,
+        FileCommand::ExportEdit,
+        FileCommand::Quit,
+    ] {
+        if command == FileCommand::Quit {
+            ui.add_enabled_ui(is_open, |ui| {
+                ui.menu_button("Save picture", |ui| chosen = chosen.take().or(picture_menu(ui)));
+            });
+        }
+        if matches!(
+            command,
+            FileCommand::Save | FileCommand::SaveProject | FileCommand::ExportEdit | FileCommand::Quit
+        ) {
+            ui.separator();
+        }
+        let always = matches!(command, FileCommand::Open | FileCommand::Quit);
+        let mut button = egui::Button::new(command.name());
+        if let Some(shortcut) = command.shortcut() {
+            button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+        }
+        if ui.add_enabled(always || is_open, button).clicked() {
+            chosen = Some(command.clone());
+            ui.close();
+        }
+        if command == FileCommand::Open {
+            ui.add_enabled_ui(!recent.is_empty(), |ui| {
+                ui.menu_button("Open recent", |ui| {
+                    for path in recent {
+                        let shown = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+                        if ui.button(shown).on_hover_text(path.display().to_string()).clicked() {
+                            chosen = Some(FileCommand::OpenPath(path.clone()));
+                            ui.close();
+                        }
+                    }
+                });
+            });
+        }
+    }
+    chosen
+}
+
+fn picture_menu(ui: &mut egui::Ui) -> Option<FileCommand> {
+    let kinds = [
+        ("As shown…", 1, Ground::AsShown),
+        ("Twice as large…", 2, Ground::AsShown),
+        ("Four times as large…", 4, Ground::AsShown),
+        ("Twice as large, transparent…", 2, Ground::Transparent),
+    ];
+    let clicked = kinds.into_iter().filter(|(name, ..)| ui.button(*name).clicked());
+    let (_, scale, ground) = clicked.last()?;
+    ui.close();
+    Some(FileCommand::SavePicture(PictureKind { scale, ground }))
+}
+
+fn edit_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let groups: [&[Command]; 3] = [
+        &[Command::Undo, Command::Redo],
+        &[
+            Command::NewHandle,
+            Command::NextHandle,
+            Command::Deselect,
+            Command::DeleteHandle,
+            Command::ResetHandle,
+        ],
+        &[Command::Apply, Command::ResetShape, Command::ClearRegions],
+    ];
+    for (number, group) in groups.into_iter().enumerate() {
+        if number > 0 {
+            ui.separator();
+        }
+        for command in group {
+            if command_button(ui, editor, command) {
+                commands.push(command.clone());
+                ui.close();
+            }
+        }
+    }
+}
+
+fn region_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let groups: [&[RegionAction]; 4] = [
+        &[
+            RegionAction::Grow,
+            RegionAction::Shrink,
+            RegionAction::SmoothBorder,
+            RegionAction::FillParts,
+        ],
+        &[RegionAction::Invert, RegionAction::EverythingBut],
+        &[
+            RegionAction::Mirror(0),
+            RegionAction::Mirror(1),
+            RegionAction::Mirror(2),
+        ],
+        &[RegionAction::ToHandle, RegionAction::ToFree, RegionAction::ToFixed],
+    ];
+    for (number, group) in groups.into_iter().enumerate() {
+        if number > 0 {
+            ui.separator();
+        }
+        for action in group {
+            let command = Command::Region(*action);
+            if command_button(ui, editor, &command) {
+                commands.push(command);
+                ui.close();
+            }
+        }
+    }
+}
+
+/// How the window itself looks, and what it can tell.
+fn window_menu(ui: &mut egui::Ui, chosen: &mut Option<FileCommand>) {
+    let groups: [&[(FileCommand, Option<&str>)]; 3] = [
+        &[
+            (FileCommand::Palette, None),
+            (FileCommand::Keys, None),
+            (FileCommand::Log, None),
+            (FileCommand::Hints, None),
+        ],
+        &[(FileCommand::Compare, None)],
+        &[
+            (FileCommand::NextTheme, None),
+            (FileCommand::Scale(1), Some("Larger")),
+            (FileCommand::Scale(-1), Some("Smaller")),
+        ],
+    ];
+    for (number, group) in groups.into_iter().enumerate() {
+        if number > 0 {
+            ui.separator();
+        }
+        for (command, name) in group {
+            let mut button = egui::Button::new(name.unwrap_or(command.name()));
+            if let Some(shortcut) = command.shortcut() {
+                button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+            }
+            if ui.add(button).clicked() {
+                *chosen = Some(command.clone());
+                ui.close();
+            }
+        }
+    }
+}
+
+fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    for command in [Command::FrameAll, Command::FrameSelected, Command::ShowEverything] {
+        if command_button(ui, editor, &command) {
+            commands.push(command);
+            ui.close();
+        }
+    }
+    ui.separator();
+    let view = editor.view();
+    let look = view.look;
+    let mut choice = |ui: &mut egui::Ui, command: Command, chosen: bool| {
+        if command_choice(ui, editor, &command, chosen) {
+            commands.push(command);
+            ui.close();
+        }
+    };
+    ui.menu_button("From", |ui| {
+        for (_, side) in NamedView::NAMES {
+            choice(ui, Command::View(side), false);
+        }
+        choice(ui, Command::TurnAround, false);
+        for steps in [[1, 0], [-1, 0], [0, 1], [0, -1]] {
+            choice(ui, Command::StepView(steps), false);
+        }
+    });
+    let is_flat = view.camera.projection == Projection::Orthographic;
+    choice(ui, Command::ToggleProjection, is_flat);
+    for orbit in [Orbit::Turntable, Orbit::Trackball] {
+        choice(ui, Command::SetOrbit(orbit), view.orbit == orbit);
+    }
+    ui.separator();
+    ui.menu_button("Clay", |ui| {
+        for (_, clay) in Clay::NAMES {
+            let chosen = look.shading == Shading::Clay && look.clay == clay;
+            choice(ui, Command::SetClay(clay), chosen);
+        }
+    });
+    choice(
+        ui,
+        Command::SetShading(Shading::Material),
+        look.shading == Shading::Material,
+    );
+    ui.menu_button("Colours and stripes", |ui| {
+        for shading in [
+            Shading::Stretch,
+            Shading::Area,
+            Shading::Stiffness,
+            Shading::Curvature,
+            Shading::Zebra,
+            Shading::Normals,
+        ] {
+            choice(ui, Command::SetShading(shading), look.shading == shading);
+        }
+    });
+    ui.separator();
+    choice(ui, Command::ToggleFlat, look.flat);
+    choice(ui, Command::ToggleWireframe, look.wireframe);
+    choice(ui, Command::ToggleBorders, look.borders);
+    choice(ui, Command::ToggleRegions, look.regions);
+    choice(ui, Command::ToggleOutlines, look.outlines);
+    choice(ui, Command::ToggleGrid, look.grid);
+    ui.separator();
+    let up = view.camera.up;
+    for (name, axis) in [("Y is up", UpAxis::Y), ("Z is up", UpAxis::Z)] {
+        if ui.radio(up == axis, name).clicked() {
+            commands.push(Command::SetUp(axis));
+        }
+    }
+}
+
+fn tools(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let view = editor.view();
+    let mut choice = |ui: &mut egui::Ui, command: Command, chosen: bool| {
+        if command_choice(ui, editor, &command, chosen) {
+            commands.push(command);
+        }
+    };
+    for tool in [
+        ToolMode::PaintHandle,
+        ToolMode::PaintFree,
+        ToolMode::PaintFixed,
+        ToolMode::PaintStiffness,
+        ToolMode::Erase,
+        ToolMode::Select,
+    ] {
+        choice(ui, Command::SetTool(tool), view.tool == tool);
+    }
+    ui.separator();
+    choice(ui, Command::Move, false);
+    choice(ui, Command::Turn, false);
+    choice(ui, Command::Scale, false);
+    ui.separator();
+    for shading in [Shading::Clay, Shading::Material] {
+        choice(ui, Command::SetShading(shading), view.look.shading == shading);
+    }
+    choice(ui, Command::ToggleRegions, view.look.regions);
+    choice(ui, Command::ToggleWireframe, view.look.wireframe);
+}

@@ -1,0 +1,116 @@
+//! The list of commands and their keys, each of which can be changed by pressing another.
+
+use eframe::egui::{self, RichText, ScrollArea};
+use pliant_editor::{Command, Editor, Key, Shortcut};
+
+use crate::window::bars::status;
+use crate::window::files::settings::SettingsFile;
+use crate::window::input::own_keys;
+
+/// What egui tells its window by.
+pub const ID: &str = "keys window";
+
+/// The open list.
+#[derive(Debug, Default)]
+pub struct KeysWindow {
+    /// Whether it is open.
+    pub open: bool,
+    /// The command that waits for its key.
+    waiting: Option<&'static str>,
+    /// Why the key that was pressed last was not taken.
+    refusal: Option<String>,
+}
+
+impl KeysWindow {
+    /// Whether the next key is meant for it.
+    pub fn takes_keys(&self) -> bool {
+        self.open && self.waiting.is_some()
+    }
+
+    /// Shows it, if it is open; true when a key was changed.
+    pub fn show(&mut self, context: &egui::Context, editor: &Editor, settings: &mut SettingsFile) -> bool {
+        let mut changed = false;
+        if let Some(name) = self.waiting
+            && let Some(key) = context.input(own_keys::pressed)
+        {
+            let allowed = key.and_then(|key| own_keys::refusal(key, name).map_or(Ok(key), Err));
+            match allowed {
+                // It waits for another.
+                Err(refusal) => self.refusal = Some(refusal),
+                Ok(key) => {
+                    (self.waiting, self.refusal) = (None, None);
+                    // Escape leaves everything as it was.
+                    if key.key != Key::Escape {
+                        give(key, name, editor, settings);
+                        changed = true;
+                    }
+                }
+            }
+        }
+        let mut open = self.open;
+        egui::Window::new("Keys")
+            .id(egui::Id::unique(ID))
+            .open(&mut open)
+            .default_width(360.0)
+            .show(context, |ui| {
+                let others = !settings.get().keys.is_empty();
+                if ui
+                    .add_enabled(others, egui::Button::new("The program's own keys"))
+                    .clicked()
+                {
+                    settings.change(|settings| settings.keys.clear());
+                    changed = true;
+                }
+                if let Some(refusal) = &self.refusal {
+                    ui.label(RichText::new(refusal).color(status::failed(ui)));
+                }
+                ui.separator();
+                ScrollArea::vertical()
+                    .max_height(380.0)
+                    .auto_shrink(false)
+                    .show(ui, |ui| {
+                        egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
+                            for listed in Command::all_listed() {
+                                ui.label(listed.name).on_hover_text(listed.tooltip);
+                                let keys = editor.shortcuts(&listed.command);
+                                let shown = match (self.waiting == Some(listed.name), keys.first()) {
+                                    (true, _) => "press a key".to_owned(),
+                                    (false, Some(key)) => key.label(),
+                                    (false, None) => "none".to_owned(),
+                                };
+                                let button = ui.button(RichText::new(shown).monospace());
+                                let label = format!("Key of {}", listed.name);
+                                button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
+                                if button.clicked() {
+                                    self.waiting = Some(listed.name);
+                                    self.refusal = None;
+                                }
+                                ui.end_row();
+                            }
+                        });
+                    });
+            });
+        self.open = open;
+        if !open {
+            self.waiting = None;
+            self.refusal = None;
+        }
+        changed
+    }
+}
+
+/// Gives a key to the command of this name, and takes it from any other: a key sends one command.
+fn give(key: Shortcut, name: &str, editor: &Editor, settings: &mut SettingsFile) {
+    let others = Command::all_listed().filter(|listed| listed.name != name);
+    let robbed: Vec<(String, Vec<String>)> = others
+        .filter(|listed| editor.shortcuts(&listed.command).contains(&key))
+        .map(|listed| {
+            let left = editor.shortcuts(&listed.command).iter().filter(|other| **other != key);
+            (listed.name.to_owned(), left.map(Shortcut::label).collect())
+        })
+        .collect();
+    settings.change(|settings| {
+        settings.keys.extend(robbed);
+        settings.keys.insert(name.to_owned(), vec![key.label()]);
+    });
+}

@@ -1,0 +1,236 @@
+//! What the window does with files: the menu's commands, the questions they raise, and what comes of them.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui;
+use pliant_editor::{Event, Revision};
+
+use super::recovery;
+use super::session::{KeepOriginal, Source};
+use crate::engine::is_project;
+use crate::files::{is_same, shown};
+use crate::window::application::Application;
+use crate::window::bars::top_bar::FileCommand;
+use crate::window::dialogs::palette::Palette;
+use crate::window::dialogs::question::{self, Answer, Question, Then};
+use crate::window::panels::notes::Note;
+use crate::window::threads::message::{Purpose, Written, WrittenKind};
+use crate::window::widgets::theme;
+
+impl Application {
+    pub(in crate::window) fn file_shortcuts(&mut self, context: &egui::Context) {
+        if self.question.is_some() || self.keys.takes_keys() {
+            return;
+        }
+        for command in FileCommand::WITH_SHORTCUTS {
+            let Some(shortcut) = command.shortcut() else { continue };
+            if context.input_mut(|input| input.consume_shortcut(&shortcut)) {
+                self.file_command(context, command.clone());
+            }
+        }
+        let dropped = context.input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
+        if let Some(path) = dropped {
+            self.file_command(context, FileCommand::OpenPath(path));
+        }
+    }
+
+    pub(in crate::window) fn chosen(&mut self, purpose: Purpose, path: Option<PathBuf>) {
+        match (purpose, path) {
+            (Purpose::Open, Some(path)) => self.open(path),
+            (Purpose::SaveAs, Some(path)) if is_project(&path) => self.save_project_to(path),
+            (Purpose::SaveAs, Some(path)) => {
+                let over_source = self.path() == Some(path.as_path()) && !self.may_write_over();
+                self.save_to(
+                    path,
+                    if over_source {
+                        KeepOriginal::Yes
+                    } else {
+                        KeepOriginal::No
+                    },
+                );
+            }
+            (Purpose::SaveProject, Some(path)) => self.save_project_to(path),
+            (Purpose::ExportEdit, Some(path)) => match self.editor.edit_file() {
+                Ok(edit) => self.session.export(path, edit, &self.workers),
+                Err(error) => self.fail(error.to_string()),
+            },
+            (Purpose::SavePicture(kind), Some(path)) => match self.viewport.picture(&self.editor, kind) {
+                Ok(Some(image)) => self.session.save_picture(path, image, &self.workers),
+                Ok(None) => self.fail("the view is busy or empty: try again".to_owned()),
+                Err(error) => self.fail(error.to_string()),
+            },
+            // Cancelled, or the system has no dialog: then a path can be typed.
+            (purpose, None) => self.question = Some(Question::Path(purpose, self.suggested_path(purpose))),
+        }
+    }
+
+    fn suggested_path(&self, purpose: Purpose) -> String {
+        match (purpose, self.path()) {
+            (Purpose::SaveAs, Some(path)) => path.display().to_string(),
+            (Purpose::SaveAs, None) => "edited.glb".to_owned(),
+            (Purpose::ExportEdit, Some(path)) => path.with_extension("edit.json").display().to_string(),
+            (Purpose::SaveProject, Some(path)) => path.with_extension("pliant").display().to_string(),
+            (Purpose::SaveProject, None) => "edited.pliant".to_owned(),
+            (Purpose::ExportEdit, None) => "edit.json".to_owned(),
+            (Purpose::SavePicture(_), Some(path)) => path.with_extension("png").display().to_string(),
+            (Purpose::SavePicture(_), None) => "picture.png".to_owned(),
+            (Purpose::Open, _) => String::new(),
+        }
+    }
+
+    /// Whether saving under a typed path would take a file away that is not the open one: the system's dialogs ask
+    /// for themselves.
+    fn would_be_lost(&self, purpose: Purpose, path: &Path) -> bool {
+        let path = match purpose {
+            Purpose::SaveProject => project_path(path.to_owned()),
+            _ => path.to_owned(),
+        };
+        let project = self.session.open.as_ref().and_then(|open| open.project.as_deref());
+        let is_own = |own: Option<&Path>| own.is_some_and(|own| is_same(own, &path));
+        purpose != Purpose::Open && path.is_file() && !is_own(self.path()) && !is_own(project)
+    }
+
+    fn may_write_over(&self) -> bool {
+        self.session.open.as_ref().is_some_and(|open| open.may_write_over)
+    }
+
+    pub(in crate::window) fn file_command(&mut self, context: &egui::Context, command: FileCommand) {
+        match command {
+            FileCommand::Open => self.unless_unsaved(context, Then::Open(None)),
+            FileCommand::OpenPath(path) => self.unless_unsaved(context, Then::Open(Some(path))),
+            FileCommand::Save => self.save(),
+            FileCommand::SaveAs => question::choose(Purpose::SaveAs, self.path(), &self.workers),
+            FileCommand::SaveProject => match self.session.open.as_ref().and_then(|open| open.project.clone()) {
+                Some(path) => self.save_project_to(path),
+                None => question::choose(Purpose::SaveProject, self.path(), &self.workers),
+            },
+            FileCommand::SaveProjectAs => question::choose(Purpose::SaveProject, self.path(), &self.workers),
+            FileCommand::ExportEdit => question::choose(Purpose::ExportEdit, self.path(), &self.workers),
+            FileCommand::Palette => self.palette = Some(Palette::default()),
+            FileCommand::Log => self.log.open = true,
+            FileCommand::Keys => self.keys.open = true,
+            FileCommand::NextTheme => {
+                self.settings.change(|settings| settings.theme = settings.theme.next());
+                theme::apply(context, self.settings.get());
+            }
+            FileCommand::Scale(tenths) => {
+                self.settings.change(|settings| {
+                    let scale = (settings.ui_scale * 10.0).round() + f32::from(tenths);
+                    settings.ui_scale = (scale / 10.0).clamp(0.5, 3.0);
+                });
+                theme::apply(context, self.settings.get());
+            }
+            FileCommand::Compare => self.toggle_compare(context),
+            FileCommand::Hints => self.settings.change(|settings| settings.hints_seen = false),
+            FileCommand::SavePicture(kind) => question::choose(Purpose::SavePicture(kind), self.path(), &self.workers),
+            FileCommand::Quit => self.unless_unsaved(context, Then::Close),
+        }
+    }
+
+    fn save(&mut self) {
+        match self.path().map(Path::to_owned) {
+            Some(path) if self.may_write_over() => self.save_to(path, KeepOriginal::No),
+            Some(path) => self.question = Some(Question::WriteOver(path)),
+            None => question::choose(Purpose::SaveAs, None, &self.workers),
+        }
+    }
+
+    /// Saves the project under `path`, which gets its extension if it has none.
+    pub fn save_project_to(&mut self, path: PathBuf) {
+        if let Some(snapshot) = self.editor.snapshot() {
+            self.session.save_project(project_path(path), snapshot, &self.workers);
+        }
+    }
+
+    fn unless_unsaved(&mut self, context: &egui::Context, then: Then) {
+        if self.editor.view().unsaved {
+            self.question = Some(Question::Discard(then));
+        } else {
+            self.go_on(then);
+        }
+        context.request_repaint();
+    }
+
+    fn go_on(&mut self, then: Then) {
+        match then {
+            Then::Open(Some(path)) => self.open(path),
+            Then::Open(None) => question::choose(Purpose::Open, self.path(), &self.workers),
+            Then::Close => self.closing = true,
+        }
+    }
+
+    pub(in crate::window) fn answer(&mut self, answer: Answer) {
+        let question = self.question.take();
+        match answer {
+            Answer::WriteOver(path) => self.save_to(path, KeepOriginal::Yes),
+            Answer::SaveAs => question::choose(Purpose::SaveAs, self.path(), &self.workers),
+            Answer::Save => {
+                if let Some(Question::Discard(then)) = question {
+                    self.after_saving = Some(then);
+                }
+                self.save();
+            }
+            Answer::Path(purpose, path) if self.would_be_lost(purpose, &path) => {
+                self.question = Some(Question::Replace(purpose, path));
+            }
+            Answer::Path(purpose, path) | Answer::Replace(purpose, path) => self.chosen(purpose, Some(path)),
+            Answer::Rename(purpose, path) => {
+                self.question = Some(Question::Path(purpose, path.display().to_string()));
+            }
+            Answer::Discard(then) => self.go_on(then),
+            Answer::Recover(project) => {
+                self.session
+                    .load(Source::Recovered(project), &self.viewport.gpu(), &self.workers);
+            }
+            Answer::Forget(projects) => projects.iter().for_each(|project| recovery::remove(project)),
+            Answer::Cancel => self.after_saving = None,
+        }
+    }
+
+    pub(in crate::window) fn written(&mut self, stamp: Revision, result: Result<Written, String>) {
+        self.session.written(stamp, &result, &self.workers);
+        match result {
+            Ok(written) => {
+                if !matches!(written.what, WrittenKind::Edit | WrittenKind::Picture) {
+                    self.editor.handle(Event::Saved);
+                    self.settings.change(|settings| settings.remember(&written.path));
+                }
+                let mut sentence = format!("Saved {}.", shown(&written.path));
+                for warning in &written.warnings {
+                    sentence.push(' ');
+                    sentence.push_str(warning);
+                }
+                self.notes.headline = Some(Note::Done(sentence));
+                if let Some(then) = self.after_saving.take() {
+                    self.go_on(then);
+                }
+            }
+            Err(sentence) => {
+                self.after_saving = None;
+                self.fail(sentence);
+            }
+        }
+    }
+
+    /// Lets the window close unless there is unsaved work that nobody agreed to lose.
+    pub(in crate::window) fn close_or_stay(&mut self, context: &egui::Context) {
+        if self.closing {
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        } else if context.input(|input| input.viewport().close_requested()) && self.editor.view().unsaved {
+            context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.question = Some(Question::Discard(Then::Close));
+            // It is asked from the next frame on, and nobody need move the pointer for that.
+            context.request_repaint();
+        }
+    }
+}
+
+/// A project's path, with its extension.
+fn project_path(path: PathBuf) -> PathBuf {
+    if is_project(&path) {
+        return path;
+    }
+    let mut name = path.into_os_string();
+    name.push(".pliant");
+    PathBuf::from(name)
+}

@@ -1,0 +1,9 @@
+//! Files in the window: opening, saving, projects, settings, unsaved work that is recovered.
+
+pub(in crate::window) mod actions;
+pub(in crate::window) mod app_directories;
+pub(in crate::window) mod names;
+pub(in crate::window) mod project_file;
+pub(in crate::window) mod recovery;
+pub(in crate::window) mod session;
+pub(in crate::window) mod settings;

@@ -1,0 +1,156 @@
+//! A project as a file: finding its mesh again, and keeping the mesh that it needs.
+
+use std::path::{Path, PathBuf};
+
+use pliant_editor::{Beginning, MeshReference, Project, Snapshot, geometry_hash};
+use pliant_mesh::{Cancel, Progress, WeldOptions};
+
+use super::names::{SAMPLE, SAMPLE_NAME, file_name, original_name};
+use crate::AppError;
+use crate::engine::{self, Loaded};
+use crate::files::{self, Staging};
+use crate::saving::{self, SaveAs};
+use crate::watch::Watch;
+
+/// Where a mesh as it was read stands now.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum MeshSource {
+    /// It is built in.
+    Sample,
+    /// In this file.
+    File(PathBuf),
+    /// Nowhere any more: it was saved over. Whoever needs it writes it again.
+    Gone,
+}
+
+/// Writes a snapshot as a project. A mesh that stands nowhere is written beside it, as `NAME.source.EXT`.
+///
+/// # Errors
+/// Where a file can't be written, or `cancel` is raised; an existing project is as it was then.
+pub fn write(
+    snapshot: &Snapshot,
+    loaded: &Loaded,
+    source: &MeshSource,
+    path: &Path,
+    staging: &Staging,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<(), AppError> {
+    let geometry = geometry_hash(snapshot.model());
+    let folder = files::folder_of(path);
+    let mut beside = None;
+    let mesh_path = match source {
+        MeshSource::Sample => None,
+        MeshSource::File(mesh) => Some(relative(mesh, folder)),
+        MeshSource::Gone => {
+            let kept = source_name(path, &loaded.path);
+            if !kept.exists() {
+                let at_rest = &loaded.model.rest_positions();
+                beside = Some(saving::stage(loaded, &SaveAs::shape(at_rest, &kept), staging, progress, cancel)?.staged);
+            }
+            Some(file_name(&kept))
+        }
+    };
+    let project = snapshot.project(MeshReference {
+        path: mesh_path,
+        geometry,
+    });
+    let staged = staging.stage([(path.to_owned(), project.to_json().as_bytes())])?;
+    // The mesh first: the project must not stand there without it.
+    match beside {
+        Some(mesh) => mesh.and(staged).commit()?,
+        None => staged.commit()?,
+    }
+    Ok(())
+}
+
+/// Where a project keeps a mesh that stands nowhere else; a `.gltf` is kept packed.
+fn source_name(project: &Path, mesh: &Path) -> PathBuf {
+    let mut name = project.file_stem().unwrap_or_default().to_owned();
+    name.push(".source.");
+    let extension = mesh.extension().unwrap_or_default();
+    name.push(if extension.eq_ignore_ascii_case("gltf") {
+        "glb".as_ref()
+    } else {
+        extension
+    });
+    project.with_file_name(name)
+}
+
+/// The path as seen from `folder` where it stands below that, else whole.
+fn relative(path: &Path, folder: &Path) -> String {
+    let whole = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let (path, folder) = (whole(path), whole(folder));
+    let shown = path.strip_prefix(&folder).unwrap_or(&path);
+    shown.to_string_lossy().replace('\\', "/")
+}
+
+/// A project, its mesh, and where that was found.
+pub struct OpenedProject {
+    /// What it says.
+    pub project: Project,
+    /// Its mesh.
+    pub loaded: Loaded,
+    /// Where that stands.
+    pub source: MeshSource,
+}
+
+/// Reads a project and the mesh it belongs to: at its path, beside the project, or the kept original of either.
+///
+/// # Errors
+/// A project that can't be read, or whose mesh is not to be found.
+pub fn read(path: &Path, watch: &Watch) -> Result<OpenedProject, AppError> {
+    let text = files::read_text(path)?;
+    let refuse = |source| AppError::Edit {
+        edit: path.to_owned(),
+        source,
+    };
+    let project = match Beginning::parse(&text).map_err(refuse)? {
+        Beginning::Project(project) => *project,
+        Beginning::Edit(_) => {
+            return Err(refuse(pliant_editor::EditError::Project(
+                "it names no `mesh`, so it is an edit: give it to `pliant apply --edit`".to_owned(),
+            )));
+        }
+    };
+    let weld = WeldOptions::default();
+    let Some(named) = project.mesh().path.clone() else {
+        let loaded = engine::load_bytes(SAMPLE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?;
+        return if geometry_hash(&loaded.model) == project.mesh().geometry {
+            Ok(OpenedProject {
+                project,
+                loaded,
+                source: MeshSource::Sample,
+            })
+        } else {
+            Err(AppError::ProjectMesh {
+                project: path.to_owned(),
+                mesh: SAMPLE_NAME.into(),
+                what: "another sample's",
+            })
+        };
+    };
+    let folder = files::folder_of(path);
+    let at = folder.join(&named);
+    let beside = folder.join(Path::new(&named).file_name().unwrap_or_default());
+    let mut what = "missing";
+    for mesh in [&at, &beside, &original_name(&at), &original_name(&beside)] {
+        if !mesh.is_file() {
+            continue;
+        }
+        let loaded = engine::load(mesh, &weld, watch)?;
+        if geometry_hash(&loaded.model) == project.mesh().geometry {
+            return Ok(OpenedProject {
+                project,
+                loaded,
+                source: MeshSource::File(mesh.clone()),
+            });
+        }
+        what = "another one now";
+    }
+    Err(AppError::ProjectMesh {
+        project: path.to_owned(),
+        mesh: at,
+        what,
+    })
+}

@@ -1,0 +1,206 @@
+//! From egui's events to the editor's: what happened over the 3D view, in the view's own points.
+
+pub(in crate::window) mod event_queue;
+pub(in crate::window) mod own_keys;
+
+use std::collections::VecDeque;
+
+use eframe::egui::{self, MouseWheelUnit, PointerButton, Rect};
+use glam::DVec2;
+use pliant_editor::{Button, Event, Key, Modifiers, Pointer};
+
+/// Points that a wheel's notch scrolls where the system reports points.
+const POINTS_PER_LINE: f64 = 50.0;
+
+/// Remembers which buttons went down over the view: they belong to it until they go up, wherever that is.
+#[derive(Debug, Default)]
+pub struct Input {
+    held: Vec<PointerButton>,
+    inside: bool,
+    /// Digits of the numeric pad that went down and have not been heard yet.
+    pub numpad: VecDeque<u8>,
+}
+
+/// Who gets what happens now.
+#[derive(Clone, Copy, Debug)]
+pub struct Attention {
+    /// The view's rectangle in the window, in points.
+    pub rect: Rect,
+    /// Where the pointer was last seen in the window, in points.
+    pub pointer: egui::Pos2,
+    /// Whether the pointer is over the view and nothing lies above it.
+    pub pointer_over: bool,
+    /// Whether a transform follows the pointer wherever it goes, over panels and bars too.
+    pub follows_pointer: bool,
+    /// Whether keys are for the view: nobody types into a field and no question is open.
+    pub keys: bool,
+    /// Whether events of this moment wait for the next frame.
+    pub more_to_come: bool,
+}
+
+impl Input {
+    /// The editor's events of this frame, in order.
+    pub fn events(&mut self, context: &egui::Context, attention: Attention) -> Vec<Event> {
+        let (events, modifiers) = context.input(|input| (input.events.clone(), input.modifiers));
+        let mut out = Vec::new();
+        for event in events {
+            self.translate(&event, modifiers, attention, &mut out);
+        }
+        // What went elsewhere, into a field to type in, is no command.
+        if !attention.more_to_come {
+            self.numpad.clear();
+        }
+        if self.inside && !attention.pointer_over && !attention.follows_pointer && self.held.is_empty() {
+            self.inside = false;
+            out.push(Event::PointerLeft);
+        }
+        out
+    }
+
+    fn translate(
+        &mut self,
+        event: &egui::Event,
+        modifiers: egui::Modifiers,
+        attention: Attention,
+        out: &mut Vec<Event>,
+    ) {
+        let pointer = |position: egui::Pos2, modifiers: egui::Modifiers| {
+            let relative = position - attention.rect.min;
+            Pointer {
+                position_px: DVec2::new(f64::from(relative.x), f64::from(relative.y)),
+                modifiers: held_modifiers(modifiers),
+            }
+        };
+        let over = attention.pointer_over || attention.follows_pointer || !self.held.is_empty();
+        match *event {
+            egui::Event::PointerMoved(position) if over => {
+                self.inside = true;
+                out.push(Event::PointerMoved(pointer(position, modifiers)));
+            }
+            egui::Event::PointerButton {
+                pos,
+                button,
+                pressed: true,
+                modifiers,
+            } if attention.pointer_over => {
+                if let Some(ours) = button_of(button) {
+                    self.held.push(button);
+                    out.push(Event::PointerPressed(pointer(pos, modifiers), ours));
+                }
+            }
+            egui::Event::PointerButton {
+                pos,
+                button,
+                pressed: false,
+                modifiers,
+            } if self.held.contains(&button) => {
+                self.held.retain(|&held| held != button);
+                if let Some(ours) = button_of(button) {
+                    out.push(Event::PointerReleased(pointer(pos, modifiers), ours));
+                }
+            }
+            egui::Event::Touch { force, .. } => out.push(Event::Pressure(force.map(f64::from))),
+            egui::Event::PointerGone if self.held.is_empty() && self.inside => {
+                self.inside = false;
+                out.push(Event::PointerLeft);
+            }
+            egui::Event::MouseWheel {
+                unit, delta, modifiers, ..
+            } if attention.pointer_over => {
+                let lines = f64::from(delta.y)
+                    * match unit {
+                        MouseWheelUnit::Point => 1.0 / POINTS_PER_LINE,
+                        MouseWheelUnit::Line => 1.0,
+                        MouseWheelUnit::Page => 10.0,
+                    };
+                out.push(Event::Wheel {
+                    pointer: pointer(attention.pointer, modifiers),
+                    lines,
+                });
+            }
+            egui::Event::Zoom(factor) if attention.pointer_over => {
+                let pointer = pointer(attention.pointer, modifiers);
+                out.push(Event::Pinch {
+                    pointer,
+                    factor: f64::from(factor),
+                });
+            }
+            egui::Event::Key {
+                key,
+                physical_key,
+                pressed: true,
+                modifiers,
+                ..
+            } if attention.keys => {
+                let digit = physical_key.or(Some(key)).and_then(digit_of);
+                let is_numpads = digit.is_some() && self.numpad.front().copied() == digit;
+                let numpad = digit.filter(|_| is_numpads).map(Key::Numpad);
+                if is_numpads {
+                    self.numpad.pop_front();
+                }
+                if let Some(key) = numpad.or_else(|| key_of(key)) {
+                    out.push(Event::Key(key, held_modifiers(modifiers)));
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The key that went down in this frame, with its modifiers, if it is one that the editor knows.
+pub fn pressed_key(input: &egui::InputState) -> Option<(Key, Modifiers)> {
+    input.events.iter().find_map(|event| match event {
+        egui::Event::Key {
+            key,
+            pressed: true,
+            modifiers,
+            ..
+        } => Some((key_of(*key)?, held_modifiers(*modifiers))),
+        _ => None,
+    })
+}
+
+pub fn held_modifiers(modifiers: egui::Modifiers) -> Modifiers {
+    Modifiers {
+        shift: modifiers.shift,
+        ctrl: modifiers.command,
+        alt: modifiers.alt,
+    }
+}
+
+fn button_of(button: PointerButton) -> Option<Button> {
+    match button {
+        PointerButton::Primary => Some(Button::Primary),
+        PointerButton::Middle => Some(Button::Middle),
+        PointerButton::Secondary => Some(Button::Secondary),
+        PointerButton::Extra1 | PointerButton::Extra2 => None,
+    }
+}
+
+/// The digit that stands on a key, in either row.
+fn digit_of(key: egui::Key) -> Option<u8> {
+    key.symbol_or_name().parse::<u8>().ok().filter(|digit| *digit < 10)
+}
+
+pub fn key_of(key: egui::Key) -> Option<Key> {
+    Some(match key {
+        egui::Key::Escape => Key::Escape,
+        egui::Key::Enter => Key::Enter,
+        egui::Key::Backspace => Key::Backspace,
+        egui::Key::Delete => Key::Delete,
+        egui::Key::Home => Key::Home,
+        egui::Key::Tab => Key::Tab,
+        _ => Key::Character(character_of(key)?),
+    })
+}
+
+/// The character a key types without modifiers, in lower case.
+fn character_of(key: egui::Key) -> Option<char> {
+    let mut characters = key.symbol_or_name().chars();
+    match (characters.next(), characters.next(), key) {
+        (_, _, egui::Key::Minus) => Some('-'),
+        (_, _, egui::Key::Space) => Some(' '),
+        (Some(character), None, _) if character.is_ascii() => Some(character.to_ascii_lowercase()),
+        _ => None,
+    }
+}

@@ -1,0 +1,185 @@
+//! What the left button does on the surface: the stroke's shape, the brush, and what stiffness it paints.
+
+use eframe::egui::{self, Color32, DragValue, RichText, Slider};
+use pliant_editor::{
+    BrushMetric, Command, Depth, Editor, STIFFNESS_RANGE, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
+    stiffness_colour,
+};
+
+use crate::window::widgets::command_button::{choices, command_button, command_choice};
+use crate::window::widgets::number_field::number_field;
+use crate::window::widgets::outbox::Outbox;
+
+/// Shows what belongs to the tool in hand.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let view = editor.view();
+    ui.horizontal_wrapped(|ui| {
+        for shape in [
+            StrokeShape::Brush,
+            StrokeShape::Lasso,
+            StrokeShape::Box,
+            StrokeShape::Component,
+        ] {
+            let command = Command::SetStrokeShape(shape);
+            if command_choice(ui, editor, &command, view.stroke_shape == shape) {
+                commands.push(command);
+            }
+        }
+    });
+    egui::Grid::new("brush")
+        .num_columns(2)
+        .spacing([8.0, 4.0])
+        .show(ui, |ui| match view.stroke_shape {
+            StrokeShape::Brush => {
+                let label = ui.label("Radius");
+                let mut radius_px = view.brush_radius_px;
+                let slider = number_field(ui, &mut radius_px, |ui, radius_px| {
+                    let slider = Slider::new(radius_px, 4.0..=200.0).suffix(" px").fixed_decimals(0);
+                    ui.add(slider.update_while_editing(false))
+                });
+                let slider = slider
+                    .labelled_by(label.id)
+                    .on_hover_text("[ and ] make it smaller and larger.");
+                if slider.changed() {
+                    commands.push(Command::SetBrushRadius(radius_px));
+                }
+                ui.end_row();
+                ui.label("Measured");
+                const METRICS: [(BrushMetric, &str, &str); 3] = [
+                    (
+                        BrushMetric::Screen,
+                        "as seen",
+                        "What the disc on the screen covers and faces you.",
+                    ),
+                    (
+                        BrushMetric::Surface,
+                        "along surface",
+                        "What is near along the surface: into folds and round edges, seen or not.",
+                    ),
+                    (
+                        BrushMetric::Through,
+                        "through",
+                        "Everything that the disc on the screen covers, however far behind.",
+                    ),
+                ];
+                if let Some(metric) = choices(ui, view.brush_metric, &METRICS) {
+                    commands.push(Command::SetBrushMetric(metric));
+                }
+                ui.end_row();
+            }
+            StrokeShape::Lasso | StrokeShape::Box => {
+                ui.label("Takes");
+                const DEPTHS: [(Depth, &str, &str); 2] = [
+                    (
+                        Depth::Visible,
+                        "what is seen",
+                        "Only what faces you and is hidden by nothing.",
+                    ),
+                    (
+                        Depth::Through,
+                        "all through",
+                        "Everything inside, to the back of the model.",
+                    ),
+                ];
+                if let Some(depth) = choices(ui, view.depth, &DEPTHS) {
+                    commands.push(Command::SetDepth(depth));
+                }
+                ui.end_row();
+            }
+            StrokeShape::Component => {}
+        });
+    if view.tool == ToolMode::PaintStiffness {
+        ui.add_space(4.0);
+        stiffness(ui, editor, &view.stiffness_brush, view.pressure, commands);
+    }
+}
+
+fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressure: Option<f64>, commands: &mut Outbox) {
+    let mut changed = *brush;
+    const ACTIONS: [(StiffnessAction, &str, &str); 3] = [
+        (StiffnessAction::Paint, "Paint", "Takes the surface towards the value."),
+        (StiffnessAction::Smooth, "Smooth", "Evens the stiffness out."),
+        (
+            StiffnessAction::Erase,
+            "Erase",
+            "Takes the surface back to 1. So does painting with Ctrl held.",
+        ),
+    ];
+    if let Some(action) = choices(ui, brush.action, &ACTIONS) {
+        changed.action = action;
+    }
+    egui::Grid::new("stiffness")
+        .num_columns(2)
+        .spacing([8.0, 4.0])
+        .show(ui, |ui| {
+            let label = ui.label("Value");
+            let speed = 0.02 * changed.value;
+            let field = number_field(ui, &mut changed.value, |ui, value| {
+                let field = DragValue::new(value).range(STIFFNESS_RANGE).speed(speed);
+                ui.add(field.max_decimals(3).update_while_editing(false))
+            });
+            field
+                .labelled_by(label.id)
+                .on_hover_text("0.001 gives way like cloth, 1 is as everywhere, 1000 keeps its shape.");
+            ui.end_row();
+            for (name, value, hover) in [
+                (
+                    "Strength",
+                    &mut changed.strength,
+                    "How far one stroke goes towards the value.",
+                ),
+                (
+                    "Falloff",
+                    &mut changed.falloff,
+                    "0 ends at a hard rim, 1 falls off from the middle.",
+                ),
+            ] {
+                let label = ui.label(name);
+                let slider = number_field(ui, value, |ui, value| {
+                    let slider = Slider::new(value, 0.0..=1.0).fixed_decimals(2);
+                    ui.add(slider.update_while_editing(false))
+                });
+                slider.labelled_by(label.id).on_hover_text(hover);
+                ui.end_row();
+            }
+        });
+    if changed != *brush {
+        commands.push(Command::SetStiffnessBrush(changed));
+    }
+    legend(ui);
+    ui.horizontal(|ui| {
+        if command_button(ui, editor, &Command::ClearStiffness) {
+            commands.push(Command::ClearStiffness);
+        }
+        let pen = match pressure {
+            Some(_) => "A pen's pressure scales the strength.",
+            None => "No pen pressure is reported.",
+        };
+        ui.label(RichText::new(pen).weak().small());
+    });
+}
+
+/// What the colours mean: from 0.001 to 1000.
+fn legend(ui: &mut egui::Ui) {
+    let width = ui.available_width().min(240.0);
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(width, 10.0), egui::Sense::hover());
+    const STEPS: usize = 60;
+    for step in 0..STEPS {
+        let [from, to] = [step, step + 1].map(|step| rect.left() + width * step as f32 / STEPS as f32);
+        let decades = 6.0 * (step as f64 + 0.5) / STEPS as f64 - 3.0;
+        let [red, green, blue, _] = stiffness_colour(10_f64.powf(decades));
+        let bar = egui::Rect::from_x_y_ranges(from..=to + 0.5, rect.y_range());
+        ui.painter().rect_filled(bar, 0.0, Color32::from_rgb(red, green, blue));
+    }
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let colour = ui.visuals().weak_text_color();
+    let (labels, _) = ui.allocate_exact_size(egui::vec2(width, 12.0), egui::Sense::hover());
+    for (share, text, align) in [
+        (0.0, "0.001", egui::Align2::LEFT_TOP),
+        (0.5, "1", egui::Align2::CENTER_TOP),
+        (1.0, "1000", egui::Align2::RIGHT_TOP),
+    ] {
+        let at = egui::pos2(labels.left() + width * share, labels.top());
+        ui.painter().text(at, align, text, font.clone(), colour);
+    }
+}

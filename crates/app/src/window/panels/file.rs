@@ -1,0 +1,65 @@
+//! What is to be known about the open file; each thing found in its mesh leads to where it is.
+
+use eframe::egui::{self, RichText};
+use pliant_editor::{Command, Editor, thousands};
+use pliant_mesh::{FindingKind, Model, Named};
+
+use super::notes::Notes;
+use crate::window::widgets::outbox::Outbox;
+
+/// Shows the file's numbers, notes and findings.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, notes: &Notes, commands: &mut Outbox) {
+    let Some(model) = editor.view().model else {
+        ui.label(RichText::new("Nothing is open.").weak());
+        return;
+    };
+    ui.label(format!(
+        "{} vertices, {} triangles",
+        thousands(model.drawn.file_vertex_count()),
+        thousands(model.surface.triangles.len())
+    ));
+    for kind in FindingKind::ALL {
+        if let Some(sentence) = model.findings.sentence(kind) {
+            finding(ui, model, kind, &sentence, commands);
+        }
+    }
+    for note in &notes.about_file {
+        ui.add(egui::Label::new(RichText::new(note).weak().small()).wrap());
+    }
+}
+
+/// A sentence, and a button for each of its examples.
+fn finding(ui: &mut egui::Ui, model: &Model, kind: FindingKind, sentence: &str, commands: &mut Outbox) {
+    ui.add(egui::Label::new(RichText::new(sentence).weak().small()).wrap());
+    let places: Vec<u32> = model
+        .findings
+        .of(kind)
+        .examples
+        .iter()
+        .filter_map(|&number| match kind.named() {
+            Named::FileVertex => Some(number),
+            Named::DrawnTriangle => {
+                let [corner, ..] = model.drawn_triangle(number)?;
+                Some(model.drawn.file_vertex(corner).0)
+            }
+        })
+        .collect();
+    if places.is_empty() {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        ui.label(RichText::new("Show").weak().small());
+        for (number, &vertex) in places.iter().enumerate() {
+            let button = ui.small_button((number + 1).to_string());
+            let label = format!("Show place {} of: {sentence}", number + 1);
+            button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
+            if button
+                .on_hover_text(format!("Comes close to vertex {vertex}."))
+                .clicked()
+            {
+                commands.push(Command::FrameFileVertex(vertex));
+            }
+        }
+    });
+}

@@ -1,0 +1,307 @@
+//! The list of handles, and the selected one in numbers.
+
+use eframe::egui::{self, Align, Color32, ComboBox, DragValue, Layout, RichText, Sense};
+use glam::DVec3;
+use pliant_deform::CONTINUITY_RANGE;
+use pliant_editor::{
+    Command, Editor, HANDLE_COLOURS, Handle, HandleId, HandleTransform, PivotPlace, Reach, SOFT_RANGE,
+};
+
+use crate::window::widgets::command_button::command_button;
+use crate::window::widgets::icon::{Icon, toggle};
+use crate::window::widgets::number_field::number_field;
+use crate::window::widgets::outbox::Outbox;
+
+/// Shows the list and the selected handle's numbers.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let view = editor.view();
+    if view.handles.is_empty() {
+        ui.label(RichText::new("Paint on the surface what you want to move.").weak());
+    }
+    for handle in view.handles {
+        let is_selected = view.selected == Some(handle.id) || view.companions.contains(&handle.id);
+        row(ui, handle, is_selected, commands);
+    }
+    if let Some(handle) = view.handles.iter().find(|handle| view.selected == Some(handle.id)) {
+        ui.add_space(4.0);
+        ui.add_enabled_ui(!handle.locked, |ui| numbers(ui, editor, handle, commands));
+    }
+    ui.add_space(4.0);
+    ui.horizontal_wrapped(|ui| {
+        for command in [Command::NewHandle, Command::ResetHandle, Command::DeleteHandle] {
+            if command_button(ui, editor, &command) {
+                commands.push(command);
+            }
+        }
+        ui.menu_button("More", |ui| {
+            for command in [
+                Command::DuplicateHandle,
+                Command::MakeTwin(0),
+                Command::MakeTwin(1),
+                Command::MakeTwin(2),
+                Command::Untwin,
+                Command::PickPivot,
+                Command::Widen,
+                Command::ResetRegion,
+            ] {
+                if command_button(ui, editor, &command) {
+                    commands.push(command);
+                    ui.close();
+                }
+            }
+        });
+    });
+}
+
+fn row(ui: &mut egui::Ui, handle: &Handle, is_selected: bool, commands: &mut Outbox) {
+    ui.horizontal(|ui| {
+        swatch(ui, handle, commands);
+        name(ui, handle, is_selected, commands);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            let hover = "Locked: it can be neither moved nor painted nor deleted.";
+            if toggle(ui, Icon::Lock, handle.locked, &format!("Lock {}", handle.name), hover) {
+                commands.push(Command::ToggleHandleLocked(handle.id));
+            }
+            let hover = "Shows or hides its colour and its gizmo.";
+            if toggle(ui, Icon::Eye, handle.visible, &format!("Show {}", handle.name), hover) {
+                commands.push(Command::ToggleHandleVisible(handle.id));
+            }
+            if handle.soft.is_some() {
+                ui.label(RichText::new("soft").weak().small());
+            }
+            if handle.twin.is_some() {
+                ui.label(RichText::new("twin").weak().small());
+            }
+        });
+    });
+}
+
+/// The handle's colour; a click offers others.
+fn swatch(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
+    let [red, green, blue, _] = handle.colour;
+    let button = egui::Button::new("")
+        .fill(Color32::from_rgb(red, green, blue))
+        .min_size(egui::vec2(14.0, 14.0))
+        .small();
+    let (response, _) = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
+        ui.horizontal(|ui| {
+            for colour in HANDLE_COLOURS {
+                let [red, green, blue, _] = colour;
+                let (rect, choice) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), Sense::click());
+                ui.painter().rect_filled(rect, 4.0, Color32::from_rgb(red, green, blue));
+                if choice.clicked() {
+                    commands.push(Command::SetHandleColour(handle.id, colour));
+                    ui.close();
+                }
+            }
+        });
+    });
+    let label = format!("Colour of {}", handle.name);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
+}
+
+/// The name: a click selects, with Ctrl along with others; a double click renames.
+fn name(ui: &mut egui::Ui, handle: &Handle, is_selected: bool, commands: &mut Outbox) {
+    let editing = egui::Id::unique("renamed handle");
+    let typed: Option<(HandleId, String)> = ui.data(|data| data.get_temp(editing));
+    if let Some((id, mut text)) = typed
+        && id == handle.id
+    {
+        let field = ui.add(egui::TextEdit::singleline(&mut text).desired_width(110.0));
+        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Name of the handle"));
+        if field.lost_focus() {
+            let is_meant = !ui.input(|input| input.key_pressed(egui::Key::Escape)) && !text.trim().is_empty();
+            if is_meant && text.trim() != handle.name {
+                commands.push(Command::RenameHandle(handle.id, text.trim().to_owned()));
+            }
+            ui.data_mut(|data| data.remove::<(HandleId, String)>(editing));
+        } else {
+            field.request_focus();
+            ui.data_mut(|data| data.insert_temp(editing, (id, text)));
+        }
+        return;
+    }
+    let label = ui
+        .selectable_label(is_selected, &handle.name)
+        .on_hover_text("Click to select, with Ctrl along with others; double-click to rename.");
+    if label.double_clicked() {
+        ui.data_mut(|data| data.insert_temp(editing, (handle.id, handle.name.clone())));
+    } else if label.clicked() {
+        commands.push(if ui.input(|input| input.modifiers.command) {
+            Command::ToggleSelected(handle.id)
+        } else {
+            Command::SelectHandle(handle.id)
+        });
+    }
+}
+
+fn numbers(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Outbox) {
+    egui::Grid::new("handle")
+        .num_columns(2)
+        .spacing([8.0, 4.0])
+        .show(ui, |ui| {
+            if let HandleTransform::Trs {
+                translation,
+                rotation,
+                scale,
+                pivot,
+            } = handle.transform
+            {
+                let set = |translation, rotation, scale| {
+                    let transform = HandleTransform::Trs {
+                        translation,
+                        rotation,
+                        scale,
+                        pivot,
+                    };
+                    Command::SetHandleTransform(handle.id, transform)
+                };
+                triple(ui, "Move", translation, 0.01, "", commands, |moved| {
+                    set(moved, rotation, scale)
+                });
+                triple(ui, "Turn", handle.turn_deg, 0.5, "°", commands, |degrees| {
+                    Command::SetTurn(handle.id, degrees)
+                });
+                triple(ui, "Scale", scale, 0.01, "", commands, |scale| {
+                    set(translation, rotation, scale)
+                });
+            }
+            pivot(ui, handle, commands);
+            reach(ui, handle, commands);
+            joint(ui, editor, handle, commands);
+            softness(ui, handle, commands);
+            ui.end_row();
+        });
+}
+
+/// Three numbers in a row, for x, y and z.
+fn triple(
+    ui: &mut egui::Ui,
+    label: &str,
+    value: DVec3,
+    speed: f64,
+    suffix: &str,
+    commands: &mut Outbox,
+    set: impl Fn(DVec3) -> Command,
+) {
+    let name = ui.label(label);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        ui.spacing_mut().interact_size.x = 54.0;
+        for axis in 0..3 {
+            let mut changed = value;
+            let field = number_field(ui, &mut changed[axis], |ui, value| {
+                let field = DragValue::new(value).speed(speed).max_decimals(3).suffix(suffix);
+                ui.add(field.update_while_editing(false))
+            });
+            let field = field.labelled_by(name.id).on_hover_text(["x", "y", "z"][axis]);
+            commands.adjust(&field, || set(changed));
+        }
+    });
+    ui.end_row();
+}
+
+fn pivot(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
+    let name = |place| match place {
+        PivotPlace::Centroid => "middle",
+        PivotPlace::Border => "border",
+        PivotPlace::Picked => "picked",
+    };
+    let label = ui
+        .label("Pivot")
+        .on_hover_text("The point that the handle turns about. Moving it moves nothing.");
+    ui.horizontal(|ui| {
+        let list = ComboBox::from_id_salt("pivot")
+            .selected_text(name(handle.pivot_place))
+            .width(74.0)
+            .show_ui(ui, |ui| {
+                for (place, hover) in [
+                    (PivotPlace::Centroid, "The middle of the handle."),
+                    (
+                        PivotPlace::Border,
+                        "The middle of its border: an arm turns about its shoulder.",
+                    ),
+                ] {
+                    let chosen = handle.pivot_place == place;
+                    if ui.selectable_label(chosen, name(place)).on_hover_text(hover).clicked() && !chosen {
+                        commands.push(Command::SetPivotPlace(handle.id, place));
+                    }
+                }
+            });
+        list.response.labelled_by(label.id);
+        if ui
+            .button("Pick")
+            .on_hover_text("Click the point on the surface.")
+            .clicked()
+        {
+            commands.push(Command::PickPivot);
+        }
+    });
+    ui.end_row();
+}
+
+fn reach(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
+    let label = ui.label("Reach");
+    let (mut value, suffix, most, make): (f64, _, _, fn(f64) -> Reach) = match handle.reach {
+        Reach::Radii(radii) => (radii, " radii", 50.0, Reach::Radii),
+        Reach::Length(length) => (length, "", f64::MAX, Reach::Length),
+    };
+    let speed = (0.02 * value).max(1e-4);
+    let hover = "How far along the surface this handle takes the surface along.";
+    let field = number_field(ui, &mut value, |ui, value| {
+        let field = DragValue::new(value).range(0.0..=most).speed(speed);
+        ui.add(field.max_decimals(3).suffix(suffix).update_while_editing(false))
+    });
+    let field = field.labelled_by(label.id).on_hover_text(hover);
+    commands.adjust(&field, || Command::SetReach(handle.id, make(value)));
+    ui.end_row();
+}
+
+/// How smoothly the surface goes over into the handle, where the method has a choice.
+fn joint(ui: &mut egui::Ui, editor: &Editor, handle: &Handle, commands: &mut Outbox) {
+    let label = ui.label("Border");
+    let has_choice = editor.document().method().name() == "bilaplacian";
+    let mut value = handle.continuity.unwrap_or(*CONTINUITY_RANGE.end());
+    let word = match value {
+        ..0.5 => "hinge",
+        0.5..1.5 => "keeps tangents",
+        _ => "smooth",
+    };
+    ui.add_enabled_ui(has_choice, |ui| {
+        ui.horizontal(|ui| {
+            let hover = if has_choice {
+                "How smoothly the surface joins this handle: 0 folds like a hinge, 1 keeps its tangents, 2 its curvature."
+            } else {
+                "Only the bi-Laplacian has a choice of how smoothly the surface joins a handle."
+            };
+            let field = number_field(ui, &mut value, |ui, value| {
+                let field = DragValue::new(value).range(CONTINUITY_RANGE).speed(0.02);
+                ui.add(field.max_decimals(2).update_while_editing(false))
+            });
+            let field = field.labelled_by(label.id).on_hover_text(hover).on_disabled_hover_text(hover);
+            commands.adjust(&field, || Command::SetContinuity(handle.id, Some(value)));
+            ui.label(RichText::new(word).weak());
+        });
+    });
+    ui.end_row();
+}
+
+/// Whether the handle holds its vertices or only pulls at them, and how firmly.
+fn softness(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
+    let mut is_soft = handle.soft.is_some();
+    let hover = "A soft handle pulls at its part of the surface instead of holding it.";
+    if ui.checkbox(&mut is_soft, "Soft").on_hover_text(hover).changed() {
+        commands.push(Command::SetSoft(handle.id, is_soft.then_some(1.0)));
+    }
+    if let Some(mut weight) = handle.soft {
+        let speed = 0.02 * weight;
+        let hover = "Its weight: at 1 the handle and the surface give way to each other; the larger, the firmer.";
+        let field = number_field(ui, &mut weight, |ui, weight| {
+            let field = DragValue::new(weight).range(SOFT_RANGE).speed(speed);
+            ui.add(field.update_while_editing(false))
+        });
+        let field = field.on_hover_text(hover);
+        commands.adjust(&field, || Command::SetSoft(handle.id, Some(weight)));
+    }
+}

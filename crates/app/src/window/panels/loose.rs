@@ -1,0 +1,91 @@
+//! What parts do that nothing holds: all of them, and each.
+
+use eframe::egui::{self, ComboBox, RichText, ScrollArea};
+use pliant_deform::Loose;
+use pliant_editor::{Command, Editor, thousands};
+use pliant_mesh::Model;
+
+use crate::window::widgets::command_button::choices;
+use crate::window::widgets::outbox::Outbox;
+
+const CHOICES: [(Loose, &str, &str); 3] = [
+    (
+        Loose::Follow,
+        "follow",
+        "They keep their shape and move along with the surface beside them: eyes, buttons.",
+    ),
+    (
+        Loose::Bend,
+        "bend along",
+        "Every place of them goes with the surface beside it: straps, seams, bandages.",
+    ),
+    (Loose::Rest, "rest", "They stay where they are."),
+];
+
+/// Shows the choice for all parts and the list of those that are loose.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let document = editor.document();
+    ui.horizontal(|ui| {
+        ui.label("Loose parts")
+            .on_hover_text("Parts of the surface that no handle and no paint holds.");
+        if let Some(loose) = choices(ui, document.loose(), &CHOICES) {
+            commands.push(Command::SetLoose(loose));
+        }
+    });
+    let (Some(model), parts) = (editor.view().model, editor.loose_components()) else {
+        return;
+    };
+    if parts.is_empty() {
+        return;
+    }
+    let title = format!(
+        "{} loose {}",
+        parts.len(),
+        if parts.len() == 1 { "part" } else { "parts" }
+    );
+    egui::CollapsingHeader::new(RichText::new(title).small())
+        .id_salt("loose parts")
+        .show(ui, |ui| {
+            let height = ui.spacing().interact_size.y;
+            ScrollArea::vertical()
+                .id_salt("loose")
+                .max_height(160.0)
+                .auto_shrink([false, true])
+                .show_rows(ui, height, parts.len(), |ui, seen| {
+                    for number in seen {
+                        row(ui, editor, model, parts[number], commands);
+                    }
+                });
+        });
+}
+
+fn row(ui: &mut egui::Ui, editor: &Editor, model: &Model, part: u32, commands: &mut Outbox) {
+    let Some(component) = model.topology.components().get(part as usize) else {
+        return;
+    };
+    let own = editor.document().loose_parts().get(&part).copied();
+    ui.horizontal(|ui| {
+        let name = format!("Part {} · {} vertices", part + 1, thousands(component.vertex_count));
+        let label = ui.button(name).on_hover_text("Comes close to it.");
+        if label.clicked() {
+            commands.push(Command::FramePart(part));
+        }
+        let name_of = |loose: Option<Loose>| {
+            let named = CHOICES.iter().find(|(choice, ..)| Some(*choice) == loose);
+            named.map_or("as all do", |(_, name, _)| *name)
+        };
+        let list = ComboBox::from_id_salt(("loose part", part))
+            .selected_text(name_of(own))
+            .width(90.0)
+            .show_ui(ui, |ui| {
+                let choices = CHOICES.iter().map(|(loose, _, hover)| (Some(*loose), *hover));
+                for (loose, hover) in std::iter::once((None, "What is chosen for all.")).chain(choices) {
+                    let choice = ui.selectable_label(own == loose, name_of(loose)).on_hover_text(hover);
+                    if choice.clicked() && own != loose {
+                        commands.push(Command::SetLoosePart(part, loose));
+                    }
+                }
+            });
+        list.response.labelled_by(label.id);
+    });
+}

@@ -1,0 +1,168 @@
+//! The method and its options: widgets made of the methods' declarations, so that an option that is declared is shown.
+
+use eframe::egui::{self, ComboBox, DragValue, RichText};
+use pliant_deform::{METHODS, Method, OptionDeclaration, OptionKind, OptionValue};
+use pliant_editor::{Command, Editor};
+
+use crate::window::widgets::number_field::number_field;
+use crate::window::widgets::outbox::Outbox;
+
+/// Shows the method and its options.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let method = editor.document().method();
+    let declaration = method.declaration();
+    ui.horizontal(|ui| {
+        let label = ui.label("Method");
+        let width = ui.available_width();
+        let (list, chosen) = choose_method(ui, "method", method, width);
+        list.labelled_by(label.id);
+        if let Some(chosen) = chosen {
+            commands.push(Command::SetMethod(chosen));
+        }
+    });
+    ui.label(RichText::new(declaration.when_to_use).weak().small());
+    if declaration.options.is_empty() {
+        return;
+    }
+    egui::CollapsingHeader::new("Options")
+        .id_salt("options")
+        .show(ui, |ui| {
+            egui::Grid::new("method options").num_columns(2).show(ui, |ui| {
+                for option in declaration.options {
+                    row(ui, method, option, commands);
+                    ui.end_row();
+                }
+            });
+            let first_choice = (declaration.first_choice)();
+            let back = ui.add_enabled(first_choice != *method, egui::Button::new("Defaults"));
+            if back.clicked() {
+                commands.push(Command::SetMethod(first_choice));
+            }
+        });
+}
+
+/// A list of all methods, and the one that was taken from it.
+pub fn choose_method(ui: &mut egui::Ui, id: &str, present: &Method, width: f32) -> (egui::Response, Option<Method>) {
+    let mut chosen = None;
+    let list = ComboBox::from_id_salt(id)
+        .selected_text(present.declaration().title)
+        .width(width)
+        .show_ui(ui, |ui| {
+            for declaration in METHODS {
+                let is_present = present.name() == declaration.name;
+                let choice = ui
+                    .selectable_label(is_present, declaration.title)
+                    .on_hover_text(declaration.when_to_use);
+                if choice.clicked() && !is_present {
+                    chosen = Some((declaration.first_choice)());
+                }
+            }
+        });
+    (list.response, chosen)
+}
+
+/// An option's name and its widget. What the method refuses (nothing resists both bending and stretching, say) is not
+/// sent.
+fn row(ui: &mut egui::Ui, method: &Method, option: &OptionDeclaration, commands: &mut Outbox) {
+    let default = (method.declaration().default)();
+    let (Some(value), Some(default)) = (method.value(option.name), default.value(option.name)) else {
+        return;
+    };
+    let says = option.sentence(default);
+    let label = ui.label(title(&option.name.replace('_', " "))).on_hover_text(&says);
+    let set = |value: OptionValue| {
+        let set = method.with([(option.name, value)]);
+        Command::SetMethod(set.unwrap_or_else(|_| method.clone()))
+    };
+    let widget = match (option.kind, value) {
+        (OptionKind::Number { range, unit }, OptionValue::Number(mut number)) => {
+            // Small numbers go by their own size, so that one drag reaches from 1e-12 to 0.1.
+            let speed = (number.abs() * 0.02).max((range[1] - range[0]).min(1.0) * 1e-3);
+            let suffix = if unit.is_empty() {
+                String::new()
+            } else {
+                format!(" {unit}")
+            };
+            let field = number_field(ui, &mut number, |ui, number| {
+                let field = DragValue::new(number).range(range[0]..=range[1]).speed(speed);
+                let field = field.custom_formatter(|number, _| short(number)).suffix(suffix);
+                ui.add(field.update_while_editing(false))
+            });
+            commands.adjust(&field, || set(OptionValue::Number(number)));
+            field
+        }
+        (OptionKind::Whole { range }, OptionValue::Whole(mut number)) => {
+            let speed = (f64::from(number) * 0.02).max(0.1);
+            let field = number_field(ui, &mut number, |ui, number| {
+                let field = DragValue::new(number).range(range[0]..=range[1]).speed(speed);
+                ui.add(field.update_while_editing(false))
+            });
+            commands.adjust(&field, || set(OptionValue::Whole(number)));
+            field
+        }
+        (OptionKind::Numbered { choices }, _) => {
+            let named: Vec<(String, OptionValue)> = choices
+                .iter()
+                .map(|(number, word)| (format!("{number} · {word}"), OptionValue::Whole(*number)))
+                .collect();
+            choose(ui, option.name, value, &named, |chosen| commands.push(set(chosen)))
+        }
+        (OptionKind::Named { choices }, _) => {
+            let named: Vec<(String, OptionValue)> = choices
+                .iter()
+                .map(|name| ((*name).to_owned(), OptionValue::Name(name)))
+                .collect();
+            choose(ui, option.name, value, &named, |chosen| commands.push(set(chosen)))
+        }
+        (OptionKind::Switch, OptionValue::Switch(mut on)) => {
+            let switch = ui.checkbox(&mut on, "");
+            if switch.changed() {
+                commands.push(set(OptionValue::Switch(on)));
+            }
+            switch
+        }
+        // A value is always of its option's kind.
+        _ => return,
+    };
+    widget.labelled_by(label.id).on_hover_text(says);
+}
+
+/// A list to choose from.
+fn choose(
+    ui: &mut egui::Ui,
+    id: &str,
+    present: OptionValue,
+    choices: &[(String, OptionValue)],
+    mut chosen: impl FnMut(OptionValue),
+) -> egui::Response {
+    let name = choices.iter().find(|(_, value)| *value == present);
+    ComboBox::from_id_salt(id)
+        .selected_text(name.map_or("", |(name, _)| name))
+        .width(ui.available_width().min(150.0))
+        .show_ui(ui, |ui| {
+            for (name, value) in choices {
+                if ui.selectable_label(*value == present, name).clicked() && *value != present {
+                    chosen(*value);
+                }
+            }
+        })
+        .response
+}
+
+/// With a capital letter.
+fn title(name: &str) -> String {
+    let mut characters = name.chars();
+    characters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().chain(characters).collect())
+}
+
+/// A number as short as it can be told apart at a glance.
+fn short(number: f64) -> String {
+    if number != 0.0 && !(1e-3..1e5).contains(&number.abs()) {
+        format!("{number:.3e}").replace(".000e", "e")
+    } else {
+        let text = format!("{number:.4}");
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    }
+}

@@ -1,0 +1,161 @@
+//! The list of the file's nodes and materials: what is shown, shown alone, and held still.
+
+use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
+
+use eframe::egui::{self, Align, Layout, RichText, ScrollArea};
+use pliant_editor::{Access, Command, Editor, ObjectAction, object_name, thousands};
+use pliant_mesh::{Model, Object};
+
+use crate::window::widgets::command_button::command_button;
+use crate::window::widgets::icon::{Icon, toggle};
+use crate::window::widgets::outbox::Outbox;
+
+/// How many rows are seen at a time.
+const ROWS: f32 = 7.0;
+
+/// A line of the list: objects of one node, or of one material.
+struct Row {
+    name: String,
+    objects: Vec<u32>,
+    triangles: usize,
+}
+
+/// Both lists of a model.
+struct Rows {
+    of: Arc<Model>,
+    nodes: Vec<Row>,
+    materials: Vec<Row>,
+    /// How many objects there are.
+    count: usize,
+}
+
+impl Rows {
+    fn of(model: &Arc<Model>) -> Self {
+        let objects = model.all_objects();
+        let materials = grouped(&objects, |object| &object.material, |_| "no material".to_owned());
+        Self {
+            of: Arc::clone(model),
+            nodes: grouped(&objects, |object| &object.name, |number| object_name("", number)),
+            // One alone says nothing that the nodes don't.
+            materials: if materials.len() > 1 { materials } else { Vec::new() },
+            count: objects.len(),
+        }
+    }
+}
+
+/// Objects of one name are one row, in the order in which the file names them; those without a name are one each, but
+/// for equal ones of `unnamed`.
+fn grouped<'a>(
+    objects: &'a [Object],
+    name_of: impl Fn(&'a Object) -> &'a String,
+    unnamed: impl Fn(u32) -> String,
+) -> Vec<Row> {
+    let mut places: HashMap<String, usize> = HashMap::new();
+    let mut rows: Vec<Row> = Vec::new();
+    for (number, object) in (0..).zip(objects) {
+        let name = match name_of(object).as_str() {
+            "" => unnamed(number),
+            name => name.to_owned(),
+        };
+        let place = *places.entry(name.clone()).or_insert(rows.len());
+        if place == rows.len() {
+            rows.push(Row {
+                name,
+                objects: Vec::new(),
+                triangles: 0,
+            });
+        }
+        rows[place].objects.push(number);
+        rows[place].triangles += object.triangles.iter().map(ExactSizeIterator::len).sum::<usize>();
+    }
+    rows
+}
+
+/// Shows the lists.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let Some(model) = editor.view().model else {
+        ui.label(RichText::new("Nothing is open.").weak());
+        return;
+    };
+    // Made once a file: a scene may have thousands.
+    let id = egui::Id::unique("rows of objects");
+    let kept: Option<Arc<Rows>> = ui.data(|data| data.get_temp(id));
+    let rows = kept.filter(|rows| Arc::ptr_eq(&rows.of, model)).unwrap_or_else(|| {
+        let rows = Arc::new(Rows::of(model));
+        ui.data_mut(|data| data.insert_temp(id, Arc::clone(&rows)));
+        rows
+    });
+    let access = editor.document().access();
+    list(ui, "nodes", &rows.nodes, rows.count, access, commands);
+    if !rows.materials.is_empty() {
+        ui.label(RichText::new("Materials").weak().small());
+        list(ui, "materials", &rows.materials, rows.count, access, commands);
+    }
+    if let Some(part) = access.isolated {
+        let count = model.topology.components()[part as usize].vertex_count;
+        let text = format!("Part {} alone ({} vertices)", part + 1, thousands(count));
+        ui.label(RichText::new(text).weak().small());
+    }
+    ui.horizontal_wrapped(|ui| {
+        for command in [Command::Isolate, Command::ShowEverything] {
+            if command_button(ui, editor, &command) {
+                commands.push(command);
+            }
+        }
+    });
+}
+
+fn list(ui: &mut egui::Ui, salt: &str, rows: &[Row], count: usize, access: &Access, commands: &mut Outbox) {
+    let height = ui.spacing().interact_size.y;
+    ScrollArea::vertical()
+        .id_salt(salt)
+        .max_height(ROWS * (height + ui.spacing().item_spacing.y))
+        .auto_shrink([false, true])
+        .show_rows(ui, height, rows.len(), |ui, seen| {
+            for number in seen {
+                row(ui, &rows[number], count, access, commands);
+            }
+        });
+}
+
+fn row(ui: &mut egui::Ui, row: &Row, count: usize, access: &Access, commands: &mut Outbox) {
+    let all = |set: &BTreeSet<u32>| row.objects.iter().all(|object| set.contains(object));
+    let (is_hidden, is_locked) = (all(&access.hidden), all(&access.locked));
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            let hover = "Locked: it is held still, whatever is painted on it.";
+            if toggle(ui, Icon::Lock, is_locked, &format!("Lock {}", row.name), hover) {
+                let action = if is_locked {
+                    ObjectAction::Unlock
+                } else {
+                    ObjectAction::Lock
+                };
+                commands.push(Command::Objects(action, row.objects.clone()));
+            }
+            let hover = "Hidden: neither drawn nor picked nor painted, but moving along.";
+            if toggle(ui, Icon::Eye, !is_hidden, &format!("Show {}", row.name), hover) {
+                let action = if is_hidden {
+                    ObjectAction::Show
+                } else {
+                    ObjectAction::Hide
+                };
+                commands.push(Command::Objects(action, row.objects.clone()));
+            }
+            if row.objects.len() < count {
+                let is_alone = !is_hidden && access.hidden.len() + row.objects.len() == count;
+                let hover = "Shows only this; once more shows everything.";
+                if toggle(ui, Icon::Alone, is_alone, &format!("Show only {}", row.name), hover) {
+                    commands.push(Command::Objects(ObjectAction::Solo, row.objects.clone()));
+                }
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let text = RichText::new(&row.name);
+                let text = if is_hidden { text.weak() } else { text };
+                ui.add(egui::Label::new(text).truncate())
+                    .on_hover_text(format!("{} triangles", thousands(row.triangles)));
+            });
+        });
+    });
+}

@@ -1,0 +1,190 @@
+//! What helpers on other threads bring: files, shapes in buffers, images; and how the view asks for them.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_editor::{Event, Revision, Shading};
+use pliant_mesh::Cancel;
+
+use super::message::{LoadedMaterials, Message, Opened, Posed};
+use super::workers::Stage;
+use crate::drawing::{self, Drawing, Field};
+use crate::window::application::Application;
+use crate::window::files::session::OpenFile;
+use crate::window::panels::notes::Notes;
+
+impl Application {
+    pub(in crate::window) fn take_messages(&mut self) {
+        while let Ok(message) = self.messages.try_recv() {
+            match message {
+                Message::Job(done, posed) => {
+                    self.editor.handle(Event::JobDone(done));
+                    // A stale result's pose is not shown: the editor kept another shape.
+                    if let Some(posed) =
+                        posed.filter(|posed| Arc::ptr_eq(&posed.displacements, self.editor.view().displacements))
+                    {
+                        self.show_pose(posed);
+                    }
+                }
+                Message::Posed(stamp, result) => {
+                    self.poses.finish(stamp);
+                    match result {
+                        Ok(posed) if self.belongs_to_open_file(&posed) => self.show_pose(posed),
+                        Ok(_) => {}
+                        Err(sentence) => self.fail(sentence),
+                    }
+                }
+                // That goes to the second view.
+                Message::Uploaded(..) => {}
+                Message::LoadedMaterials(drawing, result) => self.set_materials(&drawing, result),
+                Message::Opened(stamp, result) => match self.session.loaded(stamp, result, &self.workers) {
+                    Some(Ok(opened)) => self.adopt(*opened),
+                    Some(Err(sentence)) => {
+                        self.settings.change(|settings| settings.forget_if_gone(&sentence));
+                        self.fail(sentence);
+                    }
+                    None => {}
+                },
+                Message::Written(stamp, result) => self.written(stamp, result),
+                Message::Autosaved(key, result) => {
+                    let failed = self
+                        .recovery
+                        .as_mut()
+                        .and_then(|recovery| recovery.written(key, result));
+                    if let Some(sentence) = failed {
+                        self.fail(sentence);
+                    }
+                }
+                Message::Chosen(purpose, path) => self.chosen(purpose, path),
+            }
+        }
+    }
+
+    fn belongs_to_open_file(&self, posed: &Posed) -> bool {
+        posed.displacements.len() == self.editor.view().displacements.len()
+    }
+
+    fn adopt(&mut self, opened: Opened) {
+        self.session.adopt(&opened);
+        let Opened {
+            loaded,
+            drawing,
+            surface,
+            displacements,
+            beginning,
+            notes,
+            recovered,
+            project,
+            path,
+            ..
+        } = opened;
+        if let Some(path) = project.or(path).filter(|_| recovered.is_none()) {
+            self.settings.change(|settings| settings.remember(&path));
+        }
+        let name = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
+        self.workers.set_stage(Stage {
+            loaded: Arc::clone(&loaded),
+            drawing: Arc::clone(&drawing),
+            field: self.wanted_field(),
+            scales: Arc::default(),
+        });
+        self.poses.cancel();
+        self.has_requested_materials = false;
+        let lowest = loaded.model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
+        self.viewport.show(drawing, surface, displacements, lowest);
+        self.notes = Notes {
+            headline: None,
+            about_file: notes,
+        };
+        self.editor.handle(Event::Opened {
+            model: Arc::clone(&loaded.model),
+            name,
+            beginning,
+        });
+        if let Some(left) = recovered {
+            self.editor.handle(Event::Recovered);
+            self.keep_for_recovery();
+            self.recovered_from = Some(left);
+        }
+    }
+
+    fn show_pose(&mut self, posed: Posed) {
+        if let Err(error) = self.viewport.pose(posed) {
+            self.fail(error.to_string());
+        }
+    }
+
+    /// The numbers of the shape that are to be shown as colours. Stiffness is none of the shape's.
+    pub(in crate::window) fn wanted_field(&self) -> Option<Field> {
+        drawing::field(self.editor.view().look.shading).filter(|&field| field != Field::Stiffness)
+    }
+
+    /// Has the images decoded and uploaded when materials are first shown.
+    pub(in crate::window) fn request_images(&mut self) {
+        let Some(open) = &self.session.open else { return };
+        if self.has_requested_materials
+            || self.editor.view().look.shading != Shading::Material
+            || !open.drawing.materials.has_images()
+        {
+            return;
+        }
+        self.has_requested_materials = true;
+        let (drawing, gpu) = (Arc::clone(&open.drawing), self.viewport.gpu());
+        let failed = Arc::clone(&drawing);
+        self.workers.spawn(
+            "images",
+            move || {
+                // Nobody stops it: the file that it is for may be gone, but its images are decoded in rounds.
+                let decoded = match drawing.materials.decode(&Cancel::new()) {
+                    Ok(decoded) => decoded,
+                    Err(cancelled) => return Message::LoadedMaterials(drawing, Err(cancelled.to_string())),
+                };
+                let materials = gpu.upload_images(&decoded).map_err(|error| error.to_string());
+                let notes = decoded.notes;
+                Message::LoadedMaterials(drawing, materials.map(|materials| LoadedMaterials { materials, notes }))
+            },
+            move |sentence| Message::LoadedMaterials(Arc::clone(&failed), Err(sentence)),
+        );
+    }
+
+    fn set_materials(&mut self, drawing: &Arc<Drawing>, result: Result<LoadedMaterials, String>) {
+        let result = result.and_then(|LoadedMaterials { materials, notes }| {
+            self.notes.about_file.extend(notes);
+            self.viewport
+                .set_materials(drawing, materials)
+                .map_err(|error| error.to_string())
+        });
+        if let Err(sentence) = result {
+            self.fail(format!("the materials are shown without their images: {sentence}"));
+        }
+    }
+
+    /// Asks for the pose of the present shape if it is not the one that is shown (after undo, or while a handle moves
+    /// before its binding is ready).
+    pub(in crate::window) fn request_pose(&mut self) {
+        let field = self.wanted_field();
+        let Some(mut stage) = self.workers.stage() else { return };
+        if stage.field != field {
+            stage.field = field;
+            self.workers.set_stage(stage.clone());
+        }
+        let wanted = self.editor.view().displacements;
+        let shown = self.viewport.displacements();
+        let is_stale = shown.is_some_and(|shown| !Arc::ptr_eq(shown, wanted))
+            || (shown.is_some() && field.is_some() && self.viewport.field() != field);
+        if is_stale && !self.poses.is_busy() {
+            let wanted = Arc::clone(wanted);
+            self.next_pose += 1;
+            self.poses.request(Revision(self.next_pose), wanted);
+        }
+        let Some((running, displacements)) = self.poses.start_next() else {
+            return;
+        };
+        let stamp = running.stamp;
+        self.workers.spawn(
+            "posing",
+            move || Message::Posed(stamp, Ok(stage.pose(displacements))),
+            move |sentence| Message::Posed(stamp, Err(sentence)),
+        );
+    }
+}

@@ -1,0 +1,140 @@
+//! What the window's helpers on other threads tell it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_editor::{Beginning, JobDone, Revision, SnapshotKey};
+use pliant_render::{Materials, Surface};
+
+use crate::drawing::{Drawing, Field, Pose, Scale};
+use crate::engine::Loaded;
+use crate::window::files::project_file::MeshSource;
+
+/// Something that ended elsewhere; the window takes all that wait at the start of each frame.
+pub enum Message {
+    /// One of the editor's jobs ended; a solved shape comes with its pose.
+    Job(JobDone, Option<Posed>),
+    /// A shape was made ready for the renderer.
+    Posed(Revision, Result<Posed, String>),
+    /// A file was uploaded once more, for a second view.
+    Uploaded(Arc<Drawing>, Result<Surface, String>),
+    /// The images of a file were decoded and uploaded, or why not.
+    LoadedMaterials(Arc<Drawing>, Result<LoadedMaterials, String>),
+    /// A file was opened, or why it was not.
+    Opened(Revision, Result<Box<Opened>, String>),
+    /// A file was written, or why it was not.
+    Written(Revision, Result<Written, String>),
+    /// The state of the document with this key was kept for a recovery, or why it was not.
+    Autosaved(SnapshotKey, Result<(), String>),
+    /// A person chose a path in a dialog; `None` if they chose none.
+    Chosen(Purpose, Option<PathBuf>),
+}
+
+/// A shape with its pose.
+pub struct Posed {
+    /// The shape, as the editor shares it; compared by its address.
+    pub displacements: Arc<Vec<DVec3>>,
+    /// The same for the renderer.
+    pub pose: Pose,
+    /// The shape's numbers as colours, where such are shown.
+    pub painted: Option<Painted>,
+}
+
+/// Numbers on the surface as colours.
+pub struct Painted {
+    /// What they are.
+    pub field: Field,
+    /// What the colours mean.
+    pub scale: Arc<Scale>,
+    /// Colours of the drawn vertices.
+    pub colours: Vec<[u8; 4]>,
+}
+
+/// A file's materials with their images.
+pub struct LoadedMaterials {
+    /// On the device.
+    pub materials: Materials,
+    /// Images that can't be shown, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// An opened file, ready to be shown and edited.
+pub struct Opened {
+    /// Where it stands; the built-in sample stands nowhere.
+    pub path: Option<PathBuf>,
+    /// The file as stored and its vertex sets.
+    pub loaded: Arc<Loaded>,
+    /// What the renderer takes of it.
+    pub drawing: Arc<Drawing>,
+    /// Its surface in GPU buffers, in its own shape.
+    pub surface: Surface,
+    /// Its own shape: no vertex displaced.
+    pub displacements: Arc<Vec<DVec3>>,
+    /// Regions and handles to begin with.
+    pub beginning: Option<Beginning>,
+    /// The project that it was opened from, or is to be saved to.
+    pub project: Option<PathBuf>,
+    /// Where the mesh as it was read stands; the built-in sample stands nowhere.
+    pub source: MeshSource,
+    /// Whether it is what a session that ended without saving has left.
+    pub recovered: Option<PathBuf>,
+    /// What a person should know about the file, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// A file that was written.
+pub struct Written {
+    /// Where.
+    pub path: PathBuf,
+    /// What it is.
+    pub what: WrittenKind,
+    /// What the file could not hold, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// What was written.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum WrittenKind {
+    /// The model; where the mesh as it was read stands now, if that has changed.
+    Model(Option<MeshSource>),
+    /// The project.
+    Project,
+    /// A picture.
+    Picture,
+    /// An edit for the command line: the work is not saved with it.
+    Edit,
+}
+
+/// What a path is chosen for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Purpose {
+    /// To open a model.
+    Open,
+    /// To save the model under.
+    SaveAs,
+    /// To save the project under.
+    SaveProject,
+    /// To write the edit file to.
+    ExportEdit,
+    /// To save a picture of the view under.
+    SavePicture(PictureKind),
+}
+
+/// How a picture of the view is saved.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct PictureKind {
+    /// How many of its pixels a side one of the view's becomes, at least 1.
+    pub scale: u32,
+    /// What is behind the surface.
+    pub ground: Ground,
+}
+
+/// What is behind the surface in a saved picture.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Ground {
+    /// What the window shows.
+    AsShown,
+    /// Nothing.
+    Transparent,
+}

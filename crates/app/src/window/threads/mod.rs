@@ -1,0 +1,6 @@
+//! What runs beside the window's thread, and how its results come back.
+
+pub(in crate::window) mod arrivals;
+pub(in crate::window) mod interface_pool;
+pub(in crate::window) mod message;
+pub(in crate::window) mod workers;

@@ -1,0 +1,163 @@
+//! The 3D view's part of the window: its input, its pictures and what is painted over them.
+
+use std::time::{Duration, Instant};
+
+use eframe::egui::{self, Sense, vec2};
+use glam::DVec2;
+use pliant_editor::{Cursor, Event};
+
+use super::Smoothness;
+use super::axis_ball;
+use crate::legend;
+use crate::window::application::{Application, REST};
+use crate::window::bars::hints;
+use crate::window::files::names::file_name;
+use crate::window::input::Attention;
+use crate::window::input::event_queue::EventQueue;
+use crate::window::widgets::theme;
+
+impl Application {
+    /// With the pointer over the view and the keys with it, Tab is the view's: it selects the next handle. Elsewhere it
+    /// goes from one widget to the next.
+    fn keep_tab(ui: &egui::Ui, is_over_view: bool, typing: bool) {
+        let focused = ui.memory(egui::Memory::focused);
+        let is_tab = ui.input(|input| input.key_pressed(egui::Key::Tab));
+        if let Some(widget) = focused.filter(|_| is_tab && is_over_view && !typing) {
+            ui.memory_mut(|memory| memory.surrender_focus(widget));
+        }
+    }
+
+    /// The 3D view: input first, then the picture.
+    pub(in crate::window) fn view(&mut self, ui: &mut egui::Ui) -> Result<(), pliant_render::RenderError> {
+        let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let (rect, second) = match self.compare {
+            None => (whole, None),
+            Some(_) => {
+                let (first, second) = whole.split_left_right_at_fraction(0.5);
+                (first, Some(second))
+            }
+        };
+        if rect.width() < 1.0 || rect.height() < 1.0 {
+            return Ok(());
+        }
+        self.view_rect = rect;
+        let size_px = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
+        if self.editor.view().viewport_px != size_px {
+            self.editor.handle(Event::Viewport { size_px });
+        }
+        if response.is_pointer_button_down_on() {
+            ui.memory_mut(|memory| {
+                if let Some(focused) = memory.focused() {
+                    memory.surrender_focus(focused);
+                }
+            });
+        }
+        let typing = EventQueue::is_typing(ui.ctx());
+        Self::keep_tab(ui, response.contains_pointer(), typing);
+        let over_ball = axis_ball::contains(rect, ui.input(|input| input.pointer.latest_pos()));
+        let attention = Attention {
+            rect,
+            pointer: ui.input(|input| input.pointer.latest_pos()).unwrap_or(rect.center()),
+            pointer_over: response.contains_pointer()
+                && ui
+                    .input(|input| input.pointer.latest_pos())
+                    .is_some_and(|at| rect.contains(at))
+                && self.question.is_none()
+                && self.palette.is_none()
+                && !over_ball,
+            follows_pointer: self.editor.view().cursor == Cursor::Move,
+            keys: self.question.is_none()
+                && self.palette.is_none()
+                && !self.keys.takes_keys()
+                && !typing
+                && !ui.ctx().egui_wants_keyboard_input(),
+            more_to_come: EventQueue::has_more(ui.ctx()),
+        };
+        let events = self.input.events(ui.ctx(), attention);
+        if !events.is_empty() {
+            self.last_change = Instant::now();
+        }
+        for event in events {
+            self.editor.handle(event);
+        }
+        self.request_pose();
+        self.request_images();
+        ui.ctx().set_cursor_icon(match self.editor.view().cursor {
+            _ if !response.contains_pointer() => egui::CursorIcon::Default,
+            Cursor::Arrow => egui::CursorIcon::Default,
+            Cursor::Brush => egui::CursorIcon::Crosshair,
+            Cursor::Grab => egui::CursorIcon::Grab,
+            Cursor::Grabbing => egui::CursorIcon::Grabbing,
+            Cursor::Move => egui::CursorIcon::Move,
+        });
+        let resting = self.last_change.elapsed() >= REST && self.editor.view().settled;
+        let smooth = if resting {
+            Smoothness::Resting
+        } else {
+            Smoothness::Moving
+        };
+        if self.viewport.paint(ui, rect, &self.editor, smooth)? {
+            ui.ctx().request_repaint_after(
+                REST.saturating_sub(self.last_change.elapsed())
+                    .max(Duration::from_millis(10)),
+            );
+        }
+        if let (Some(second), Some(compare), Some(stage)) = (second, &mut self.compare, self.workers.stage()) {
+            compare.follow(&self.editor, &self.viewport, &stage);
+            let resting = smooth == Smoothness::Resting && compare.is_settled();
+            let smooth = if resting { smooth } else { Smoothness::Moving };
+            if compare.show(ui, second, smooth)? {
+                ui.ctx().request_repaint_after(REST);
+            }
+            let name = self.editor.document().method().declaration().title;
+            axis_ball::readout(ui.painter(), rect.center_top() + vec2(-60.0, 12.0), name);
+        }
+        let outline_px = self.editor.view().outline_px;
+        if outline_px.len() > 1 {
+            let point = |px: &DVec2| rect.min + vec2(px.x as f32, px.y as f32);
+            let mut line: Vec<egui::Pos2> = outline_px.iter().map(point).collect();
+            line.push(line[0]);
+            let shadow = egui::Stroke::new(3.0, egui::Color32::from_black_alpha(120));
+            ui.painter().add(egui::Shape::line(line.clone(), shadow));
+            ui.painter()
+                .add(egui::Shape::line(line, egui::Stroke::new(1.5, theme::ACCENT)));
+        }
+        let shown = self.editor.view();
+        if let Some(scale) = self.viewport.scale() {
+            legend::paint(ui.painter(), rect.left_top() + vec2(14.0, 14.0), scale);
+        }
+        if let Some(readout) = &shown.readout
+            && let Some(at_px) = shown.camera.project(readout.at, shown.viewport_px)
+        {
+            let at = rect.min + vec2(at_px.x as f32 + 22.0, at_px.y as f32 - 26.0);
+            axis_ball::readout(ui.painter(), at, &readout.text);
+        }
+        drop_target(ui, rect);
+        if let Some(command) = axis_ball::show(ui, rect, shown.camera) {
+            self.command(command);
+            ui.ctx().request_repaint();
+        }
+        if self.shows_hints && !self.settings.get().hints_seen && hints::show(ui, rect, &self.editor) {
+            self.settings.change(|settings| settings.hints_seen = true);
+        }
+        Ok(())
+    }
+}
+
+/// While files are held over the window: what letting go of them does.
+fn drop_target(ui: &egui::Ui, rect: egui::Rect) {
+    let held = ui.input(|input| input.raw.hovered_files.first().map(|file| file.path.clone()));
+    let Some(path) = held else { return };
+    let name = path.as_deref().map(file_name);
+    let text = name.map_or_else(
+        || "Let go to open it".to_owned(),
+        |name| format!("Let go to open {name}"),
+    );
+    ui.painter().rect_stroke(
+        rect.shrink(6.0),
+        8.0,
+        egui::Stroke::new(2.0, theme::ACCENT),
+        egui::StrokeKind::Inside,
+    );
+    axis_ball::readout(ui.painter(), rect.center_top() + vec2(-60.0, 24.0), &text);
+}

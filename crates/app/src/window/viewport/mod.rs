@@ -1,0 +1,397 @@
+//! The one place where egui meets the renderer: the 3D view, drawn into a texture of its own and shown as an image.
+//!
+//! The picture is drawn anew only when the shape, the colours, the marks, the camera, the style or the size changed.
+//! On a device that is the processor itself a changing view is drawn with one sample a pixel and large meshes with fewer
+//! triangles, and once more in full when it has come to rest.
+
+pub(in crate::window) mod area;
+pub(in crate::window) mod axis_ball;
+pub(in crate::window) mod coarseness;
+pub(in crate::window) mod compare;
+pub(in crate::window) mod gpu;
+pub(in crate::window) mod shown;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use eframe::egui::{self, TextureId};
+use eframe::egui_wgpu::RenderState;
+use glam::DVec3;
+use pliant_editor::{Editor, SceneView, Shading};
+use pliant_render::{
+    Background, Detail, Frame, Image, Materials, RenderError, Renderer, Samples, Style, Surface, Target,
+};
+
+use crate::drawing::{self, Drawing, Field, Scale};
+use crate::legend;
+use crate::window::threads::message::{Ground, PictureKind, Posed};
+use crate::window::widgets::drawn_key::DrawnKey;
+use coarseness::Coarseness;
+use gpu::Gpu;
+use shown::{Colours, Shown, address};
+
+/// Surfaces above this many triangles are not drawn a second time for smooth borders on a software device.
+const SOFT_SMOOTH_TRIANGLES: usize = 300_000;
+/// The view's GPU side.
+pub struct Viewport {
+    state: RenderState,
+    gpu: Gpu,
+    software: Option<String>,
+    /// Set when the device is gone, by whoever notices.
+    lost: Arc<AtomicBool>,
+    target: Target,
+    texture: Option<TextureId>,
+    surface: Option<Shown>,
+    drawn: Option<DrawnKey>,
+    drawings: u64,
+    drawing_time: Duration,
+    coarseness: Coarseness,
+}
+
+impl Viewport {
+    /// A view on the window's device.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn new(state: RenderState) -> Result<Self, RenderError> {
+        let lost = Arc::new(AtomicBool::new(false));
+        let is_lost = Arc::clone(&lost);
+        state
+            .device
+            .set_device_lost_callback(move |_, _| is_lost.store(true, Ordering::Relaxed));
+        // What we ask of the device we hear about ourselves; an error of anybody else's on a device that is going must
+        // not end the program.
+        state.device.on_uncaptured_error(Arc::new(|_| {}));
+        let renderer = Renderer::new(&state.device, &state.queue)?;
+        let software = renderer.is_software().then(|| renderer.device_name());
+        Ok(Self::of(state, Gpu::new(renderer), software, lost))
+    }
+
+    /// Another view on the same device, of nothing yet.
+    pub fn beside(&self) -> Self {
+        let lost = Arc::clone(&self.lost);
+        Self::of(self.state.clone(), self.gpu.clone(), self.software.clone(), lost)
+    }
+
+    fn of(state: RenderState, gpu: Gpu, software: Option<String>, lost: Arc<AtomicBool>) -> Self {
+        Self {
+            state,
+            gpu,
+            software,
+            lost,
+            target: Target::new(),
+            texture: None,
+            surface: None,
+            drawn: None,
+            drawings: 0,
+            drawing_time: Duration::ZERO,
+            coarseness: Coarseness::default(),
+        }
+    }
+
+    /// The file that is shown.
+    pub fn shows(&self, drawing: &Arc<Drawing>) -> bool {
+        self.surface
+            .as_ref()
+            .is_some_and(|shown| Arc::ptr_eq(&shown.drawing, drawing))
+    }
+
+    /// Whether the device is gone: a driver was updated or crashed, or a card was pulled out.
+    pub fn is_lost(&self) -> bool {
+        self.lost.load(Ordering::Relaxed)
+    }
+
+    /// Loses the device, as a driver that crashes does: for trying out that nothing else is lost.
+    pub fn lose_device(&self) {
+        self.state.device.destroy();
+        self.lost.store(true, Ordering::Relaxed);
+    }
+
+    /// The device's name if it is the processor itself.
+    pub fn software_device(&self) -> Option<&str> {
+        self.software.as_deref()
+    }
+
+    /// What uploads files' surfaces, from any thread.
+    pub fn gpu(&self) -> Gpu {
+        self.gpu.clone()
+    }
+
+    /// How often a picture was drawn.
+    pub fn drawings(&self) -> u64 {
+        self.drawings
+    }
+
+    /// How long drawing has kept the window's thread busy so far: on a software device it is the processor that
+    /// draws.
+    pub fn drawing_time(&self) -> Duration {
+        self.drawing_time
+    }
+
+    /// Shows another file.
+    pub fn show(&mut self, drawing: Arc<Drawing>, surface: Surface, displacements: Arc<Vec<DVec3>>, lowest: DVec3) {
+        self.drawn = None;
+        self.coarseness = Coarseness::default();
+        self.surface = Some(Shown {
+            surface,
+            drawing,
+            displacements,
+            lowest,
+            colours: Colours::None,
+            drawn_colours: Vec::new(),
+            rims: None,
+            scale: None,
+            materials: None,
+            materials_revision: 0,
+            shown: None,
+        });
+    }
+
+    /// Gives the file that is shown its materials with their images, if it is still this one.
+    ///
+    /// # Errors
+    /// As [`Surface::set_materials`].
+    pub fn set_materials(&mut self, drawing: &Arc<Drawing>, materials: Materials) -> Result<(), RenderError> {
+        match &mut self.surface {
+            Some(shown) if Arc::ptr_eq(&shown.drawing, drawing) => {
+                shown.materials_revision += 1;
+                shown.materials = Some(materials.clone());
+                shown.surface.set_materials(materials)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The materials with their images of the file that is shown, once it has them.
+    pub fn materials(&self) -> Option<&Materials> {
+        self.surface.as_ref()?.materials.as_ref()
+    }
+
+    /// The numbers that the surface's colours show.
+    pub fn field(&self) -> Option<Field> {
+        match self.surface.as_ref()?.colours {
+            Colours::Field(field) => Some(field),
+            Colours::Stiffness(_) => Some(Field::Stiffness),
+            Colours::None | Colours::Regions(_) => None,
+        }
+    }
+
+    /// What the surface's colours mean, where they show numbers.
+    pub fn scale(&self) -> Option<&Scale> {
+        self.field()?;
+        self.surface.as_ref()?.scale.as_deref()
+    }
+
+    /// Moves the surface to a pose of the file that is shown.
+    ///
+    /// # Errors
+    /// As [`Surface::update_shape`].
+    pub fn pose(&mut self, posed: Posed) -> Result<(), RenderError> {
+        let Some(shown) = &mut self.surface else { return Ok(()) };
+        let renderer = self.gpu.read();
+        shown.surface.update_shape(&renderer, &posed.pose.data())?;
+        shown.displacements = posed.displacements;
+        if let Some(painted) = posed.painted {
+            shown.surface.update_regions(&renderer, &painted.colours)?;
+            shown.colours = Colours::Field(painted.field);
+            shown.scale = Some(painted.scale);
+        }
+        Ok(())
+    }
+
+    /// The shape in the GPU's buffers.
+    pub fn displacements(&self) -> Option<&Arc<Vec<DVec3>>> {
+        self.surface.as_ref().map(|shown| &shown.displacements)
+    }
+
+    /// Draws if anything changed and paints the picture into `rect`. Returns whether a smoother picture is worth a
+    /// second drawing when nothing has changed for a while.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw`].
+    pub fn paint(
+        &mut self,
+        ui: &egui::Ui,
+        rect: egui::Rect,
+        editor: &Editor,
+        smooth: Smoothness,
+    ) -> Result<bool, RenderError> {
+        let view = editor.view();
+        let pixels_per_point = ui.ctx().pixels_per_point();
+        let size_px = pixels(rect.size() * pixels_per_point);
+        let software = self.software.is_some();
+        let triangles = self.surface.as_ref().map_or(0, |shown| shown.surface.triangle_count());
+        let samples = match smooth {
+            Smoothness::Moving if software => Samples::One,
+            Smoothness::Resting if software && triangles > SOFT_SMOOTH_TRIANGLES => Samples::One,
+            Smoothness::Moving | Smoothness::Resting => Samples::Four,
+        };
+        if let Some(shown) = &mut self.surface {
+            shown.update_regions(editor, &self.gpu)?;
+            shown.update_rims(editor, &self.gpu)?;
+        }
+        let factor = match smooth {
+            Smoothness::Moving => self.coarseness.factor(),
+            Smoothness::Resting => 1,
+        };
+        let drawn_px = size_px.map(|side| side.div_ceil(factor));
+        let detail = match smooth {
+            Smoothness::Moving if software && self.may_be_reduced(&view) => Detail::Reduced,
+            Smoothness::Moving | Smoothness::Resting => Detail::Full,
+        };
+        let key = DrawnKey {
+            detail,
+            ..self.key(&view, pixels_per_point, drawn_px, samples)
+        };
+        if !self.drawn.as_ref().is_some_and(|drawn| drawn.serves(&key, size_px)) {
+            if self.draw(&view, &key)? {
+                self.drawn = Some(key);
+                self.drawings += 1;
+                if smooth == Smoothness::Moving
+                    && let Some(ms) = self.device_ms()
+                {
+                    self.coarseness.took(ms);
+                }
+            } else {
+                ui.ctx().request_repaint();
+            }
+        }
+        if let Some(texture) = self.texture {
+            let whole = egui::Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
+            ui.painter().image(texture, rect, whole, egui::Color32::WHITE);
+        }
+        let is_less = |drawn: &DrawnKey| drawn.size_px != size_px || drawn.detail == Detail::Reduced;
+        let is_coarse = self.drawn.as_ref().is_some_and(is_less);
+        let is_jagged = self.drawn.as_ref().is_some_and(|drawn| drawn.samples == Samples::One);
+        Ok(is_coarse || (is_jagged && triangles <= SOFT_SMOOTH_TRIANGLES))
+    }
+
+    /// Whether the surface can be drawn with fewer triangles: not as materials and not with its edges.
+    fn may_be_reduced(&self, view: &SceneView<'_>) -> bool {
+        let Some(shown) = &self.surface else { return false };
+        let eye = drawing::view(view.camera, view.viewport_px, shown.drawing.centre);
+        view.look.shading != Shading::Material && !view.look.wireframe && shown.surface.has_reduced(&eye)
+    }
+
+    /// How long the device worked on a drawing of late.
+    fn device_ms(&self) -> Option<f64> {
+        self.gpu.try_read()?.device_ms()
+    }
+
+    fn key(&self, view: &SceneView<'_>, pixels_per_point: f32, size_px: [u32; 2], samples: Samples) -> DrawnKey {
+        DrawnKey {
+            pixels_per_point,
+            shape: self
+                .surface
+                .as_ref()
+                .map_or(0, |shown| Arc::as_ptr(&shown.displacements) as usize),
+            colours: self.surface.as_ref().map_or(Colours::None, |shown| shown.colours),
+            materials_revision: self.surface.as_ref().map_or(0, |shown| shown.materials_revision),
+            rims: view.rims_revision,
+            shown: self.surface.as_ref().map_or(0, |shown| address(shown.shown.as_ref())),
+            overlay: view.overlay_revision,
+            camera: view.camera_revision,
+            look: view.look,
+            size_px,
+            samples,
+            detail: Detail::Full,
+        }
+    }
+
+    /// Draws; false if a file is just being uploaded, which this thread does not wait for.
+    fn draw(&mut self, view: &SceneView<'_>, key: &DrawnKey) -> Result<bool, RenderError> {
+        let gpu = self.gpu.clone();
+        let Some(mut renderer) = gpu.try_write() else {
+            return Ok(false);
+        };
+        if self.target.resize(&renderer, key.size_px, key.samples)? {
+            self.register();
+        }
+        let centre = self.surface.as_ref().map_or(DVec3::ZERO, |shown| shown.drawing.centre);
+        let eye = drawing::view(view.camera, view.viewport_px, centre);
+        // Marks keep their width on the screen when the picture has fewer pixels.
+        let drawn_share = f64::from(key.size_px[1]) / view.viewport_px.y.max(1.0);
+        let pixels_per_point = drawn_share as f32;
+        let overlays = drawing::overlays(view, centre, pixels_per_point);
+        let surfaces: Vec<&Surface> = self.surface.iter().map(|shown| &shown.surface).collect();
+        let ground = self.surface.as_ref().and_then(|shown| shown.ground(view));
+        let frame = Frame {
+            view: &eye,
+            style: &Style {
+                detail: key.detail,
+                ..drawing::style(&key.look, pixels_per_point)
+            },
+            surfaces: &surfaces,
+            grid: ground.as_ref(),
+            overlays: &overlays,
+        };
+        let start = Instant::now();
+        let drawn = renderer.draw(&self.target, &frame);
+        self.drawing_time += start.elapsed();
+        drawn.map(|()| true)
+    }
+
+    /// A picture of what the view shows, without its marks; `None` while a file is being uploaded or nothing is open.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw_to_image`].
+    pub fn picture(&mut self, editor: &Editor, kind: PictureKind) -> Result<Option<Image>, RenderError> {
+        let (view, gpu) = (editor.view(), self.gpu.clone());
+        let (Some(shown), Some(key), Some(mut renderer)) = (&self.surface, &self.drawn, gpu.try_write()) else {
+            return Ok(None);
+        };
+        // As large as the view, though it may just be drawn with fewer pixels.
+        let [width, height] = view.viewport_px.as_vec2().to_array();
+        let size_px =
+            pixels(egui::vec2(width, height) * key.pixels_per_point).map(|side| side.max(1) * kind.scale.max(1));
+        let pixels_per_point = key.pixels_per_point * kind.scale.max(1) as f32;
+        let mut style = drawing::style(&view.look, pixels_per_point);
+        let mut ground = shown.ground(&view);
+        if kind.ground == Ground::Transparent {
+            (style.background, ground) = (Background::Transparent, None);
+        }
+        let frame = Frame {
+            view: &drawing::view(view.camera, view.viewport_px, shown.drawing.centre),
+            style: &style,
+            surfaces: &[&shown.surface],
+            grid: ground.as_ref(),
+            overlays: &[],
+        };
+        let mut image = renderer.draw_to_image(size_px, Samples::Four, &frame)?;
+        if let Some(scale) = self.scale() {
+            let legend = legend::picture(&renderer, scale, pixels_per_point)?;
+            legend::composite(&mut image, &legend, (14.0 * pixels_per_point) as u32);
+        }
+        Ok(Some(image))
+    }
+
+    /// Tells egui about a new texture.
+    fn register(&mut self) {
+        let mut egui_renderer = self.state.renderer.write();
+        let Some(view) = self.target.texture_view() else {
+            if let Some(texture) = self.texture.take() {
+                egui_renderer.free_texture(&texture);
+            }
+            return;
+        };
+        let (device, filter) = (&self.state.device, wgpu::FilterMode::Linear);
+        match self.texture {
+            Some(texture) => egui_renderer.update_egui_texture_from_wgpu_texture(device, view, filter, texture),
+            None => self.texture = Some(egui_renderer.register_native_texture(device, view, filter)),
+        }
+    }
+}
+
+/// Whether the view changes or rests.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Smoothness {
+    /// Something moves: speed first.
+    Moving,
+    /// Nothing has moved for a while: beauty first.
+    Resting,
+}
+
+fn pixels(size: egui::Vec2) -> [u32; 2] {
+    [size.x, size.y].map(|side| side.round().clamp(0.0, 16_384.0) as u32)
+}

@@ -1,0 +1,39 @@
+//! What a picture was drawn from, and when it serves for what is asked for now.
+
+use pliant_editor::Look;
+use pliant_render::{Detail, Samples};
+
+use crate::window::viewport::shown::Colours;
+
+/// What the picture in the texture was drawn from.
+#[derive(Clone, PartialEq)]
+pub struct DrawnKey {
+    pub pixels_per_point: f32,
+    pub shape: usize,
+    pub colours: Colours,
+    pub materials_revision: u64,
+    pub rims: u64,
+    pub shown: usize,
+    pub overlay: u64,
+    pub camera: u64,
+    pub look: Look,
+    pub size_px: [u32; 2],
+    pub samples: Samples,
+    pub detail: Detail,
+}
+
+impl DrawnKey {
+    /// Whether this picture is as good as the one asked for: of the same thing, with as many samples, and as large or
+    /// as large as the view, `full_px`, itself.
+    pub fn serves(&self, wanted: &Self, full_px: [u32; 2]) -> bool {
+        let same = Self {
+            size_px: wanted.size_px,
+            samples: wanted.samples,
+            detail: wanted.detail,
+            ..self.clone()
+        };
+        let is_as_detailed = self.detail == wanted.detail || self.detail == Detail::Full;
+        let is_as_large = self.size_px == wanted.size_px || self.size_px == full_px;
+        same == *wanted && is_as_large && is_as_detailed && self.samples.count() >= wanted.samples.count()
+    }
+}
