@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, CentralPanel, Panel};
 use glam::DVec3;
-use pliant_editor::{Command, Editor, Event, JobQueue, KeyMap};
+use pliant_editor::{Command, Editor, Event, KeyMap};
 
 use super::bars::status;
 use super::bars::top_bar;
@@ -28,6 +28,7 @@ use super::panels;
 use super::panels::notes::{Note, Notes};
 use super::threads::interface_pool;
 use super::threads::message::Message;
+use super::threads::pose_queue::PoseQueue;
 use super::threads::workers::Workers;
 use super::viewport::Viewport;
 use super::viewport::compare::Compare;
@@ -47,8 +48,7 @@ pub struct Application {
     pub(super) workers: Workers,
     pub(super) messages: Receiver<Message>,
     pub(super) session: Session,
-    pub(super) poses: JobQueue<Arc<Vec<DVec3>>>,
-    pub(super) next_pose: u64,
+    pub(super) poses: PoseQueue,
     pub(super) input: Input,
     pub(super) settings: SettingsFile,
     pub(super) recovery: Option<Recovery>,
@@ -124,8 +124,7 @@ impl Application {
             workers,
             messages,
             session,
-            poses: JobQueue::default(),
-            next_pose: 0,
+            poses: PoseQueue::default(),
             input: Input::default(),
             settings,
             palette: None,

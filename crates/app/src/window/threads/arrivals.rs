@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{Event, Revision, Shading};
+use pliant_editor::{Event, Shading};
 use pliant_mesh::Cancel;
 
 use super::message::{LoadedMaterials, Message, Opened, Posed};
@@ -168,23 +168,7 @@ impl Application {
             stage.field = field;
             self.workers.set_stage(stage.clone());
         }
-        let wanted = self.editor.view().displacements;
-        let shown = self.viewport.displacements();
-        let is_stale = shown.is_some_and(|shown| !Arc::ptr_eq(shown, wanted))
-            || (shown.is_some() && field.is_some() && self.viewport.field() != field);
-        if is_stale && !self.poses.is_busy() {
-            let wanted = Arc::clone(wanted);
-            self.next_pose += 1;
-            self.poses.request(Revision(self.next_pose), wanted);
-        }
-        let Some((running, displacements)) = self.poses.start_next() else {
-            return;
-        };
-        let stamp = running.stamp;
-        self.workers.spawn(
-            "posing",
-            move || Message::Posed(stamp, Ok(stage.pose(displacements))),
-            move |sentence| Message::Posed(stamp, Err(sentence)),
-        );
+        self.poses
+            .follow(self.editor.view().displacements, &self.viewport, &stage, &self.workers);
     }
 }

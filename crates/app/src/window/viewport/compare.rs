@@ -7,13 +7,14 @@ use std::time::Duration;
 use eframe::egui::{self, Rect, RichText, UiBuilder, vec2};
 use glam::{DVec2, DVec3};
 use pliant_deform::{METHODS, Method};
-use pliant_editor::{Editor, Event, JobQueue, Revision};
+use pliant_editor::{Editor, Event};
 use pliant_render::RenderError;
 
 use super::{Smoothness, Viewport};
 use crate::drawing::Drawing;
 use crate::window::panels::method::choose_method;
 use crate::window::threads::message::{Message, Posed};
+use crate::window::threads::pose_queue::PoseQueue;
 use crate::window::threads::workers::{Stage, Workers};
 
 /// The second view and the editor behind it.
@@ -25,8 +26,7 @@ pub struct Compare {
     method: Method,
     /// The file whose surface is being uploaded for it.
     uploading: Option<Arc<Drawing>>,
-    poses: JobQueue<Arc<Vec<DVec3>>>,
-    next_pose: u64,
+    poses: PoseQueue,
     problem: Option<String>,
 }
 
@@ -44,8 +44,7 @@ impl Compare {
             messages,
             method: other.map_or_else(Method::default, |declaration| (declaration.first_choice)()),
             uploading: None,
-            poses: JobQueue::default(),
-            next_pose: 0,
+            poses: PoseQueue::default(),
             problem: None,
         }
     }
@@ -165,24 +164,10 @@ impl Compare {
 
     /// Asks for the pose of the present shape if it is not the one that is shown.
     fn request_pose(&mut self, stage: &Stage) {
-        let wanted = self.editor.view().displacements;
-        let shown = self.viewport.displacements();
-        let is_stale = shown.is_some_and(|shown| !Arc::ptr_eq(shown, wanted))
-            || (stage.field.is_some() && self.viewport.field() != stage.field);
-        if is_stale && self.viewport.shows(&stage.drawing) && !self.poses.is_busy() {
-            let wanted = Arc::clone(wanted);
-            self.next_pose += 1;
-            self.poses.request(Revision(self.next_pose), wanted);
+        if self.viewport.shows(&stage.drawing) {
+            self.poses
+                .follow(self.editor.view().displacements, &self.viewport, stage, &self.workers);
         }
-        let Some((running, displacements)) = self.poses.start_next() else {
-            return;
-        };
-        let (stamp, stage) = (running.stamp, stage.clone());
-        self.workers.spawn(
-            "posing",
-            move || Message::Posed(stamp, Ok(stage.pose(displacements))),
-            move |sentence| Message::Posed(stamp, Err(sentence)),
-        );
     }
 
     /// Shows the view in `rect`. Returns whether it is worth a second drawing when nothing has changed for a while.

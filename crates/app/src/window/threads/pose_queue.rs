@@ -1,0 +1,49 @@
+//! Shapes that wait to be posed for the renderer: the present one at a time, and of those behind it only the newest.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_editor::{JobQueue, Revision};
+
+use super::message::Message;
+use super::workers::{Stage, Workers};
+use crate::window::viewport::Viewport;
+
+/// The poses that one view has asked for.
+#[derive(Default)]
+pub struct PoseQueue {
+    jobs: JobQueue<Arc<Vec<DVec3>>>,
+    last: u64,
+}
+
+impl PoseQueue {
+    /// Asks for the pose of `wanted` if the view shows another shape, or other numbers as colours.
+    pub fn follow(&mut self, wanted: &Arc<Vec<DVec3>>, viewport: &Viewport, stage: &Stage, workers: &Workers) {
+        let is_stale = viewport.displacements().is_some_and(|shown| {
+            !Arc::ptr_eq(shown, wanted) || (stage.field.is_some() && viewport.field() != stage.field)
+        });
+        if is_stale && !self.jobs.is_busy() {
+            self.last += 1;
+            self.jobs.request(Revision(self.last), Arc::clone(wanted));
+        }
+        let Some((running, displacements)) = self.jobs.start_next() else {
+            return;
+        };
+        let (stamp, stage) = (running.stamp, stage.clone());
+        workers.spawn(
+            "posing",
+            move || Message::Posed(stamp, Ok(stage.pose(displacements))),
+            move |sentence| Message::Posed(stamp, Err(sentence)),
+        );
+    }
+
+    /// A pose that was asked for has come, or failed.
+    pub fn finish(&mut self, stamp: Revision) {
+        self.jobs.finish(stamp);
+    }
+
+    /// What was asked for is not wanted any more.
+    pub fn cancel(&mut self) {
+        self.jobs.cancel();
+    }
+}
