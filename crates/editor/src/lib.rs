@@ -21,8 +21,8 @@ mod workspace;
 
 pub use command::{Command, KeyMap, Listed, Shortcut};
 pub use document::{
-    Access, Content, Document, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleId, HandleTransform, History, MirrorPlane,
-    ObjectAction, Paint, PivotPlace, Reach, Twin, object_name,
+    Access, Content, Document, HANDLE_COLOURS, HISTORY_BYTES, Handle, HandleId, HandleTransform, History, KeptShape,
+    MirrorPlane, ObjectAction, Paint, PivotPlace, Reach, Twin, object_name,
 };
 pub use editor::Editor;
 pub use event::Event;

@@ -6,8 +6,9 @@ mod rig;
 use glam::{DVec2, DVec3};
 use pliant_deform::Loose;
 use pliant_editor::{
-    BrushMetric, Button, Command, Depth, Event, GizmoOrientation, GizmoPart, Key, Modifiers, ObjectAction, Paint,
-    PivotPlace, Pointer, Reach, RegionAction, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
+    BrushMetric, Button, Command, Depth, Event, GizmoOrientation, GizmoPart, Handle, Key, Modifiers,
+    ObjectAction, Paint, PivotPlace, Pointer, Reach, RegionAction, StiffnessAction, StiffnessBrush, StrokeShape,
+    ToolMode,
 };
 use pliant_mesh::{Drawn, Object, shapes};
 use rig::{Fingerprint, Random, Rig};
@@ -84,10 +85,14 @@ fn act(rig: &mut Rig, random: &mut Random) {
                 Command::NewHandle,
                 Command::NextHandle,
                 Command::DeleteHandle,
+                Command::PinOrUnpin,
                 Command::Apply,
-            ][random.below(4) as usize]
+            ][random.below(5) as usize]
                 .clone();
-            unmoved(rig, |rig| rig.command(command));
+            match command {
+                Command::Apply => unmoved_but_in_numbers(rig, |rig| rig.command(command)),
+                _ => unmoved(rig, |rig| rig.command(command)),
+            }
         }
         13 => {
             let stiffness = (0..rig.model.surface.positions.len())
@@ -183,7 +188,17 @@ fn act_on_handles(rig: &mut Rig, random: &mut Random) {
         3 => Command::SetPivotPlace(id, PivotPlace::Border),
         4 => Command::SetPivotPlace(id, PivotPlace::Centroid),
         5 => Command::DuplicateHandle,
-        6 => Command::MakeTwin(random.below(3) as usize),
+        6 => {
+            // Its other half goes where a handle that has moved already has gone.
+            let is_displaced = |handle: &Handle| handle.id == id && handle.is_displaced();
+            let moves = rig.editor.document().handles().iter().any(is_displaced);
+            let twin = Command::MakeTwin(random.below(3) as usize);
+            match moves {
+                true => rig.command(twin),
+                false => unmoved(rig, |rig| rig.command(twin)),
+            }
+            return;
+        }
         7 => Command::Untwin,
         8 => Command::ToggleSelected(rig.editor.document().handles()[0].id),
         9 => Command::SetOrientation([GizmoOrientation::Local, GizmoOrientation::View][random.below(2) as usize]),
@@ -193,7 +208,13 @@ fn act_on_handles(rig: &mut Rig, random: &mut Random) {
             return;
         }
     };
-    unmoved(rig, |rig| rig.command(command));
+    match command {
+        // The numbers are about the pivot.
+        Command::SetPivotPlace(..) | Command::SetPivot(..) => {
+            unmoved_but_in_numbers(rig, |rig| rig.command(command));
+        }
+        _ => unmoved(rig, |rig| rig.command(command)),
+    }
 }
 
 fn stiffness_stroke(rig: &mut Rig, random: &mut Random) {
@@ -254,8 +275,26 @@ fn is_on_gizmo(rig: &Rig, position_px: DVec2) -> bool {
     pliant_editor::hit_gizmo(view.gizmo, position_px, view.camera, rig::VIEWPORT_PX).is_some()
 }
 
-/// Does something that must not move a drawn vertex, now or when its jobs are done.
+/// Does something that must not move a drawn vertex, now or when its jobs are done, and leaves each handle's numbers
+/// what they were last set to.
 fn unmoved(rig: &mut Rig, action: impl FnOnce(&mut Rig)) {
+    let before = rig.editor.document().handles().to_vec();
+    unmoved_but_in_numbers(rig, action);
+    for handle in rig.editor.document().handles() {
+        if let Some(former) = before.iter().find(|former| former.id == handle.id) {
+            assert!(
+                (former.transform, former.turn_deg) == (handle.transform, handle.turn_deg),
+                "{} was put elsewhere: {:?} became {:?}",
+                handle.name,
+                former.transform,
+                handle.transform
+            );
+        }
+    }
+}
+
+/// Does something that must not move a drawn vertex, now or when its jobs are done.
+fn unmoved_but_in_numbers(rig: &mut Rig, action: impl FnOnce(&mut Rig)) {
     let before = rig.drawn();
     action(rig);
     assert!(before == rig.drawn(), "a drawn vertex moved");

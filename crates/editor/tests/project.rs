@@ -47,6 +47,30 @@ fn meshes() -> Vec<(&'static str, Drawn)> {
 }
 
 #[test]
+fn a_project_goes_on_from_the_shape_that_a_stroke_has_kept() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.choose("bilaplacian");
+    rig.paint_handle();
+    rig.drain();
+    rig.move_by('x', ".2");
+    rig.drain();
+    let beside = CENTRE_PX + DVec2::new(-60.0, -70.0);
+    rig.paint(ToolMode::PaintStiffness, &[beside, beside + DVec2::new(12.0, 0.0)]);
+    rig.drain();
+    assert!(rig.editor.document().kept().is_some());
+    let again = reopened(&rig, &saved(&rig));
+    assert_eq!(saved(&again), saved(&rig));
+    let mut both = [rig, again];
+    for rig in &mut both {
+        let id = rig.editor.document().handles()[0].id;
+        rig.command(Command::SelectHandle(id));
+        rig.move_by('y', ".05");
+        rig.drain();
+    }
+    assert!(both[0].drawn() == both[1].drawn());
+}
+
+#[test]
 fn what_was_saved_is_what_is_opened_to_the_bit() {
     for (name, drawn) in meshes() {
         let mut random = Random(7);

@@ -11,8 +11,8 @@ use crate::input::Key;
 use crate::tool::{Constraint, Context, Gesture, ToolMode, TransformDrag, TransformKind, Widen};
 use crate::view::{GizmoMode, GizmoOrientation};
 use crate::workspace::{
-    Purpose, change_handle, delete_selected, mirror, reset_region, set_continuity, set_pivot, set_pivot_place,
-    set_reach, set_soft, set_turn, split_selected, transform_handle, untwin,
+    Purpose, change_handle, delete_selected, mirror, pin_or_unpin_selected, reset_region, set_continuity, set_pivot,
+    set_pivot_place, set_reach, set_soft, set_turn, split_selected, transform_handle, untwin,
 };
 
 /// Widens the selected handle's reach with the pointer.
@@ -324,6 +324,20 @@ pub(super) const RESET_HANDLE: Entry<()> = Entry {
             transform_handle(context.workspace, "Reset", id, HandleTransform::IDENTITY);
         }
     }),
+};
+
+/// Makes the selected handle a pin, which stays where it is, or a pin a handle again.
+pub(super) const PIN: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Pin or unpin",
+        "Has the selected handle stay where it is, or makes a pin a handle that can be moved.",
+        "hold stay here keep fix unpin",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| state.selected().err(),
+    action: Action::Do(|context, ()| pin_or_unpin_selected(context.workspace)),
 };
 
 /// Names a handle.

@@ -156,6 +156,8 @@ commands! {
     Scale = handle::SCALE;
     /// Takes the selected handle back to where it rests.
     ResetHandle = handle::RESET_HANDLE;
+    /// Makes the selected handle a pin, which stays where it is, or a pin a handle again.
+    PinOrUnpin = handle::PIN;
     /// Names a handle.
     RenameHandle(id: HandleId, name: String) = handle::RENAME_HANDLE;
     /// Gives a handle a colour, sRGB with alpha.

@@ -8,6 +8,7 @@ use pliant_deform::{Arap, Loose, Method};
 
 use super::access::Access;
 use super::handle::{Handle, HandleId};
+use super::kept_shape::KeptShape;
 
 /// What was painted on a vertex.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
@@ -48,6 +49,8 @@ pub struct Content {
     pub(crate) from_rest: Arc<Vec<DVec3>>,
     /// The sum of both, what is drawn: follows from them.
     pub(crate) from_file: Arc<Vec<DVec3>>,
+    /// What was seen when what holds the surface changed last; `None` where the shape is the one that the handles mean.
+    pub(crate) kept: Option<Arc<KeptShape>>,
     /// Whether `from_rest` is final for the handles' transforms.
     pub(crate) settled: bool,
 }
@@ -69,6 +72,7 @@ impl Content {
             rest: Arc::clone(&zero),
             applied: false,
             from_rest: Arc::clone(&zero),
+            kept: None,
             from_file: zero,
             settled: true,
         }

@@ -37,6 +37,8 @@ pub struct Handle {
     pub visible: bool,
     /// Whether it is kept from being moved, painted and deleted.
     pub locked: bool,
+    /// Whether it is a pin: it holds its vertices where they were seen, and nobody moves it.
+    pub is_pin: bool,
     /// With which continuity the surface joins it, in [`pliant_deform::CONTINUITY_RANGE`]; `None` is what the document
     /// says of its vertices.
     pub continuity: Option<f64>,
@@ -95,6 +97,7 @@ impl Handle {
             soft: None,
             visible: true,
             locked: false,
+            is_pin: false,
             continuity: None,
             twin: None,
         }
@@ -114,6 +117,25 @@ impl Handle {
             HandleTransform::Matrix(_) => DVec3::ZERO,
         };
         self.transform = transform;
+    }
+
+    /// Makes it a pin. It takes nothing along, and moves with no twin.
+    pub(crate) fn pin(&mut self) {
+        self.is_pin = true;
+        self.name = format!("pin {}", u32::from(self.id.0) + 1);
+        self.reach = Reach::Length(0.0);
+        self.twin = None;
+    }
+
+    /// Puts the pivot at a point of the rest shape; the map of positions stays the same.
+    pub(crate) fn move_pivot(&mut self, pivot: DVec3) {
+        let affine = self.affine();
+        if let HandleTransform::Trs { translation, .. } = &mut self.transform
+            && *translation != affine.transform_point3(pivot) - pivot
+        {
+            *translation = affine.transform_point3(pivot) - pivot;
+        }
+        self.pivot = pivot;
     }
 
     /// Whether it is anywhere else than where it rests.

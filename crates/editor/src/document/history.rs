@@ -16,6 +16,7 @@ use pliant_deform::{Loose, Method};
 use super::access::Access;
 use super::content::Paint;
 use super::handle::Handle;
+use super::kept_shape::KeptShape;
 use super::sparse::Sparse;
 use super::state::Document;
 use super::version::{Aspect, Version};
@@ -40,6 +41,8 @@ pub(crate) enum Change {
     Rest(Sparse<DVec3>, bool),
     /// What is hidden and locked.
     Access(Arc<Access>),
+    /// What was seen when what holds the surface changed last.
+    Kept(Option<Arc<KeptShape>>),
     /// Whether the shape is final for the handles' transforms.
     Settled(bool),
 }
@@ -67,7 +70,10 @@ impl Step {
                 Change::Access(access) => {
                     size_of::<Access>() + (access.hidden.len() + access.locked.len()) * size_of::<u32>()
                 }
-                Change::Continuity(None) | Change::Options(..) | Change::Settled(_) => size_of::<Change>(),
+                Change::Kept(Some(kept)) => kept.shape.len() * size_of::<DVec3>(),
+                Change::Kept(None) | Change::Continuity(None) | Change::Options(..) | Change::Settled(_) => {
+                    size_of::<Change>()
+                }
             })
             .sum();
         size_of::<Self>() + self.name.len() + changes + self.shape.bytes()
@@ -237,6 +243,7 @@ fn swap(change: &mut Change, document: &mut Document) {
         Change::Options(method, loose, parts) => document.swap_options(method, loose, parts),
         Change::Rest(sparse, applied) => document.swap_rest(sparse, applied),
         Change::Access(access) => document.swap_access(access),
+        Change::Kept(kept) => document.swap_kept(kept),
         Change::Settled(settled) => document.swap_settled(settled),
     }
 }

@@ -2,11 +2,13 @@
 
 mod access;
 mod content;
+mod fitted;
 mod handle;
 mod handle_colour;
 mod handle_motion;
 mod handle_transform;
 mod history;
+mod kept_shape;
 mod mirror_plane;
 mod polar;
 mod sparse;
@@ -19,10 +21,12 @@ mod vertex_access;
 pub use access::{Access, ObjectAction, object_name};
 pub(crate) use content::sum_of_shapes;
 pub use content::{Content, Paint};
+pub(crate) use fitted::fitted_motion;
 pub use handle::{Handle, HandleId, PivotPlace, Reach, Twin};
 pub use handle_colour::HANDLE_COLOURS;
 pub use handle_transform::HandleTransform;
 pub use history::{HISTORY_BYTES, History};
+pub use kept_shape::KeptShape;
 pub use mirror_plane::MirrorPlane;
 pub(crate) use sparse::bits_equal;
 pub use state::Document;

@@ -52,7 +52,11 @@ impl Transaction {
         let changes = differences(before, document);
         let same_shape = !before.versions().differ(document.versions(), Aspect::Shape)
             || Sparse::difference(&document.from_rest, &before.from_rest).is_empty();
-        if changes.iter().all(|change| matches!(change, Change::Settled(_))) && same_shape {
+        if changes
+            .iter()
+            .all(|change| matches!(change, Change::Settled(_) | Change::Kept(_)))
+            && same_shape
+        {
             return false;
         }
         history.push(name.clone(), changes, before);
@@ -95,6 +99,14 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
         if before.applied != after.applied || !sparse.is_empty() {
             changes.push(Change::Rest(sparse, before.applied));
         }
+    }
+    let same_kept = match (&before.kept, &after.kept) {
+        (Some(before), Some(after)) => Arc::ptr_eq(before, after) || before == after,
+        (None, None) => true,
+        _ => false,
+    };
+    if !same_kept {
+        changes.push(Change::Kept(before.kept.clone()));
     }
     if before.settled != after.settled {
         changes.push(Change::Settled(before.settled));

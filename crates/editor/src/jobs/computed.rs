@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use pliant_deform::{Bound, Ordering, ReusableFactor};
 use pliant_mesh::Model;
 
-use super::job::{Pickable, ShownTriangles};
+use super::job::{Carried, Pickable, ShownTriangles};
 use super::region::Region;
 
 /// The last results.
@@ -18,6 +18,8 @@ pub(crate) struct Computed {
     pub(super) orderings: Vec<Arc<Ordering>>,
     pub(crate) region: Region,
     pub(super) bound: Option<Arc<Mutex<Bound>>>,
+    /// What a solve from a kept shape goes on from, with this factorisation.
+    pub(super) carried: Option<Carried>,
     /// What the next binding can take over of the last one.
     pub(super) reusable_factor: Option<ReusableFactor>,
     /// Sentences about the last binding.
@@ -33,6 +35,7 @@ impl Default for Computed {
             orderings: Vec::new(),
             region: Region::still(0),
             bound: None,
+            carried: None,
             reusable_factor: None,
             warnings: Vec::new(),
         }

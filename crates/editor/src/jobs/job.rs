@@ -11,6 +11,7 @@ use pliant_deform::{Bound, Ordering};
 use pliant_mesh::{Bvh, Cancel, Progress, SurfaceVertex};
 
 use super::region::Region;
+use crate::document::KeptShape;
 
 /// The jobs the editor hands out, by what they make.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -182,10 +183,25 @@ pub struct Solved {
     pub from_rest: Arc<Vec<DVec3>>,
     /// From the file's shape: what is drawn. The same allocation while nothing was applied.
     pub from_file: Arc<Vec<DVec3>>,
+    /// The solution behind it, where it carries what was seen before along.
+    pub(crate) carried: Option<Carried>,
     /// Whether further steps would leave it as it is.
     pub finished: bool,
     /// How far an iterative method's descent is; `None` for a method that is done in one step.
     pub descent: Option<Descent>,
+}
+
+/// What a solve from a kept shape goes on from.
+#[derive(Clone, Debug)]
+pub(crate) struct Carried {
+    /// The shape that was kept.
+    pub(crate) kept: Arc<KeptShape>,
+    /// The solution for the transforms at which it was kept.
+    pub(crate) at_first: Arc<Vec<DVec3>>,
+    /// The solution for the present transforms, without what is carried along.
+    pub(crate) solution: Arc<Vec<DVec3>>,
+    /// What is shown of it.
+    pub(crate) shown: Arc<Vec<DVec3>>,
 }
 
 /// How far a descent is.

@@ -296,12 +296,16 @@ impl Jobs {
                 self.computed.warnings = bound.warnings().to_vec();
                 self.computed.reusable_factor = bound.reusable_factor();
                 self.computed.bound = Some(Arc::new(Mutex::new(*bound)));
+                self.computed.carried = None;
                 self.bound_revision = stamp;
             }
             JobOutcome::Mirrored(image) if stamp == self.mirror_revision => return Arrival::Mirrored(image),
             JobOutcome::Enclosed(vertices) if stamp == self.enclose_revision => return Arrival::Enclosed(vertices),
             JobOutcome::Solved(solved) if stamp >= self.solve_floor => {
                 let last = stamp == self.target_revision && solved.finished;
+                if solved.carried.is_some() {
+                    self.computed.carried.clone_from(&solved.carried);
+                }
                 return Arrival::Shape(solved, if last { Finality::Final } else { Finality::Preview });
             }
             _ => {}

@@ -7,10 +7,10 @@ use pliant_deform::{BindError, Bound, Ordering, Problem, Solve, SolveError, Step
 use pliant_mesh::{Bvh, Cancel, Model, SurfaceVertex};
 
 use super::computed::Computed;
-use super::job::{Descent, JobOutcome, Pickable, Solved, Work};
+use super::job::{Carried, Descent, JobOutcome, Pickable, Solved, Work};
 use super::region::{Region, RegionInput};
 use crate::Setup;
-use crate::document::{Document, HandleId, sum_of_shapes};
+use crate::document::{Document, HandleId, KeptShape, sum_of_shapes};
 
 /// A solve takes so many vertices' worth of steps before it shows its shape: about what a window's frame has time for.
 /// There is no clock here.
@@ -18,6 +18,10 @@ const VERTEX_STEPS: usize = 100_000;
 
 /// The most steps of one solve, however few its vertices are.
 const MOST_STEPS: usize = 16;
+
+/// So many times the steps of one solve are taken for the solution at a kept shape: close enough to where the descent
+/// ends that what is left of it hides in the drag.
+const MOST_FIRST_ROUNDS: usize = 8;
 
 /// Makes the ordering for a power of the Laplacian.
 pub(super) fn order_work(model: &Arc<Model>, power: u32) -> Option<Work> {
@@ -100,24 +104,24 @@ pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Wor
     let targets = targets(document, &computed.region.handles)?;
     let from_rest = Arc::clone(&document.from_rest);
     let rest = document.applied.then(|| Arc::clone(&document.rest));
+    let beginning = Beginning::of(computed, document)?;
     Some(Box::new(move |_, cancel| {
         if cancel.is_cancelled() {
             return JobOutcome::Cancelled;
         }
         let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut displacements = from_rest.to_vec();
-        match steps(&mut bound, &targets, &mut displacements, cancel) {
+        match beginning.solve(&mut bound, &targets, &from_rest, cancel) {
             Err(error) => JobOutcome::Failed(
                 error
                     .renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0)
                     .to_string(),
             ),
-            Ok(step) => {
-                let from_rest = Arc::new(displacements);
+            Ok((from_rest, carried, step)) => {
                 let from_file = sum_of_shapes(rest.as_ref(), &from_rest);
                 JobOutcome::Solved(Solved {
                     from_rest,
                     from_file,
+                    carried,
                     finished: step.finished,
                     descent: (bound.solve() != Solve::Direct).then_some(Descent {
                         energy: step.energy,
@@ -128,6 +132,72 @@ pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Wor
             }
         }
     }))
+}
+
+/// From where a solve goes on.
+enum Beginning {
+    /// From what is shown.
+    Shown,
+    /// From a kept shape for the first time: the solution there is to be found, with the targets at which it was kept.
+    Kept(Arc<KeptShape>, Vec<DAffine3>),
+    /// From the last solution, with what is carried along beside it.
+    Carried(Carried),
+}
+
+impl Beginning {
+    fn of(computed: &Computed, document: &Document) -> Option<Self> {
+        let Some(kept) = &document.kept else {
+            return Some(Self::Shown);
+        };
+        let carried = computed.carried.as_ref();
+        if let Some(carried) = carried.filter(|carried| Arc::ptr_eq(&carried.kept, kept)) {
+            let mut carried = carried.clone();
+            if !Arc::ptr_eq(&carried.shown, &document.from_rest) {
+                // Undo has brought another shape: the way to it is found again from where all began.
+                carried.solution = Arc::clone(&carried.at_first);
+            }
+            return Some(Self::Carried(carried));
+        }
+        let mut handles = computed.region.handles.iter();
+        let first: Option<Vec<DAffine3>> = handles.by_ref().map(|id| kept.targets.get(id).copied()).collect();
+        first.map(|first| Self::Kept(Arc::clone(kept), first))
+    }
+
+    /// What is shown next, and what the solve after it goes on from.
+    fn solve(
+        self,
+        bound: &mut Bound,
+        targets: &[DAffine3],
+        from_rest: &Arc<Vec<DVec3>>,
+        cancel: &Cancel,
+    ) -> Result<(Arc<Vec<DVec3>>, Option<Carried>, Step), SolveError> {
+        let (kept, at_first, mut solution) = match self {
+            Self::Shown => {
+                let mut solution = from_rest.to_vec();
+                let step = steps(bound, targets, &mut solution, cancel)?;
+                return Ok((Arc::new(solution), None, step));
+            }
+            Self::Kept(kept, first) => {
+                let mut at_first = kept.shape.to_vec();
+                for _ in 0..MOST_FIRST_ROUNDS {
+                    if steps(bound, &first, &mut at_first, cancel)?.finished || cancel.is_cancelled() {
+                        break;
+                    }
+                }
+                (kept, Arc::new(at_first.clone()), at_first)
+            }
+            Self::Carried(carried) => (carried.kept, carried.at_first, carried.solution.to_vec()),
+        };
+        let step = steps(bound, targets, &mut solution, cancel)?;
+        let shown = Arc::new(kept.carried(&at_first, &solution));
+        let carried = Carried {
+            kept,
+            at_first,
+            solution: Arc::new(solution),
+            shown: Arc::clone(&shown),
+        };
+        Ok((shown, Some(carried), step))
+    }
 }
 
 /// Takes steps towards the targets until the shape is worth showing; it goes on from where the last solve ended.

@@ -88,7 +88,7 @@ fn gizmo(
     highlighted: Option<GizmoPart>,
 ) -> Option<Vec<GizmoShape>> {
     let handle = workspace.selected()?;
-    if lit == Lit::Ring || !handle.visible || handle.locked {
+    if lit == Lit::Ring || !handle.visible || handle.locked || handle.is_pin {
         return None;
     }
     let axes = GizmoAxes::of(&handle.transform, settings.orientation, camera);

@@ -136,7 +136,7 @@ impl PaintStroke {
         }
         if !vertices.is_empty() {
             let document = &mut workspace.document;
-            document.apply_shape();
+            document.keep_shape();
             document.paint_vertices(vertices.into_iter().map(|vertex| (vertex, self.paint)));
         }
     }

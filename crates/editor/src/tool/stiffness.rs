@@ -69,7 +69,7 @@ impl StiffnessStroke {
             return;
         }
         // The shape that is shown was made with another stiffness: it is kept, as with every stroke.
-        workspace.document.apply_shape();
+        workspace.document.keep_shape();
         if self.brush.action == StiffnessAction::Smooth {
             if let Some(model) = workspace.model().cloned() {
                 workspace.document.stiffen(|field| smooth(met, field, &model.topology));

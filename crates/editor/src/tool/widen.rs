@@ -73,7 +73,7 @@ impl Gesture for Widen {
             .is_some_and(|handle| handle.reach != reach)
         {
             workspace.jobs.drop_solves();
-            workspace.document.apply_shape();
+            workspace.document.keep_shape();
             workspace
                 .document
                 .change_handle(self.handle, |handle| handle.reach = reach);

@@ -5,7 +5,7 @@
 
 use super::colour_revisions::{ColouredBy, Sources};
 use super::state::Workspace;
-use crate::document::{Aspect, Handle, VertexAccess};
+use crate::document::{Aspect, Document, Handle, VertexAccess};
 use crate::jobs::{Activity, Arrival, Finality, Solved};
 
 impl Workspace {
@@ -48,7 +48,9 @@ impl Workspace {
 
     /// Handles that all rest need no solve: the rest shape is known.
     fn rest_if_undisplaced(&mut self) {
-        if !self.document.is_settled() && !self.document.handles().iter().any(Handle::is_displaced) {
+        let rests =
+            |document: &Document| document.kept.is_none() && !document.handles().iter().any(Handle::is_displaced);
+        if !self.document.is_settled() && rests(&self.document) {
             self.jobs.drop_solves();
             self.document.unbend();
         }

@@ -64,7 +64,7 @@ pub(crate) fn set_reach(workspace: &mut Workspace, id: HandleId, reach: Reach) {
     }
     workspace.jobs.drop_solves();
     workspace.change("Change reach", |document| {
-        document.apply_shape();
+        document.keep_shape();
         document.change_handle(id, |handle| handle.reach = reach);
     });
 }

@@ -6,13 +6,19 @@ use pliant_mesh::{Model, SurfaceVertex};
 
 use super::painting::{border_middle, members, repaint, tidy_handles};
 use super::state::Workspace;
-use crate::document::{Document, Handle, HandleId, HandleTransform, Paint, PivotPlace, VertexAccess, means};
+use crate::document::{Document, Handle, HandleId, HandleTransform, Paint, PivotPlace, Reach, VertexAccess, means};
 
 /// Why a handle can't be moved, if it can't.
 pub(crate) fn held_because(workspace: &Workspace, id: HandleId) -> Option<String> {
     let handle = workspace.document.handle(id)?;
     if handle.locked {
         return Some(format!("{} is locked: unlock it in the list to move it.", handle.name));
+    }
+    if handle.is_pin {
+        return Some(format!(
+            "{} stays where it is: choose *Unpin* to move it as a handle.",
+            handle.name
+        ));
     }
     let access = &workspace.vertex_access;
     let is_locked = |vertex: SurfaceVertex| access.is_locked(vertex.index());
@@ -69,6 +75,10 @@ fn put_alone(workspace: &mut Workspace, id: HandleId, transform: HandleTransform
 /// The shape with a handle's own vertices where the handle takes them, as displacements from the rest shape.
 fn moved_alone(document: &Document, model: &Model, access: &VertexAccess, id: HandleId) -> Option<Vec<DVec3>> {
     let affine = document.handle(id)?.affine();
+    let kept = document
+        .kept
+        .as_ref()
+        .and_then(|kept| Some((kept, kept.targets.get(&id)?)));
     let mut from_rest: Vec<DVec3> = document.from_rest().to_vec();
     for vertex in members(document, id).into_iter().map(SurfaceVertex::index) {
         if !access.is_locked(vertex) {
@@ -78,7 +88,12 @@ fn moved_alone(document: &Document, model: &Model, access: &VertexAccess, id: Ha
                 DVec3::ZERO
             };
             let rest = model.surface.positions[vertex] + applied;
-            from_rest[vertex] = affine.transform_point3(rest) - rest;
+            from_rest[vertex] = match kept {
+                Some((kept, first)) => {
+                    kept.shape[vertex] + affine.transform_point3(rest) - first.transform_point3(rest)
+                }
+                None => affine.transform_point3(rest) - rest,
+            };
         }
     }
     Some(from_rest)
@@ -107,19 +122,50 @@ pub(crate) fn change_handle(
     });
 }
 
-/// Deletes the selected handle; its vertices are held still where they are.
+/// Deletes the selected handle. What it has moved stays where it is, held by a pin; a pin that is deleted lets the next
+/// drag take along what it held.
 pub(crate) fn delete_selected(workspace: &mut Workspace) {
     let Some(handle) = workspace.selected() else { return };
     let (id, name) = (handle.id, format!("Delete {}", handle.name));
+    let becomes_pin = handle.is_displaced() && !handle.is_pin;
     workspace.jobs.drop_solves();
     workspace.change(name, |document| {
-        document.apply_shape();
-        let freed = members(document, id).into_iter().map(|vertex| (vertex, Paint::Bare));
-        document.paint_vertices(freed.collect::<Vec<_>>());
+        document.keep_shape();
+        if becomes_pin {
+            document.change_handle(id, Handle::pin);
+        } else {
+            let freed = members(document, id).into_iter().map(|vertex| (vertex, Paint::Bare));
+            document.paint_vertices(freed.collect::<Vec<_>>());
+            document.change_handles(|handles| handles.retain(|handle| handle.id != id));
+        }
         document.change_handles(|handles| {
-            handles.retain(|handle| handle.id != id);
             for handle in handles {
                 handle.twin = handle.twin.filter(|twin| twin.handle != id);
+            }
+        });
+    });
+}
+
+/// Makes the selected handle a pin, which stays where it is, or a pin a handle again.
+pub(crate) fn pin_or_unpin_selected(workspace: &mut Workspace) {
+    let Some(handle) = workspace.selected() else { return };
+    let id = handle.id;
+    let is_pin = handle.is_pin;
+    workspace.jobs.drop_solves();
+    workspace.change(if is_pin { "Unpin" } else { "Pin" }, |document| {
+        document.keep_shape();
+        document.change_handle(id, |handle| {
+            if is_pin {
+                handle.is_pin = false;
+                handle.name = format!("handle {}", u32::from(id.0) + 1);
+                handle.reach = Reach::default();
+            } else {
+                handle.pin();
+            }
+        });
+        document.change_handles(|handles| {
+            for handle in handles {
+                handle.twin = handle.twin.filter(|twin| is_pin || twin.handle != id);
             }
         });
     });
@@ -146,7 +192,7 @@ pub(crate) fn set_pivot_place(workspace: &mut Workspace, id: HandleId, place: Pi
     change_handle(workspace, "Choose pivot", id, |handle| {
         handle.pivot_place = place;
         if let Some(pivot) = pivot {
-            move_pivot(handle, pivot);
+            handle.move_pivot(pivot);
         }
     });
 }
@@ -167,7 +213,7 @@ pub(crate) fn set_pivot(workspace: &mut Workspace, id: HandleId, point: DVec3) {
             handle.pivot + (point - handle.centre())
         };
         handle.pivot_place = PivotPlace::Picked;
-        move_pivot(handle, rest);
+        handle.move_pivot(rest);
     });
 }
 
@@ -238,8 +284,8 @@ pub(crate) fn reset_region(workspace: &mut Workspace) {
     workspace.step("Reset region", |workspace| {
         let before = workspace.document.clone();
         let document = &mut workspace.document;
-        document.apply_shape();
-        document.forget_rest_at(&taken);
+        document.change_handle(id, |handle| handle.put(HandleTransform::IDENTITY));
+        document.forget_shape_at(&taken);
         let members = members(document, id);
         let position = |vertex: &SurfaceVertex| model.surface.positions[vertex.index()] + document.rest[vertex.index()];
         let middle = members.iter().map(position).sum::<DVec3>() / members.len().max(1) as f64;
@@ -250,15 +296,4 @@ pub(crate) fn reset_region(workspace: &mut Workspace) {
         });
         tidy_handles(workspace, &before);
     });
-}
-
-/// Puts a pivot at a point of the rest shape; the map of positions stays the same.
-fn move_pivot(handle: &mut Handle, pivot: DVec3) {
-    let affine = handle.affine();
-    if let HandleTransform::Trs { translation, .. } = &mut handle.transform
-        && *translation != affine.transform_point3(pivot) - pivot
-    {
-        *translation = affine.transform_point3(pivot) - pivot;
-    }
-    handle.pivot = pivot;
 }

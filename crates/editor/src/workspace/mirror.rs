@@ -87,7 +87,7 @@ fn twin_of(workspace: &mut Workspace, id: HandleId, image: &[usize], plane: Mirr
     }
     workspace.jobs.drop_solves();
     workspace.change("Make twin", |document| {
-        document.apply_shape();
+        document.keep_shape();
         let other = document.add_handle();
         let painted = image.iter().map(|&vertex| SurfaceVertex(vertex as u32));
         document.paint_vertices(painted.map(|vertex| (vertex, Paint::Handle(other))));
@@ -102,8 +102,15 @@ fn twin_of(workspace: &mut Workspace, id: HandleId, image: &[usize], plane: Mirr
             second.pivot = plane.mirrored(first.pivot);
             // Mirrored motion needs mirrored pivots.
             second.pivot_place = PivotPlace::Picked;
+            second.soft = first.soft;
             second.twin = Some(Twin { handle: id, plane });
         });
+        // The twin is known to stand at rest; from there it goes where its other half has gone.
+        document.keep_shape();
+        if first.is_displaced() {
+            document.change_handle(other, |second| second.put(plane.mirrored_transform(first.transform)));
+            document.unsettle();
+        }
     });
 }
 

@@ -22,8 +22,8 @@ pub use colours::stiffness_colour;
 pub(crate) use colours::{region_colour, rims};
 pub(crate) use handle_values::{set_continuity, set_reach, set_soft, set_turn, transform_handle};
 pub(crate) use handles::{
-    change_handle, count_turn, delete_selected, held_because, put_handle, reset_region, set_pivot, set_pivot_place,
-    split_selected, untwin,
+    change_handle, count_turn, delete_selected, held_because, pin_or_unpin_selected, put_handle, reset_region,
+    set_pivot, set_pivot_place, split_selected, untwin,
 };
 pub(crate) use mirror::{mirror, take_mirrored};
 pub(crate) use mirror_request::Purpose;

@@ -76,7 +76,7 @@ fn set_access(workspace: &mut Workspace, name: String, access: Access) {
     }
     workspace.change(name, |document| {
         if relocked {
-            document.apply_shape();
+            document.keep_shape();
         }
         document.set_access(Arc::new(access));
     });

@@ -8,7 +8,7 @@ use pliant_deform::Role;
 use pliant_mesh::{Model, SurfaceVertex};
 
 use super::state::Workspace;
-use crate::document::{Aspect, Document, HandleId, Paint, PivotPlace};
+use crate::document::{Aspect, Document, Handle, HandleId, HandleTransform, Paint, PivotPlace, fitted_motion};
 
 /// The vertices of a handle, ascending.
 pub(crate) fn members(document: &Document, id: HandleId) -> Vec<SurfaceVertex> {
@@ -68,7 +68,7 @@ pub(crate) fn repaint(
     let mut made = None;
     workspace.step(name, |workspace| {
         let before = workspace.document.clone();
-        workspace.document.apply_shape();
+        workspace.document.keep_shape();
         if let Paint::Handle(id) = target
             && workspace.document.handle(id).is_none()
         {
@@ -84,8 +84,8 @@ pub(crate) fn repaint(
     }
 }
 
-/// After regions have changed: handles without a vertex go, and the pivot of each handle whose vertices are others
-/// than before is their mean.
+/// After regions have changed: handles without a vertex go, the pivot of each handle at rest whose vertices are others
+/// than before is their mean, and what is new on a bent shape is a handle or a pin where it is seen.
 pub(crate) fn tidy_handles(workspace: &mut Workspace, before: &Document) {
     let Some(model) = workspace.model().cloned() else {
         return;
@@ -95,6 +95,7 @@ pub(crate) fn tidy_handles(workspace: &mut Workspace, before: &Document) {
         document.drop_handles_made_since(before);
         return;
     }
+    pin_what_is_held_elsewhere(document, before);
     let numbers = document.handles().iter().map(|handle| usize::from(handle.id.0) + 1);
     let mut sums = vec![(DVec3::ZERO, 0.0, false); numbers.max().unwrap_or(0)];
     let (paint, rest) = (Arc::clone(&document.paint), Arc::clone(&document.rest));
@@ -118,7 +119,8 @@ pub(crate) fn tidy_handles(workspace: &mut Workspace, before: &Document) {
     document.change_handles(|handles| {
         handles.retain_mut(|handle| {
             let (sum, count, changed) = sums[usize::from(handle.id.0)];
-            if changed && count > 0.0 {
+            // A turned handle's numbers are about its pivot: they stay what they were set to.
+            if changed && count > 0.0 && !handle.is_displaced() {
                 handle.pivot = match handle.pivot_place {
                     PivotPlace::Centroid => sum / count,
                     PivotPlace::Border => border_middle(handle.id, &paint, &model, &position).unwrap_or(sum / count),
@@ -132,6 +134,73 @@ pub(crate) fn tidy_handles(workspace: &mut Workspace, before: &Document) {
             handle.twin = handle.twin.filter(|twin| left.contains(&twin.handle));
         }
     });
+    if document.kept.is_some() {
+        put_new_handles_where_they_are_seen(document, before, &model);
+        document.keep_shape();
+    }
+}
+
+/// What a stroke holds still elsewhere than at rest becomes a pin: it stays where it is seen.
+fn pin_what_is_held_elsewhere(document: &mut Document, before: &Document) {
+    let is_held_elsewhere = |vertex: &usize| {
+        document.paint[*vertex] == Paint::Fixed
+            && before.paint[*vertex] != Paint::Fixed
+            && document.from_rest[*vertex] != DVec3::ZERO
+    };
+    let held: Vec<usize> = (0..document.paint.len()).filter(is_held_elsewhere).collect();
+    if held.is_empty() {
+        return;
+    }
+    let id = document.add_handle();
+    document.change_handle(id, Handle::pin);
+    document.paint_vertices(
+        held.into_iter()
+            .map(|vertex| (SurfaceVertex(vertex as u32), Paint::Handle(id))),
+    );
+}
+
+/// Gives each new handle the transform that has brought its vertices where they are seen: that of the handle which all
+/// of them belonged to, or the rigid motion that fits best.
+fn put_new_handles_where_they_are_seen(document: &mut Document, before: &Document, model: &Model) {
+    let is_new = |handle: &&Handle| before.handle(handle.id).is_none();
+    let new: Vec<(HandleId, DVec3)> = document
+        .handles()
+        .iter()
+        .filter(is_new)
+        .map(|handle| (handle.id, handle.pivot))
+        .collect();
+    for (id, pivot) in new {
+        let members = members(document, id);
+        let former = members.first().map(|vertex| before.paint[vertex.index()]);
+        let parent = match former {
+            Some(Paint::Handle(parent))
+                if members
+                    .iter()
+                    .all(|vertex| before.paint[vertex.index()] == Paint::Handle(parent)) =>
+            {
+                before.handle(parent)
+            }
+            _ => None,
+        };
+        let points = members.iter().map(|vertex| {
+            let rest = model.surface.positions[vertex.index()] + document.rest[vertex.index()];
+            (rest, rest + document.from_rest[vertex.index()])
+        });
+        let (rotation, translation) = fitted_motion(&points.collect::<Vec<_>>(), pivot);
+        document.change_handle(id, |handle| match parent {
+            Some(parent) => {
+                handle.pivot = parent.pivot;
+                handle.put(parent.transform);
+                handle.move_pivot(pivot);
+            }
+            None => handle.put(HandleTransform::Trs {
+                translation,
+                rotation,
+                scale: DVec3::ONE,
+                pivot: None,
+            }),
+        });
+    }
 }
 
 /// The mean of a handle's vertices that stand beside others; `None` where it covers whole parts.

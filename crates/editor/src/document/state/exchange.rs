@@ -11,6 +11,7 @@ use super::{Document, Repainted, note};
 use crate::document::access::Access;
 use crate::document::content::Paint;
 use crate::document::handle::Handle;
+use crate::document::kept_shape::KeptShape;
 use crate::document::sparse::Sparse;
 use crate::document::version::{Aspect, Versions};
 
@@ -54,8 +55,14 @@ impl Document {
         }
         self.marks.mark(&changed);
         self.repainted = Repainted::All;
+        // What this method makes of the handles is to be compared, and not what was seen of the other.
+        self.content.kept = None;
         self.content.settled = true;
         self.unsettle();
+    }
+
+    pub(in crate::document) fn swap_kept(&mut self, kept: &mut Option<Arc<KeptShape>>) {
+        std::mem::swap(kept, &mut self.content.kept);
     }
 
     pub(in crate::document) fn swap_paint(&mut self, paint: &mut Sparse<Paint>) {

@@ -21,6 +21,7 @@ use glam::DVec3;
 use super::access::Access;
 use super::content::{Content, Paint};
 use super::handle::{Handle, HandleId};
+use super::kept_shape::KeptShape;
 use super::version::{Aspect, Marks, Versions};
 
 /// The edited state of one mesh.
@@ -151,6 +152,12 @@ impl Document {
         &self.content.from_file
     }
 
+    /// What was seen when what holds the surface changed last, from which the next drag begins; `None` where the shape is
+    /// the one that the handles mean.
+    pub fn kept(&self) -> Option<&KeptShape> {
+        self.content.kept.as_deref()
+    }
+
     /// Whether a shape was applied, so that the rest shape is another than the file's.
     pub fn is_applied(&self) -> bool {
         self.content.applied
@@ -163,7 +170,7 @@ impl Document {
 
     /// Whether the present shape is another than the rest shape.
     pub fn is_displaced(&self) -> bool {
-        !self.content.settled || self.content.handles.iter().any(Handle::is_displaced)
+        !self.content.settled || self.content.kept.is_some() || self.content.handles.iter().any(Handle::is_displaced)
     }
 
     /// Which state of each aspect this is.
@@ -284,7 +291,7 @@ impl Document {
         if !are_same(before, after, Handle::affine) {
             changed.push(Aspect::Targets);
         }
-        if !are_same(before, after, |h| (h.id, h.colour, h.visible)) {
+        if !are_same(before, after, |h| (h.id, h.colour, h.visible, h.is_pin)) {
             changed.push(Aspect::Appearance);
         }
         self.marks.mark(&changed);

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::Document;
 use crate::document::handle_transform::HandleTransform;
+use crate::document::kept_shape::KeptShape;
 use crate::document::version::Aspect;
 
 impl Document {
@@ -18,6 +19,7 @@ impl Document {
         content.rest = Arc::clone(&content.from_file);
         content.applied = true;
         content.from_rest = Arc::new(vec![DVec3::ZERO; content.rest.len()]);
+        content.kept = None;
         content.settled = true;
         self.marks.mark(&[Aspect::Rest, Aspect::Shape]);
         self.change_handles(|handles| {
@@ -26,6 +28,20 @@ impl Document {
                 handle.put(HandleTransform::IDENTITY);
             }
         });
+    }
+
+    /// Has the present shape stay what is seen though what holds the surface is about to change: handles keep their
+    /// transforms, and the next drag begins from what is seen.
+    pub(crate) fn keep_shape(&mut self) {
+        if !self.is_displaced() {
+            return;
+        }
+        let content = &mut self.content;
+        content.settled = true;
+        let kept = content.kept.as_ref();
+        if kept.is_none_or(|kept| !kept.is_of(&content.handles, &content.from_rest)) {
+            content.kept = Some(Arc::new(KeptShape::of(&content.handles, &content.from_rest)));
+        }
     }
 
     /// Shows a shape that the handles have brought about; `from_file` is its sum with the rest shape.
@@ -54,18 +70,36 @@ impl Document {
         content.rest = Arc::new(vec![DVec3::ZERO; content.paint.len()]);
         content.from_rest = Arc::clone(&content.rest);
         content.from_file = Arc::clone(&content.rest);
+        content.kept = None;
         content.settled = true;
         self.marks.mark(&[Aspect::Rest, Aspect::Shape, Aspect::Drawn]);
     }
 
-    /// Takes some vertices of the rest shape back to the file's.
-    pub(crate) fn forget_rest_at(&mut self, is_taken: &[bool]) {
-        let rest = Arc::make_mut(&mut self.content.rest);
-        for (displacement, _) in rest.iter_mut().zip(is_taken).filter(|(_, taken)| **taken) {
-            *displacement = DVec3::ZERO;
+    /// Takes some vertices back to the file's shape, the rest shape's and the present one's; the others stay where they
+    /// are seen.
+    pub(crate) fn forget_shape_at(&mut self, is_taken: &[bool]) {
+        let content = &mut self.content;
+        for field in [&mut content.rest, &mut content.from_rest] {
+            for (displacement, _) in Arc::make_mut(field)
+                .iter_mut()
+                .zip(is_taken)
+                .filter(|(_, taken)| **taken)
+            {
+                *displacement = DVec3::ZERO;
+            }
         }
-        self.content.sum_shapes();
-        self.marks.mark(&[Aspect::Rest, Aspect::Drawn]);
+        content.kept = None;
+        content.settled = true;
+        content.sum_shapes();
+        self.marks.mark(&[Aspect::Rest, Aspect::Shape, Aspect::Drawn]);
+        if self
+            .content
+            .from_rest
+            .iter()
+            .any(|displacement| *displacement != DVec3::ZERO)
+        {
+            self.content.kept = Some(Arc::new(KeptShape::of(&self.content.handles, &self.content.from_rest)));
+        }
     }
 
     /// The shape is final for the handles' transforms.
@@ -78,9 +112,11 @@ impl Document {
         self.swap_settled(&mut false);
     }
 
-    /// The same, if any handle is elsewhere than where it rests.
+    /// The same, if any handle is elsewhere than where it rests; what the surface is to be is solved from the rest shape
+    /// alone.
     pub(crate) fn unsettle_if_displaced(&mut self) {
         if self.is_displaced() {
+            self.content.kept = None;
             self.unsettle();
         }
     }

@@ -33,6 +33,8 @@ pub(super) struct StoredHandle {
     visible: bool,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     locked: bool,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pin: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     twin: Option<StoredTwin>,
 }
@@ -84,6 +86,7 @@ impl StoredHandle {
             continuity: handle.continuity,
             visible: handle.visible,
             locked: handle.locked,
+            pin: handle.is_pin,
             twin: handle.twin.map(|twin| StoredTwin {
                 handle: twin.handle.0,
                 axis: twin.plane.axis,
@@ -132,6 +135,7 @@ impl StoredHandle {
             continuity: self.continuity,
             visible: self.visible,
             locked: self.locked,
+            is_pin: self.pin,
             twin: self.twin.map(|twin| Twin {
                 handle: HandleId(twin.handle),
                 plane: MirrorPlane {

@@ -8,6 +8,7 @@
 mod camera;
 mod field;
 mod handle;
+mod kept;
 mod objects;
 
 use std::collections::BTreeMap;
@@ -24,6 +25,7 @@ use sha2::{Digest, Sha256};
 use self::camera::StoredCamera;
 use self::field::{Field, Ranges, for_each_drawn, ranges_where};
 use self::handle::StoredHandle;
+use self::kept::StoredKept;
 use self::objects::{StoredObject, access, stored_objects};
 use super::edit_error::EditError;
 use super::json::parse;
@@ -78,6 +80,9 @@ pub struct Project {
     /// The present shape's displacements from the rest shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shape: Option<Field>,
+    /// What was seen when what holds the surface changed last, from which the next drag begins.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    kept: Option<StoredKept>,
     /// Whether that is what the handles' transforms mean; else it is computed on opening.
     settled: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -195,6 +200,10 @@ impl Project {
             rest: document.applied.then(|| displacements(&document.rest)).flatten(),
             applied: document.applied,
             shape: displacements(&document.from_rest),
+            kept: document
+                .kept
+                .as_ref()
+                .map(|kept| StoredKept::of(kept, displacements(&kept.shape))),
             settled: document.settled,
             camera: camera.map(StoredCamera::of),
         }
@@ -226,6 +235,7 @@ impl Project {
     pub(crate) fn set_method(&mut self, method: &Method) {
         self.method = method_to_value(method);
         // The shape is another method's.
+        self.kept = None;
         self.settled = false;
     }
 
@@ -322,6 +332,11 @@ impl Project {
         }
         if let Some(shape) = displacements(&self.shape, "shape")? {
             document.from_rest = shape;
+        }
+        if let Some(kept) = &self.kept {
+            let shape = displacements(&kept.shape, "kept: shape")?;
+            let shape = shape.unwrap_or_else(|| Arc::new(vec![DVec3::ZERO; count]));
+            document.kept = Some(Arc::new(kept.kept(shape)));
         }
         document.settled = self.settled || !document.handles.iter().any(Handle::is_displaced);
         Ok(document.into())

@@ -1,0 +1,99 @@
+//! The shape that was seen when what holds the surface changed, from which the next drag begins.
+//!
+//! Handles keep their transforms, relative to one rest shape, for as long as the document lives. A stroke that changes
+//! roles or stiffness changes the shape S(T) that the handles' transforms T mean; what is seen must not jump. With x the
+//! shape seen and T₀ the transforms at that moment, a solve for T shows
+//!
+//! x(T) = S(T) + f·(x − S(T₀)),
+//!
+//! which is x at T₀. The residual x − S(T₀) fades at each vertex (f falls from 1 to 0) as S moves the vertex
+//! away from S(T₀): what is dragged freely ends at S(T) alone, and what nobody moves stays where it was seen.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+
+use super::handle::{Handle, HandleId};
+
+/// The residual of a vertex is gone when the vertex has moved this many times the residual's length. The fading itself
+/// moves a vertex by at most a quarter of what the drag moves it, so that nothing is seen to run back.
+const FADES_WITHIN: f64 = 6.0;
+
+/// A shape that was seen, and where the handles stood.
+#[derive(Clone, PartialEq, Debug)]
+pub struct KeptShape {
+    /// Each handle's map of rest positions.
+    pub targets: BTreeMap<HandleId, DAffine3>,
+    /// Displacements from the rest shape, per surface vertex.
+    pub shape: Arc<Vec<DVec3>>,
+}
+
+impl KeptShape {
+    /// What is seen with the handles as they stand.
+    pub(crate) fn of(handles: &[Handle], shape: &Arc<Vec<DVec3>>) -> Self {
+        Self {
+            targets: handles.iter().map(|handle| (handle.id, handle.affine())).collect(),
+            shape: Arc::clone(shape),
+        }
+    }
+
+    /// Whether the same shape is seen with the same transforms.
+    pub(crate) fn is_of(&self, handles: &[Handle], shape: &Arc<Vec<DVec3>>) -> bool {
+        Arc::ptr_eq(&self.shape, shape)
+            && self.targets.len() == handles.len()
+            && handles
+                .iter()
+                .all(|handle| self.targets.get(&handle.id) == Some(&handle.affine()))
+    }
+
+    /// x(T), given S(T₀) and S(T), all as displacements from the rest shape.
+    pub fn carried(&self, at_first: &[DVec3], now: &[DVec3]) -> Vec<DVec3> {
+        let vertices = self.shape.iter().zip(at_first).zip(now);
+        vertices
+            .map(|((&seen, &first), &now)| {
+                let residual = seen - first;
+                let length = FADES_WITHIN * residual.length();
+                let way = now.distance(first);
+                if residual == DVec3::ZERO || way >= length {
+                    now
+                } else if way == 0.0 {
+                    // To the bit, which a sum would round.
+                    seen
+                } else {
+                    now + residual * (1.0 - (way / length).powi(2)).powi(2)
+                }
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_seen_goes_on_from_the_kept_shape_to_the_solution_without_a_jump_or_a_way_back() {
+        let seen = DVec3::new(0.3, 1.0, -0.2);
+        let first = DVec3::new(0.1, 0.8, 0.1);
+        let kept = KeptShape {
+            targets: BTreeMap::new(),
+            shape: Arc::new(vec![seen]),
+        };
+        let at = |way: f64| {
+            let now = first + way * DVec3::Y;
+            (now, kept.carried(&[first], &[now])[0])
+        };
+        assert_eq!(at(0.0).1, seen);
+        let far = at(10.0);
+        assert_eq!(far.0, far.1);
+        let step = 1e-3;
+        let mut before = at(0.0).1;
+        for number in 1..4000 {
+            let (_, after) = at(step * f64::from(number));
+            assert!(after.distance(before) <= 1.3 * step, "{before} {after}");
+            assert!(after.y >= before.y, "it goes where it is dragged");
+            before = after;
+        }
+    }
+}
