@@ -25,6 +25,8 @@ pub enum Event {
     },
     /// The pointer moved within the view, or anywhere while a button is held.
     PointerMoved(Pointer),
+    /// The pointer has stood still over the view for a moment: it means what lies under it.
+    PointerRested,
     /// The pointer left the view: nothing is hovered any more.
     PointerLeft,
     /// A button went down over the view.

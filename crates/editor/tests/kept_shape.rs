@@ -5,7 +5,7 @@ mod rig;
 
 use glam::{DVec2, DVec3};
 use pliant_deform::METHODS;
-use pliant_editor::{Command, HandleId, HandleTransform, Key, Paint, Reach, ToolMode};
+use pliant_editor::{Command, GizmoPart, HandleId, HandleTransform, Key, Paint, Reach, ToolMode};
 use pliant_mesh::shapes;
 use rig::Rig;
 
@@ -134,4 +134,31 @@ fn what_is_painted_fixed_on_a_bent_shape_is_a_pin_that_stays_whatever_is_dragged
     rig.command(Command::PinOrUnpin);
     rig.drain();
     assert!(!rig.editor.view().gizmo.is_empty());
+}
+
+#[test]
+fn a_stroke_goes_through_the_gizmo_but_on_a_part_that_the_pointer_rests_on() {
+    let mut rig = Rig::open(shapes::icosphere(4));
+    rig.paint_handle();
+    rig.drain();
+    let seen = rig.drawn();
+    for part in [GizmoPart::Centre, GizmoPart::Arrow(0), GizmoPart::Ring(1)] {
+        let place = rig.place_of(part).unwrap();
+        let painted = rig.editor.document().paint().to_vec();
+        rig.swipe(&[place, place + DVec2::new(9.0, 7.0)]);
+        rig.drain();
+        assert!(seen == rig.drawn(), "{part:?}: a stroke moves nothing");
+        let others = rig.editor.document().paint() != painted;
+        assert!(others || rig.editor.pick(place).is_none(), "{part:?}: it paints");
+    }
+    let colour = |rig: &Rig, part| {
+        let shape = rig.editor.view().gizmo.iter().find(|shape| shape.part == part);
+        shape.unwrap().colour
+    };
+    let faded = colour(&rig, GizmoPart::Arrow(0));
+    let place = rig.grip(GizmoPart::Arrow(0)).unwrap();
+    assert!(colour(&rig, GizmoPart::Arrow(0))[3] > faded[3], "it lights up");
+    rig.swipe(&[place, place + DVec2::new(30.0, 0.0)]);
+    rig.drain();
+    assert!(seen != rig.drawn(), "and is dragged");
 }

@@ -85,6 +85,10 @@ impl Editor {
                 self.pointer = Some(pointer);
                 self.ask_gesture(|gesture, context| gesture.moved(context, pointer));
             }
+            Event::PointerRested => {
+                let pointer_px = self.pointer.map(|pointer| pointer.position_px);
+                self.overlay.rest(pointer_px, &self.view);
+            }
             Event::PointerLeft => {
                 if self.gesture.is_none() {
                     self.pointer = None;
@@ -326,7 +330,12 @@ impl Editor {
                 let asks = *button == Button::Primary && !pointer.modifiers.alt && self.gesture.is_none();
                 let jobs = &self.workspace.jobs;
                 let is_late = asks && jobs.is_busy(JobKind::Pick) && !jobs.is_picking_current();
-                waits || (is_late && self.overlay.hit(pointer.position_px, &self.view).is_none())
+                waits
+                    || (is_late
+                        && self
+                            .overlay
+                            .grabbed(pointer.position_px, &self.view, &self.settings)
+                            .is_none())
             }
             _ => false,
         }

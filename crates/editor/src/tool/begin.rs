@@ -27,7 +27,9 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         Button::Primary if modifiers.alt || modifiers.shift => return navigate(context, pointer, button),
         Button::Primary => {}
     }
-    if let Some(part) = context.overlay.hit(pointer.position_px, context.view)
+    if let Some(part) = context
+        .overlay
+        .grabbed(pointer.position_px, context.view, context.settings)
         && let Some(drag) = grab(context, pointer, part)
     {
         return Some(drag);

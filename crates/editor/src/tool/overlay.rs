@@ -1,4 +1,7 @@
 //! What lies over the surface: the brush's ring and the selected handle's gizmo.
+//!
+//! While a brush is in hand strokes go through the gizmo, which is faded: only the part that the pointer rests on is
+//! lit, and grabbed by a press.
 
 use glam::{DVec2, DVec3};
 
@@ -28,12 +31,23 @@ pub(crate) struct Overlay {
     pub(crate) hovered: Option<GizmoPart>,
     pub(crate) is_over_surface: bool,
     pub(crate) revision: u64,
+    /// The part that the pointer rests on.
+    rested: Option<GizmoPart>,
 }
 
+/// How much of its colour the gizmo keeps while a brush is in hand.
+const FADED: f64 = 0.4;
+
 impl Overlay {
-    /// The part of the gizmo at a point of the viewport.
-    pub(crate) fn hit(&self, position_px: DVec2, view: &View) -> Option<GizmoPart> {
-        hit_gizmo(&self.gizmo, position_px, view.camera(), view.viewport_px())
+    /// The part of the gizmo that a press at a point of the viewport grabs.
+    pub(crate) fn grabbed(&self, position_px: DVec2, view: &View, settings: &ToolSettings) -> Option<GizmoPart> {
+        let part = hit_gizmo(&self.gizmo, position_px, view.camera(), view.viewport_px());
+        part.filter(|part| settings.mode == ToolMode::Select || self.rested == Some(*part))
+    }
+
+    /// The pointer rests at a point of the viewport.
+    pub(crate) fn rest(&mut self, pointer_px: Option<DVec2>, view: &View) {
+        self.rested = pointer_px.and_then(|px| hit_gizmo(&self.gizmo, px, view.camera(), view.viewport_px()));
     }
 
     /// Computes the overlay anew; its revision grows if it looks different.
@@ -53,8 +67,19 @@ impl Overlay {
             (Lit::Gizmo(part), _) => part,
             _ => None,
         };
+        let is_painting = settings.mode != ToolMode::Select && lit == Lit::Pointed;
+        // Who moves off the part, or does anything else, rests no more.
+        self.rested = self
+            .rested
+            .filter(|part| lit == Lit::Pointed && highlighted == Some(*part));
+        let highlighted = if is_painting { self.rested } else { highlighted };
         if highlighted.is_some() {
             gizmo = gizmo_of(highlighted);
+        }
+        if is_painting {
+            for shape in gizmo.iter_mut().filter(|shape| Some(shape.part) != highlighted) {
+                shape.colour[3] = (f64::from(shape.colour[3]) * FADED) as u8;
+            }
         }
         let (mut line, mut is_over_surface) = (Vec::new(), false);
         if let (Some(pointer_px), Some(picking)) = (pointer_px, workspace.picking(view))

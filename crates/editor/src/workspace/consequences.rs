@@ -5,14 +5,14 @@
 
 use super::colour_revisions::{ColouredBy, Sources};
 use super::state::Workspace;
-use crate::document::{Aspect, Document, Handle, VertexAccess};
+use crate::document::{Aspect, Handle, VertexAccess};
 use crate::jobs::{Activity, Arrival, Finality, Solved};
 
 impl Workspace {
     /// Draws the conclusions from what an event changed: revisions grow, and jobs are asked for.
     pub(crate) fn conclude(&mut self, activity: Activity, coloured_by: ColouredBy) {
         self.renew_vertex_access();
-        self.rest_if_undisplaced();
+        self.settle_what_needs_no_solve();
         self.follow_versions(activity);
         self.selection.drop_lost(&self.document);
         self.jobs.pump(&self.document, activity);
@@ -46,13 +46,19 @@ impl Workspace {
         }
     }
 
-    /// Handles that all rest need no solve: the rest shape is known.
-    fn rest_if_undisplaced(&mut self) {
-        let rests =
-            |document: &Document| document.kept.is_none() && !document.handles().iter().any(Handle::is_displaced);
-        if !self.document.is_settled() && rests(&self.document) {
+    /// Handles that all rest need no solve: the rest shape is known. Nor is there anything to solve where all handles lie
+    /// on what is locked: what is seen stays.
+    fn settle_what_needs_no_solve(&mut self) {
+        if self.document.is_settled() {
+            return;
+        }
+        let is_moved = self.document.handles().iter().any(Handle::is_displaced);
+        if self.document.kept.is_none() && !is_moved {
             self.jobs.drop_solves();
             self.document.unbend();
+        } else if self.jobs.is_region_current() && self.computed().region.handles.is_empty() {
+            self.jobs.drop_solves();
+            self.document.keep_shape();
         }
     }
 

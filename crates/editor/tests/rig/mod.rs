@@ -223,8 +223,16 @@ impl Rig {
         true
     }
 
-    /// A point of the screen where this part of the gizmo is grabbed.
-    pub fn grip(&self, part: GizmoPart) -> Option<DVec2> {
+    /// A point of the screen where this part of the gizmo is grabbed; the pointer rests there.
+    pub fn grip(&mut self, part: GizmoPart) -> Option<DVec2> {
+        let position_px = self.place_of(part)?;
+        self.move_to(position_px);
+        self.send(Event::PointerRested);
+        Some(position_px)
+    }
+
+    /// A point of the screen where this part of the gizmo lies.
+    pub fn place_of(&self, part: GizmoPart) -> Option<DVec2> {
         let view = self.editor.view();
         let shape = view.gizmo.iter().find(|shape| shape.part == part)?;
         let lines = shape.lines.iter().map(|[a, b]| (*a + *b) * 0.5);

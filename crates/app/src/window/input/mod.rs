@@ -4,6 +4,7 @@ pub(in crate::window) mod event_queue;
 pub(in crate::window) mod own_keys;
 
 use std::collections::VecDeque;
+use std::time::{Duration, Instant};
 
 use eframe::egui::{self, MouseWheelUnit, PointerButton, Rect};
 use glam::DVec2;
@@ -17,9 +18,14 @@ const POINTS_PER_LINE: f64 = 50.0;
 pub struct Input {
     held: Vec<PointerButton>,
     inside: bool,
+    /// Since when the pointer stands still over the view, until the editor was told.
+    still_since: Option<Instant>,
     /// Digits of the numeric pad that went down and have not been heard yet.
     pub numpad: VecDeque<u8>,
 }
+
+/// After this long the pointer means what lies under it.
+const RESTS_AFTER: Duration = Duration::from_millis(120);
 
 /// Who gets what happens now.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +51,18 @@ impl Input {
         let mut out = Vec::new();
         for event in events {
             self.translate(&event, modifiers, attention, &mut out);
+        }
+        if !out.is_empty() {
+            self.still_since = self.held.is_empty().then(Instant::now);
+        }
+        if let Some(still) = self.still_since.filter(|_| attention.pointer_over) {
+            match RESTS_AFTER.checked_sub(still.elapsed()) {
+                Some(wait) if !wait.is_zero() => context.request_repaint_after(wait),
+                _ => {
+                    self.still_since = None;
+                    out.push(Event::PointerRested);
+                }
+            }
         }
         // What went elsewhere, into a field to type in, is no command.
         if !attention.more_to_come {
