@@ -1,13 +1,21 @@
 //! A file's geometry, welded: the drawn set, the surface, and the tables from one to the other.
 
+mod drawn;
+pub(crate) mod drawn_set;
+pub(crate) mod drawn_triangles;
+mod object;
+
 use rayon::prelude::*;
 
-use crate::parts::Parts;
+use crate::findings::parts::Parts;
 use crate::weld::weld;
 use crate::{
-    Bounds, Cancel, Cancelled, Drawn, DrawnSet, FileVertex, Findings, Object, Progress, Surface, SurfaceVertex,
-    Topology, bounding_box,
+    Bounds, Cancel, Cancelled, FileVertex, Findings, Progress, Surface, SurfaceVertex, Topology, bounding_box,
 };
+
+pub use drawn::Drawn;
+pub use drawn_set::DrawnSet;
+pub use object::Object;
 
 /// How equal positions are joined.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -3,11 +3,18 @@
 //! Angles and areas come from edge lengths (Kahan, "Miscalculating area and angles of a needle-like triangle"), so that
 //! the same functions serve mollified lengths, which belong to no positions.
 
+mod areas;
+mod distortion;
+mod gradient;
+mod normals;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
-pub use crate::areas::{face_areas, mixed_corner_areas, mixed_voronoi_areas, signed_volume};
-pub use crate::normals::vertex_normals;
+pub use areas::{face_areas, mixed_corner_areas, mixed_voronoi_areas, signed_volume};
+pub use distortion::Distortion;
+pub use gradient::face_gradient;
+pub use normals::vertex_normals;
 
 /// An axis-aligned box, `min <= max` in each coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]

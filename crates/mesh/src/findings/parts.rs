@@ -3,9 +3,9 @@
 
 use glam::DVec3;
 
-use crate::boundary::trace_loops;
-use crate::components::Components;
-use crate::rings::Oddities;
+use crate::topology::boundary::trace_loops;
+use crate::topology::components::Components;
+use crate::topology::rings::Oddities;
 use crate::{Bounds, Component, DrawnSet, Finding, Findings, Surface, SurfaceVertex};
 
 /// A part with less than this share of the largest one's vertices is a loose bit.

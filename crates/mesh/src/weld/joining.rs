@@ -14,8 +14,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::morton::{self, MortonGrid};
 use crate::Bounds;
-use crate::morton::{self, MortonGrid};
 
 /// A position's place on the curve and its index: in twelve bytes, for a scan has many.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

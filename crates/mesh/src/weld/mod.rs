@@ -1,16 +1,19 @@
 //! From drawn vertices and triangles to a welded surface, with everything that was left out counted.
 
+mod joining;
+mod morton;
+
 use rayon::prelude::*;
 
-use crate::components::Components;
-use crate::drawn_set::{DrawnSet, FileVertices, NONE};
-use crate::drawn_triangles::Corners;
-use crate::finding::{collect, sort_out};
+use crate::findings::finding::{collect, sort_out};
 use crate::geometry::{bounds_of, is_without_area};
-use crate::joining::{self, Joined};
+use crate::model::drawn_set::{DrawnSet, FileVertices, NONE};
+use crate::model::drawn_triangles::Corners;
+use crate::topology::components::Components;
 use crate::{
     Cancel, Cancelled, Drawn, DrawnVertex, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex, WeldOptions,
 };
+use joining::Joined;
 
 /// Coordinates beyond this count as not finite: areas and volumes of such a mesh would overflow.
 const LARGEST_COORDINATE: f64 = 1e60;

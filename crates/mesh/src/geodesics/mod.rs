@@ -6,9 +6,11 @@
 //! Sethian 1998, with the circular front of Novotni and Klein 2002). So on a flat sheet without obtuse triangles
 //! distances are exact, where plain Dijkstra zigzags and is up to 40% too long; it costs a few operations a triangle.
 
+mod front;
+
 use glam::DVec3;
 
-use crate::front::Front;
+use crate::geodesics::front::Front;
 use crate::{Surface, SurfaceVertex, Topology};
 
 /// The distance of every vertex from the nearest of `sources`, along the surface, in world units; infinite beyond

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::faces::{Blocks, FaceRows};
+use crate::topology::faces::{Blocks, FaceRows};
 use crate::{Cancel, Cancelled, SurfaceVertex};
 
 /// Vertices a piece of the parallel walk.

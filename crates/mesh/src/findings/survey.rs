@@ -1,8 +1,8 @@
 //! A look at a file's geometry: its counts and findings, without the tables that an edit needs.
 
-use crate::components::Component;
-use crate::parts::Parts;
-use crate::rings::oddities;
+use crate::findings::parts::Parts;
+use crate::topology::components::Component;
+use crate::topology::rings::oddities;
 use crate::weld::{Welded, weld};
 use crate::{Bounds, Cancel, Cancelled, Diagnosis, Drawn, Findings, Progress, WeldOptions, bounding_box};
 

@@ -4,7 +4,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::drawn_triangles::{Corners, DrawnTriangles};
+use crate::model::drawn_triangles::{Corners, DrawnTriangles};
 use crate::{Drawn, DrawnVertex, FileVertex, Model, Surface, SurfaceVertex};
 
 /// No surface vertex.

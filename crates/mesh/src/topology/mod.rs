@@ -1,9 +1,21 @@
 //! Who neighbours whom: one-rings, triangles around vertices, components and rims, as compressed rows.
 
-use crate::boundary::trace_loops;
-use crate::components::{Component, Components};
-use crate::faces::{Faces, are_in_order, runs};
-use crate::rings::{FanKind, Oddities, rings};
+pub(crate) mod boundary;
+pub(crate) mod components;
+mod contours;
+mod faces;
+pub(crate) mod rings;
+
+pub use components::Component;
+pub use contours::{ContourLine, Crossing, contours};
+pub use faces::Faces;
+pub use rings::FanKind;
+
+use boundary::trace_loops;
+use components::Components;
+use faces::{are_in_order, runs};
+use rings::{Oddities, rings};
+
 use crate::{Cancel, Cancelled, FileVertex, Surface, SurfaceVertex};
 
 /// The connectivity of a [`Surface`].
