@@ -6,10 +6,10 @@ use glam::{DAffine3, DVec3};
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
-use crate::follow::{Followers, followers};
-use crate::handle::{FRAME_CHUNK, Handle, Motion, clear};
+use crate::handles::{FRAME_CHUNK, Handle, Motion, clear};
 use crate::method::{BindInput, BoundMethod, Finite, Solve};
-use crate::partition::Partition;
+use crate::region::follow::{Followers, followers};
+use crate::region::partition::Partition;
 use crate::sparse::cholesky::{Refactorisation, RenewableFactor};
 use crate::{BindError, Budget, HandleBases, Ordering, Problem, SolveError};
 

@@ -2,12 +2,12 @@
 
 use pliant_mesh::Cancel;
 
-use crate::handle::Handle;
-use crate::partition::Partition;
-use crate::shell::assembly::assemble_shell;
-use crate::shell::hubs::Hubs;
-use crate::shell::operator::ShellOperator;
-use crate::shell::plate::operator;
+use crate::bilaplacian::assembly::assemble_shell;
+use crate::bilaplacian::hubs::Hubs;
+use crate::bilaplacian::operator::ShellOperator;
+use crate::bilaplacian::solver::operator;
+use crate::handles::Handle;
+use crate::region::partition::Partition;
 use crate::sparse::Elimination;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};

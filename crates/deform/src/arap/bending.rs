@@ -32,8 +32,8 @@ use rayon::prelude::*;
 use super::bend::Bend;
 use super::cells::Cells;
 use super::domain::Domain;
+use crate::numerical::eigen::eigenvectors;
 use crate::operators::CHUNK;
-use crate::operators::eigen::eigenvectors;
 
 /// ν. Without it a bent cylinder flattens, its curvature hidden in affine maps; with 0.1 a little, and with 10 or 100 its
 /// shape is that of 1, but bumpy cells turn at a cost again: a scan of 43k vertices takes 26 and 42 steps instead of 15.

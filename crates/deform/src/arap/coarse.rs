@@ -15,10 +15,10 @@ use super::domain::{ABSENT, Domain};
 use super::history::Field;
 use super::shape::{Guesses, IDENTITY, Rotation, Shape, wide};
 use super::{ArapSolver, State};
-use crate::blend::Origin;
-use crate::handle::{Handle, Motion};
+use crate::handles::blend::Origin;
+use crate::handles::{Handle, Motion};
 use crate::operators::CHUNK;
-use crate::partition::Partition;
+use crate::region::partition::Partition;
 use crate::{Arap, Constraints, Loose, Method, Ordering, Problem};
 
 /// Vertices in a cluster at least: the smaller, the less stiff against bending, the more like the fine surface, and the

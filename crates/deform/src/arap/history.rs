@@ -13,8 +13,8 @@
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
-use crate::sums::CHUNKS_A_TASK;
 
 /// Steps that are remembered. On the survey's bar, cylinder and cactus and a 43k scan 5, 8, 14 and 24 took the same
 /// iterations within 4%, and 3 a fifth to two fifths more.

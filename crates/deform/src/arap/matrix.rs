@@ -11,8 +11,8 @@ use super::springs::Spring;
 use crate::budget::reserved;
 use crate::operators::CHUNK;
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::hubs::hub_degree;
 use crate::sparse::matrix::ScaledMatrix;
+use crate::sparse::ordering::hubs::hub_degree;
 use crate::{ArapEnergy, Laplacian};
 
 /// The matrix on the solved vertices, and how constrained ones pull at them.

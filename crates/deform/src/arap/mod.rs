@@ -49,12 +49,12 @@ use self::lead::Corrections;
 use self::precondition::{MapRoom, PreconditionError, Preconditioner, WeightInput};
 use self::shape::{Guesses, IDENTITY, Scratch, Shape};
 use self::springs::Springs;
-use crate::blend::HandleFrame;
-use crate::handle::{Handle, Motion};
+use crate::handles::blend::HandleFrame;
+use crate::handles::{Handle, Motion};
+use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
-use crate::partition::Partition;
+use crate::region::partition::Partition;
 use crate::sparse::Elimination;
-use crate::sums::CHUNKS_A_TASK;
 use crate::{BindError, Laplacian, Ordering, Problem, Role};
 
 /// The bound method, with the shape it is at.

@@ -7,11 +7,11 @@ use super::cells::Quad;
 use super::domain::Domain;
 use super::matrix::System;
 use crate::budget::{Budget, filled};
+use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::substitution::{Real, Room, Row, Substitution};
-use crate::sums::CHUNKS_A_TASK;
+use crate::sparse::solve::substitution::{Real, Room, Row, Substitution};
 
 /// The inverse of the system on the solved vertices, or nearly so.
 ///

@@ -7,9 +7,9 @@ use glam::DVec3;
 use pliant_mesh::{Cancel, Progress};
 
 use super::{MethodDeclaration, Needs, OptionRefused, OptionValue, Solve};
-use crate::handle::{Handle, Motion};
-use crate::operators::net::Net;
-use crate::partition::Partition;
+use crate::handles::{Handle, Motion};
+use crate::operators::triangulation::Net;
+use crate::region::partition::Partition;
 use crate::sparse::cholesky::Refactorisation;
 use crate::{BindError, HandleBases, Ordering, Problem, ReusableFactor, SolveError};
 

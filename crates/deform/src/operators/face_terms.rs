@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::Discretisation;
 use crate::operators::CHUNK;
 use crate::operators::mollification::lack;
-use crate::operators::net::Net;
+use crate::operators::triangulation::Net;
 
 /// ½ cot 60°: an equilateral triangle's weight on each of its edges.
 const HALF_COTANGENT_60: f64 = 0.288_675_134_594_812_9;

@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::hierarchy::Preconditioner;
 use super::{PrimoSolver, State};
+use crate::numerical::sums::{Field, dot};
 use crate::operators::CHUNK;
-use crate::sums::{Field, dot};
 
 /// A step must lower the energy by this share of what its slope promises.
 const SUFFICIENT: f64 = 1e-4;

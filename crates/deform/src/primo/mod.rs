@@ -51,13 +51,13 @@ use self::prisms::Prisms;
 use self::springs::Springs;
 use self::sweep::Colours;
 use self::vertices::Vertices;
-use crate::blend::HandleFrame;
-use crate::handle::{Handle, Motion};
-use crate::lbfgs::Memory;
-use crate::partition::Partition;
+use crate::handles::blend::HandleFrame;
+use crate::handles::{Handle, Motion};
+use crate::numerical::lbfgs::Memory;
+use crate::region::partition::Partition;
 use crate::sparse::Elimination;
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::graph::elimination;
+use crate::sparse::ordering::graph::elimination;
 use crate::{BindError, Problem};
 
 /// The bound method, with the pose it is at.
@@ -243,8 +243,8 @@ mod tests {
 
     use super::pose::tests::noise;
     use super::{Primo, PrimoSolver, State};
-    use crate::handle::{Handle, Motion};
-    use crate::partition::Partition;
+    use crate::handles::{Handle, Motion};
+    use crate::region::partition::Partition;
     use crate::{Constraints, Loose, Method, Problem, Role};
 
     /// A solver with the lowest tenth of z fixed and the highest a handle, and the handle's motion.

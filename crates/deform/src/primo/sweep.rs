@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use super::joints::Joints;
 use super::pose::Pose;
 use super::{PrimoSolver, State};
+use crate::numerical::rotation::fit;
 use crate::operators::CHUNK;
-use crate::rotation::fit;
 
 /// The most sweeps before Newton's method goes on with what there is.
 const SWEEPS: u32 = 200;

@@ -12,15 +12,15 @@ use std::sync::Arc;
 use pliant_mesh::Cancel;
 
 use crate::budget::Budget;
-use crate::sparse::assembly_tree::AssemblyTree;
-use crate::sparse::elimination::Elimination;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
-use crate::sparse::multifrontal::Numbers;
-use crate::sparse::reuse::{Named, equal_parts, worth_keeping};
-use crate::sparse::substitution::{Real, Substitution};
+use crate::sparse::numeric::Numbers;
+use crate::sparse::numeric::reuse::{Named, equal_parts, worth_keeping};
+use crate::sparse::ordering::elimination::Elimination;
+use crate::sparse::solve::substitution::{Real, Substitution};
 use crate::sparse::symbolic::Symbolic;
-use crate::sparse::{multifrontal, triangular};
+use crate::sparse::symbolic::assembly_tree::AssemblyTree;
+use crate::sparse::{numeric, solve};
 
 /// A factor of the scaled matrix.
 #[derive(Debug)]
@@ -102,7 +102,7 @@ impl Factor {
     /// Factors into what [`Factor::analysed`] left empty.
     pub fn fill(&mut self, matrix: &ScaledMatrix, shift: f64, cancel: &Cancel) -> Result<(), FactorError> {
         let (symbolic, assembly_tree) = (&self.symbolic, &self.assembly_tree);
-        self.numbers = multifrontal::factor(matrix, shift, symbolic, assembly_tree, &[], &[], cancel)?;
+        self.numbers = numeric::factor(matrix, shift, symbolic, assembly_tree, &[], &[], cancel)?;
         Ok(())
     }
 
@@ -136,7 +136,7 @@ impl Factor {
 
     /// Solves for K right-hand sides in place.
     pub fn solve<const K: usize>(&self, x: &mut [[f64; K]]) {
-        triangular::solve_in_place(&self.symbolic, &self.assembly_tree, &self.numbers, x);
+        solve::solve_in_place(&self.symbolic, &self.assembly_tree, &self.numbers, x);
     }
 }
 
@@ -171,7 +171,7 @@ impl RenewableFactor {
                 Refactorisation::Never | Refactorisation::From(_) => Vec::new(),
             };
             let (symbolic, assembly_tree) = (&factor.symbolic, &factor.assembly_tree);
-            match multifrontal::factor(&matrix, shift, symbolic, assembly_tree, &known, &kept, cancel) {
+            match numeric::factor(&matrix, shift, symbolic, assembly_tree, &known, &kept, cancel) {
                 Ok(numbers) => {
                     factor.numbers = numbers;
                     return Ok(Self {
@@ -238,9 +238,9 @@ pub(crate) mod tests {
     use crate::Budget;
     use crate::Laplacian;
     use crate::Ordering;
-    use crate::shell::assembly::assemble_shell;
-    use crate::shell::hubs::Hubs;
-    use crate::shell::operator::ShellOperator;
+    use crate::bilaplacian::assembly::assemble_shell;
+    use crate::bilaplacian::hubs::Hubs;
+    use crate::bilaplacian::operator::ShellOperator;
     use crate::sparse::Elimination;
     use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
     use pliant_mesh::{Cancel, Drawn, Progress, shapes};
@@ -395,7 +395,7 @@ pub(crate) mod tests {
         };
         let all = {
             let factor = Factor::analysed(&matrix, &elimination.ends, Budget::default()).unwrap();
-            let lines = |part: &crate::sparse::assembly_tree::Part| {
+            let lines = |part: &crate::sparse::symbolic::assembly_tree::Part| {
                 crate::sparse::symbolic::lines_left(factor.symbolic.pattern(part.blocks.end - 1).len())
             };
             8 * factor.assembly_tree.parts.iter().map(lines).sum::<usize>()
