@@ -1,4 +1,4 @@
-//! A triangle surface in memory: topology, geometry, welding, diagnosis, distances along the surface and a
+//! A triangle surface in memory: topology, geometry, welding, findings, distances along the surface and a
 //! bounding-volume hierarchy, and the one pair of [`Progress`] and [`Cancel`] that every long job takes.
 //!
 //! Three vertex sets exist and must not be mixed; each has its own id type:
@@ -21,7 +21,7 @@ mod topology;
 mod weld;
 
 pub use bvh::{Bvh, Hit};
-pub use findings::{Diagnosis, Example, Finding, FindingKind, Findings, Named, Survey};
+pub use findings::{Example, Finding, FindingKind, Findings, Inspection, LocatedFinding, Named};
 pub use geodesics::{DistanceSearch, distances_along_surface};
 pub use geometry::{
     Bounds, Distortion, area_of_lengths, bounding_box, cotangents, edge_lengths, face_area, face_areas, face_gradient,

@@ -1,6 +1,6 @@
 //! A bounding-volume hierarchy over a surface's triangles: rays, nearest vertices and views, refitted while it moves.
 //!
-//! obvhs builds the tree (PLOC, Meister and Bittner 2018); walking it is done here, because its own traversal works in
+//! obvhs builds the tree (PLOC, [MB18]); walking it is done here, because its own traversal works in
 //! f32 throughout. Boxes are f32, relative to a centre and scaled to the unit cube, and rounded outward; positions and
 //! all tests on them are f64. So a surface at geographic coordinates is hit as exactly as one at the origin.
 //!

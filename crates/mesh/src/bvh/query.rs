@@ -111,7 +111,7 @@ impl Bvh {
         }
     }
 
-    /// Möller and Trumbore 1997, both sides.
+    /// [MT97], both sides.
     fn meet(&self, place: usize, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let [a, b, c] = self.leaves.corners[place].map(|v| self.positions.get(v.index()));
         let (e1, e2) = (b - a, c - a);

@@ -1,13 +1,13 @@
 //! What loading found wrong with a mesh, as numbers with examples and as sentences for a person.
 
-mod diagnosis;
 pub(crate) mod finding;
-pub(crate) mod parts;
-mod survey;
+mod inspection;
+mod located;
+pub(crate) mod topological;
 
-pub use diagnosis::{Diagnosis, Example};
 pub use finding::Finding;
-pub use survey::Survey;
+pub use inspection::Inspection;
+pub use located::{Example, LocatedFinding};
 
 /// What loading found wrong with a mesh. Vertices are named by their file vertex, triangles by their drawn triangle.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 //!
 //! Vertices settle by rising distance as in Dijkstra's search. A settled edge of a triangle also reaches the third
 //! vertex straight through the triangle: unfolded into the plane, the two distances place a virtual source behind the
-//! edge, and the third vertex is as far as the straight line from there, if that line crosses the edge (Kimmel and
-//! Sethian 1998, with the circular front of Novotni and Klein 2002). So on a flat sheet without obtuse triangles
+//! edge, and the third vertex is as far as the straight line from there, if that line crosses the edge [KS98], with the
+//! circular front of [NK02]. So on a flat sheet without obtuse triangles
 //! distances are exact, where plain Dijkstra zigzags and is up to 40% too long; it costs a few operations a triangle.
 
 mod front;

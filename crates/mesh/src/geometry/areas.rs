@@ -19,8 +19,8 @@ pub fn face_areas(surface: &Surface, positions: &[DVec3]) -> Vec<f64> {
         .collect()
 }
 
-/// Each corner's share of a triangle's area, from edge lengths (entry `i` opposite corner `i`): Meyer, Desbrun,
-/// Schröder and Barr 2003, figure 4. The shares sum to the area.
+/// Each corner's share of a triangle's area, from edge lengths (entry `i` opposite corner `i`) [MDSB03,
+/// figure 4]. The shares sum to the area.
 ///
 /// A triangle without an obtuse angle is shared by its circumcentre, one with an obtuse angle gives half of itself to
 /// that corner and a quarter to each other.

@@ -7,7 +7,7 @@ mod object;
 
 use rayon::prelude::*;
 
-use crate::findings::parts::Parts;
+use crate::findings::topological::Parts;
 use crate::weld::weld;
 use crate::{
     Bounds, Cancel, Cancelled, FileVertex, Findings, Progress, Surface, SurfaceVertex, Topology, bounding_box,
@@ -61,7 +61,7 @@ impl Model {
             drawn: &drawn,
             components: topology.parts(),
         };
-        parts.report(topology.oddities(), &mut welded.findings);
+        parts.report(topology.findings(), &mut welded.findings);
         progress.set(1.0);
         Ok(Self {
             drawn,

@@ -14,7 +14,7 @@ pub use rings::FanKind;
 use boundary::trace_loops;
 use components::Components;
 use faces::{are_in_order, runs};
-use rings::{Oddities, rings};
+use rings::{TopologyFindings, rings};
 
 use crate::{Cancel, Cancelled, FileVertex, Surface, SurfaceVertex};
 
@@ -31,7 +31,7 @@ pub struct Topology {
     fan_kinds: Vec<FanKind>,
     /// Where the triangles begin of which each vertex is the lowest, and the triangles' number.
     runs: Vec<u32>,
-    oddities: Oddities,
+    findings: TopologyFindings,
     components: Components,
 }
 
@@ -61,7 +61,7 @@ impl Topology {
             fans: rings.fans,
             fan_kinds: rings.fan_kinds,
             runs: runs(vertex_count, &surface.triangles),
-            oddities: rings.oddities,
+            findings: rings.findings,
             components,
         })
     }
@@ -153,37 +153,37 @@ impl Topology {
 
     /// How many edges have one triangle.
     pub fn boundary_edges(&self) -> usize {
-        self.oddities.boundary.len()
+        self.findings.boundary.len()
     }
 
     /// The edges with one triangle, directed with the hole on the left, by their first vertex.
     pub fn boundary_edge_list(&self) -> &[[SurfaceVertex; 2]] {
-        &self.oddities.boundary
+        &self.findings.boundary
     }
 
     /// How many edges have more than two triangles.
     pub fn non_manifold_edges(&self) -> usize {
-        self.oddities.non_manifold_edges.len()
+        self.findings.non_manifold_edges.len()
     }
 
     /// How many vertices' triangles form more than one fan (triangles that share an edge are in one fan).
     pub fn non_manifold_vertices(&self) -> usize {
-        self.oddities.non_manifold_vertices.len()
+        self.findings.non_manifold_vertices.len()
     }
 
     /// How many edges lie between two triangles that disagree about which side is outside.
     pub fn misoriented_edges(&self) -> usize {
-        self.oddities.misoriented_edges.len()
+        self.findings.misoriented_edges.len()
     }
 
     /// Whether no edge has one triangle only.
     pub fn is_closed(&self) -> bool {
-        self.oddities.boundary.is_empty()
+        self.findings.boundary.is_empty()
     }
 
     /// Whether `v` lies on an edge with one triangle.
     pub fn is_boundary_vertex(&self, v: SurfaceVertex) -> bool {
-        let boundary = &self.oddities.boundary;
+        let boundary = &self.findings.boundary;
         let has_rim_to = |[from, to]: [SurfaceVertex; 2]| {
             let first = boundary.partition_point(|edge| edge[0] < from);
             boundary[first..]
@@ -206,12 +206,12 @@ impl Topology {
     /// A rim that passes a vertex twice is cut into loops there. Where more than two triangles share an edge a rim may
     /// end at it: such a chain counts as a loop too.
     pub fn boundary_loops(&self) -> Vec<Vec<SurfaceVertex>> {
-        trace_loops(&self.oddities.boundary)
+        trace_loops(&self.findings.boundary)
     }
 
     /// Rims, and where something is odd.
-    pub(crate) fn oddities(&self) -> &Oddities {
-        &self.oddities
+    pub(crate) fn findings(&self) -> &TopologyFindings {
+        &self.findings
     }
 }
 

@@ -1,4 +1,4 @@
-//! One-rings: who stands around each vertex, how many triangles lie on each edge, and what is odd about them.
+//! One-rings: the neighbours of each vertex, how many triangles lie on each edge, and what was found wrong with them.
 
 use std::ops::Range;
 
@@ -22,14 +22,14 @@ pub(crate) struct Rings {
     pub(crate) fans: Vec<u8>,
     /// What each vertex's row in `fans` is.
     pub(crate) fan_kinds: Vec<FanKind>,
-    /// What is odd about them.
-    pub(crate) oddities: Oddities,
+    /// What was found wrong with them.
+    pub(crate) findings: TopologyFindings,
 }
 
-/// Rims, and places where triangles do not meet as on a manifold; each list ascending.
+/// Boundary edges, and places where triangles do not meet as on a manifold; each list is ascending.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Oddities {
-    /// Edges with one triangle, directed against it: with the hole on the left.
+pub(crate) struct TopologyFindings {
+    /// Edges with one triangle, directed against it, so that the hole is on the left.
     pub(crate) boundary: Vec<[SurfaceVertex; 2]>,
     /// The lower vertex of each edge with more than two triangles.
     pub(crate) non_manifold_edges: Vec<SurfaceVertex>,
@@ -46,11 +46,11 @@ impl Rings {
         self.neighbours.clear();
         self.fans.clear();
         self.fan_kinds.clear();
-        self.oddities.clear();
+        self.findings.clear();
     }
 }
 
-impl Oddities {
+impl TopologyFindings {
     /// Every vertex that is named, ascending, each once.
     pub(crate) fn vertices(&self) -> Vec<SurfaceVertex> {
         let edges = self.boundary.as_flattened();
@@ -131,21 +131,21 @@ pub(crate) fn rings(
         all.neighbours.extend_from_slice(&piece.neighbours);
         all.fans.extend_from_slice(&piece.fans);
         all.fan_kinds.extend_from_slice(&piece.fan_kinds);
-        all.oddities.extend(&piece.oddities);
+        all.findings.extend(&piece.findings);
     })?;
     all.neighbours.shrink_to_fit();
     all.fans.shrink_to_fit();
     Ok((offsets, all))
 }
 
-/// What is odd around the vertices, without their rings.
-pub(crate) fn oddities(
+/// What is wrong around the vertices, without their rings.
+pub(crate) fn topology_findings(
     vertex_count: usize,
     triangles: &[[SurfaceVertex; 3]],
     cancel: &Cancel,
-) -> Result<Oddities, Cancelled> {
-    let mut all = Oddities::default();
-    walk_around_all(vertex_count, triangles, cancel, |piece| all.extend(&piece.oddities))?;
+) -> Result<TopologyFindings, Cancelled> {
+    let mut all = TopologyFindings::default();
+    walk_around_all(vertex_count, triangles, cancel, |piece| all.extend(&piece.findings))?;
     Ok(all)
 }
 
@@ -240,13 +240,13 @@ impl Walk {
             rings.neighbours.push(neighbour);
             if count == 1 && inward == 1 {
                 // The triangle runs from the neighbour to here, so the hole's rim runs from here to there.
-                rings.oddities.boundary.push([v, neighbour]);
+                rings.findings.boundary.push([v, neighbour]);
             }
             if v < neighbour {
                 if count > 2 {
-                    rings.oddities.non_manifold_edges.push(v);
+                    rings.findings.non_manifold_edges.push(v);
                 } else if count == 2 && inward != 1 {
-                    rings.oddities.misoriented_edges.push(v);
+                    rings.findings.misoriented_edges.push(v);
                 }
             }
             first = last;
@@ -254,7 +254,7 @@ impl Walk {
         let degree = rings.neighbours.len() - ring_start;
         rings.degrees.push(degree as u32);
         if fans > 1 {
-            rings.oddities.non_manifold_vertices.push(v);
+            rings.findings.non_manifold_vertices.push(v);
         }
         if is_regular && fans == 1 && degree <= 1 << u8::BITS {
             self.order_fan(rings);

@@ -1,4 +1,4 @@
-//! A mesh's findings with the places of their examples, for a panel in which one can jump to each.
+//! A mesh's findings with the positions of their examples, so that a panel can jump to each.
 
 use std::collections::HashMap;
 
@@ -6,9 +6,9 @@ use glam::DVec3;
 
 use crate::{DrawnSet, DrawnVertex, FindingKind, Findings, Model, Named, Surface};
 
-/// One thing that is not as in a clean mesh.
+/// A finding with its sentence and the positions of its first examples.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Diagnosis {
+pub struct LocatedFinding {
     /// What it is.
     pub kind: FindingKind,
     /// How many there are.
@@ -32,14 +32,14 @@ pub struct Example {
 impl Model {
     /// What is wrong with the mesh, each with the places of its first examples, in the order of [`Findings::sentences`].
     /// One look at every vertex, so made on request.
-    pub fn diagnoses(&self) -> Vec<Diagnosis> {
-        self.findings.diagnoses(&self.drawn, &self.surface)
+    pub fn located_findings(&self) -> Vec<LocatedFinding> {
+        self.findings.located_findings(&self.drawn, &self.surface)
     }
 }
 
 impl Findings {
     /// What is wrong with the mesh that `drawn` was welded into.
-    pub(crate) fn diagnoses(&self, drawn: &DrawnSet, surface: &Surface) -> Vec<Diagnosis> {
+    pub(crate) fn located_findings(&self, drawn: &DrawnSet, surface: &Surface) -> Vec<LocatedFinding> {
         let told = || {
             FindingKind::ALL
                 .into_iter()
@@ -60,7 +60,7 @@ impl Findings {
                     number,
                     position: place(kind, number),
                 };
-                Diagnosis {
+                LocatedFinding {
                     kind,
                     count: finding.count,
                     sentence,

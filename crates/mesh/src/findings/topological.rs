@@ -1,17 +1,17 @@
-//! What is odd about a surface: its rims, places that are no manifold, and its connected parts, of which some face
-//! inwards and some are bits beside a large one.
+//! Findings about a surface's topology: its rims, its non-manifold places, and its connected components, some of which
+//! face inwards or are loose bits beside a large one.
 
 use glam::DVec3;
 
 use crate::topology::boundary::trace_loops;
 use crate::topology::components::Components;
-use crate::topology::rings::Oddities;
+use crate::topology::rings::TopologyFindings;
 use crate::{Bounds, Component, DrawnSet, Finding, Findings, Surface, SurfaceVertex};
 
 /// A part with less than this share of the largest one's vertices is a loose bit.
 const BIT: f64 = 0.01;
 
-/// Among how many of the largest parts the one is looked for that a cavity lies in.
+/// How many of the largest closed parts are searched for the one that a cavity lies in.
 const HOLLOW_CANDIDATES: usize = 64;
 
 /// A surface and its connected parts.
@@ -22,17 +22,17 @@ pub(crate) struct Parts<'a> {
 }
 
 impl Parts<'_> {
-    /// Tells what is odd, in file vertices.
-    pub(crate) fn report(&self, oddities: &Oddities, findings: &mut Findings) {
-        let odd = oddities.vertices();
-        let first_file_vertices = self.drawn.first_file_vertices(&odd);
-        let file_vertex = |v: &SurfaceVertex| first_file_vertices[odd.partition_point(|u| u < v)].0;
+    /// Reports what was found at surface vertices in terms of file vertices.
+    pub(crate) fn report(&self, found: &TopologyFindings, findings: &mut Findings) {
+        let listed = found.vertices();
+        let first_file_vertices = self.drawn.first_file_vertices(&listed);
+        let file_vertex = |v: &SurfaceVertex| first_file_vertices[listed.partition_point(|u| u < v)].0;
         let at = |found: &[SurfaceVertex]| Finding::at_vertices(found.iter().map(file_vertex));
-        findings.non_manifold_edges = at(&oddities.non_manifold_edges);
-        findings.non_manifold_vertices = at(&oddities.non_manifold_vertices);
-        findings.misoriented_edges = at(&oddities.misoriented_edges);
-        findings.boundary_edges = Finding::at_vertices(oddities.boundary.iter().map(|[v, _]| file_vertex(v)));
-        let rims = trace_loops(&oddities.boundary);
+        findings.non_manifold_edges = at(&found.non_manifold_edges);
+        findings.non_manifold_vertices = at(&found.non_manifold_vertices);
+        findings.misoriented_edges = at(&found.misoriented_edges);
+        findings.boundary_edges = Finding::at_vertices(found.boundary.iter().map(|[v, _]| file_vertex(v)));
+        let rims = trace_loops(&found.boundary);
         findings.boundary_loops = Finding::at_vertices(rims.iter().filter_map(|rim| rim.iter().map(file_vertex).min()));
         let firsts: Vec<u32> = self
             .components
@@ -42,7 +42,7 @@ impl Parts<'_> {
             .collect();
         findings.components = Finding::of(&firsts);
         findings.loose_bits = loose_bits(&self.components.all);
-        findings.inside_out_components = self.inside_out(oddities);
+        findings.inside_out_components = self.inside_out(found);
     }
 
     fn component(&self, v: SurfaceVertex) -> usize {
@@ -50,16 +50,16 @@ impl Parts<'_> {
     }
 
     /// Closed, consistently wound parts that enclose a negative volume and lie within no other closed part's box.
-    fn inside_out(&self, oddities: &Oddities) -> Finding {
+    fn inside_out(&self, found: &TopologyFindings) -> Finding {
         let surface = self.surface;
         let count = self.components.all.len();
         let mut is_closed = vec![true; count];
-        let Oddities {
+        let TopologyFindings {
             boundary,
             non_manifold_edges,
             misoriented_edges,
             non_manifold_vertices,
-        } = oddities;
+        } = found;
         let odd = [non_manifold_edges, non_manifold_vertices, misoriented_edges];
         for &v in boundary.iter().flatten().chain(odd.into_iter().flatten()) {
             is_closed[self.component(v)] = false;

@@ -1,14 +1,14 @@
-//! A look at a file's geometry: its counts and findings, without the tables that an edit needs.
+//! A file's geometry inspected: its counts and findings, without the tables that an edit needs.
 
-use crate::findings::parts::Parts;
+use crate::findings::topological::Parts;
 use crate::topology::components::Component;
-use crate::topology::rings::oddities;
+use crate::topology::rings::topology_findings;
 use crate::weld::{Welded, weld};
-use crate::{Bounds, Cancel, Cancelled, Diagnosis, Drawn, Findings, Progress, WeldOptions, bounding_box};
+use crate::{Bounds, Cancel, Cancelled, Drawn, Findings, LocatedFinding, Progress, WeldOptions, bounding_box};
 
 /// What [`Model::weld`](crate::Model::weld) would find, in less memory and time: nothing can be edited by it.
 #[derive(Clone, Debug, Default)]
-pub struct Survey {
+pub struct Inspection {
     /// How many vertices the file has, drawn or not.
     pub file_vertices: usize,
     /// How many vertices are drawn: one of the file's through two nodes is two.
@@ -26,10 +26,10 @@ pub struct Survey {
     /// What is wrong with the mesh.
     pub findings: Findings,
     /// The same with the places of examples.
-    pub diagnoses: Vec<Diagnosis>,
+    pub located_findings: Vec<LocatedFinding>,
 }
 
-impl Survey {
+impl Inspection {
     /// Welds `drawn`, looks at the surface and lets it go.
     pub fn of(drawn: Drawn, options: &WeldOptions, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
         let Welded {
@@ -40,7 +40,7 @@ impl Survey {
         } = weld(drawn, options, progress, cancel)?;
         cancel.check()?;
         let vertex_count = surface.positions.len();
-        let oddities = oddities(vertex_count, &surface.triangles, cancel)?;
+        let found = topology_findings(vertex_count, &surface.triangles, cancel)?;
         cancel.check()?;
         progress.set(0.9);
         let parts = Parts {
@@ -48,7 +48,7 @@ impl Survey {
             drawn: &drawn,
             components: &components,
         };
-        parts.report(&oddities, &mut findings);
+        parts.report(&found, &mut findings);
         progress.set(1.0);
         Ok(Self {
             file_vertices: drawn.file_vertex_count(),
@@ -58,7 +58,7 @@ impl Survey {
             surface_triangles: surface.triangles.len(),
             bounds: bounding_box(&surface.positions),
             components: components.all,
-            diagnoses: findings.diagnoses(&drawn, &surface),
+            located_findings: findings.located_findings(&drawn, &surface),
             findings,
         })
     }
