@@ -114,23 +114,23 @@ impl Stored {
     /// Positions are rounded to f32 in the node's space, and nodes that share a mesh keep sharing it where they differ
     /// by four such roundings of its largest coordinate.
     pub fn roundings(&self, drawn: &Drawn) -> Vec<(Range<u32>, DVec3)> {
-        let of_part = |part: &geometry::Part| {
-            let vertices = part.vertices.start as usize..part.vertices.end as usize;
+        let of_instance = |instance: &geometry::Instance| {
+            let vertices = instance.vertices.start as usize..instance.vertices.end as usize;
             let positions = || drawn.positions[vertices.clone()].iter().filter(|p| p.is_finite());
-            let node_from_world = part.world_from_node.inverse();
+            let node_from_world = instance.world_from_node.inverse();
             let largest = |most: DVec3, p: DVec3| most.max(p.abs());
             let in_node = positions().map(|p| node_from_world.transform_point3(*p));
             let in_node = in_node.filter(|p| p.is_finite()).fold(DVec3::ZERO, largest);
             let in_world = positions().copied().fold(DVec3::ZERO, largest);
-            let matrix = part.world_from_node.matrix3;
+            let matrix = instance.world_from_node.matrix3;
             let by_axes = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::abs);
             let of_node = in_node.max_element() * (by_axes[0] + by_axes[1] + by_axes[2]);
             let within = 16.0 * (f64::from(f32::EPSILON) * of_node + f64::EPSILON * in_world);
             // Below f32's normal numbers, roundings are no longer relative.
             let smallest = f64::from(f32::MIN_POSITIVE) * (by_axes[0] + by_axes[1] + by_axes[2]);
-            (part.vertices.clone(), within + smallest)
+            (instance.vertices.clone(), within + smallest)
         };
-        self.pieces.parts.iter().map(of_part).collect()
+        self.pieces.instances.iter().map(of_instance).collect()
     }
 
     /// What differs between this file and another, in the order of this one's text.

@@ -158,7 +158,7 @@ impl Stored {
     }
 
     pub(crate) fn objects(&self) -> Vec<Object> {
-        objects::gathered(self.groups.iter().map(|group| objects::Part {
+        objects::gathered(self.groups.iter().map(|group| objects::TriangleRun {
             key: (&group.node_name, group.material),
             name: group.node_name.clone(),
             material: objects::short_name(&self.materials.materials[group.material].name),

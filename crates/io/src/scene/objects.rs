@@ -16,7 +16,7 @@ pub(crate) fn short_name(name: &str) -> String {
 }
 
 /// A run of triangles: what tells it apart from others, and how that is called.
-pub(crate) struct Part<Key> {
+pub(crate) struct TriangleRun<Key> {
     /// Runs with equal keys are one object.
     pub(crate) key: Key,
     /// The node's name.
@@ -28,16 +28,16 @@ pub(crate) struct Part<Key> {
 }
 
 /// The objects in the order in which the runs first name them; runs without triangles make none.
-pub(crate) fn gathered<Key: Eq + Hash>(parts: impl Iterator<Item = Part<Key>>) -> Vec<Object> {
+pub(crate) fn gathered<Key: Eq + Hash>(runs: impl Iterator<Item = TriangleRun<Key>>) -> Vec<Object> {
     let mut known: HashMap<Key, usize> = HashMap::new();
     let mut objects: Vec<Object> = Vec::new();
-    for part in parts.filter(|part| !part.triangles.is_empty()) {
-        let Part {
+    for run in runs.filter(|run| !run.triangles.is_empty()) {
+        let TriangleRun {
             key,
             name,
             material,
             triangles,
-        } = part;
+        } = run;
         let next = objects.len();
         let number = *known.entry(key).or_insert(next);
         match objects.get_mut(number) {

@@ -16,7 +16,7 @@ use crate::gltf::document::json::At;
 use crate::gltf::document::uri;
 use crate::gltf::document::{Document, ImageFile};
 use crate::gltf::geometry::primitive::Primitive;
-use crate::gltf::geometry::{self, Part, Pieces};
+use crate::gltf::geometry::{self, Instance, Pieces};
 use crate::scene::objects;
 
 /// Vertices that a thread handles at a time.
@@ -25,9 +25,9 @@ const CHUNK: usize = 1 << 14;
 /// The appearance of the drawn set that `pieces` describe.
 pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Appearance {
     let mut out = Appearance {
-        normals: gather(pieces, [0.0; 3], |part| {
-            let normals = normals(document, part, primitive(meshes, part))?;
-            let world = normal_matrix(part);
+        normals: gather(pieces, [0.0; 3], |instance| {
+            let normals = normals(document, instance, primitive(meshes, instance))?;
+            let world = normal_matrix(instance);
             let turn = |n: &[f32; 3]| {
                 (world * Vec3::from_array(*n).as_dvec3())
                     .normalize_or_zero()
@@ -36,19 +36,19 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
             };
             Some(normals.par_iter().with_min_len(CHUNK).map(turn).collect())
         }),
-        uvs: gather(pieces, [0.0; 2], |part| {
-            let primitive = primitive(meshes, part);
-            let mut uvs = attribute::<2>(document, part, primitive.uv)?;
+        uvs: gather(pieces, [0.0; 2], |instance| {
+            let primitive = primitive(meshes, instance);
+            let mut uvs = attribute::<2>(document, instance, primitive.uv)?;
             uvs.iter_mut().for_each(|uv| *uv = primitive.uv_transform.apply(*uv));
             Some(uvs)
         }),
-        second_uvs: gather(pieces, [0.0; 2], |part| {
-            attribute::<2>(document, part, primitive(meshes, part).second_uv)
+        second_uvs: gather(pieces, [0.0; 2], |instance| {
+            attribute::<2>(document, instance, primitive(meshes, instance).second_uv)
         }),
-        colours: gather(pieces, [255; 4], |part| {
-            let accessor = primitive(meshes, part).colour?;
+        colours: gather(pieces, [255; 4], |instance| {
+            let accessor = primitive(meshes, instance).colour?;
             let has_alpha = document.layout(accessor).ok()?.lanes == 4;
-            let colours = attribute::<4>(document, part, Some(accessor))?;
+            let colours = attribute::<4>(document, instance, Some(accessor))?;
             let byte = |x: f32| (x * 255.0).round().clamp(0.0, 255.0) as u8;
             let whole = |[r, g, b, a]: [f32; 4]| [r, g, b, if has_alpha { a } else { 1.0 }].map(byte);
             Some(colours.into_iter().map(whole).collect())
@@ -70,11 +70,11 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
     };
     // Primitives without a material share one that stands behind the file's own.
     let default_material = out.materials.len();
-    if pieces
-        .pieces
-        .iter()
-        .any(|piece| of_piece(meshes, pieces, piece.part, piece.primitive).material.is_none())
-    {
+    if pieces.pieces.iter().any(|piece| {
+        of_piece(meshes, pieces, piece.instance, piece.primitive)
+            .material
+            .is_none()
+    }) {
         out.materials.push(material(document, &json::Material::default()));
     }
     let mut names = Names::of(document);
@@ -83,10 +83,10 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
         .iter()
         .map(|piece| Group {
             triangles: piece.triangles.clone(),
-            material: of_piece(meshes, pieces, piece.part, piece.primitive)
+            material: of_piece(meshes, pieces, piece.instance, piece.primitive)
                 .material
                 .unwrap_or(default_material),
-            node_name: names.get(document.nodes_at[pieces.parts[piece.part].node]),
+            node_name: names.get(document.nodes_at[pieces.instances[piece.instance].node]),
         })
         .collect();
     out
@@ -96,13 +96,13 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
 pub(crate) fn objects(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<Object> {
     let mut names = Names::of(document);
     objects::gathered(pieces.pieces.iter().map(|piece| {
-        let part = &pieces.parts[piece.part];
-        let material = of_piece(meshes, pieces, piece.part, piece.primitive).material;
-        let name = names.get(document.nodes_at[part.node]);
-        objects::Part {
-            key: (part.node, material),
+        let instance = &pieces.instances[piece.instance];
+        let material = of_piece(meshes, pieces, piece.instance, piece.primitive).material;
+        let name = names.get(document.nodes_at[instance.node]);
+        objects::TriangleRun {
+            key: (instance.node, material),
             name: if name.is_empty() {
-                names.get(document.meshes_at[part.mesh])
+                names.get(document.meshes_at[instance.mesh])
             } else {
                 name
             },
@@ -136,20 +136,20 @@ impl<'a> Names<'a> {
 /// The rest normals of all drawn vertices in world space, of unit length, zero where there are none.
 pub(crate) fn world_normals(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<DVec3> {
     let mut out = Vec::new();
-    for part in &pieces.parts {
-        let normals = normals(document, part, primitive(meshes, part));
-        let normals = normals.unwrap_or_else(|| vec![[0.0; 3]; part.vertices.len()]);
-        let world = normal_matrix(part);
+    for instance in &pieces.instances {
+        let normals = normals(document, instance, primitive(meshes, instance));
+        let normals = normals.unwrap_or_else(|| vec![[0.0; 3]; instance.vertices.len()]);
+        let world = normal_matrix(instance);
         let turn = |n: &[f32; 3]| (world * Vec3::from_array(*n).as_dvec3()).normalize_or_zero();
         out.par_extend(normals.par_iter().with_min_len(CHUNK).map(turn));
     }
     out
 }
 
-/// A part's rest normals in its node's space, default morph targets applied; `None` where it has none.
-fn normals(document: &Document, part: &Part, primitive: &Primitive) -> Option<Vec<[f32; 3]>> {
-    let mut normals = attribute::<3>(document, part, primitive.normal)?;
-    let targets = part
+/// An instance's rest normals in its node's space, default morph targets applied; `None` where it has none.
+fn normals(document: &Document, instance: &Instance, primitive: &Primitive) -> Option<Vec<[f32; 3]>> {
+    let mut normals = attribute::<3>(document, instance, primitive.normal)?;
+    let targets = instance
         .weights
         .iter()
         .map(|&(target, weight)| (primitive.targets[target].normal, weight));
@@ -158,34 +158,38 @@ fn normals(document: &Document, part: &Part, primitive: &Primitive) -> Option<Ve
     Some(normals)
 }
 
-/// An attribute of a part's vertices; `None` where it has none of the right count.
+/// An attribute of an instance's vertices; `None` where it has none of the right count.
 pub(crate) fn attribute<const N: usize>(
     document: &Document,
-    part: &Part,
+    instance: &Instance,
     accessor: Option<usize>,
 ) -> Option<Vec<[f32; N]>> {
     let layout = document.layout(accessor?).ok()?;
-    (layout.count == part.vertices.len()).then(|| layout.floats(document))
+    (layout.count == instance.vertices.len()).then(|| layout.floats(document))
 }
 
-fn primitive<'a>(meshes: &'a [Vec<Primitive>], part: &Part) -> &'a Primitive {
-    &meshes[part.mesh][part.primitive]
+fn primitive<'a>(meshes: &'a [Vec<Primitive>], instance: &Instance) -> &'a Primitive {
+    &meshes[instance.mesh][instance.primitive]
 }
 
-fn of_piece<'a>(meshes: &'a [Vec<Primitive>], pieces: &Pieces, part: usize, primitive: usize) -> &'a Primitive {
-    &meshes[pieces.parts[part].mesh][primitive]
+fn of_piece<'a>(meshes: &'a [Vec<Primitive>], pieces: &Pieces, instance: usize, primitive: usize) -> &'a Primitive {
+    &meshes[pieces.instances[instance].mesh][primitive]
 }
 
-fn normal_matrix(part: &Part) -> DMat3 {
-    part.world_from_node.matrix3.inverse().transpose()
+fn normal_matrix(instance: &Instance) -> DMat3 {
+    instance.world_from_node.matrix3.inverse().transpose()
 }
 
-/// One attribute of all drawn vertices; `None` where no part has it.
-fn gather<T: Copy + Send>(pieces: &Pieces, missing: T, of_part: impl Fn(&Part) -> Option<Vec<T>>) -> Option<Vec<T>> {
+/// One attribute of all drawn vertices; `None` where no instance has it.
+fn gather<T: Copy + Send>(
+    pieces: &Pieces,
+    missing: T,
+    of_instance: impl Fn(&Instance) -> Option<Vec<T>>,
+) -> Option<Vec<T>> {
     let mut out: Option<Vec<T>> = None;
-    for part in &pieces.parts {
-        let (start, end) = (part.vertices.start as usize, part.vertices.end as usize);
-        match (of_part(part), out.as_mut()) {
+    for instance in &pieces.instances {
+        let (start, end) = (instance.vertices.start as usize, instance.vertices.end as usize);
+        match (of_instance(instance), out.as_mut()) {
             (Some(values), Some(out)) => out.extend(values),
             (Some(values), None) => {
                 let mut all = vec![missing; start];

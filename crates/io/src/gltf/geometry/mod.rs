@@ -27,7 +27,7 @@ use crate::gltf::geometry::tree::Placed;
 
 /// The drawn vertices of one attribute set seen through one node.
 #[derive(Clone, PartialEq, Debug)]
-pub(crate) struct Part {
+pub(crate) struct Instance {
     pub node: usize,
     pub mesh: usize,
     pub world_from_node: DAffine3,
@@ -42,7 +42,7 @@ pub(crate) struct Part {
 /// The triangles of one primitive seen through one node.
 #[derive(Clone, PartialEq, Debug)]
 pub(crate) struct Piece {
-    pub part: usize,
+    pub instance: usize,
     pub primitive: usize,
     /// Range of the drawn triangles.
     pub triangles: Range<u32>,
@@ -51,7 +51,7 @@ pub(crate) struct Piece {
 /// How the drawn set is made up.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(crate) struct Pieces {
-    pub parts: Vec<Part>,
+    pub instances: Vec<Instance>,
     pub pieces: Vec<Piece>,
 }
 
@@ -84,7 +84,7 @@ pub(crate) fn drawn(
         let alike = first_alike
             .entry(place.mesh)
             .or_insert_with(|| primitive::first_alike(primitives));
-        let mut part_of: HashMap<usize, usize> = HashMap::new();
+        let mut instance_of: HashMap<usize, usize> = HashMap::new();
         let applied = weights.of(document, place);
         for (number, primitive) in primitives.iter().enumerate() {
             cancel.check()?;
@@ -103,7 +103,7 @@ pub(crate) fn drawn(
             if layout.lanes != 3 {
                 return Err(format!("{}: POSITION is not made of three numbers each", here()).into());
             }
-            let part = match part_of.get(&alike[number]) {
+            let instance = match instance_of.get(&alike[number]) {
                 Some(&known) => known,
                 None => {
                     spend(
@@ -118,7 +118,7 @@ pub(crate) fn drawn(
                         .copied()
                         .take_while(|(target, _)| *target < primitive.targets.len())
                         .collect();
-                    // Every target is read for every part that applies it.
+                    // Every target is read for every instance that applies it.
                     spend(
                         &mut budget,
                         weights.len().saturating_mul(layout.count.max(2)),
@@ -142,7 +142,7 @@ pub(crate) fn drawn(
                         mesh,
                         world_from_node,
                     } = *place;
-                    pieces.parts.push(Part {
+                    pieces.instances.push(Instance {
                         node,
                         mesh,
                         world_from_node,
@@ -150,8 +150,8 @@ pub(crate) fn drawn(
                         primitive: number,
                         weights,
                     });
-                    part_of.insert(alike[number], pieces.parts.len() - 1);
-                    pieces.parts.len() - 1
+                    instance_of.insert(alike[number], pieces.instances.len() - 1);
+                    pieces.instances.len() - 1
                 }
             };
             let corner_count = corner_count(document, primitive, layout.count)?;
@@ -169,10 +169,15 @@ pub(crate) fn drawn(
             } else {
                 Winding::AsStored
             };
-            corners.triangles(mode, winding, pieces.parts[part].vertices.start, &mut drawn.triangles);
+            corners.triangles(
+                mode,
+                winding,
+                pieces.instances[instance].vertices.start,
+                &mut drawn.triangles,
+            );
             let triangles = start..drawn.triangles.len() as u32;
             pieces.pieces.push(Piece {
-                part,
+                instance,
                 primitive: number,
                 triangles,
             });

@@ -10,7 +10,7 @@ use crate::SaveError;
 use crate::gltf::appearance;
 use crate::gltf::document::Document;
 use crate::gltf::geometry::primitive::Primitive;
-use crate::gltf::geometry::{Part, Pieces};
+use crate::gltf::geometry::{Instance, Pieces};
 use crate::save::course::Course;
 use crate::save::frames::{Frames, carried_normal, carried_tangent};
 use crate::save::moved::Moved;
@@ -56,15 +56,15 @@ impl Semantic {
 /// Elements whose stored bits change and what they become, ascending; numbers beyond an attribute's own are 0.
 pub(crate) type Change = Vec<(u32, [f32; 4])>;
 
-/// What becomes of a part's attributes.
+/// What becomes of an instance's attributes.
 #[derive(Clone, PartialEq, Debug, Default)]
-pub(crate) struct PartChange {
+pub(crate) struct InstanceChange {
     pub position: Change,
     pub normal: Change,
     pub tangent: Change,
 }
 
-impl PartChange {
+impl InstanceChange {
     pub fn of(&self, semantic: Semantic) -> &Change {
         match semantic {
             Semantic::Position => &self.position,
@@ -84,16 +84,16 @@ const CHUNK: usize = 1 << 13;
 /// Vertices between two looks at whether the save is still wanted.
 const BLOCK: usize = 1 << 17;
 
-/// The changes of every part, in the parts' order.
+/// The changes of every instance, in their order.
 pub(crate) fn changes(
     document: &Document,
     meshes: &[Vec<Primitive>],
     pieces: &Pieces,
     moved: &Moved<'_>,
     course: &Course<'_>,
-) -> Result<Vec<PartChange>, SaveError> {
-    let has_normals = pieces.parts.iter().any(|part| {
-        let primitive = &meshes[part.mesh][part.primitive];
+) -> Result<Vec<InstanceChange>, SaveError> {
+    let has_normals = pieces.instances.iter().any(|instance| {
+        let primitive = &meshes[instance.mesh][instance.primitive];
         primitive.normal.is_some() || primitive.tangent.is_some()
     });
     course.reach(0, 1)?;
@@ -102,32 +102,39 @@ pub(crate) fn changes(
         .then(|| moved.frames(&appearance::world_normals(document, meshes, pieces), &of_frames))
         .transpose()?;
     let all = moved.positions.len().max(1) as f32;
-    let of_part = |part: &Part| {
-        let [from, to] = [part.vertices.start, part.vertices.end].map(|vertex| vertex as f32 / all);
-        part_change(document, meshes, part, moved, frames.as_ref(), &course.part(from, to))
+    let of_instance = |instance: &Instance| {
+        let [from, to] = [instance.vertices.start, instance.vertices.end].map(|vertex| vertex as f32 / all);
+        instance_change(
+            document,
+            meshes,
+            instance,
+            moved,
+            frames.as_ref(),
+            &course.part(from, to),
+        )
     };
-    pieces.parts.iter().map(of_part).collect()
+    pieces.instances.iter().map(of_instance).collect()
 }
 
-fn part_change(
+fn instance_change(
     document: &Document,
     meshes: &[Vec<Primitive>],
-    part: &Part,
+    instance: &Instance,
     moved: &Moved<'_>,
     frames: Option<&Frames>,
     course: &Course<'_>,
-) -> Result<PartChange, SaveError> {
-    let vertex = |element: u32| DrawnVertex(part.vertices.start + element);
-    let count = part.vertices.end - part.vertices.start;
+) -> Result<InstanceChange, SaveError> {
+    let vertex = |element: u32| DrawnVertex(instance.vertices.start + element);
+    let count = instance.vertices.end - instance.vertices.start;
     course.reach(0, 1)?;
     let elements: Vec<u32> = (0..count).filter(|&element| moved.moves(vertex(element))).collect();
     if elements.is_empty() {
-        return Ok(PartChange::default());
+        return Ok(InstanceChange::default());
     }
-    let primitive = &meshes[part.mesh][part.primitive];
-    let world_from_node = part.world_from_node.matrix3;
+    let primitive = &meshes[instance.mesh][instance.primitive];
+    let world_from_node = instance.world_from_node.matrix3;
     let node_from_world = world_from_node.inverse();
-    let stored = |accessor: Option<usize>| appearance::attribute::<4>(document, part, accessor);
+    let stored = |accessor: Option<usize>| appearance::attribute::<4>(document, instance, accessor);
     let positions = stored(primitive.position).unwrap_or_default();
     let normals = stored(primitive.normal);
     let tangents = stored(primitive.tangent);
@@ -171,7 +178,7 @@ fn part_change(
             None => Vec4::from_array(stored),
         }
     })?;
-    Ok(PartChange {
+    Ok(InstanceChange {
         position,
         normal,
         tangent,

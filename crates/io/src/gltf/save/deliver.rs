@@ -88,16 +88,16 @@ pub(crate) fn in_its_kind(document: &Document, patched: Patched<'_>, save: &Save
     };
     let bytes = match &document.container {
         _ if is_unchanged && edits.is_empty() => document.file.to_vec(),
-        Some(parts) => {
+        Some(instances) => {
             let bin = document
                 .buffers
                 .iter()
                 .position(|buffer| matches!(buffer, Buffer::Bin(_)));
             let bin = bin.map(|buffer| &patched.buffers[buffer][..]);
             // A BIN chunk that no buffer is stays as it is.
-            let bin = bin.or_else(|| parts.bin.clone().map(|range| &document.file[range]));
-            let further = &document.file[parts.further_chunks.clone()];
-            let trailing = &document.file[parts.trailing.clone()];
+            let bin = bin.or_else(|| instances.bin.clone().map(|range| &document.file[range]));
+            let further = &document.file[instances.further_chunks.clone()];
+            let trailing = &document.file[instances.trailing.clone()];
             container::join(container::without_padding(&text), bin, further, trailing)
                 .ok_or(SaveError::TooLarge { format: save.format })?
         }

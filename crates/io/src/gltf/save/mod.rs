@@ -1,7 +1,8 @@
 //! Saving a glTF: what moved becomes changes, the changes become a patch, and the patch is delivered as files.
 
+mod accessors;
 mod changes;
-mod claims;
+mod copy_on_write;
 mod deliver;
 mod morph;
 mod overlap;
@@ -29,7 +30,7 @@ impl Stored {
             Patched::unchanged(document)
         } else {
             let changes = changes::changes(document, meshes, pieces, moved, &course.part(0.0, 0.8))?;
-            patch::patch(document, meshes, pieces, &changes, save.format, &course.part(0.8, 0.9))?
+            accessors::with_changes(document, meshes, pieces, &changes, save.format, &course.part(0.8, 0.9))?
         };
         course.reach(9, 10)?;
         self.deliver(patched, save)

@@ -10,9 +10,10 @@ use crate::gltf::document::Document;
 use crate::gltf::document::json::{At, Edits};
 use crate::gltf::geometry::Pieces;
 use crate::gltf::geometry::primitive::Primitive;
-use crate::gltf::save::changes::{PartChange, Semantic};
-use crate::gltf::save::claims::{self, MeshCopy};
-use crate::gltf::save::patch::{Bounds, Patch, Patched, cannot_hold, number};
+use crate::gltf::save::accessors::{Bounds, number};
+use crate::gltf::save::changes::{InstanceChange, Semantic};
+use crate::gltf::save::copy_on_write::{self, MeshCopy};
+use crate::gltf::save::patch::{Patch, Patched, cannot_hold};
 use crate::quote::quoted;
 use crate::save::MorphTarget;
 use crate::save::course::Course;
@@ -23,13 +24,13 @@ pub(crate) fn with_target<'a>(
     document: &'a Document,
     meshes: &[Vec<Primitive>],
     pieces: &Pieces,
-    changes: &[PartChange],
+    changes: &[InstanceChange],
     target: &MorphTarget<'_>,
     format: Format,
     course: &Course<'_>,
 ) -> Result<Patched<'a>, SaveError> {
-    let (of_claims, course) = course.split(0.3);
-    let copies = claims::copies(document, meshes, pieces, changes, &of_claims)?;
+    let (of_plan, course) = course.split(0.3);
+    let copies = copy_on_write::plan_meshes(document, meshes, pieces, changes, &of_plan)?;
     let nodes = nodes_of_copies(document, &copies);
     let mut maker = TargetMaker {
         patch: Patch::new(document),
@@ -44,7 +45,12 @@ pub(crate) fn with_target<'a>(
     };
     for (number, copy) in copies.iter().enumerate() {
         course.reach(number, copies.len())?;
-        if copy.parts.iter().flatten().any(|&part| !changes[part].is_empty()) {
+        if copy
+            .instances
+            .iter()
+            .flatten()
+            .any(|&instance| !changes[instance].is_empty())
+        {
             maker.add_to(&copies, number, &nodes[number])?;
         }
     }
@@ -59,10 +65,10 @@ pub(crate) fn with_target<'a>(
 struct TargetMaker<'a, 'b> {
     patch: Patch<'a>,
     meshes: &'b [Vec<Primitive>],
-    changes: &'b [PartChange],
+    changes: &'b [InstanceChange],
     target: &'b MorphTarget<'b>,
     format: Format,
-    /// The accessor of a part's way, by attribute.
+    /// The accessor of an instance's way, by attribute.
     deltas: BTreeMap<(usize, usize), usize>,
     /// The accessor of so many zeros, by whether they are positions.
     zeros: BTreeMap<(usize, bool), usize>,
@@ -93,8 +99,8 @@ impl TargetMaker<'_, '_> {
                 "those of mesh {mesh}, whose primitives have different numbers of them"
             )));
         }
-        for (primitive, part) in primitives.iter().zip(copy.followed_parts(primitives)) {
-            let text = self.target_of(primitive, part)?;
+        for (primitive, instance) in primitives.iter().zip(copy.followed_instances(primitives)) {
+            let text = self.target_of(primitive, instance)?;
             let edits = self.patch.edits_of_copy(copies, number);
             match json.member(primitive.at, "targets") {
                 Some(list) => edits.append_elements(json, list, &[text]),
@@ -120,7 +126,7 @@ impl TargetMaker<'_, '_> {
     }
 
     /// A primitive's target as JSON.
-    fn target_of(&mut self, primitive: &Primitive, part: Option<usize>) -> Result<String, SaveError> {
+    fn target_of(&mut self, primitive: &Primitive, instance: Option<usize>) -> Result<String, SaveError> {
         let document = self.patch.document;
         let mut members = Vec::new();
         for (place, semantic) in Semantic::ALL.into_iter().enumerate() {
@@ -128,11 +134,11 @@ impl TargetMaker<'_, '_> {
                 continue;
             };
             let layout = document.layout(base).map_err(|what| cannot_hold(what, self.format))?;
-            let change = part.map(|part| (part, self.changes[part].of(semantic)));
+            let change = instance.map(|instance| (instance, self.changes[instance].of(semantic)));
             let accessor = match change.filter(|(_, change)| !change.is_empty()) {
                 None => self.zeros(layout.count, semantic),
-                Some((part, _)) if self.deltas.contains_key(&(part, place)) => self.deltas[&(part, place)],
-                Some((part, change)) => {
+                Some((instance, _)) if self.deltas.contains_key(&(instance, place)) => self.deltas[&(instance, place)],
+                Some((instance, change)) => {
                     let rest = layout.floats::<3>(document);
                     let mut way = vec![[0.0_f32; 4]; layout.count];
                     for &(element, new) in change {
@@ -143,7 +149,7 @@ impl TargetMaker<'_, '_> {
                         }
                     }
                     let accessor = self.new_accessor(&way, semantic)?;
-                    self.deltas.insert((part, place), accessor);
+                    self.deltas.insert((instance, place), accessor);
                     accessor
                 }
             };

@@ -9,7 +9,7 @@ use crate::gltf::document::Document;
 use crate::gltf::document::json::{At, Edits};
 use crate::gltf::geometry::draco::{self, Filled};
 use crate::gltf::geometry::primitive::Primitive;
-use crate::gltf::save::claims::{MeshCopy, Outcome};
+use crate::gltf::save::copy_on_write::{AccessorPlan, MeshCopy};
 use crate::gltf::save::patch::{Patch, cannot_hold};
 use crate::{Format, SaveError};
 
@@ -19,11 +19,11 @@ impl Patch<'_> {
         &mut self,
         meshes: &[Vec<Primitive>],
         copies: &[MeshCopy],
-        outcomes: &BTreeMap<usize, Outcome<'_>>,
+        plans: &BTreeMap<usize, AccessorPlan<'_>>,
         format: Format,
     ) -> Result<(), SaveError> {
         let document = self.document;
-        let is_changed = |accessor: usize| document.is_filled(accessor) && outcomes.contains_key(&accessor);
+        let is_changed = |accessor: usize| document.is_filled(accessor) && plans.contains_key(&accessor);
         let mut copies_of_mesh: Vec<Vec<usize>> = vec![Vec::new(); meshes.len()];
         for (number, copy) in copies.iter().enumerate() {
             copies_of_mesh[copy.mesh].push(number);
@@ -52,9 +52,9 @@ impl Patch<'_> {
         }
         for accessor in plain {
             // One whose own numbers changed was written anew already.
-            let is_written = outcomes
+            let is_written = plans
                 .get(&accessor)
-                .is_some_and(|outcome| !outcome.kept.change.is_empty());
+                .is_some_and(|plan| !plan.in_place.change.is_empty());
             if document.is_filled(accessor) && !is_written {
                 self.write_out(accessor, format)?;
             }

@@ -12,13 +12,13 @@ use crate::save::course::Course;
 const MOST_PARTS: usize = 1024;
 
 /// What becomes a node.
-pub(super) struct Part<'a> {
+pub(super) struct NamedPart<'a> {
     pub(super) name: &'a str,
     /// The numbers of its triangles, by material.
     pub(super) triangles: BTreeMap<usize, Vec<u32>>,
 }
 
-impl Part<'_> {
+impl NamedPart<'_> {
     /// The vertices that it uses, ascending.
     pub(super) fn vertices(&self, mesh: &NewMesh<'_>) -> Vec<u32> {
         let mut vertices: Vec<u32> = self.corners(mesh).map(|corner| corner.0).collect();
@@ -35,7 +35,7 @@ impl Part<'_> {
 }
 
 /// The triangles in the order in which the parts hold them; `None` where that is all of them, as they were.
-pub(super) fn order(parts: &[Part<'_>], count: usize) -> Option<Vec<u32>> {
+pub(super) fn order(parts: &[NamedPart<'_>], count: usize) -> Option<Vec<u32>> {
     let written = || parts.iter().flat_map(|part| part.triangles.values().flatten().copied());
     let is_old = written().eq(0..count as u32);
     (!is_old).then(|| written().collect())
@@ -47,7 +47,7 @@ pub(super) fn parts<'a>(
     positions: &[Vec3],
     warnings: &mut Vec<String>,
     course: &Course<'_>,
-) -> Result<Vec<Part<'a>>, Cancelled> {
+) -> Result<Vec<NamedPart<'a>>, Cancelled> {
     let groups = &mesh.appearance.groups;
     let mut names: Vec<&str> = Vec::new();
     let mut place_of: HashMap<&str, usize> = HashMap::new();
@@ -71,9 +71,9 @@ pub(super) fn parts<'a>(
     if names.is_empty() {
         names.push("");
     }
-    let mut parts: Vec<Part<'_>> = names
+    let mut parts: Vec<NamedPart<'_>> = names
         .into_iter()
-        .map(|name| Part {
+        .map(|name| NamedPart {
             name,
             triangles: BTreeMap::new(),
         })

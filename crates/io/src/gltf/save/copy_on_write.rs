@@ -1,8 +1,9 @@
-//! Who asks for which numbers of which accessor: where a mesh must be cloned and an accessor doubled.
+//! The copy-on-write plan of a save: which meshes are cloned and which accessors are copied, so that what did not change
+//! keeps what it shares.
 //!
 //! A mesh that several nodes show is cloned where the nodes come to differ; the nodes that did not move, or else the
-//! first ones, keep the original. An accessor that several primitives name is doubled where they come to differ;
-//! whoever did not change (or is no vertex attribute at all: morph targets, animations, skins) keeps the original.
+//! first ones, keep the original. An accessor that several primitives name is copied where they come to differ;
+//! whatever did not change (or is no vertex attribute at all: morph targets, animations, skins) keeps the original.
 
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -12,7 +13,7 @@ use crate::gltf::document::Document;
 use crate::gltf::document::json::At;
 use crate::gltf::geometry::Pieces;
 use crate::gltf::geometry::primitive::Primitive;
-use crate::gltf::save::changes::{Change, PartChange, Rest, Semantic};
+use crate::gltf::save::changes::{Change, InstanceChange, Rest, Semantic};
 use crate::save::course::Course;
 use pliant_mesh::Cancelled;
 
@@ -22,47 +23,47 @@ pub(crate) struct MeshCopy {
     pub mesh: usize,
     /// `None` for the file's own mesh; the nodes that a clone is for.
     pub clone_for: Option<Vec<usize>>,
-    /// The part that each primitive's attributes come from, where it is drawn.
-    pub parts: Vec<Option<usize>>,
+    /// The instance that each primitive's attributes come from, where it is drawn.
+    pub instances: Vec<Option<usize>>,
 }
 
 impl MeshCopy {
-    /// The part that says what becomes of each primitive. One that is not drawn (the lines along a surface's edges, say)
+    /// The instance that says what becomes of each primitive. One that is not drawn (the lines along a surface's edges, say)
     /// follows a drawn one of its mesh that names the same positions.
-    pub fn followed_parts(&self, primitives: &[Primitive]) -> Vec<Option<usize>> {
+    pub fn followed_instances(&self, primitives: &[Primitive]) -> Vec<Option<usize>> {
         let mut leader: HashMap<Option<usize>, usize> = HashMap::new();
-        for (part, primitive) in self.parts.iter().zip(primitives) {
-            if let Some(part) = part {
-                leader.entry(primitive.position).or_insert(*part);
+        for (instance, primitive) in self.instances.iter().zip(primitives) {
+            if let Some(instance) = instance {
+                leader.entry(primitive.position).or_insert(*instance);
             }
         }
-        let each = self.parts.iter().zip(primitives);
-        each.map(|(part, primitive)| part.or_else(|| leader.get(&primitive.position).copied()))
+        let each = self.instances.iter().zip(primitives);
+        each.map(|(instance, primitive)| instance.or_else(|| leader.get(&primitive.position).copied()))
             .collect()
     }
 }
 
 /// A primitive's attribute in one of the copies.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) struct Naming {
+pub(crate) struct AttributeUse {
     pub copy: usize,
     pub primitive: usize,
     pub semantic: Semantic,
 }
 
-/// Those who ask for the same change of an accessor.
+/// One version of an accessor after the edit, and the attributes that need it.
 #[derive(Clone, PartialEq, Debug)]
-pub(crate) struct Claim<'a> {
+pub(crate) struct AccessorVersion<'a> {
     pub change: &'a Change,
     pub semantic: Semantic,
-    pub namings: Vec<Naming>,
+    pub used_by: Vec<AttributeUse>,
 }
 
-/// What becomes of an accessor: its own claim, then those that need a new one.
+/// What becomes of an accessor: the version that it takes itself, then those that need a new accessor.
 #[derive(Clone, PartialEq, Debug)]
-pub(crate) struct Outcome<'a> {
-    pub kept: Claim<'a>,
-    pub moved_out: Vec<Claim<'a>>,
+pub(crate) struct AccessorPlan<'a> {
+    pub in_place: AccessorVersion<'a>,
+    pub copies: Vec<AccessorVersion<'a>>,
 }
 
 static UNCHANGED: Change = Change::new();
@@ -71,8 +72,8 @@ static UNCHANGED: Change = Change::new();
 /// of being compared with each of them.
 const MOST_CLASSES_COMPARED: usize = 64;
 
-/// A number for each part's changes, by attribute; equal for equal ones.
-fn hashes(changes: &[PartChange]) -> Vec<[u64; 3]> {
+/// A number for each instance's changes, by attribute; equal for equal ones.
+fn hashes(changes: &[InstanceChange]) -> Vec<[u64; 3]> {
     let of_change = |change: &Change| {
         let mut hasher = DefaultHasher::new();
         for (element, new) in change {
@@ -81,16 +82,16 @@ fn hashes(changes: &[PartChange]) -> Vec<[u64; 3]> {
         }
         hasher.finish()
     };
-    let of_part = |part: &PartChange| Semantic::ALL.map(|semantic| of_change(part.of(semantic)));
-    changes.iter().map(of_part).collect()
+    let of_instance = |instance: &InstanceChange| Semantic::ALL.map(|semantic| of_change(instance.of(semantic)));
+    changes.iter().map(of_instance).collect()
 }
 
 /// The meshes after the edit, the file's own first (mesh `m` is copy `m`), then the clones.
-pub(crate) fn copies(
+pub(crate) fn plan_meshes(
     document: &Document,
     meshes: &[Vec<Primitive>],
     pieces: &Pieces,
-    changes: &[PartChange],
+    changes: &[InstanceChange],
     course: &Course<'_>,
 ) -> Result<Vec<MeshCopy>, Cancelled> {
     let hashes = hashes(changes);
@@ -100,7 +101,7 @@ pub(crate) fn copies(
         .map(|(mesh, primitives)| MeshCopy {
             mesh,
             clone_for: None,
-            parts: vec![None; primitives.len()],
+            instances: vec![None; primitives.len()],
         })
         .collect();
     let mut clones = Vec::new();
@@ -108,9 +109,9 @@ pub(crate) fn copies(
     for (mesh, uses) in uses(meshes, pieces) {
         let mut is_same = |a: &[Option<usize>], b: &[Option<usize>]| {
             let mut primitives = meshes[mesh].iter().zip(a.iter().zip(b));
-            primitives.all(|(primitive, parts)| match parts {
+            primitives.all(|(primitive, instances)| match instances {
                 (Some(a), Some(b)) => Semantic::ALL.into_iter().all(|semantic| {
-                    let [a, b] = [a, b].map(|&part| changes[part].of(semantic));
+                    let [a, b] = [a, b].map(|&instance| changes[instance].of(semantic));
                     let accessor = semantic.accessor(primitive);
                     accessor.is_none_or(|accessor| rest.comes_to_the_same(document, accessor, a, b))
                 }),
@@ -119,35 +120,39 @@ pub(crate) fn copies(
         };
         let mut classes: Vec<(Vec<Option<usize>>, Vec<usize>)> = Vec::new();
         let mut class_of: HashMap<u64, usize> = HashMap::new();
-        for (node, parts) in uses {
+        for (node, instances) in uses {
             course.reach(0, 1)?;
             let mut hasher = DefaultHasher::new();
-            parts
+            instances
                 .iter()
-                .for_each(|part| part.map(|part| hashes[part]).hash(&mut hasher));
+                .for_each(|instance| instance.map(|instance| hashes[instance]).hash(&mut hasher));
             let likely = class_of.entry(hasher.finish());
             let mut candidates = match likely {
                 Entry::Occupied(ref entry) => *entry.get()..*entry.get() + 1,
                 Entry::Vacant(_) => 0..classes.len().min(MOST_CLASSES_COMPARED),
             };
-            let class = candidates.find(|&class| is_same(&classes[class].0, &parts));
+            let class = candidates.find(|&class| is_same(&classes[class].0, &instances));
             let class = class.unwrap_or(classes.len());
             likely.or_insert(class);
             match classes.get_mut(class) {
                 Some((_, nodes)) => nodes.push(node),
-                None => classes.push((parts, vec![node])),
+                None => classes.push((instances, vec![node])),
             }
         }
-        let is_unmoved = |parts: &[Option<usize>]| parts.iter().flatten().all(|&part| changes[part].is_empty());
-        let own = classes.iter().position(|(parts, _)| is_unmoved(parts)).unwrap_or(0);
-        for (number, (parts, nodes)) in classes.into_iter().enumerate() {
+        let is_unmoved =
+            |instances: &[Option<usize>]| instances.iter().flatten().all(|&instance| changes[instance].is_empty());
+        let own = classes
+            .iter()
+            .position(|(instances, _)| is_unmoved(instances))
+            .unwrap_or(0);
+        for (number, (instances, nodes)) in classes.into_iter().enumerate() {
             if number == own {
-                copies[mesh].parts = parts;
+                copies[mesh].instances = instances;
             } else {
                 clones.push(MeshCopy {
                     mesh,
                     clone_for: Some(nodes),
-                    parts,
+                    instances,
                 });
             }
         }
@@ -156,47 +161,47 @@ pub(crate) fn copies(
     Ok(copies)
 }
 
-/// A node that shows a mesh, and the part of each primitive.
-type Use = (usize, Vec<Option<usize>>);
+/// A node that shows a mesh, and the instance of each primitive.
+type NodeUse = (usize, Vec<Option<usize>>);
 
-/// By mesh: the nodes that show it, in the order of drawing, with the part of each primitive.
-fn uses(meshes: &[Vec<Primitive>], pieces: &Pieces) -> BTreeMap<usize, Vec<Use>> {
-    let mut uses: BTreeMap<usize, Vec<Use>> = BTreeMap::new();
+/// By mesh: the nodes that show it, in the order of drawing, with the instance of each primitive.
+fn uses(meshes: &[Vec<Primitive>], pieces: &Pieces) -> BTreeMap<usize, Vec<NodeUse>> {
+    let mut uses: BTreeMap<usize, Vec<NodeUse>> = BTreeMap::new();
     for piece in &pieces.pieces {
-        let part = &pieces.parts[piece.part];
-        let of_mesh = uses.entry(part.mesh).or_default();
+        let instance = &pieces.instances[piece.instance];
+        let of_mesh = uses.entry(instance.mesh).or_default();
         // Pieces of one node stand together.
-        if of_mesh.last().is_none_or(|(node, _)| *node != part.node) {
-            of_mesh.push((part.node, vec![None; meshes[part.mesh].len()]));
+        if of_mesh.last().is_none_or(|(node, _)| *node != instance.node) {
+            of_mesh.push((instance.node, vec![None; meshes[instance.mesh].len()]));
         }
-        if let Some((_, parts)) = of_mesh.last_mut() {
-            parts[piece.primitive] = Some(piece.part);
+        if let Some((_, instances)) = of_mesh.last_mut() {
+            instances[piece.primitive] = Some(piece.instance);
         }
     }
     uses
 }
 
-/// What becomes of each accessor that anyone wants changed.
-pub(crate) fn outcomes<'a>(
+/// The plan of each accessor that any attribute needs changed.
+pub(crate) fn plan_accessors<'a>(
     document: &Document,
     meshes: &[Vec<Primitive>],
     copies: &[MeshCopy],
-    changes: &'a [PartChange],
+    changes: &'a [InstanceChange],
     course: &Course<'_>,
-) -> Result<BTreeMap<usize, Outcome<'a>>, Cancelled> {
+) -> Result<BTreeMap<usize, AccessorPlan<'a>>, Cancelled> {
     let hashes = hashes(changes);
-    let mut claims: BTreeMap<usize, Vec<Claim<'a>>> = BTreeMap::new();
-    // Where among an accessor's claims those with a hash stand.
+    let mut versions: BTreeMap<usize, Vec<AccessorVersion<'a>>> = BTreeMap::new();
+    // For each accessor and hash, which of the accessor's versions have it.
     let mut known: HashMap<(usize, u64), Vec<usize>> = HashMap::new();
     for (copy, of_copy) in copies.iter().enumerate() {
         course.reach(0, 1)?;
         let primitives = &meshes[of_copy.mesh];
         // Primitives that are not drawn follow a drawn one that names the same accessor.
         let mut leader: HashMap<(usize, usize), usize> = HashMap::new();
-        for (part, named) in of_copy.parts.iter().zip(primitives) {
+        for (instance, named) in of_copy.instances.iter().zip(primitives) {
             for (place, semantic) in Semantic::ALL.into_iter().enumerate() {
-                if let (Some(part), Some(accessor)) = (part, semantic.accessor(named)) {
-                    leader.entry((place, accessor)).or_insert(*part);
+                if let (Some(instance), Some(accessor)) = (instance, semantic.accessor(named)) {
+                    leader.entry((place, accessor)).or_insert(*instance);
                 }
             }
         }
@@ -205,18 +210,18 @@ pub(crate) fn outcomes<'a>(
                 let Some(accessor) = semantic.accessor(named) else {
                     continue;
                 };
-                let part = of_copy.parts[primitive].or_else(|| leader.get(&(place, accessor)).copied());
-                let (change, hash) = part.map_or((&UNCHANGED, UNCHANGED_HASH), |part| {
-                    let change = changes[part].of(semantic);
+                let instance = of_copy.instances[primitive].or_else(|| leader.get(&(place, accessor)).copied());
+                let (change, hash) = instance.map_or((&UNCHANGED, UNCHANGED_HASH), |instance| {
+                    let change = changes[instance].of(semantic);
                     let hash = if change.is_empty() {
                         UNCHANGED_HASH
                     } else {
-                        hashes[part][place]
+                        hashes[instance][place]
                     };
                     (change, hash)
                 });
-                let of_accessor = claims.entry(accessor).or_default();
-                let naming = Naming {
+                let of_accessor = versions.entry(accessor).or_default();
+                let attribute = AttributeUse {
                     copy,
                     primitive,
                     semantic,
@@ -227,44 +232,47 @@ pub(crate) fn outcomes<'a>(
                     std::ptr::eq(other, change) || other == change
                 };
                 match alike.iter().copied().find(same) {
-                    Some(place) => of_accessor[place].namings.push(naming),
+                    Some(place) => of_accessor[place].used_by.push(attribute),
                     None => {
                         alike.push(of_accessor.len());
-                        of_accessor.push(Claim {
+                        of_accessor.push(AccessorVersion {
                             change,
                             semantic,
-                            namings: vec![naming],
+                            used_by: vec![attribute],
                         });
                     }
                 }
             }
         }
     }
-    claims.retain(|_, claims| claims.iter().any(|claim| !claim.change.is_empty()));
+    versions.retain(|_, versions| versions.iter().any(|version| !version.change.is_empty()));
     let elsewhere = used_elsewhere(document, meshes);
-    let outcomes = claims
+    let plans = versions
         .into_iter()
-        .filter_map(|(accessor, mut claims)| {
-            if elsewhere.contains(&accessor) && claims.iter().all(|claim| !claim.change.is_empty()) {
-                let semantic = claims.first()?.semantic;
-                claims.push(Claim {
+        .filter_map(|(accessor, mut versions)| {
+            if elsewhere.contains(&accessor) && versions.iter().all(|version| !version.change.is_empty()) {
+                let semantic = versions.first()?.semantic;
+                versions.push(AccessorVersion {
                     change: &UNCHANGED,
                     semantic,
-                    namings: Vec::new(),
+                    used_by: Vec::new(),
                 });
             }
-            let own = claims.iter().position(|claim| claim.change.is_empty()).unwrap_or(0);
-            let kept = claims.remove(own);
+            let own = versions
+                .iter()
+                .position(|version| version.change.is_empty())
+                .unwrap_or(0);
+            let in_place = versions.remove(own);
             Some((
                 accessor,
-                Outcome {
-                    kept,
-                    moved_out: claims,
+                AccessorPlan {
+                    in_place,
+                    copies: versions,
                 },
             ))
         })
         .collect();
-    Ok(outcomes)
+    Ok(plans)
 }
 
 /// Stands for the hash of what does not change.
