@@ -28,7 +28,7 @@ mod sparse;
 pub mod stages;
 
 pub use arap::{Arap, ArapEnergy};
-pub use bilaplacian::{Bilaplacian, Discretisation, HandleBases, ShellOrder, Triangulation};
+pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Discretisation, HandleBases, TriangulationKind};
 pub use bound::{Bound, ReusableFactor, Step};
 pub use budget::Budget;
 pub use error::{BindError, Crowded, SolveError};

@@ -12,7 +12,7 @@
 //! Poisson's effect, with free borders, and κ a number without unit.
 //!
 //! An affine map costs nothing, so a bumpy region turns at no cost in the majorising quadratic as well, where
-//! |L p' − R L p|² (the second order of Levi & Gotsman 2015 and Oehri et al. 2025) with its rotations held makes it pay
+//! |L p' − R L p|² (the second order of [LG15] and [OHS25]) with its rotations held makes it pay
 //! κ A times its squared curvature. What an affine map of a curved cell could hide, its normals' stretch or tilt, ν
 //! holds as firmly as the membrane holds the rest.
 //!

@@ -2,7 +2,7 @@
 //!
 //! The energy is a function of the positions alone, E(p) = min over the cells' rotations, and is minimised by L-BFGS on
 //! top of the factored Laplacian with a line search on the true energy, so it never rises. With no memory a step *is*
-//! one iteration of the usual local/global method (Sorkine & Alexa 2007), which descends slowly: an iteration of ours
+//! one iteration of the usual local/global method [SA07], which descends slowly: an iteration of ours
 //! costs a tenth more and needs an order of magnitude fewer.
 //!
 //! Parts: `domain` numbers the vertices, `rims` and `spokes` make the two energies' `cells` and `bending` adds the smooth
@@ -157,7 +157,7 @@ impl ArapSolver {
             ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => {
                 matrix::assemble(&laplacian, &domain, springs.all(), options.energy)
             }
-            ArapEnergy::Smooth => matrix::assemble_plate(&cells, &domain, springs.all()),
+            ArapEnergy::Smooth => matrix::assemble_bending(&cells, &domain, springs.all()),
         };
         let too_large = |_| BindError::OutOfMemory {
             free_count: domain.solved_count,

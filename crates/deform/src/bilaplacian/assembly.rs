@@ -1,4 +1,4 @@
-//! The linear shell's matrix A on the solved vertices, straight into compressed columns.
+//! The bi-Laplacian's matrix A on the solved vertices, straight into compressed columns.
 //!
 //! Column by column, each from its vertex's n-ring, with no triplets and nothing sorted: columns are computed apart
 //! and stand in the order in which they are eliminated, so neither the order nor the number of threads shows. The
@@ -11,19 +11,19 @@ use rayon::prelude::*;
 
 use crate::Laplacian;
 use crate::bilaplacian::hubs::Hubs;
-use crate::bilaplacian::operator::ShellOperator;
+use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::budget::{Budget, filled};
 use crate::operators::CHUNK;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
 
-/// Assembles the shell over the local vertices `columns`, in that order; `column_of` is the inverse table, with
+/// Assembles the matrix over the local vertices `columns`, in that order; `column_of` is the inverse table, with
 /// [`CONSTRAINED`] where a local vertex has no column. The curvature at `hubs` is left to their correction.
 ///
 /// # Errors
 /// Where its entries exceed the budget, or the machine's memory.
-pub(crate) fn assemble_shell(
-    operator: &ShellOperator,
+pub(crate) fn assemble_bilaplacian(
+    operator: &BilaplacianOperator,
     columns: &[u32],
     column_of: &[u32],
     hubs: &Hubs,
@@ -102,7 +102,7 @@ struct Chunk {
 
 /// `None` as soon as `fits` says that so many further entries don't.
 fn assemble_chunk(
-    operator: &ShellOperator,
+    operator: &BilaplacianOperator,
     columns: &[u32],
     column_of: &[u32],
     hubs: &Hubs,
@@ -156,7 +156,7 @@ impl Expansion {
     /// The entries of A's column on the vertices that are solved for, the diagonal first.
     fn column(
         &mut self,
-        operator: &ShellOperator,
+        operator: &BilaplacianOperator,
         hubs: &Hubs,
         vertex: u32,
         solved: impl Fn(u32) -> bool,
@@ -193,7 +193,7 @@ impl Expansion {
     }
 
     /// The column's entries with its spring on the diagonal, which comes first.
-    fn finished(&mut self, operator: &ShellOperator, vertex: u32) -> &[(u32, f64)] {
+    fn finished(&mut self, operator: &BilaplacianOperator, vertex: u32) -> &[(u32, f64)] {
         self.close();
         if let Some((_, diagonal)) = self.entries.first_mut() {
             *diagonal += operator.springs.diagonal(vertex);
@@ -273,11 +273,11 @@ fn stiffness_row(laplacian: &Laplacian, vertex: u32) -> impl Iterator<Item = (u3
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
-    use super::assemble_shell;
+    use super::assemble_bilaplacian;
     use crate::bilaplacian::hubs::Hubs;
-    use crate::bilaplacian::operator::ShellOperator;
+    use crate::bilaplacian::operator::BilaplacianOperator;
     use crate::sparse::matrix::CONSTRAINED;
-    use crate::{Bilaplacian, Budget, Laplacian, ShellOrder};
+    use crate::{Bilaplacian, BilaplacianOrder, Budget, Laplacian};
     use pliant_mesh::shapes;
 
     fn matches_its_operator(options: &Bilaplacian) {
@@ -286,11 +286,11 @@ mod tests {
         let stiffness: Vec<f64> = (0..count).map(|i| 1.0 + (i % 5) as f64).collect();
         let stiff = || Some(Laplacian::of(&model.surface, &model.topology, &stiffness));
         let plain = Laplacian::of(&model.surface, &model.topology, &vec![1.0; count]);
-        let mut operator = ShellOperator::new(plain, options, 3.0);
+        let mut operator = BilaplacianOperator::new(plain, options, 3.0);
         match options.order {
-            ShellOrder::Membrane => {}
-            ShellOrder::ThinPlate => operator.cell_stiffness.clone_from(&stiffness),
-            ShellOrder::CurvatureVariation => operator.middle = stiff(),
+            BilaplacianOrder::Membrane => {}
+            BilaplacianOrder::ThinPlate => operator.cell_stiffness.clone_from(&stiffness),
+            BilaplacianOrder::CurvatureVariation => operator.middle = stiff(),
         }
         operator.stretched = stiff().filter(|_| operator.power > 1 && operator.stretching > 0.0);
         let columns: Vec<u32> = (0..count as u32).rev().filter(|v| v % 7 != 0).collect();
@@ -298,26 +298,27 @@ mod tests {
         for (column, &vertex) in columns.iter().enumerate() {
             column_of[vertex as usize] = column as u32;
         }
-        let plate = assemble_shell(&operator, &columns, &column_of, &Hubs::default(), Budget::default()).unwrap();
+        let matrix =
+            assemble_bilaplacian(&operator, &columns, &column_of, &Hubs::default(), Budget::default()).unwrap();
         for (column, &vertex) in columns.iter().enumerate() {
             let mut unit = vec![[0.0]; count];
             unit[vertex as usize] = [1.0];
             let potential = operator.potential(&unit);
-            let entries = plate.lower_offsets[column] as usize..plate.lower_offsets[column + 1] as usize;
+            let entries = matrix.lower_offsets[column] as usize..matrix.lower_offsets[column + 1] as usize;
             let mut seen = 0;
             for entry in entries {
-                let row = plate.lower_rows[entry] as usize;
+                let row = matrix.lower_rows[entry] as usize;
                 let expected =
-                    operator.force(columns[row] as usize, &potential)[0] * plate.scale[row] * plate.scale[column];
-                assert!((plate.lower_values[entry] - expected).abs() < 1e-13, "{row} {column}");
+                    operator.force(columns[row] as usize, &potential)[0] * matrix.scale[row] * matrix.scale[column];
+                assert!((matrix.lower_values[entry] - expected).abs() < 1e-13, "{row} {column}");
                 seen += 1;
             }
-            let diagonal = plate.lower_values[plate.lower_offsets[column] as usize];
+            let diagonal = matrix.lower_values[matrix.lower_offsets[column] as usize];
             assert!((diagonal - 1.0).abs() < 1e-13);
             let filled = (0..columns.len())
                 .filter(|&row| {
                     let force = operator.force(columns[row] as usize, &potential)[0];
-                    row >= column && (force * plate.scale[row] * plate.scale[column]).abs() > 1e-12
+                    row >= column && (force * matrix.scale[row] * matrix.scale[column]).abs() > 1e-12
                 })
                 .count();
             assert!(filled <= seen);
@@ -326,7 +327,7 @@ mod tests {
 
     #[test]
     fn the_matrix_is_the_operator_column_by_column() {
-        for order in ShellOrder::ALL {
+        for order in BilaplacianOrder::ALL {
             for stretching in [0.0, 40.0] {
                 matches_its_operator(&Bilaplacian {
                     order,

@@ -1,4 +1,4 @@
-//! With which continuity the shell joins what holds it (Botsch & Kobbelt 2004, section 4.2, in a symmetric form).
+//! With which continuity the bi-Laplacian joins what holds it ([BK04], section 4.2, in a symmetric form).
 //!
 //! What is free sees the slope at a constrained vertex only through the curvature there, u_i = (M⁻¹ L d)_i, and the
 //! curvature only through its change across the faces beyond. So a damped M⁻¹ at constrained vertices makes a hinge, C⁰
@@ -11,14 +11,14 @@
 
 use pliant_mesh::{SurfaceVertex, area_of_lengths};
 
-use crate::bilaplacian::operator::ShellOperator;
-use crate::operators::triangulation::Net;
+use crate::bilaplacian::operator::BilaplacianOperator;
+use crate::operators::triangulation::Triangulation;
 use crate::{Bilaplacian, Laplacian, Problem, Role};
 
 /// Damps the operator at constrained vertices as [`crate::Constraints::continuity`] says; `rows` are its full rows.
 pub(crate) fn join(
-    operator: &mut ShellOperator,
-    net: &Net,
+    operator: &mut BilaplacianOperator,
+    triangulation: &Triangulation,
     problem: &Problem,
     options: &Bilaplacian,
     rows: &[u32],
@@ -41,7 +41,7 @@ pub(crate) fn join(
             damping(a.min(b).min(c) - 1.0, area_of_lengths(lengths).sqrt() / diagonal)
         };
         operator.middle = Some(Laplacian::on(
-            net,
+            triangulation,
             problem.stiffness,
             rows,
             options.discretisation,

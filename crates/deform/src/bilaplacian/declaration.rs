@@ -1,17 +1,17 @@
-//! The linear shell as one of the methods.
+//! The bi-Laplacian as one of the methods.
 
 use std::sync::Arc;
 
 use glam::DVec3;
 
 use crate::bilaplacian::Bilaplacian;
-use crate::bilaplacian::solver::Plate;
+use crate::bilaplacian::solver::BilaplacianSolver;
 use crate::handles::{Motion, clear};
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, OptionRefused, Solve,
     Stepped,
 };
-use crate::operators::triangulation::Net;
+use crate::operators::triangulation::Triangulation;
 use crate::{BindError, HandleBases, Problem, ReusableFactor, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
@@ -55,16 +55,16 @@ impl DeformMethod for Bilaplacian {
         })
     }
 
-    fn net<'a>(&self, problem: &Problem<'a>) -> Net<'a> {
-        Net::of_options(problem, self)
+    fn triangulation<'a>(&self, problem: &Problem<'a>) -> Triangulation<'a> {
+        Triangulation::of_options(problem, self)
     }
 
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
-        Ok(Box::new(Plate::bind(self, input)?))
+        Ok(Box::new(BilaplacianSolver::bind(self, input)?))
     }
 }
 
-impl BoundMethod for Plate {
+impl BoundMethod for BilaplacianSolver {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
         let finite = self.frame(motions, displacements);
         Ok(Stepped {
@@ -88,13 +88,13 @@ impl BoundMethod for Plate {
         self.back_substitute(displacements)?;
         Ok(Stepped {
             converged: true,
-            energy: Plate::energy_of(self, motions, displacements),
+            energy: BilaplacianSolver::energy_of(self, motions, displacements),
             finite: Finite::Unknown,
         })
     }
 
     fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {
-        Some(Plate::energy_of(self, motions, displacements))
+        Some(BilaplacianSolver::energy_of(self, motions, displacements))
     }
 
     fn handle_bases(&self) -> Option<&HandleBases> {
@@ -110,10 +110,10 @@ impl BoundMethod for Plate {
     }
 
     fn factor_len(&self) -> usize {
-        Plate::factor_len(self)
+        BilaplacianSolver::factor_len(self)
     }
 
     fn warnings(&self) -> Vec<String> {
-        Plate::warnings(self)
+        BilaplacianSolver::warnings(self)
     }
 }

@@ -1,4 +1,4 @@
-//! The bound linear shell: A_ff d_f = −A_fc d_c, factored, refined and checked.
+//! The bound bi-Laplacian: A_ff d_f = −A_fc d_c, factored, refined and checked.
 //!
 //! A factorisation that succeeds proves nothing: condition numbers reach 1e15 on real scans. So every solve is refined
 //! (see `refine`), and every bind solves for the constant 1, whose solution is known, and refuses where it is missed.
@@ -9,9 +9,9 @@ use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
 use crate::BindError;
-use crate::bilaplacian::assembly::assemble_shell;
+use crate::bilaplacian::assembly::assemble_bilaplacian;
 use crate::bilaplacian::hubs::Hubs;
-use crate::bilaplacian::operator::ShellOperator;
+use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::budget::{Budget, bytes_of};
 use crate::operators::CHUNK;
 use crate::sparse::Elimination;
@@ -20,10 +20,10 @@ use crate::sparse::factor_error::FactorError;
 use crate::sparse::low_rank::LowRank;
 use crate::sparse::matrix::CONSTRAINED;
 
-/// The factored shell over the local vertices of its Laplacian.
+/// The factored system over the local vertices of its Laplacian.
 #[derive(Debug)]
-pub(crate) struct Shell {
-    pub operator: ShellOperator,
+pub(crate) struct BilaplacianSystem {
+    pub operator: BilaplacianOperator,
     /// The local vertex of each column of the factor.
     columns: Vec<u32>,
     /// The column of each of the operator's springs.
@@ -37,7 +37,7 @@ pub(crate) struct Shell {
 
 /// Where the system could not be factored or solved, as a surface vertex.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) enum ShellError {
+pub(crate) enum SystemError {
     NotPositiveDefinite { vertex: u32 },
     Inaccurate { vertex: u32, error: f64 },
     OutOfMemory,
@@ -49,16 +49,16 @@ pub(crate) enum ShellError {
 /// effect out again; the check of the constant says whether it did.
 const SHIFTS: [f64; 4] = [0.0, 1e-13, 1e-11, 1e-9];
 
-impl Shell {
-    /// Factors the shell in which the vertices of `elimination` are solved for, eliminated in that order; the
+impl BilaplacianSystem {
+    /// Factors the system in which the vertices of `elimination` are solved for, eliminated in that order; the
     /// operator's Laplacian has full rows for them and their neighbours.
     pub fn new(
-        operator: ShellOperator,
+        operator: BilaplacianOperator,
         elimination: Elimination,
         refactorisation: Refactorisation,
         budget: Budget,
         cancel: &Cancel,
-    ) -> Result<Self, ShellError> {
+    ) -> Result<Self, SystemError> {
         let laplacian = &operator.laplacian;
         let numbered = |elimination: &Elimination| {
             let columns = laplacian.locals(&elimination.order);
@@ -79,7 +79,7 @@ impl Shell {
         }
         let rank = hubs.rank(&operator);
         let of_hubs = bytes_of(LowRank::stored_at_rank(columns.len(), rank), size_of::<f64>());
-        let budget = budget.without(of_hubs).map_err(|_| ShellError::Budget)?;
+        let budget = budget.without(of_hubs).map_err(|_| SystemError::Budget)?;
         let spring_columns = operator
             .springs
             .locals()
@@ -87,20 +87,20 @@ impl Shell {
             .map(|&local| column_of[local as usize])
             .collect();
         let refused = |error| match error {
-            FactorError::Memory => ShellError::OutOfMemory,
-            FactorError::Budget => ShellError::Budget,
-            FactorError::Cancelled => ShellError::Cancelled,
+            FactorError::Memory => SystemError::OutOfMemory,
+            FactorError::Budget => SystemError::Budget,
+            FactorError::Cancelled => SystemError::Cancelled,
             FactorError::Pivot(column) => {
                 let local = columns.get(column).map_or(0, |&local| local as usize);
-                ShellError::NotPositiveDefinite {
+                SystemError::NotPositiveDefinite {
                     vertex: operator.laplacian.vertices()[local],
                 }
             }
         };
-        let plate = assemble_shell(&operator, &columns, &column_of, &hubs, budget).map_err(refused)?;
-        cancel.check().map_err(|_| ShellError::Cancelled)?;
+        let matrix = assemble_bilaplacian(&operator, &columns, &column_of, &hubs, budget).map_err(refused)?;
+        cancel.check().map_err(|_| SystemError::Cancelled)?;
         let factored =
-            RenewableFactor::of(plate, elimination, &SHIFTS, refactorisation, budget, cancel).map_err(refused)?;
+            RenewableFactor::of(matrix, elimination, &SHIFTS, refactorisation, budget, cancel).map_err(refused)?;
         let mut low_rank = None;
         if !hubs.is_empty() {
             let (vectors, c) = hubs.correction(&operator, &column_of, factored.scale());
@@ -134,7 +134,7 @@ impl Shell {
         self.factored.factor.stored() + self.low_rank.as_ref().map_or(0, LowRank::stored)
     }
 
-    /// What a shell that is nearly the same can take over.
+    /// What a system that is nearly the same can take over.
     pub fn factored(&self) -> &Arc<RenewableFactor> {
         &self.factored
     }
@@ -173,7 +173,7 @@ impl Shell {
     }
 }
 
-impl ShellError {
+impl SystemError {
     /// The error as the caller sees it.
     pub fn into_bind_error(self, component_of: impl Fn(u32) -> u32, free_count: usize) -> BindError {
         match self {

@@ -1,4 +1,4 @@
-//! What the shell does about hubs: vertices that very many others neighbour, such as the tip of a fan.
+//! What the bi-Laplacian does about hubs: vertices that very many others neighbour, such as the tip of a fan.
 //!
 //! At order 2 and above the curvature at a hub couples all of its neighbours with each other: of a fan of d triangles the
 //! matrix alone would have d² / 2 entries. But all of them are one square, A = B + c p pᵀ, where p is the hub's row of
@@ -15,14 +15,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::bilaplacian::operator::ShellOperator;
+use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::sparse::low_rank::SparseVector;
 use crate::sparse::matrix::CONSTRAINED;
 
 /// Neighbours that stand in for all of a hub's.
 const SAMPLES: usize = 16;
 
-/// The hubs of a shell's operator.
+/// The hubs of a bi-Laplacian's operator.
 #[derive(Debug, Default)]
 pub(crate) struct Hubs {
     /// Local vertices, ascending.
@@ -37,7 +37,7 @@ pub(crate) struct Hubs {
 
 impl Hubs {
     /// Those of the operator's vertices of whose neighbours too many are solved for: have an entry in `column_of`.
-    pub fn of(operator: &ShellOperator, column_of: &[u32]) -> Self {
+    pub fn of(operator: &BilaplacianOperator, column_of: &[u32]) -> Self {
         if operator.power == 1 {
             return Self::default();
         }
@@ -78,7 +78,7 @@ impl Hubs {
     }
 
     /// The correction's rank.
-    pub fn rank(&self, operator: &ShellOperator) -> usize {
+    pub fn rank(&self, operator: &BilaplacianOperator) -> usize {
         self.locals.len() * operator.power as usize
     }
 
@@ -94,7 +94,7 @@ impl Hubs {
     /// U and C, row by row, of S A S = S B S + U C Uᵀ.
     pub fn correction(
         &self,
-        operator: &ShellOperator,
+        operator: &BilaplacianOperator,
         column_of: &[u32],
         scale: &[f64],
     ) -> (Vec<SparseVector>, Vec<f64>) {
@@ -153,7 +153,7 @@ impl Hubs {
     }
 
     /// g_h = Q₀ᵀ P e_h of a hub, by local vertex.
-    fn beside(&self, operator: &ShellOperator, hub: usize) -> SparseVector {
+    fn beside(&self, operator: &BilaplacianOperator, hub: usize) -> SparseVector {
         let laplacian = &operator.laplacian;
         let mut sums: BTreeMap<u32, f64> = BTreeMap::new();
         for (other, value) in row(operator.middle(), hub) {
@@ -169,18 +169,18 @@ impl Hubs {
 }
 
 /// k_b s_h / M_hh: what the square of (L d)_h counts at order 2.
-fn curvature_weight(operator: &ShellOperator, hub: usize) -> f64 {
+fn curvature_weight(operator: &BilaplacianOperator, hub: usize) -> f64 {
     operator.bending * operator.cell_stiffness(hub) * operator.laplacian.inverse_areas()[hub]
 }
 
 /// k_b P_hh, P the middle −L of order 3: what the square of the curvature at h counts, that around it being 0.
-fn middle_weight(operator: &ShellOperator, hub: usize) -> f64 {
+fn middle_weight(operator: &BilaplacianOperator, hub: usize) -> f64 {
     let weights = operator.middle().weights(hub);
     operator.bending * weights.iter().sum::<f64>().max(0.0)
 }
 
 /// γ and t of a hub.
-fn stand_in(operator: &ShellOperator, hub: usize) -> (f64, SparseVector) {
+fn stand_in(operator: &BilaplacianOperator, hub: usize) -> (f64, SparseVector) {
     let laplacian = &operator.laplacian;
     let (ring, weights) = (laplacian.neighbours(hub), laplacian.weights(hub));
     let whole: f64 = weights.iter().sum();
@@ -220,12 +220,12 @@ mod tests {
     use glam::DVec3;
     use pliant_mesh::{Cancel, Progress, Surface, SurfaceVertex, Topology};
 
-    use crate::bilaplacian::factored::Shell;
-    use crate::bilaplacian::solver::operator;
+    use crate::bilaplacian::factored::BilaplacianSystem;
+    use crate::bilaplacian::setup::operator;
     use crate::handles::Handle;
     use crate::region::partition::Partition;
     use crate::sparse::cholesky::Refactorisation;
-    use crate::{Bilaplacian, Budget, Constraints, Loose, Method, Ordering, Problem, Role, ShellOrder};
+    use crate::{Bilaplacian, BilaplacianOrder, Budget, Constraints, Loose, Method, Ordering, Problem, Role};
 
     /// Rings of `count` vertices around one in the middle, on a bumpy dish.
     fn wheel(count: usize, rings: usize) -> Surface {
@@ -315,7 +315,7 @@ mod tests {
         let (mut operator, prescribed) = operator(&problem, options, &partition, &handles);
         operator.hub_degree = hub_degree;
         let elimination = ordering.elimination(&partition.solved);
-        let mut shell = Shell::new(
+        let mut system = BilaplacianSystem::new(
             operator,
             elimination,
             Refactorisation::Never,
@@ -323,19 +323,19 @@ mod tests {
             &cancel,
         )
         .unwrap();
-        let mut d = vec![[0.0, 0.0, 0.0, 0.0, 1.0]; shell.operator.field_len()];
+        let mut d = vec![[0.0, 0.0, 0.0, 0.0, 1.0]; system.operator.field_len()];
         for &(place, [x, y, z, w]) in &prescribed[0] {
             d[place as usize] = [x, y, z, w, 1.0];
         }
-        shell.check(&mut d, &cancel).unwrap();
+        system.check(&mut d, &cancel).unwrap();
         let handle = d.iter().map(|&[x, y, z, w, _]| [x, y, z, w]).collect();
-        (handle, shell.factor_len())
+        (handle, system.factor_len())
     }
 
     #[test]
     fn a_hub_left_to_its_correction_gives_the_shape_of_the_whole_matrix() {
         for (name, surface) in [("wheel", wheel(300, 3)), ("book", book(300))] {
-            for order in [ShellOrder::ThinPlate, ShellOrder::CurvatureVariation] {
+            for order in [BilaplacianOrder::ThinPlate, BilaplacianOrder::CurvatureVariation] {
                 for stretching in [0.0, 20.0] {
                     let options = Bilaplacian {
                         order,
@@ -354,7 +354,7 @@ mod tests {
 
     #[test]
     fn the_factor_grows_as_the_hub_does_and_not_as_its_square() {
-        for order in [ShellOrder::ThinPlate, ShellOrder::CurvatureVariation] {
+        for order in [BilaplacianOrder::ThinPlate, BilaplacianOrder::CurvatureVariation] {
             let options = Bilaplacian {
                 order,
                 ..Bilaplacian::default()

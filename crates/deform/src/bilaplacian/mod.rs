@@ -10,10 +10,11 @@ pub(crate) mod hubs;
 pub(crate) mod operator;
 mod options;
 mod refine;
+pub(crate) mod setup;
 mod slender;
-pub(crate) mod solver;
+mod solver;
 mod springs;
 
 pub use bases::HandleBases;
 pub(crate) use declaration::DECLARATION;
-pub use options::{Bilaplacian, Discretisation, ShellOrder, Triangulation};
+pub use options::{Bilaplacian, BilaplacianOrder, Discretisation, TriangulationKind};

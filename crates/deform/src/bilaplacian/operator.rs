@@ -1,4 +1,4 @@
-//! The linear shell's operator A = k_s (−L) + k_b (−L)(−M⁻¹ L)ⁿ⁻¹, applied by differences along edges.
+//! The bi-Laplacian's operator A = k_s (−L) + k_b (−L)(−M⁻¹ L)ⁿ⁻¹, applied by differences along edges.
 //!
 //! One factor −L stands outermost in both terms, so A d = −L φ with φ = k_s d + k_b (−M⁻¹ L)ⁿ⁻¹ d: zero on constants
 //! to the last bit at every order.
@@ -26,7 +26,7 @@ pub(crate) struct Potential<'a, const K: usize> {
 ///
 /// A *field* has one entry a local vertex and then one a spring, which is where its handle wants the spring's vertex.
 #[derive(Debug)]
-pub(crate) struct ShellOperator {
+pub(crate) struct BilaplacianOperator {
     pub laplacian: Laplacian,
     /// The L between two others at order 3, where it is not the same.
     pub middle: Option<Laplacian>,
@@ -46,7 +46,7 @@ pub(crate) struct ShellOperator {
     pub bending: f64,
 }
 
-impl ShellOperator {
+impl BilaplacianOperator {
     /// With the options' coefficients for a surface of this diagonal.
     pub fn new(laplacian: Laplacian, options: &Bilaplacian, diagonal: f64) -> Self {
         let square = if diagonal > 0.0 { diagonal * diagonal } else { 1.0 };

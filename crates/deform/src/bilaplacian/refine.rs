@@ -8,7 +8,7 @@
 
 use pliant_mesh::Cancel;
 
-use crate::bilaplacian::factored::{Shell, ShellError};
+use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
 
 /// Corrections of a solve, the first one included.
 const STEPS: std::ops::RangeInclusive<usize> = 2..=8;
@@ -39,18 +39,18 @@ pub(crate) struct Outcome {
 /// By how much the constant may be missed.
 const TOLERANCE: f64 = 1e-7;
 
-impl Shell {
+impl BilaplacianSystem {
     /// Fills in the solved vertices of `d` from its constrained ones, as well as the check found it to take.
     pub fn solve<const K: usize>(&self, d: &mut [[f64; K]], cancel: &Cancel) -> Outcome {
         solve(self, d, self.contraction, cancel)
     }
 
-    /// Solves as [`Shell::solve`] and keeps how fast refinement was. The last function of `d` is 1 at every constrained
+    /// Solves as [`BilaplacianSystem::solve`] and keeps how fast refinement was. The last function of `d` is 1 at every constrained
     /// place, so its solution is known: where that is missed, the factor is no good.
-    pub fn check<const K: usize>(&mut self, d: &mut [[f64; K]], cancel: &Cancel) -> Result<f64, ShellError> {
+    pub fn check<const K: usize>(&mut self, d: &mut [[f64; K]], cancel: &Cancel) -> Result<f64, SystemError> {
         let outcome = solve(self, d, 0.0, cancel);
         self.contraction = outcome.contraction;
-        cancel.check().map_err(|_| ShellError::Cancelled)?;
+        cancel.check().map_err(|_| SystemError::Cancelled)?;
         let mut worst = (0.0, 0);
         for &local in self.columns() {
             let error = (d[local as usize][K - 1] - 1.0).abs();
@@ -61,7 +61,7 @@ impl Shell {
         if worst.0 <= TOLERANCE {
             Ok(outcome.error)
         } else {
-            Err(ShellError::Inaccurate {
+            Err(SystemError::Inaccurate {
                 vertex: self.operator.laplacian.vertices()[worst.1 as usize],
                 error: worst.0,
             })
@@ -73,8 +73,8 @@ impl Shell {
 ///
 /// `contraction` is what an earlier solve found: a right-hand side that hardly touches a direction in which the factor
 /// is wrong would not show it by itself, and be left with a large part of a small correction.
-fn solve<const K: usize>(shell: &Shell, d: &mut [[f64; K]], contraction: f64, cancel: &Cancel) -> Outcome {
-    for &local in shell.columns() {
+fn solve<const K: usize>(system: &BilaplacianSystem, d: &mut [[f64; K]], contraction: f64, cancel: &Cancel) -> Outcome {
+    for &local in system.columns() {
         d[local as usize] = [0.0; K];
     }
     let mut outcome = Outcome {
@@ -88,13 +88,13 @@ fn solve<const K: usize>(shell: &Shell, d: &mut [[f64; K]], contraction: f64, ca
         if cancel.is_cancelled() {
             break;
         }
-        let mut x = shell.scaled_residual(d);
+        let mut x = system.scaled_residual(d);
         if gradients > 0 {
-            x = conjugate_gradients(shell, x, cancel);
+            x = conjugate_gradients(system, x, cancel);
         } else {
-            shell.solve_factored(&mut x);
+            system.solve_factored(&mut x);
         }
-        let Some((correction, size)) = correct(shell, d, &x) else {
+        let Some((correction, size)) = correct(system, d, &x) else {
             return Outcome {
                 error: f64::INFINITY,
                 ..outcome
@@ -124,9 +124,9 @@ fn solve<const K: usize>(shell: &Shell, d: &mut [[f64; K]], contraction: f64, ca
 }
 
 /// Adds S x to `d`; returns the largest change and the largest value, or `None` where one is not finite.
-fn correct<const K: usize>(shell: &Shell, d: &mut [[f64; K]], x: &[[f64; K]]) -> Option<(f64, f64)> {
+fn correct<const K: usize>(system: &BilaplacianSystem, d: &mut [[f64; K]], x: &[[f64; K]]) -> Option<(f64, f64)> {
     let (mut correction, mut size, mut finite) = (0.0_f64, 0.0_f64, true);
-    for ((&local, &scale), x) in shell.columns().iter().zip(shell.scale()).zip(x) {
+    for ((&local, &scale), x) in system.columns().iter().zip(system.scale()).zip(x) {
         let target = &mut d[local as usize];
         for k in 0..K {
             let change = x[k] * scale;
@@ -140,23 +140,27 @@ fn correct<const K: usize>(shell: &Shell, d: &mut [[f64; K]], x: &[[f64; K]]) ->
 }
 
 /// Solves S A S x = r for each of the K right-hand sides, from zero.
-fn conjugate_gradients<const K: usize>(shell: &Shell, mut r: Vec<[f64; K]>, cancel: &Cancel) -> Vec<[f64; K]> {
+fn conjugate_gradients<const K: usize>(
+    system: &BilaplacianSystem,
+    mut r: Vec<[f64; K]>,
+    cancel: &Cancel,
+) -> Vec<[f64; K]> {
     let mut x = vec![[0.0; K]; r.len()];
     let mut z = r.clone();
-    shell.solve_factored(&mut z);
+    system.solve_factored(&mut z);
     let mut p = z.clone();
     let mut rho = dots(&r, &z);
     let first = rho;
-    let mut scattered = vec![[0.0; K]; shell.operator.field_len()];
+    let mut scattered = vec![[0.0; K]; system.operator.field_len()];
     for _ in 0..GRADIENT_STEPS {
         if cancel.is_cancelled() || (0..K).all(|k| rho[k].is_nan() || rho[k] <= GRADIENT_DROP * first[k]) {
             break;
         }
-        for ((&local, &scale), p) in shell.columns().iter().zip(shell.scale()).zip(&p) {
+        for ((&local, &scale), p) in system.columns().iter().zip(system.scale()).zip(&p) {
             scattered[local as usize] = p.map(|value| value * scale);
         }
         // The residual's sign is the other one: this is −S A S p.
-        let minus_ap = shell.scaled_residual(&scattered);
+        let minus_ap = system.scaled_residual(&scattered);
         let curvature = dots(&p, &minus_ap).map(|value| -value);
         // A column that is solved, or whose direction has no curvature left, stands still.
         let alpha: [f64; K] = std::array::from_fn(|k| if curvature[k] > 0.0 { rho[k] / curvature[k] } else { 0.0 });
@@ -167,7 +171,7 @@ fn conjugate_gradients<const K: usize>(shell: &Shell, mut r: Vec<[f64; K]>, canc
             }
         }
         z.copy_from_slice(&r);
-        shell.solve_factored(&mut z);
+        system.solve_factored(&mut z);
         let next = dots(&r, &z);
         let beta: [f64; K] = std::array::from_fn(|k| if rho[k] > 0.0 { next[k] / rho[k] } else { 0.0 });
         for (p, z) in p.iter_mut().zip(&z) {

@@ -7,7 +7,7 @@
 use pliant_mesh::SurfaceVertex;
 
 use crate::BindError;
-use crate::operators::triangulation::{Graph, Net};
+use crate::operators::triangulation::{Graph, Triangulation};
 
 /// Where edges to what holds a surface, to the 2n-th power, exceed this, no digit is left. Strips at order 3 were solved
 /// to seven digits at 4·10¹⁸, to three at 2·10²⁰, and to none at 6·10²².
@@ -17,12 +17,12 @@ const HOPELESS: f64 = 1e24;
 ///
 /// # Errors
 /// [`BindError::Slender`] with the vertex that is farthest.
-pub(crate) fn check(net: &Net, solved: &[u32], order: u32) -> Result<(), BindError> {
+pub(crate) fn check(triangulation: &Triangulation, solved: &[u32], order: u32) -> Result<(), BindError> {
     let most = HOPELESS.powf(0.5 / f64::from(order));
     if (solved.len() as f64) < most {
         return Ok(());
     }
-    let mut is_solved = vec![false; net.vertex_count()];
+    let mut is_solved = vec![false; triangulation.vertex_count()];
     solved.iter().for_each(|&vertex| is_solved[vertex as usize] = true);
     // Ring by ring from what is held.
     let mut ring: Vec<u32> = (0..is_solved.len())
@@ -34,7 +34,7 @@ pub(crate) fn check(net: &Net, solved: &[u32], order: u32) -> Result<(), BindErr
         farthest = first;
         let mut next = Vec::new();
         for vertex in ring {
-            for beside in net.neighbours(SurfaceVertex(vertex)) {
+            for beside in triangulation.neighbours(SurfaceVertex(vertex)) {
                 if std::mem::replace(&mut is_solved[beside.index()], false) {
                     next.push(beside.0);
                 }

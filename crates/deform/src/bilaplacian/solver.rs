@@ -1,31 +1,28 @@
-//! The linear shell's method: what binding it computes, and its two ways to a frame.
+//! The bi-Laplacian's method: what binding it computes, and its two ways to a frame.
 
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_mesh::{Cancel, SurfaceVertex, bounding_box};
+use pliant_mesh::{Cancel, SurfaceVertex};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::bilaplacian::bases::Tables;
-use crate::bilaplacian::continuity::join;
-use crate::bilaplacian::factored::{Shell, ShellError};
-use crate::bilaplacian::operator::ShellOperator;
+use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
+use crate::bilaplacian::setup::{Prescribed, operator};
 use crate::bilaplacian::slender;
 use crate::budget::filled;
-use crate::handles::{FRAME_CHUNK, Handle, Motion};
+use crate::handles::{FRAME_CHUNK, Motion};
 use crate::method::{BindInput, Finite};
 use crate::operators::repairs;
-use crate::operators::triangulation::{Graph, Net};
 use crate::region::partition::Partition;
 use crate::sparse::cholesky::RenewableFactor;
-use crate::sparse::ordering::hubs::hub_degree;
-use crate::{Bilaplacian, BindError, HandleBases, Laplacian, Problem, SolveError};
+use crate::{Bilaplacian, BindError, HandleBases, Problem, SolveError};
 
-/// The bound linear shell.
+/// The bound bi-Laplacian.
 #[derive(Debug)]
-pub(crate) struct Plate {
-    shell: Shell,
+pub(crate) struct BilaplacianSolver {
+    system: BilaplacianSystem,
     bases: HandleBases,
     /// Each handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
     prescribed: Vec<Vec<(u32, [f64; 4])>>,
@@ -33,13 +30,10 @@ pub(crate) struct Plate {
     energy_blocks: Vec<[[f64; 4]; 4]>,
 }
 
-/// A handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
-pub(crate) type Prescribed = Vec<(u32, [f64; 4])>;
-
 /// How far off a solution may be, relative to its largest value.
 const TOLERANCE: f64 = 1e-7;
 
-impl Plate {
+impl BilaplacianSolver {
     /// Assembles, factors, checks, and solves for the bases of `handles`.
     pub fn bind(options: &Bilaplacian, input: &BindInput<'_>) -> Result<Self, BindError> {
         let &BindInput {
@@ -53,41 +47,42 @@ impl Plate {
         } = input;
         let solved = &partition.solved;
         let component_of = |vertex: u32| problem.topology.component(SurfaceVertex(vertex));
-        let refuse = |error: ShellError| of_order(options, error.into_bind_error(component_of, solved.len()));
-        slender::check(&partition.net, solved, options.operator_power())?;
+        let refuse = |error: SystemError| of_order(options, error.into_bind_error(component_of, solved.len()));
+        slender::check(&partition.triangulation, solved, options.operator_power())?;
         let elimination = input.ordering()?.elimination(solved);
         cancel.check()?;
         progress.set(0.1);
         let (operator, prescribed) = operator(problem, options, partition, handles);
         cancel.check()?;
         progress.set(0.2);
-        let mut shell = Shell::new(operator, elimination, refactorisation, partition.budget, cancel).map_err(refuse)?;
+        let mut system =
+            BilaplacianSystem::new(operator, elimination, refactorisation, partition.budget, cancel).map_err(refuse)?;
         progress.set(0.7);
-        let solved_locals = shell.operator.laplacian.locals(solved);
+        let solved_locals = system.operator.laplacian.locals(solved);
         // The constant is solved for beside the first handle: one pass over the factor for both.
         let mut columns = Vec::with_capacity(handles.len());
         match prescribed.split_first() {
             None => {
-                let mut ones = vec![[1.0]; shell.operator.field_len()];
-                shell.check(&mut ones, cancel).map_err(refuse)?;
+                let mut ones = vec![[1.0]; system.operator.field_len()];
+                system.check(&mut ones, cancel).map_err(refuse)?;
             }
             Some((first, others)) => {
-                let mut d = vec![[0.0, 0.0, 0.0, 0.0, 1.0]; shell.operator.field_len()];
+                let mut d = vec![[0.0, 0.0, 0.0, 0.0, 1.0]; system.operator.field_len()];
                 for &(place, [x, y, z, w]) in first {
                     d[place as usize] = [x, y, z, w, 1.0];
                 }
-                let error = shell.check(&mut d, cancel).map_err(refuse)?;
-                columns.push(Columns::of(&shell, &d, first, &prescribed, &solved_locals, error));
+                let error = system.check(&mut d, cancel).map_err(refuse)?;
+                columns.push(Columns::of(&system, &d, first, &prescribed, &solved_locals, error));
                 progress.set(0.85);
                 let solve = |own: &Prescribed| {
                     cancel.check()?;
-                    let mut d = vec![[0.0; 4]; shell.operator.field_len()];
+                    let mut d = vec![[0.0; 4]; system.operator.field_len()];
                     for &(place, coordinates) in own {
                         d[place as usize] = coordinates;
                     }
-                    let error = shell.solve(&mut d, cancel).error;
+                    let error = system.solve(&mut d, cancel).error;
                     cancel.check()?;
-                    Ok(Columns::of(&shell, &d, own, &prescribed, &solved_locals, error))
+                    Ok(Columns::of(&system, &d, own, &prescribed, &solved_locals, error))
                 };
                 columns.extend(others.par_iter().map(solve).collect::<Result<Vec<_>, BindError>>()?);
             }
@@ -123,7 +118,7 @@ impl Plate {
         })?;
         progress.set(1.0);
         Ok(Self {
-            shell,
+            system,
             bases,
             prescribed,
             energy_blocks,
@@ -132,7 +127,7 @@ impl Plate {
 
     /// What binding nearly the same problem can take over.
     pub fn factored(&self) -> &Arc<RenewableFactor> {
-        self.shell.factored()
+        self.system.factored()
     }
 
     /// The handles' bases.
@@ -149,7 +144,7 @@ impl Plate {
             .enumerate()
             .map(|(chunk, out)| {
                 arch.dispatch(Frame {
-                    plate: self,
+                    solver: self,
                     motions,
                     tables: &tables,
                     first: chunk * FRAME_CHUNK,
@@ -162,13 +157,13 @@ impl Plate {
 
     /// Sentences about what had to be repaired.
     pub fn warnings(&self) -> Vec<String> {
-        let mut sentences: Vec<String> = repairs(self.shell.operator.laplacian.mollified_faces())
+        let mut sentences: Vec<String> = repairs(self.system.operator.laplacian.mollified_faces())
             .into_iter()
             .collect();
-        if self.shell.shift() > 0.0 {
+        if self.system.shift() > 0.0 {
             sentences.push(format!(
                 "the shell was barely stable on this mesh: it was stiffened by {:.0e} of its diagonal and refined",
-                self.shell.shift()
+                self.system.shift()
             ));
         }
         sentences
@@ -176,7 +171,7 @@ impl Plate {
 
     /// How many numbers the factor stores.
     pub fn factor_len(&self) -> usize {
-        self.shell.factor_len()
+        self.system.factor_len()
     }
 
     /// The energy of a frame, from the motions alone: no pass over the surface.
@@ -208,18 +203,18 @@ impl Plate {
     /// without a handle are left out.
     pub fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
         let mut d = self.field(displacements);
-        let first_spring = self.shell.operator.laplacian.vertices().len();
+        let first_spring = self.system.operator.laplacian.vertices().len();
         for (own, motion) in self.prescribed.iter().zip(motions) {
             for &(place, coordinates) in own.iter().filter(|(place, _)| *place as usize >= first_spring) {
                 d[place as usize] = motion.displace(coordinates).to_array();
             }
         }
-        self.shell.operator.energy(&d)
+        self.system.operator.energy(&d)
     }
 
     /// Displacements, one a surface vertex, as a field.
     fn field(&self, displacements: &[DVec3]) -> Vec<[f64; 3]> {
-        let operator = &self.shell.operator;
+        let operator = &self.system.operator;
         let vertices = operator.laplacian.vertices();
         (0..operator.field_len())
             .map(|place| displacements[vertices[operator.local_of(place) as usize] as usize].to_array())
@@ -232,10 +227,10 @@ impl Plate {
     /// # Errors
     /// Where the solution stays too far from the operator's.
     pub fn back_substitute(&self, displacements: &mut [DVec3]) -> Result<(), SolveError> {
-        let vertices = self.shell.operator.laplacian.vertices();
+        let vertices = self.system.operator.laplacian.vertices();
         let mut d = self.field(displacements);
-        let error = self.shell.solve(&mut d, &Cancel::new()).error;
-        for &local in self.shell.columns() {
+        let error = self.system.solve(&mut d, &Cancel::new()).error;
+        for &local in self.system.columns() {
             displacements[vertices[local as usize] as usize] = DVec3::from_array(d[local as usize]);
         }
         // What is not finite is the gate's to say.
@@ -255,33 +250,9 @@ impl Plate {
 
     /// The surface vertex that a field's entry is for.
     fn vertex(&self, place: u32) -> u32 {
-        let operator = &self.shell.operator;
+        let operator = &self.system.operator;
         operator.laplacian.vertices()[operator.local_of(place as usize) as usize]
     }
-}
-
-/// Each handle's places in a field and their coordinates; soft handles' are hung on springs.
-fn prescribe(
-    operator: &mut ShellOperator,
-    problem: &Problem,
-    partition: &Partition,
-    handles: &[Handle],
-) -> Vec<Vec<(u32, [f64; 4])>> {
-    let mut prescribed = Vec::with_capacity(handles.len());
-    for (handle, &weight) in handles.iter().zip(&partition.soft) {
-        let (mut places, mut coordinates) = (Vec::new(), Vec::new());
-        for &vertex in &handle.vertices {
-            if let Some(local) = operator.laplacian.local(vertex) {
-                places.push(local as u32);
-                coordinates.push(handle.coordinates(problem.surface.positions[vertex as usize]));
-            }
-        }
-        if let Some(weight) = weight {
-            places = operator.soften(&places, weight);
-        }
-        prescribed.push(places.into_iter().zip(coordinates).collect());
-    }
-    prescribed
 }
 
 /// The refusal with a lower order as a further remedy, where there is one.
@@ -309,14 +280,14 @@ struct Columns {
 impl Columns {
     /// Of a solution whose first four functions are the handle's.
     fn of<const K: usize>(
-        shell: &Shell,
+        system: &BilaplacianSystem,
         d: &[[f64; K]],
         own: &Prescribed,
         prescribed: &[Prescribed],
         solved_locals: &[u32],
         error: f64,
     ) -> Self {
-        let operator = &shell.operator;
+        let operator = &system.operator;
         let first_spring = operator.laplacian.vertices().len();
         let potential = operator.potential(d);
         let energy = |handle: &Prescribed| {
@@ -351,7 +322,7 @@ impl Columns {
 ///
 /// A closure would be compiled apart from the vectors that it is called for.
 struct Frame<'a> {
-    plate: &'a Plate,
+    solver: &'a BilaplacianSolver,
     motions: &'a [Motion],
     tables: &'a Tables,
     first: usize,
@@ -363,65 +334,17 @@ impl WithSimd for Frame<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> bool {
-        let Self { plate, first, out, .. } = self;
+        let Self { solver, first, out, .. } = self;
         out.fill(DVec3::ZERO);
-        for (own, motion) in plate.prescribed.iter().zip(self.motions) {
-            let place = |vertex: usize| own.partition_point(|&(place, _)| (plate.vertex(place) as usize) < vertex);
+        for (own, motion) in solver.prescribed.iter().zip(self.motions) {
+            let place = |vertex: usize| own.partition_point(|&(place, _)| (solver.vertex(place) as usize) < vertex);
             for &(at, coordinates) in &own[place(first)..place(first + out.len())] {
-                out[plate.vertex(at) as usize - first] = motion.displace(coordinates);
+                out[solver.vertex(at) as usize - first] = motion.displace(coordinates);
             }
         }
-        plate.bases.evaluate(self.tables, first, out);
+        solver.bases.evaluate(self.tables, first, out);
         out.iter().all(|displacement| displacement.is_finite())
     }
-}
-
-/// The problem's operator, and each handle's places in a field and their coordinates.
-pub(crate) fn operator(
-    problem: &Problem,
-    options: &Bilaplacian,
-    partition: &Partition,
-    handles: &[Handle],
-) -> (ShellOperator, Vec<Prescribed>) {
-    let net = &partition.net;
-    let rows = bent_rows(net, &partition.solved, handles);
-    let diagonal = bounding_box(&problem.surface.positions).map_or(0.0, |bounds| bounds.diagonal());
-    let on = |stiffness: &[f64]| Laplacian::on(net, stiffness, &rows, options.discretisation, &|_, _| 1.0);
-    let is_painted = problem.stiffness.iter().any(|stiffness| *stiffness != 1.0);
-    let mut operator;
-    if is_painted && options.operator_power() > 1 {
-        operator = ShellOperator::new(on(&vec![1.0; problem.stiffness.len()]), options, diagonal);
-        match operator.power {
-            2 => {
-                let vertices = operator.laplacian.vertices().iter();
-                operator.cell_stiffness = vertices.map(|&vertex| problem.stiffness[vertex as usize]).collect();
-            }
-            _ => operator.middle = Some(on(problem.stiffness)),
-        }
-        operator.stretched = (operator.stretching > 0.0).then(|| on(problem.stiffness));
-    } else {
-        operator = ShellOperator::new(on(problem.stiffness), options, diagonal);
-    }
-    operator.hub_degree = hub_degree(net.vertex_count());
-    join(&mut operator, net, problem, options, &rows, diagonal);
-    let prescribed = prescribe(&mut operator, problem, partition, handles);
-    (operator, prescribed)
-}
-
-/// The vertices where L d can differ from zero: solved ones, handles and their neighbours, ascending. Their rows are
-/// enough at every order: further out all inner factors are zero, as they should be.
-fn bent_rows(net: &Net, solved: &[u32], handles: &[Handle]) -> Vec<u32> {
-    let mut bent = vec![false; net.vertex_count()];
-    for &vertex in solved.iter().chain(handles.iter().flat_map(|handle| &handle.vertices)) {
-        bent[vertex as usize] = true;
-        for neighbour in net.neighbours(SurfaceVertex(vertex)) {
-            bent[neighbour.index()] = true;
-        }
-    }
-    (0..bent.len())
-        .filter(|&vertex| bent[vertex])
-        .map(|vertex| vertex as u32)
-        .collect()
 }
 
 /// The lowest handle of each component in which nothing is fixed.

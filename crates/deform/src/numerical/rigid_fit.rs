@@ -1,4 +1,4 @@
-//! The rigid motion that carries points best onto displaced ones (Horn 1987).
+//! The rigid motion that carries points best onto displaced ones [Hor87].
 //!
 //! By the unit quaternion that maximises qᵀ N q, which is a proper rotation whatever the points: a mirrored or flat
 //! patch needs no care, unlike with a singular value decomposition.

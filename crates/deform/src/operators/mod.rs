@@ -1,12 +1,12 @@
 //! The cotangent Laplacian and the mixed areas of a part of the surface.
 //!
 //! Sign: (L f)_i = Σ_j w_ij (f_j − f_i) with w_ij = ½ Σ cot over the triangles on edge ij, so L is symmetric and
-//! *negative* semidefinite (survey, equations 6 and 7, without the division by area), and L M⁻¹ L is positive
+//! *negative* semidefinite ([BS08, equations 6 and 7], without the division by area), and L M⁻¹ L is positive
 //! semidefinite. It is applied by differences along edges, which gives zero on constants to the last bit, however far
 //! from the origin; a matrix with its diagonal summed up does not.
 //!
 //! Robustness: a triangle's cotangents come from its three edge lengths, *mollified* where they hardly or don't satisfy
-//! the triangle inequality (Sharp & Crane 2020, section 4.5, here triangle by triangle and relative to its own longest
+//! the triangle inequality ([SC20], section 4.5, here triangle by triangle and relative to its own longest
 //! edge, so that sound triangles keep their shape and units don't matter). Other weights are for comparison: see
 //! [`Discretisation`]. Each triangle's part of L is then negative
 //! semidefinite whatever its shape, and so is L: edges with a negative weight are no harm. Areas are bounded below by a
@@ -24,7 +24,7 @@ pub(crate) use self::mollification::repairs;
 
 use crate::Discretisation;
 use crate::operators::face_terms::{FaceTerms, Metric};
-use crate::operators::triangulation::{Graph, Net};
+use crate::operators::triangulation::{Graph, Triangulation};
 
 /// Rows or faces that one task takes: fixed, so that results don't depend on the number of threads.
 pub(crate) const CHUNK: usize = 1024;
@@ -93,26 +93,31 @@ impl Laplacian {
         rows: &[u32],
         discretisation: Discretisation,
     ) -> Self {
-        let net = Net::of_surface(surface, topology);
-        Self::on(&net, stiffness, rows, discretisation, &|_, _| 1.0)
+        let triangulation = Triangulation::of_surface(surface, topology);
+        Self::on(&triangulation, stiffness, rows, discretisation, &|_, _| 1.0)
     }
 
     /// The operator on any triangles, the weights of each, not its areas, times what `factor` gives for its corners and
     /// lengths, from 0.
     pub(crate) fn on(
-        net: &Net,
+        triangulation: &Triangulation,
         stiffness: &[f64],
         rows: &[u32],
         discretisation: Discretisation,
         factor: &(dyn Fn([SurfaceVertex; 3], [f64; 3]) -> f64 + Sync),
     ) -> Self {
-        let mut is_row = vec![false; net.vertex_count()];
+        let mut is_row = vec![false; triangulation.vertex_count()];
         rows.iter().for_each(|&row| is_row[row as usize] = true);
-        let mut local_of: Vec<u32> = (0..net.vertex_count() as u32)
+        let mut local_of: Vec<u32> = (0..triangulation.vertex_count() as u32)
             .into_par_iter()
             .with_min_len(CHUNK)
             .map(|vertex| {
-                let near = || net.neighbours(SurfaceVertex(vertex)).iter().any(|n| is_row[n.index()]);
+                let near = || {
+                    triangulation
+                        .neighbours(SurfaceVertex(vertex))
+                        .iter()
+                        .any(|n| is_row[n.index()])
+                };
                 if is_row[vertex as usize] || near() { 0 } else { ABSENT }
             })
             .collect();
@@ -125,7 +130,7 @@ impl Laplacian {
                 *local = vertices.len() as u32;
                 vertices.push(vertex as u32);
                 if is_row[vertex] {
-                    end += net.neighbours(SurfaceVertex(vertex as u32)).len() as u32;
+                    end += triangulation.neighbours(SurfaceVertex(vertex as u32)).len() as u32;
                 }
                 offsets.push(end);
             }
@@ -134,7 +139,7 @@ impl Laplacian {
         let chunks = vertices.par_chunks(CHUNK).zip(row_chunks(&mut neighbours, &offsets));
         chunks.for_each(|(vertices, list)| {
             let full = vertices.iter().filter(|&&vertex| is_row[vertex as usize]);
-            let found = full.flat_map(|&vertex| net.neighbours(SurfaceVertex(vertex)));
+            let found = full.flat_map(|&vertex| triangulation.neighbours(SurfaceVertex(vertex)));
             for (place, neighbour) in list.iter_mut().zip(found) {
                 *place = local_of[neighbour.index()];
             }
@@ -145,39 +150,45 @@ impl Laplacian {
             neighbours,
             ..Self::default()
         };
-        let metric = Metric::of(net, discretisation);
-        let share = net.share();
+        let metric = Metric::of(triangulation, discretisation);
+        let share = triangulation.share();
         let face = |face: u32| {
-            let (corners, lengths) = (net.corners(face), net.lengths(face));
+            let (corners, lengths) = (triangulation.corners(face), triangulation.lengths(face));
             let mut terms = metric.face(stiffness, corners, lengths);
             let factor = share * factor(corners, lengths);
             terms.half_cotangents = terms.half_cotangents.map(|weight| factor * weight);
             terms.areas = terms.areas.map(|area| share * area);
             terms
         };
-        operator.fill(net, &local_of, metric.common_area(), face);
+        operator.fill(triangulation, &local_of, metric.common_area(), face);
         operator
     }
 
     /// Cotangents per face first, then gathered per row: both sides of an edge add up the same numbers in the same
     /// order, so the weights are symmetric to the last bit.
-    fn fill(&mut self, net: &Net, local_of: &[u32], common_area: Option<f64>, face: impl Fn(u32) -> FaceTerms + Sync) {
+    fn fill(
+        &mut self,
+        triangulation: &Triangulation,
+        local_of: &[u32],
+        common_area: Option<f64>,
+        face: impl Fn(u32) -> FaceTerms + Sync,
+    ) {
         let full = |vertex: SurfaceVertex| match local_of[vertex.index()] {
             ABSENT => false,
             local => self.is_full(local as usize),
         };
-        let faces: Vec<u32> = (0..net.face_count() as u32)
+        let faces: Vec<u32> = (0..triangulation.face_count() as u32)
             .into_par_iter()
             .with_min_len(CHUNK)
-            .filter(|&face| net.corners(face).into_iter().any(full))
+            .filter(|&face| triangulation.corners(face).into_iter().any(full))
             .collect();
         let terms: Vec<FaceTerms> = faces
             .par_iter()
             .with_min_len(CHUNK)
             .map(|&number| face(number))
             .collect();
-        self.mollified_faces = net.mollified_faces() + terms.iter().filter(|terms| terms.mollified).count();
-        let mut slot_of_face = vec![ABSENT; net.face_count()];
+        self.mollified_faces = triangulation.mollified_faces() + terms.iter().filter(|terms| terms.mollified).count();
+        let mut slot_of_face = vec![ABSENT; triangulation.face_count()];
         for (slot, &face) in faces.iter().enumerate() {
             slot_of_face[face as usize] = slot as u32;
         }
@@ -193,9 +204,9 @@ impl Laplacian {
                 if neighbours.is_empty() {
                     continue;
                 }
-                net.for_each_face(vertex, |face| {
+                triangulation.for_each_face(vertex, |face| {
                     let terms = &terms[slot_of_face[face as usize] as usize];
-                    let corners = net.corners(face);
+                    let corners = triangulation.corners(face);
                     for own in (0..3).filter(|&corner| corners[corner] == vertex) {
                         *area += terms.areas[own];
                         // The edge from here to another corner lies opposite the third one. An intrinsic triangle may
@@ -214,7 +225,7 @@ impl Laplacian {
             }
         });
         self.weights = weights;
-        self.floor_areas(net.topology(), &mut areas);
+        self.floor_areas(triangulation.topology(), &mut areas);
         self.inverse_areas = areas
             .iter()
             .map(|&area| if area > 0.0 { area.recip() } else { 0.0 })
@@ -278,7 +289,7 @@ impl Laplacian {
         self.offsets[local] < self.offsets[local + 1]
     }
 
-    /// 1 / M_ii, the mixed Voronoi area's inverse (Meyer et al. 2003); 0 where the row is not full.
+    /// 1 / M_ii, the mixed Voronoi area's inverse [MDSB03]; 0 where the row is not full.
     pub fn inverse_areas(&self) -> &[f64] {
         &self.inverse_areas
     }

@@ -1,4 +1,4 @@
-//! Local shape matching: each prism turned the best way between its neighbours as they are (Botsch et al. 2006,
+//! Local shape matching: each prism turned the best way between its neighbours as they are ([BPGK06],
 //! section 4.2), which unfolds what Newton's method can't.
 //!
 //! Prisms of one colour share no joint and turn at once; each turn is the least of the energy over one rotation, so a

@@ -14,12 +14,12 @@ pub struct Constraints<'a> {
     ///
     /// W_i = w M_ii (k_s q + k_b qⁿ), q = π² / Σ M_ii,
     ///
-    /// n the shell's order and the sum over the handle: w times what the shell opposes to a half wave as long as the
+    /// n the bi-Laplacian's order and the sum over the handle: w times what the bi-Laplacian opposes to a half wave as long as the
     /// handle is wide, so that at 1 both give way to each other. Neither the resolution of the mesh nor its unit shows
     /// in it. The larger w, the nearer to a hard handle.
     pub soft: &'a [Option<f64>],
     /// Of each surface vertex: with which continuity Cᵏ the free surface joins it, if it is constrained, and at most
-    /// Cⁿ⁻¹, n the shell's order; from 0 to 2 (Botsch & Kobbelt 2004). 0 is a hinge, 1 keeps the tangents, 2 the
+    /// Cⁿ⁻¹, n the bi-Laplacian's order; from 0 to 2 [BK04]. 0 is a hinge, 1 keeps the tangents, 2 the
     /// curvature; a number between is a hinge with a spring that is as stiff at every resolution. Empty: 2 everywhere.
     pub continuity: &'a [f64],
     /// What single components do that nothing holds, by their number in the topology, in place of [`Problem::loose`];

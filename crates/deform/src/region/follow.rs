@@ -4,7 +4,7 @@
 //! component is tied to a *patch*, the surface around the point of the driven components that it comes nearest to,
 //! about as large as itself, and takes the rigid motion that fits the patch's displacements best. One that bends along
 //! has such a tie at several of its vertices, evenly spread, and between them the motions are blended as in an embedded
-//! deformation (Sumner et al. 2007): each place by the four nearest, with weights (1 − d/d₅)², d₅ the fifth's distance.
+//! deformation [SSP07]: each place by the four nearest, with weights (1 − d/d₅)², d₅ the fifth's distance.
 
 use std::collections::{BTreeMap, HashSet};
 

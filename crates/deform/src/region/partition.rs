@@ -1,6 +1,6 @@
 //! Who is solved for, who is prescribed, who follows: what the roles mean on this surface.
 //!
-//! Only vertices that a handle can reach are solved for. The system's graph is that of Lⁿ, n the shell's order, so
+//! Only vertices that a handle can reach are solved for. The system's graph is that of Lⁿ, n the bi-Laplacian's order, so
 //! influence travels n edges at a time, across constrained vertices too, and ends where a band of constrained vertices
 //! is n rings wide.
 //! Free vertices that it does not reach have the solution zero and stay out of the factor: binding costs what is
@@ -10,14 +10,14 @@ use pliant_mesh::SurfaceVertex;
 
 use crate::budget::bytes_of;
 use crate::method::option::joined;
-use crate::operators::triangulation::{Graph, Net};
+use crate::operators::triangulation::{Graph, Triangulation};
 use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, METHODS, Needs, Problem, Role};
 
 /// The vertices by what happens to them, all lists ascending.
 #[derive(Debug)]
 pub(crate) struct Partition<'a> {
     /// The triangles that the method's operator is made on.
-    pub net: Net<'a>,
+    pub triangulation: Triangulation<'a>,
     /// Free vertices that some handle influences, and those of soft handles.
     pub solved: Vec<u32>,
     /// The vertices of each handle.
@@ -43,7 +43,7 @@ impl<'a> Partition<'a> {
     pub fn of(problem: &Problem<'a>) -> Result<Self, BindError> {
         check(problem)?;
         let method = problem.method.implementation();
-        let net = method.net(problem);
+        let triangulation = method.triangulation(problem);
         let mut handles = vec![Vec::new(); problem.handle_count];
         let component_count = problem.topology.components().len();
         let mut held = vec![false; component_count];
@@ -88,10 +88,10 @@ impl<'a> Partition<'a> {
             .map(|handle| problem.constraints.weight(handle as u16).filter(|_| heeds_soft))
             .collect();
         warnings.extend(unheeded(problem));
-        warnings.extend(net.warning().map(str::to_owned));
+        warnings.extend(triangulation.warning().map(str::to_owned));
         Ok(Self {
-            solved: solved(problem, &net, &handles, &soft),
-            net,
+            solved: solved(problem, &triangulation, &handles, &soft),
+            triangulation,
             following: loose.into_iter().filter_map(follows).collect(),
             handles,
             soft,
@@ -170,7 +170,7 @@ fn check(problem: &Problem) -> Result<(), BindError> {
 
 /// Who is solved for, ascending: of a surface the free vertices that handles reach, by walks of which no `reach`
 /// successive vertices are constrained; of points all free ones. A soft handle's vertices count as free.
-fn solved(problem: &Problem, net: &Net, handles: &[Vec<u32>], soft: &[Option<f64>]) -> Vec<u32> {
+fn solved(problem: &Problem, triangulation: &Triangulation, handles: &[Vec<u32>], soft: &[Option<f64>]) -> Vec<u32> {
     let is_free = |vertex: usize| match problem.roles[vertex] {
         Role::Free => true,
         Role::Fixed => false,
@@ -194,7 +194,7 @@ fn solved(problem: &Problem, net: &Net, handles: &[Vec<u32>], soft: &[Option<f64
     }
     while let Some(vertex) = queue.pop() {
         let beyond = left[vertex as usize] - 1;
-        for &next in net.neighbours(SurfaceVertex(vertex)) {
+        for &next in triangulation.neighbours(SurfaceVertex(vertex)) {
             let allowed = if is_free(next.index()) { reach } else { beyond };
             if allowed > left[next.index()] {
                 left[next.index()] = allowed;

@@ -1,4 +1,5 @@
-//! Sparse symmetric systems: the order of elimination, the scaled matrix, its Cholesky factor and the solves with it.
+//! Sparse symmetric systems [Dav06]: `ordering`, `symbolic` and `numeric` factorisation, and `solve`, which is forward and
+//! backward substitution. `cholesky` is the factor that joins them.
 
 pub(crate) mod cholesky;
 pub(crate) mod factor_error;

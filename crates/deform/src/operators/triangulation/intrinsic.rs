@@ -1,7 +1,7 @@
 //! Intrinsic triangulations: triangles given by their edges' lengths alone.
 //!
 //! [`Intrinsic::delaunay`] flips edges of the surface within the surface until opposite angles add up to at most 180°
-//! (Fisher et al. 2006; Sharp & Crane 2020, section 4): no cotangent weight is negative then, and the surface is the same
+//! ([FSBS06]; [SC20], section 4): no cotangent weight is negative then, and the surface is the same
 //! to the last point. Edges at a border or with more than two triangles stay. [`Intrinsic::tufted`] first covers the
 //! surface twice, so that every edge has exactly two triangles (see `tufted`): then it is so on any triangles at all.
 //!
@@ -11,7 +11,7 @@ use pliant_mesh::SurfaceVertex;
 
 use crate::operators::mollification::lack;
 use crate::operators::triangulation::flips::{Sides, flip_to_delaunay};
-use crate::operators::triangulation::surface::SurfaceNet;
+use crate::operators::triangulation::surface::SurfaceTriangulation;
 use crate::operators::triangulation::tufted::{cover, edges};
 
 /// An intrinsic triangulation of a surface's vertices.
@@ -27,26 +27,26 @@ pub(crate) struct Intrinsic {
 
 impl Intrinsic {
     /// The surface's triangles, flipped.
-    pub fn delaunay(net: &SurfaceNet) -> Self {
-        let (lengths, mollified_faces) = mollified_lengths(net);
-        let mut sides = Sides::new(net.surface.triangles.clone(), lengths);
-        for edge in edges(net) {
+    pub fn delaunay(triangulation: &SurfaceTriangulation) -> Self {
+        let (lengths, mollified_faces) = mollified_lengths(triangulation);
+        let mut sides = Sides::new(triangulation.surface.triangles.clone(), lengths);
+        for edge in edges(triangulation) {
             if let [one, other] = edge[..] {
                 sides.join(one, other);
             }
         }
-        Self::finished(net, sides, 1.0, mollified_faces)
+        Self::finished(triangulation, sides, 1.0, mollified_faces)
     }
 
     /// The surface's tufted cover, flipped.
-    pub fn tufted(net: &SurfaceNet) -> Self {
-        let (lengths, mollified_faces) = mollified_lengths(net);
-        Self::finished(net, cover(net, &lengths), 0.5, mollified_faces)
+    pub fn tufted(triangulation: &SurfaceTriangulation) -> Self {
+        let (lengths, mollified_faces) = mollified_lengths(triangulation);
+        Self::finished(triangulation, cover(triangulation, &lengths), 0.5, mollified_faces)
     }
 
-    fn finished(net: &SurfaceNet, mut sides: Sides, share: f64, mollified_faces: usize) -> Self {
+    fn finished(triangulation: &SurfaceTriangulation, mut sides: Sides, share: f64, mollified_faces: usize) -> Self {
         let is_delaunay = flip_to_delaunay(&mut sides);
-        let count = net.surface.positions.len();
+        let count = triangulation.surface.positions.len();
         let (mut corners, mut ends) = (Vec::new(), Vec::new());
         for face in 0..sides.face_count() as u32 {
             let [a, b, c] = sides.corners(face);
@@ -111,12 +111,16 @@ impl Intrinsic {
 }
 
 /// The triangles' lengths, those of a component all longer by what its flattest triangle lacks; and how many lack some.
-fn mollified_lengths(net: &SurfaceNet) -> (Vec<[f64; 3]>, usize) {
-    let mut lengths: Vec<[f64; 3]> = (0..net.surface.triangles.len() as u32)
-        .map(|face| net.lengths(face))
+fn mollified_lengths(triangulation: &SurfaceTriangulation) -> (Vec<[f64; 3]>, usize) {
+    let mut lengths: Vec<[f64; 3]> = (0..triangulation.surface.triangles.len() as u32)
+        .map(|face| triangulation.lengths(face))
         .collect();
-    let component = |face: usize| net.topology.component(net.surface.triangles[face][0]) as usize;
-    let mut lacks = vec![0.0_f64; net.topology.components().len()];
+    let component = |face: usize| {
+        triangulation
+            .topology
+            .component(triangulation.surface.triangles[face][0]) as usize
+    };
+    let mut lacks = vec![0.0_f64; triangulation.topology.components().len()];
     let mut count = 0;
     for (face, lengths) in lengths.iter().enumerate() {
         let lack = lack(*lengths);
@@ -167,26 +171,28 @@ mod tests {
     use pliant_mesh::{Drawn, Model, shapes};
 
     use super::Intrinsic;
-    use crate::operators::triangulation::Net;
-    use crate::operators::triangulation::surface::SurfaceNet;
-    use crate::{Discretisation, Laplacian, Triangulation};
+    use crate::operators::triangulation::Triangulation;
+    use crate::operators::triangulation::surface::SurfaceTriangulation;
+    use crate::{Discretisation, Laplacian, TriangulationKind};
 
-    fn laplacian(model: &Model, triangulation: Triangulation) -> Laplacian {
-        let own = SurfaceNet {
+    fn laplacian(model: &Model, triangulation: TriangulationKind) -> Laplacian {
+        let own = SurfaceTriangulation {
             surface: &model.surface,
             topology: &model.topology,
             stretches: Vec::new(),
         };
-        let net = match triangulation {
-            Triangulation::AsIs => Net::Surface(own),
-            Triangulation::IntrinsicDelaunay => Net::Intrinsic(Box::new(Intrinsic::delaunay(&own)), &model.topology),
-            Triangulation::Tufted => Net::Intrinsic(Box::new(Intrinsic::tufted(&own)), &model.topology),
+        let triangulation = match triangulation {
+            TriangulationKind::AsIs => Triangulation::Surface(own),
+            TriangulationKind::IntrinsicDelaunay => {
+                Triangulation::Intrinsic(Box::new(Intrinsic::delaunay(&own)), &model.topology)
+            }
+            TriangulationKind::Tufted => Triangulation::Intrinsic(Box::new(Intrinsic::tufted(&own)), &model.topology),
         };
-        assert_eq!(net.warning(), None);
+        assert_eq!(triangulation.warning(), None);
         let count = model.surface.positions.len();
         let rows: Vec<u32> = (0..count as u32).collect();
         Laplacian::on(
-            &net,
+            &triangulation,
             &vec![1.0; count],
             &rows,
             Discretisation::CotangentArea,
@@ -224,7 +230,7 @@ mod tests {
     fn no_weight_of_the_tufted_cover_is_negative_on_any_class() {
         for (name, drawn) in shapes::classes() {
             for drawn in [drawn.clone(), sheared(drawn)] {
-                let least = least_weight(&laplacian(&shapes::model(drawn), Triangulation::Tufted));
+                let least = least_weight(&laplacian(&shapes::model(drawn), TriangulationKind::Tufted));
                 assert!(least > -1e-8, "{name}: {least:e}");
             }
         }
@@ -239,11 +245,11 @@ mod tests {
             shapes::uv_sphere(9, 14),
         ] {
             let model = shapes::model(sheared(drawn));
-            assert!(least_weight(&laplacian(&model, Triangulation::AsIs)) < -0.1);
-            let flipped = laplacian(&model, Triangulation::IntrinsicDelaunay);
+            assert!(least_weight(&laplacian(&model, TriangulationKind::AsIs)) < -0.1);
+            let flipped = laplacian(&model, TriangulationKind::IntrinsicDelaunay);
             assert!(least_weight(&flipped) > -1e-8);
             // A closed surface's cover is the surface twice.
-            assert!(agree(&flipped, &laplacian(&model, Triangulation::Tufted), 1e-6));
+            assert!(agree(&flipped, &laplacian(&model, TriangulationKind::Tufted), 1e-6));
         }
     }
 
@@ -251,14 +257,18 @@ mod tests {
     fn triangles_that_are_delaunay_keep_their_weights() {
         for drawn in [shapes::icosphere(3), shapes::tube(16, 24, 6.0)] {
             let model = shapes::model(drawn);
-            let own = laplacian(&model, Triangulation::AsIs);
-            assert!(agree(&own, &laplacian(&model, Triangulation::IntrinsicDelaunay), 1e-12));
+            let own = laplacian(&model, TriangulationKind::AsIs);
+            assert!(agree(
+                &own,
+                &laplacian(&model, TriangulationKind::IntrinsicDelaunay),
+                1e-12
+            ));
         }
     }
 
     #[test]
     fn flips_keep_the_surface_linear_functions_stay_harmonic_on_a_sheared_sheet() {
-        for triangulation in Triangulation::ALL {
+        for triangulation in TriangulationKind::ALL {
             let model = shapes::model(sheared(shapes::grid(12, 12)));
             let laplacian = laplacian(&model, triangulation);
             let field: Vec<[f64; 3]> = model.surface.positions.iter().map(|p| p.to_array()).collect();
@@ -266,7 +276,7 @@ mod tests {
             for v in 0..field.len() {
                 area += laplacian.inverse_areas()[v].recip();
                 // The tufted cover goes on around a border, where it is no plane.
-                let is_flat = triangulation != Triangulation::Tufted
+                let is_flat = triangulation != TriangulationKind::Tufted
                     && !model.topology.is_boundary_vertex(pliant_mesh::SurfaceVertex(v as u32));
                 if !is_flat {
                     continue;

@@ -13,14 +13,14 @@ use pliant_mesh::{Surface, SurfaceVertex, Topology};
 
 use crate::operators::triangulation::intrinsic::Intrinsic;
 use crate::operators::triangulation::principal::stretches;
-use crate::operators::triangulation::surface::SurfaceNet;
-use crate::{Bilaplacian, Problem, Triangulation};
+use crate::operators::triangulation::surface::SurfaceTriangulation;
+use crate::{Bilaplacian, Problem, TriangulationKind};
 
 /// Triangles with edge lengths over the surface's vertices.
 #[derive(Clone, Debug)]
-pub(crate) enum Net<'a> {
+pub(crate) enum Triangulation<'a> {
     /// Its own.
-    Surface(SurfaceNet<'a>),
+    Surface(SurfaceTriangulation<'a>),
     /// Others on its vertices.
     Intrinsic(Box<Intrinsic>, &'a Topology),
 }
@@ -37,43 +37,47 @@ impl Graph for Topology {
     }
 }
 
-impl Graph for Net<'_> {
+impl Graph for Triangulation<'_> {
     fn neighbours(&self, vertex: SurfaceVertex) -> &[SurfaceVertex] {
         match self {
-            Self::Surface(net) => net.topology.neighbours(vertex),
-            Self::Intrinsic(net, _) => net.neighbours(vertex),
+            Self::Surface(triangulation) => triangulation.topology.neighbours(vertex),
+            Self::Intrinsic(triangulation, _) => triangulation.neighbours(vertex),
         }
     }
 }
 
-impl<'a> Net<'a> {
+impl<'a> Triangulation<'a> {
     /// The surface's own triangles as they stand in space.
     pub fn of_surface(surface: &'a Surface, topology: &'a Topology) -> Self {
-        Self::Surface(SurfaceNet {
+        Self::Surface(SurfaceTriangulation {
             surface,
             topology,
             stretches: Vec::new(),
         })
     }
 
-    /// What the linear shell's options ask for.
+    /// What the bi-Laplacian's options ask for.
     pub fn of_options(problem: &Problem<'a>, options: &Bilaplacian) -> Self {
-        let net = SurfaceNet {
+        let triangulation = SurfaceTriangulation {
             surface: problem.surface,
             topology: problem.topology,
             stretches: stretches(problem, options.anisotropy),
         };
         match options.triangulation {
-            Triangulation::AsIs => Self::Surface(net),
-            Triangulation::IntrinsicDelaunay => Self::Intrinsic(Box::new(Intrinsic::delaunay(&net)), net.topology),
-            Triangulation::Tufted => Self::Intrinsic(Box::new(Intrinsic::tufted(&net)), net.topology),
+            TriangulationKind::AsIs => Self::Surface(triangulation),
+            TriangulationKind::IntrinsicDelaunay => {
+                Self::Intrinsic(Box::new(Intrinsic::delaunay(&triangulation)), triangulation.topology)
+            }
+            TriangulationKind::Tufted => {
+                Self::Intrinsic(Box::new(Intrinsic::tufted(&triangulation)), triangulation.topology)
+            }
         }
     }
 
     /// Of the surface: its components are those of either kind.
     pub fn topology(&self) -> &'a Topology {
         match self {
-            Self::Surface(net) => net.topology,
+            Self::Surface(triangulation) => triangulation.topology,
             Self::Intrinsic(_, topology) => topology,
         }
     }
@@ -81,40 +85,43 @@ impl<'a> Net<'a> {
     /// How many vertices there are.
     pub fn vertex_count(&self) -> usize {
         match self {
-            Self::Surface(net) => net.surface.positions.len(),
-            Self::Intrinsic(net, _) => net.vertex_count(),
+            Self::Surface(triangulation) => triangulation.surface.positions.len(),
+            Self::Intrinsic(triangulation, _) => triangulation.vertex_count(),
         }
     }
 
     /// How many triangles there are.
     pub fn face_count(&self) -> usize {
         match self {
-            Self::Surface(net) => net.surface.triangles.len(),
-            Self::Intrinsic(net, _) => net.face_count(),
+            Self::Surface(triangulation) => triangulation.surface.triangles.len(),
+            Self::Intrinsic(triangulation, _) => triangulation.face_count(),
         }
     }
 
     /// Visits the triangles around a vertex, each once, ascending.
     pub fn for_each_face(&self, vertex: SurfaceVertex, visit: impl FnMut(u32)) {
         match self {
-            Self::Surface(net) => net.topology.faces(vertex, &net.surface.triangles).for_each(visit),
-            Self::Intrinsic(net, _) => net.faces(vertex).iter().copied().for_each(visit),
+            Self::Surface(triangulation) => triangulation
+                .topology
+                .faces(vertex, &triangulation.surface.triangles)
+                .for_each(visit),
+            Self::Intrinsic(triangulation, _) => triangulation.faces(vertex).iter().copied().for_each(visit),
         }
     }
 
     /// A triangle's corners; an intrinsic one may have a vertex twice.
     pub fn corners(&self, face: u32) -> [SurfaceVertex; 3] {
         match self {
-            Self::Surface(net) => net.surface.triangles[face as usize],
-            Self::Intrinsic(net, _) => net.corners(face),
+            Self::Surface(triangulation) => triangulation.surface.triangles[face as usize],
+            Self::Intrinsic(triangulation, _) => triangulation.corners(face),
         }
     }
 
     /// A triangle's edge lengths, entry `i` opposite corner `i`.
     pub fn lengths(&self, face: u32) -> [f64; 3] {
         match self {
-            Self::Surface(net) => net.lengths(face),
-            Self::Intrinsic(net, _) => net.lengths(face),
+            Self::Surface(triangulation) => triangulation.lengths(face),
+            Self::Intrinsic(triangulation, _) => triangulation.lengths(face),
         }
     }
 
@@ -122,7 +129,7 @@ impl<'a> Net<'a> {
     pub fn share(&self) -> f64 {
         match self {
             Self::Surface(_) => 1.0,
-            Self::Intrinsic(net, _) => net.share(),
+            Self::Intrinsic(triangulation, _) => triangulation.share(),
         }
     }
 
@@ -130,14 +137,14 @@ impl<'a> Net<'a> {
     pub fn mollified_faces(&self) -> usize {
         match self {
             Self::Surface(_) => 0,
-            Self::Intrinsic(net, _) => net.mollified_faces(),
+            Self::Intrinsic(triangulation, _) => triangulation.mollified_faces(),
         }
     }
 
     /// Sentences for a person about what had to be left.
     pub fn warning(&self) -> Option<&'static str> {
         match self {
-            Self::Intrinsic(net, _) if !net.is_delaunay() => {
+            Self::Intrinsic(triangulation, _) if !triangulation.is_delaunay() => {
                 Some("the intrinsic triangulation could not be made Delaunay throughout: some weights stay negative")
             }
             _ => None,

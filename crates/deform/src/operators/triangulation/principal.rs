@@ -1,8 +1,8 @@
 //! Anisotropy: the surface is measured as if it were stretched along its principal axes to be about as wide as long
-//! (Botsch & Kobbelt 2004; survey, section 4: "the model is anisotropically scaled along its principal axes to have
+//! ([BK04]; [BS08, section 4]: "the model is anisotropically scaled along its principal axes to have
 //! uniform variation").
 //!
-//! A shell's deformation fades over a length like its width, so that a long bar whose end is turned twists near that end
+//! A bi-Laplacian's deformation fades over a length like its width, so that a long bar whose end is turned twists near that end
 //! alone. The stretched bar is as wide as long, and its twist spreads evenly over all of it.
 
 use glam::{DMat3, DVec3};

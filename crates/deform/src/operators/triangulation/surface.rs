@@ -1,18 +1,18 @@
-//! The surface's own triangles as a net, measured in space or along stretched axes.
+//! The surface's own triangles as a triangulation, measured in space or along stretched axes.
 
 use glam::{DMat3, DVec3};
 use pliant_mesh::{Surface, Topology, edge_lengths};
 
 /// The surface's own triangles.
 #[derive(Clone, Debug)]
-pub(crate) struct SurfaceNet<'a> {
+pub(crate) struct SurfaceTriangulation<'a> {
     pub surface: &'a Surface,
     pub topology: &'a Topology,
     /// Of each component, the map of its edges before they are measured; empty: none.
     pub stretches: Vec<DMat3>,
 }
 
-impl SurfaceNet<'_> {
+impl SurfaceTriangulation<'_> {
     /// A triangle's edge lengths, entry `i` opposite corner `i`.
     pub fn lengths(&self, face: u32) -> [f64; 3] {
         let corners = self.surface.triangles[face as usize];

@@ -1,4 +1,4 @@
-//! The tufted cover (Sharp & Crane 2020, section 3): every triangle twice, once for each of its faces, glued so that every
+//! The tufted cover [SC20, section 3]: every triangle twice, once for each of its faces, glued so that every
 //! edge has exactly two.
 //!
 //! Around an edge the triangles stand like the pages of a book; each one's back is glued to the next one's front. A
@@ -10,12 +10,12 @@ use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
 
 use crate::operators::triangulation::flips::Sides;
-use crate::operators::triangulation::surface::SurfaceNet;
+use crate::operators::triangulation::surface::SurfaceTriangulation;
 
 /// The sides of triangles, numbered 3 f + i for the one opposite corner i of triangle f, by the edge that they lie on.
-pub(crate) fn edges(net: &SurfaceNet) -> impl Iterator<Item = Vec<u32>> + use<> {
-    let mut keyed: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * net.surface.triangles.len());
-    for (face, corners) in net.surface.triangles.iter().enumerate() {
+pub(crate) fn edges(triangulation: &SurfaceTriangulation) -> impl Iterator<Item = Vec<u32>> + use<> {
+    let mut keyed: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangulation.surface.triangles.len());
+    for (face, corners) in triangulation.surface.triangles.iter().enumerate() {
         for i in 0..3 {
             let (from, to) = (corners[(i + 1) % 3].0, corners[(i + 2) % 3].0);
             keyed.push(([from.min(to), from.max(to)], (3 * face + i) as u32));
@@ -35,8 +35,8 @@ pub(crate) fn edges(net: &SurfaceNet) -> impl Iterator<Item = Vec<u32>> + use<> 
 }
 
 /// The cover with the surface triangles' lengths: triangle f's front is f, its back f plus their count.
-pub(crate) fn cover(net: &SurfaceNet, lengths: &[[f64; 3]]) -> Sides {
-    let fronts = &net.surface.triangles;
+pub(crate) fn cover(triangulation: &SurfaceTriangulation, lengths: &[[f64; 3]]) -> Sides {
+    let fronts = &triangulation.surface.triangles;
     let backs = fronts.iter().map(|[a, b, c]| [*a, *c, *b]);
     let corners: Vec<[SurfaceVertex; 3]> = fronts.iter().copied().chain(backs).collect();
     let turned = lengths.iter().map(|[a, b, c]| [*a, *c, *b]);
@@ -44,9 +44,9 @@ pub(crate) fn cover(net: &SurfaceNet, lengths: &[[f64; 3]]) -> Sides {
     let first_back = 3 * fronts.len() as u32;
     // A side on the back lies opposite the same corner: 1 and 2 have changed places.
     let back = |side: u32| first_back + side - side % 3 + (3 - side % 3) % 3;
-    for mut edge in edges(net) {
+    for mut edge in edges(triangulation) {
         if edge.len() > 2 {
-            sort_around(net, &mut edge);
+            sort_around(triangulation, &mut edge);
         }
         // Of a triangle's two copies, the one that runs along the edge from its lower vertex, and the other.
         let copies = |side: u32| {
@@ -67,11 +67,11 @@ pub(crate) fn cover(net: &SurfaceNet, lengths: &[[f64; 3]]) -> Sides {
 }
 
 /// Sorts the sides on an edge by the angles at which their triangles stand around it.
-fn sort_around(net: &SurfaceNet, edge: &mut [u32]) {
-    let position = |vertex: SurfaceVertex| net.surface.positions[vertex.index()];
+fn sort_around(triangulation: &SurfaceTriangulation, edge: &mut [u32]) {
+    let position = |vertex: SurfaceVertex| triangulation.surface.positions[vertex.index()];
     let corners = |side: u32| {
         let (face, i) = (side as usize / 3, side as usize % 3);
-        let corners = net.surface.triangles[face];
+        let corners = triangulation.surface.triangles[face];
         (corners[i], corners[(i + 1) % 3], corners[(i + 2) % 3])
     };
     let (_, a, b) = corners(edge[0]);

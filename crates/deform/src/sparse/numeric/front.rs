@@ -1,4 +1,4 @@
-//! The dense part of one block: its columns factored, and what they take from the rows below.
+//! The dense part of one supernode: its columns factored, and what they take from the rows below.
 //!
 //! Strips are finished from the left: all columns before a strip's next eight are multiplied in one go, in registers.
 //! Large fronts are cut into runs of strips, by size alone, that are worked on beside each other.
@@ -16,7 +16,7 @@ const BLOCK: usize = 8;
 /// Multiplications that are worth a task of their own.
 const TASK: usize = 1 << 20;
 
-/// Factors a block's `panel`, which has this shape; a pivot that fails is named by its place.
+/// Factors a supernode's `panel`, which has this shape; a pivot that fails is named by its place.
 pub(crate) fn factor_panel(shape: Shape, panel: &mut [Line], cancel: &Cancel) -> Result<(), FactorError> {
     let arch = Arch::new();
     for first in (0..shape.own()).step_by(BLOCK) {
@@ -114,8 +114,8 @@ impl WithSimd for Rows<'_> {
     }
 }
 
-/// Writes the lower triangle of L Lᵀ of the rows below a factored panel into `square`.
-pub(crate) fn square(shape: Shape, panel: &[Line], square: &mut [Line], cancel: &Cancel) {
+/// Writes the contribution (update) matrix of a factored panel into `square`: the lower triangle of L Lᵀ of the rows below.
+pub(crate) fn update_matrix(shape: Shape, panel: &[Line], square: &mut [Line], cancel: &Cancel) {
     let below = &panel[shape.start(shape.own())..];
     let strips = 0..shape.strips() - shape.own();
     square_rows(Arch::new(), below, shape.width, strips, square, cancel);

@@ -29,7 +29,7 @@ pub(crate) fn triangle(strip: usize) -> usize {
     LANES / 2 * strip * (strip + 1)
 }
 
-/// The columns of a block and the rows below them.
+/// The columns of a supernode and the rows below them.
 ///
 /// Its own rows come first, a triangle of strips; then the rows of its pattern in strips of all its columns. The last
 /// strip of either is filled up with rows of zeros.
@@ -75,7 +75,7 @@ impl Shape {
         self.start(self.strips())
     }
 
-    /// The strip's start and the lane of a place: the block's own rows come first, then the rows of its pattern.
+    /// The strip's start and the lane of a place: the supernode's own rows come first, then the rows of its pattern.
     #[inline(always)]
     pub fn row(self, place: usize) -> (usize, usize) {
         if place < self.width {

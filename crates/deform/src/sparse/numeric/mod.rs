@@ -1,8 +1,8 @@
-//! The numeric factorisation, block by block from the leaves (Duff & Reid 1983).
+//! The numeric factorisation, supernode by supernode from the leaves [DR83].
 //!
-//! A block gathers its columns of the matrix and what its children left, is factored densely (`front`), and leaves to
-//! its parent what it takes from the rows below. The parts that `assembly_tree` cuts need nothing from each other but what
-//! children leave, so they run beside each other; large fronts are worked on by several threads inside.
+//! A supernode assembles its columns of the matrix and the contributions of its children (extend-add), is factored
+//! densely (`front`), and passes its own contribution to its parent. The parts that `assembly_tree` cuts need nothing from
+//! each other but the children's contributions, so they run in parallel; large fronts are worked on by several threads.
 
 mod front;
 pub(crate) mod line;
@@ -16,7 +16,7 @@ use pliant_mesh::Cancel;
 use crate::budget::reserved;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
-use crate::sparse::numeric::front::{factor_panel, square};
+use crate::sparse::numeric::front::{factor_panel, update_matrix};
 use crate::sparse::numeric::line::{LANES, Line, Shape, strips, triangle};
 use crate::sparse::symbolic::Symbolic;
 use crate::sparse::symbolic::assembly_tree::AssemblyTree;
@@ -24,17 +24,19 @@ use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 /// A part's numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct Numbers {
-    /// The panels of its blocks, one after the other.
+    /// The panels of its supernodes, one after the other.
     pub panels: Arc<Vec<Line>>,
-    /// What its last block leaves to the part above, where that is kept.
-    left: Option<Arc<Vec<Line>>>,
+    /// The contribution matrix of its last supernode, which the part above adds in, where it is kept.
+    contribution: Option<Arc<Vec<Line>>>,
 }
 
 impl Numbers {
-    /// How many numbers are kept of what it leaves.
+    /// How many numbers are kept of its contribution.
     #[cfg(test)]
     pub fn kept(&self) -> usize {
-        self.left.as_ref().map_or(0, |left| LANES * left.len())
+        self.contribution
+            .as_ref()
+            .map_or(0, |contribution| LANES * contribution.len())
     }
 }
 
@@ -46,14 +48,14 @@ struct Job<'a> {
     assembly_tree: &'a AssemblyTree,
     cancel: &'a Cancel,
     done: Vec<OnceLock<Arc<Vec<Line>>>>,
-    left: Vec<Mutex<Option<Arc<Vec<Line>>>>>,
-    /// Of which parts what they leave stays for a factorisation of nearly the same matrix; none if empty.
+    contributions: Vec<Mutex<Option<Arc<Vec<Line>>>>>,
+    /// Which parts' contributions are kept for a factorisation of nearly the same matrix; none if empty.
     kept: &'a [bool],
     rooms: Mutex<Vec<Room>>,
 }
 
-/// Factors the matrix, with `shift` added to its unit diagonal; takes over the parts that are `known`, one entry a part,
-/// and keeps what the parts in `kept` leave.
+/// Factors the matrix with `shift` added to its unit diagonal. Takes over the parts that are `known`, one entry a part,
+/// and keeps the contributions of the parts in `kept`.
 pub(crate) fn factor(
     matrix: &ScaledMatrix,
     shift: f64,
@@ -64,12 +66,12 @@ pub(crate) fn factor(
     cancel: &Cancel,
 ) -> Result<Vec<Numbers>, FactorError> {
     let count = assembly_tree.parts.len();
-    // What a part leaves is needed where the part above is not taken over.
+    // A part's contribution is needed where the part above is not taken over.
     let mut is_known = vec![false; count];
     for part in (0..count).rev() {
         let above = assembly_tree.parts[part].parent;
         let own = known.get(part).and_then(Option::as_ref);
-        is_known[part] = own.is_some_and(|own| own.left.is_some() || above.is_none_or(|above| is_known[above]));
+        is_known[part] = own.is_some_and(|own| own.contribution.is_some() || above.is_none_or(|above| is_known[above]));
     }
     let known = |part: usize| is_known[part].then(|| known[part].as_ref()).flatten();
     let job = Job {
@@ -81,8 +83,8 @@ pub(crate) fn factor(
         done: (0..count)
             .map(|part| known(part).map_or_else(OnceLock::new, |numbers| OnceLock::from(Arc::clone(&numbers.panels))))
             .collect(),
-        left: (0..count)
-            .map(|part| Mutex::new(known(part).and_then(|numbers| numbers.left.clone())))
+        contributions: (0..count)
+            .map(|part| Mutex::new(known(part).and_then(|numbers| numbers.contribution.clone())))
             .collect(),
         kept,
         rooms: Mutex::default(),
@@ -107,46 +109,46 @@ pub(crate) fn factor(
         return Err(error);
     }
     let is_kept = |part: usize| kept.get(part).copied().unwrap_or(false);
-    let numbers = job
-        .done
-        .into_iter()
-        .zip(job.left)
-        .enumerate()
-        .filter_map(|(part, (panels, left))| {
-            let left = left.into_inner().unwrap_or_else(PoisonError::into_inner);
-            let left = left.filter(|_| is_kept(part));
-            Some(Numbers {
-                panels: panels.into_inner()?,
-                left,
-            })
-        });
+    let numbers =
+        job.done
+            .into_iter()
+            .zip(job.contributions)
+            .enumerate()
+            .filter_map(|(part, (panels, contribution))| {
+                let contribution = contribution.into_inner().unwrap_or_else(PoisonError::into_inner);
+                let contribution = contribution.filter(|_| is_kept(part));
+                Some(Numbers {
+                    panels: panels.into_inner()?,
+                    contribution,
+                })
+            });
     Ok(numbers.collect())
 }
 
-/// Room for one block after the other.
+/// Room for one supernode after the other.
 #[derive(Default)]
 struct Room {
-    /// A row's place in the present block.
+    /// A row's place in the present supernode.
     place: Vec<u32>,
-    /// What blocks of this part left, each with its block: the last ones are the next block's.
+    /// Contributions of supernodes of this part, each with its supernode: the last ones are the next supernode's.
     pending: Vec<(usize, Vec<Line>)>,
     spare: Vec<Vec<Line>>,
     places: Vec<u32>,
 }
 
 impl Room {
-    /// So many lines of whatever, in the least of the spare squares that holds them. Room is asked for in powers of two,
-    /// so that it is asked for seldom.
+    /// So many lines of whatever, in the smallest spare matrix that holds them. Room is allocated in powers of two, so
+    /// that it is allocated seldom.
     fn take(&mut self, lines: usize) -> Result<Vec<Line>, FactorError> {
         let fitting = (0..self.spare.len())
             .filter(|&spare| self.spare[spare].capacity() >= lines)
             .min_by_key(|&spare| self.spare[spare].capacity());
-        let mut square = fitting.map_or_else(Vec::new, |spare| self.spare.swap_remove(spare));
-        if square.capacity() < lines {
-            square.try_reserve_exact(lines.next_power_of_two())?;
+        let mut update = fitting.map_or_else(Vec::new, |spare| self.spare.swap_remove(spare));
+        if update.capacity() < lines {
+            update.try_reserve_exact(lines.next_power_of_two())?;
         }
-        square.resize(lines, Line::ZERO);
-        Ok(square)
+        update.resize(lines, Line::ZERO);
+        Ok(update)
     }
 }
 
@@ -158,43 +160,54 @@ impl Job<'_> {
     fn part(&self, part: usize) -> Result<(), FactorError> {
         let children = &self.assembly_tree.parts[part].children;
         if children.iter().any(|&child| self.done[child].get().is_none()) {
-            // Whatever befell it has been said.
+            // Its error has been reported.
             return Ok(());
         }
         let given: Vec<(usize, Option<Arc<Vec<Line>>>)> = children
             .iter()
             .map(|&child| {
-                let mut left = self.left[child].lock().unwrap_or_else(PoisonError::into_inner);
-                let given = if self.keeps(child) { left.clone() } else { left.take() };
-                (self.assembly_tree.parts[child].blocks.end - 1, given)
+                let mut contribution = self.contributions[child].lock().unwrap_or_else(PoisonError::into_inner);
+                let given = if self.keeps(child) {
+                    contribution.clone()
+                } else {
+                    contribution.take()
+                };
+                (self.assembly_tree.parts[child].supernodes.end - 1, given)
             })
             .collect();
         let given: Vec<(usize, &[Line])> = given
             .iter()
-            .map(|(root, left)| (*root, left.as_ref().map_or(&[][..], |left| left.as_slice())))
+            .map(|(root, contribution)| {
+                (
+                    *root,
+                    contribution
+                        .as_ref()
+                        .map_or(&[][..], |contribution| contribution.as_slice()),
+                )
+            })
             .collect();
         let pooled = self.rooms.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut room = pooled.unwrap_or_default();
         room.place.resize(self.matrix.scale.len(), 0);
-        let blocks = self.assembly_tree.parts[part].blocks.clone();
-        let lines = blocks.clone().map(|s| self.symbolic.shape(s).lines()).sum();
+        let supernodes = self.assembly_tree.parts[part].supernodes.clone();
+        let lines = supernodes.clone().map(|s| self.symbolic.shape(s).lines()).sum();
         let mut panels = reserved(lines)?;
-        for s in blocks.clone() {
-            // A part with children is one block.
-            let left = self.block(s, &mut panels, &given, &mut room)?;
-            if s + 1 < blocks.end {
-                room.pending.push((s, left));
-            } else if !left.is_empty() {
-                // Rooms are larger than what stands in them.
-                let left = if self.keeps(part) {
-                    let mut exact = reserved(left.len())?;
-                    exact.extend_from_slice(&left);
-                    room.spare.push(left);
+        for s in supernodes.clone() {
+            // A part with children is one supernode.
+            let contribution = self.supernode(s, &mut panels, &given, &mut room)?;
+            if s + 1 < supernodes.end {
+                room.pending.push((s, contribution));
+            } else if !contribution.is_empty() {
+                // The allocation is larger than what it holds.
+                let contribution = if self.keeps(part) {
+                    let mut exact = reserved(contribution.len())?;
+                    exact.extend_from_slice(&contribution);
+                    room.spare.push(contribution);
                     exact
                 } else {
-                    left
+                    contribution
                 };
-                *self.left[part].lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(left));
+                *self.contributions[part].lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(contribution));
             }
         }
         let _ = self.done[part].set(Arc::new(panels));
@@ -202,8 +215,8 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Appends one block's panel, given what its children left here and in the room; returns what it leaves.
-    fn block(
+    /// Appends one supernode's panel, given its children's contributions here and in the room; returns its own.
+    fn supernode(
         &self,
         s: usize,
         panels: &mut Vec<Line>,
@@ -249,27 +262,27 @@ impl Job<'_> {
         let all = given
             .iter()
             .copied()
-            .chain(children.iter().map(|(child, square)| (*child, square.as_slice())));
-        for (child, square) in all.clone() {
+            .chain(children.iter().map(|(child, update)| (*child, update.as_slice())));
+        for (child, update) in all.clone() {
             places_of(self.symbolic.pattern(child), &room.place, &mut room.places);
-            add_to_panel(&room.places, square, shape, panel);
+            extend_add_to_panel(&room.places, update, shape, panel);
         }
         factor_panel(shape, panel, self.cancel).map_err(|error| match error {
             FactorError::Pivot(place) => FactorError::Pivot(own.start + place),
             other => other,
         })?;
-        let mut left = if shape.below > 0 {
+        let mut contribution = if shape.below > 0 {
             room.take(triangle(strips(shape.below)))?
         } else {
             Vec::new()
         };
-        square(shape, panel, &mut left, self.cancel);
-        for (child, square) in all {
+        update_matrix(shape, panel, &mut contribution, self.cancel);
+        for (child, update) in all {
             places_of(self.symbolic.pattern(child), &room.place, &mut room.places);
-            add_to_square(&room.places, square, shape.width, &mut left);
+            extend_add_to_contribution(&room.places, update, shape.width, &mut contribution);
         }
-        room.spare.extend(children.into_iter().map(|(_, square)| square));
-        Ok(left)
+        room.spare.extend(children.into_iter().map(|(_, update)| update));
+        Ok(contribution)
     }
 }
 
@@ -278,12 +291,12 @@ fn places_of(rows: &[u32], place: &[u32], places: &mut Vec<u32>) {
     places.extend(rows.iter().map(|&row| place[row as usize]));
 }
 
-/// Subtracts the columns of a child's square that are the block's own, from its panel. The child's rows have the
-/// ascending `places` here.
-fn add_to_panel(places: &[u32], square: &[Line], shape: Shape, panel: &mut [Line]) {
+/// Extend-add of the columns of a child's contribution that are the supernode's own: subtracts them from its panel. The
+/// child's rows have the ascending `places` here.
+fn extend_add_to_panel(places: &[u32], update: &[Line], shape: Shape, panel: &mut [Line]) {
     let split = places.partition_point(|&place| (place as usize) < shape.width);
     for (strip, rows) in places.chunks(LANES).enumerate() {
-        let lines = &square[triangle(strip)..triangle(strip + 1)];
+        let lines = &update[triangle(strip)..triangle(strip + 1)];
         let mut targets = [(0, 0); LANES];
         for (target, &place) in targets.iter_mut().zip(rows) {
             *target = shape.row(place as usize);
@@ -295,11 +308,11 @@ fn add_to_panel(places: &[u32], square: &[Line], shape: Shape, panel: &mut [Line
     }
 }
 
-/// Adds the other columns of a child's square to the square that the block leaves.
-fn add_to_square(places: &[u32], square: &[Line], width: usize, left: &mut [Line]) {
+/// Extend-add of the other columns of a child's contribution to the supernode's own contribution.
+fn extend_add_to_contribution(places: &[u32], update: &[Line], width: usize, contribution: &mut [Line]) {
     let split = places.partition_point(|&place| (place as usize) < width);
     for (strip, rows) in places.chunks(LANES).enumerate().skip(split / LANES) {
-        let lines = &square[triangle(strip)..triangle(strip + 1)];
+        let lines = &update[triangle(strip)..triangle(strip + 1)];
         let mut targets = [(0, 0); LANES];
         for (target, &place) in targets.iter_mut().zip(rows) {
             let row = (place as usize).wrapping_sub(width);
@@ -309,7 +322,7 @@ fn add_to_square(places: &[u32], square: &[Line], width: usize, left: &mut [Line
         }
         scatter(lines, split, places, strip, rows.len(), |lane, place, value| {
             let (start, target) = targets[lane];
-            left[start + place - width].0[target & (LANES - 1)] += value;
+            contribution[start + place - width].0[target & (LANES - 1)] += value;
         });
     }
 }

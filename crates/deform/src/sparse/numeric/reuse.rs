@@ -3,7 +3,7 @@
 //! A part's numbers follow from its columns of the matrix and from what its children leave, and from nothing else. So
 //! where all of these are the same to the bit, so are its numbers, and they are taken over: after a stroke that changes
 //! which vertices are free, what is factored again is the parts around the stroke and those on the way from there to the
-//! roots (after Herholz & Alexa 2018, "Factor Once", with blocks in place of columns).
+//! roots (after [HA18], "Factor Once", with supernodes in place of columns).
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::sparse::Elimination;
 use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::numeric::line::LANES;
 use crate::sparse::symbolic::assembly_tree::AssemblyTree;
-use crate::sparse::symbolic::{Symbolic, lines_left};
+use crate::sparse::symbolic::{Symbolic, contribution_lines};
 
 /// What is kept for the next factor takes at most so many times the factor's own memory. On a mesh's own triangles all
 /// of it takes about as much as the factor; where the ordering fits badly, as with flipped edges at order 3, it would
@@ -27,12 +27,12 @@ pub(crate) fn worth_keeping(symbolic: &Symbolic, assembly_tree: &AssemblyTree) -
     // What is spared is the whole subtree's work.
     let mut work: Vec<f64> = vec![0.0; count];
     for (part, own) in assembly_tree.parts.iter().enumerate() {
-        work[part] += own.blocks.clone().map(|s| symbolic.work(s)).sum::<f64>();
+        work[part] += own.supernodes.clone().map(|s| symbolic.work(s)).sum::<f64>();
         if let Some(above) = own.parent {
             work[above] += work[part];
         }
     }
-    let lines = |part: usize| lines_left(symbolic.pattern(assembly_tree.parts[part].blocks.end - 1).len());
+    let lines = |part: usize| contribution_lines(symbolic.pattern(assembly_tree.parts[part].supernodes.end - 1).len());
     let mut by_worth: Vec<usize> = (0..count).filter(|&part| lines(part) > 0).collect();
     let worth = |part: usize| work[part] / lines(part) as f64;
     by_worth.sort_by(|&a, &b| worth(b).total_cmp(&worth(a)).then(a.cmp(&b)));
@@ -84,20 +84,20 @@ pub(crate) fn equal_parts(new: Named, old: Named) -> Vec<Option<usize>> {
     equal
 }
 
-/// Whether two parts have the same columns of the matrix, in the same blocks over the same rows.
+/// Whether two parts have the same columns of the matrix, in the same supernodes over the same rows.
 fn equals(new: Named, new_part: usize, old: Named, old_part: usize) -> bool {
     let (new_part, old_part) = (&new.assembly_tree.parts[new_part], &old.assembly_tree.parts[old_part]);
-    let new_shapes = new_part.blocks.clone().map(|s| new.symbolic.shape(s));
+    let new_shapes = new_part.supernodes.clone().map(|s| new.symbolic.shape(s));
     if new_part.columns.len() != old_part.columns.len()
         || new.elimination.order[new_part.columns.clone()] != old.elimination.order[old_part.columns.clone()]
-        || !new_shapes.eq(old_part.blocks.clone().map(|s| old.symbolic.shape(s)))
+        || !new_shapes.eq(old_part.supernodes.clone().map(|s| old.symbolic.shape(s)))
     {
         return false;
     }
     let new_name = |row: &u32| new.elimination.order[*row as usize];
     let old_name = |row: &u32| old.elimination.order[*row as usize];
-    let new_below = new.symbolic.pattern(new_part.blocks.end - 1).iter().map(new_name);
-    if !new_below.eq(old.symbolic.pattern(old_part.blocks.end - 1).iter().map(old_name)) {
+    let new_below = new.symbolic.pattern(new_part.supernodes.end - 1).iter().map(new_name);
+    if !new_below.eq(old.symbolic.pattern(old_part.supernodes.end - 1).iter().map(old_name)) {
         return false;
     }
     new_part

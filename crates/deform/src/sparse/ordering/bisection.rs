@@ -1,8 +1,8 @@
 //! Cutting a graph in two: few edges across, halves alike.
 //!
-//! Multilevel (Karypis & Kumar 1998): vertices are joined in pairs along their heaviest edges until few are left, those
+//! Multilevel [KK98]: vertices are joined in pairs along their heaviest edges until few are left, those
 //! are divided by growing one half from several seeds, and on the way back the cut is improved at every level by moving
-//! vertices across (Fiduccia & Mattheyses 1982). Planes and level sets of distances in place of this, at the finest
+//! vertices across [FM82]. Planes and level sets of distances in place of this, at the finest
 //! level alone, left twice the work to the factorisation.
 
 use std::cmp::Reverse;

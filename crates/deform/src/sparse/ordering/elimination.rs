@@ -1,6 +1,6 @@
-//! An order of elimination, in blocks.
+//! An order of elimination, with its supernodes.
 
-/// Vertices in the order of elimination, and where each block of them ends that is eliminated at once.
+/// Vertices in the order of elimination, and where each supernode, whose vertices are eliminated together, ends.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub(crate) struct Elimination {
     pub order: Vec<u32>,
@@ -8,7 +8,7 @@ pub(crate) struct Elimination {
 }
 
 impl Elimination {
-    /// The same order with the vertices for which `is_last` holds as a block of their own behind all others.
+    /// The same order with the vertices for which `is_last` holds as a supernode of their own behind all others.
     pub fn with_last(self, is_last: impl Fn(u32) -> bool) -> Self {
         let (mut first, mut last) = (Self::default(), Vec::new());
         let mut start = 0;

@@ -1,6 +1,6 @@
 //! Hubs: vertices that very many others neighbour, such as the tip of a fan of thousands of triangles.
 //!
-//! A quasi-dense row tells an ordering nothing, and costs it the square of its length at every look (Davis 2006,
+//! A quasi-dense row tells an ordering nothing, and costs it the square of its length at every look ([Dav06],
 //! section 7.1). So hubs are taken out of the graph first, and eliminated last.
 
 use pliant_mesh::SurfaceVertex;

@@ -2,8 +2,8 @@
 //!
 //! The graph is Lᵏ's on the part's vertices and on those around it that are eliminated later (its *halo*, Pellegrini et
 //! al. 2000): they count for the degrees, which spares the fill that a part ordered by itself has along its rim.
-//! Vertices with one pattern are eliminated at once, and blocks that hardly differ are joined, so what comes out is
-//! blocks that are worth a dense factorisation.
+//! Vertices with one pattern are eliminated at once, and supernodes that hardly differ are amalgamated, so what comes out is
+//! supernodes that are worth a dense factorisation.
 
 use crate::operators::triangulation::Graph;
 use crate::sparse::ordering::elimination::Elimination;
@@ -12,7 +12,7 @@ use crate::sparse::ordering::labels::Labelled;
 /// More vertices than this are taken as they stand: something is not like a surface there.
 const MOST: usize = 1024;
 
-/// Columns of a block where nothing is known about how they hang together.
+/// Columns of a supernode where nothing is known about how they hang together.
 const PLAIN: usize = 32;
 
 /// Orders the vertices with the label `id` for the graph of the `power`-th power of the Laplacian.
@@ -20,7 +20,7 @@ pub(crate) fn order<G: Graph>(parts: &Labelled<G>, power: u32, vertices: &[u32],
     let plain = || Elimination {
         order: vertices.to_vec(),
         ends: (0..vertices.len().div_ceil(PLAIN))
-            .map(|block| (PLAIN * (block + 1)).min(vertices.len()) as u32)
+            .map(|supernode| (PLAIN * (supernode + 1)).min(vertices.len()) as u32)
             .collect(),
     };
     if vertices.len() > MOST {
@@ -31,10 +31,12 @@ pub(crate) fn order<G: Graph>(parts: &Labelled<G>, power: u32, vertices: &[u32],
         return plain();
     }
     let graph = Rows::of(parts, power, vertices, &near, id);
-    let blocks = join(graph.eliminate());
+    let supernodes = amalgamate(graph.eliminate());
     let mut piece = Elimination::default();
-    for block in blocks {
-        piece.order.extend(block.columns.iter().map(|&column| vertices[column]));
+    for supernode in supernodes {
+        piece
+            .order
+            .extend(supernode.columns.iter().map(|&column| vertices[column]));
         piece.ends.push(piece.order.len() as u32);
     }
     piece
@@ -63,10 +65,10 @@ struct Rows {
 
 /// Columns that are eliminated at once, and how many rows they have below.
 #[derive(Debug)]
-struct Block {
+struct Supernode {
     columns: Vec<usize>,
     below: usize,
-    /// The block that holds the first of these rows, where that is in the part.
+    /// The supernode that holds the first of these rows, where that is in the part.
     parent: Option<usize>,
 }
 
@@ -115,11 +117,11 @@ impl Rows {
     }
 
     /// Eliminates a vertex of least degree, and all with the same pattern, until none is left.
-    fn eliminate(mut self) -> Vec<Block> {
+    fn eliminate(mut self) -> Vec<Supernode> {
         let words = self.words;
         let mut degree: Vec<u32> = (0..self.count).map(|v| ones(self.row(v))).collect();
-        let mut block_of = vec![usize::MAX; self.count];
-        let mut blocks: Vec<Block> = Vec::new();
+        let mut supernode_of = vec![usize::MAX; self.count];
+        let mut supernodes: Vec<Supernode> = Vec::new();
         let mut patterns: Vec<Vec<u64>> = Vec::new();
         let mut left: Vec<usize> = (0..self.count).collect();
         while let Some(&next) = left.iter().min_by_key(|&&v| degree[v]) {
@@ -137,7 +139,7 @@ impl Rows {
             }
             for &v in &columns {
                 pattern[v / 64] &= !(1 << (v % 64));
-                block_of[v] = blocks.len();
+                supernode_of[v] = supernodes.len();
             }
             for u in members(&pattern, self.count) {
                 let row = &mut self.rows[u * words..(u + 1) * words];
@@ -151,17 +153,17 @@ impl Rows {
                 degree[u] = ones(row);
             }
             left.retain(|v| !columns.contains(v));
-            blocks.push(Block {
+            supernodes.push(Supernode {
                 columns,
                 below: ones(&pattern) as usize,
                 parent: None,
             });
             patterns.push(pattern);
         }
-        for (block, pattern) in blocks.iter_mut().zip(&patterns) {
-            block.parent = members(pattern, self.count).map(|v| block_of[v]).min();
+        for (supernode, pattern) in supernodes.iter_mut().zip(&patterns) {
+            supernode.parent = members(pattern, self.count).map(|v| supernode_of[v]).min();
         }
-        blocks
+        supernodes
     }
 }
 
@@ -207,18 +209,20 @@ fn members(row: &[u64], count: usize) -> impl Iterator<Item = usize> + '_ {
         .take_while(move |&v| v < count)
 }
 
-/// Joins blocks with their parents where that stores few zeros, and puts children before parents.
-fn join(mut blocks: Vec<Block>) -> Vec<Block> {
-    // How many zeros a block stores already.
-    let mut zeros = vec![0_usize; blocks.len()];
-    let mut joined: Vec<Option<usize>> = vec![None; blocks.len()];
-    for child in 0..blocks.len() {
-        let Some(parent) = blocks[child].parent else { continue };
-        let (width, above) = (blocks[child].columns.len(), blocks[parent].columns.len());
-        let padding = width * (above + blocks[parent].below - blocks[child].below);
+/// Amalgamation: joins supernodes with their parents where that stores few zeros, and puts children before parents.
+fn amalgamate(mut supernodes: Vec<Supernode>) -> Vec<Supernode> {
+    // How many zeros a supernode stores already.
+    let mut zeros = vec![0_usize; supernodes.len()];
+    let mut amalgamated: Vec<Option<usize>> = vec![None; supernodes.len()];
+    for child in 0..supernodes.len() {
+        let Some(parent) = supernodes[child].parent else {
+            continue;
+        };
+        let (width, above) = (supernodes[child].columns.len(), supernodes[parent].columns.len());
+        let padding = width * (above + supernodes[parent].below - supernodes[child].below);
         let all = zeros[child] + zeros[parent] + padding;
         let columns = width + above;
-        let stored = columns * (columns + 1) / 2 + columns * blocks[parent].below;
+        let stored = columns * (columns + 1) / 2 + columns * supernodes[parent].below;
         let allowed = match columns {
             0..=4 => 1.0,
             5..=16 => 0.4,
@@ -226,38 +230,41 @@ fn join(mut blocks: Vec<Block>) -> Vec<Block> {
             _ => 0.05,
         };
         if all as f64 <= allowed * stored as f64 {
-            let mut columns = std::mem::take(&mut blocks[child].columns);
-            columns.append(&mut blocks[parent].columns);
-            blocks[parent].columns = columns;
+            let mut columns = std::mem::take(&mut supernodes[child].columns);
+            columns.append(&mut supernodes[parent].columns);
+            supernodes[parent].columns = columns;
             zeros[parent] = all;
-            joined[child] = Some(parent);
+            amalgamated[child] = Some(parent);
         }
     }
     // Postorder, so that a subtree stays in one piece.
-    let target = |mut block: usize| {
-        while let Some(into) = joined[block] {
-            block = into;
+    let target = |mut supernode: usize| {
+        while let Some(into) = amalgamated[supernode] {
+            supernode = into;
         }
-        block
+        supernode
     };
-    let mut children: Vec<Vec<usize>> = vec![Vec::new(); blocks.len()];
+    let mut children: Vec<Vec<usize>> = vec![Vec::new(); supernodes.len()];
     let mut roots = Vec::new();
-    for block in (0..blocks.len()).filter(|&block| joined[block].is_none()) {
-        match blocks[block].parent {
-            Some(parent) => children[target(parent)].push(block),
-            None => roots.push(block),
+    for supernode in (0..supernodes.len()).filter(|&supernode| amalgamated[supernode].is_none()) {
+        match supernodes[supernode].parent {
+            Some(parent) => children[target(parent)].push(supernode),
+            None => roots.push(supernode),
         }
     }
     let mut stack: Vec<(usize, bool)> = roots.into_iter().rev().map(|root| (root, false)).collect();
     let mut order = Vec::new();
-    while let Some((block, seen)) = stack.pop() {
+    while let Some((supernode, seen)) = stack.pop() {
         if seen {
-            order.push(block);
+            order.push(supernode);
         } else {
-            stack.push((block, true));
-            stack.extend(children[block].iter().rev().map(|&child| (child, false)));
+            stack.push((supernode, true));
+            stack.extend(children[supernode].iter().rev().map(|&child| (child, false)));
         }
     }
-    let mut taken: Vec<Option<Block>> = blocks.into_iter().map(Some).collect();
-    order.into_iter().filter_map(|block| taken[block].take()).collect()
+    let mut taken: Vec<Option<Supernode>> = supernodes.into_iter().map(Some).collect();
+    order
+        .into_iter()
+        .filter_map(|supernode| taken[supernode].take())
+        .collect()
 }

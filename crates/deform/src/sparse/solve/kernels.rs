@@ -1,4 +1,4 @@
-//! A block's triangular solves: the loops that read the factor, each line once.
+//! A supernode's triangular solves: the loops that read the factor, each line once.
 
 use pulp::{Simd, WithSimd};
 
@@ -11,13 +11,13 @@ pub(crate) type Strip<const K: usize> = [Line; K];
 /// Strips that are taken at once: their sums are independent, which hides how long an addition takes.
 const STRIPS: usize = 4;
 
-/// Lines between the one that is read and the one that is asked for: some blocks of the usual size.
+/// Lines between the one that is read and the one that is asked for: some supernodes of the usual size.
 const AHEAD: usize = 128;
 
 /// Columns whose sums are kept near: their lines lie one after the other.
 const COLUMNS: usize = 64;
 
-/// Solves with a block's lower triangle for the first strips of `x`, its own rows, and writes what the rows below take
+/// Solves with a supernode's lower triangle for the first strips of `x`, its own rows, and writes what the rows below take
 /// into the others.
 pub(crate) struct Forward<'a, const K: usize> {
     pub shape: Shape,

@@ -2,7 +2,7 @@
 //!
 //! The limit is memory: each solve reads the factor twice. So it is read in the order in which it lies, a line meeting
 //! all right-hand sides at once. The parts that `assembly_tree` cuts are solved beside each other: a part hands what its
-//! rows take to the part above on the way up, and gets what it needs from there on the way down, so nothing is shared
+//! rows take to the part above in forward substitution, and gets what it needs from there in backward substitution, so nothing is shared
 //! and nothing is added up in an order that could vary. faer's own parallel solve was 3 to 40 times slower than its
 //! sequential one on such factors.
 
@@ -17,11 +17,11 @@ use pulp::Arch;
 use crate::sparse::numeric::Numbers;
 use crate::sparse::numeric::line::{LANES, Line, Shape};
 use crate::sparse::solve::kernels::{Backward, Forward, Strip};
-use crate::sparse::solve::passes::up_and_down;
+use crate::sparse::solve::passes::forward_and_backward;
 use crate::sparse::symbolic::Symbolic;
 use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 
-/// Room for one block's rows.
+/// Room for one supernode's rows.
 #[derive(Default)]
 struct Room<const K: usize> {
     x: Vec<Strip<K>>,
@@ -43,7 +43,7 @@ pub(crate) fn solve_in_place<const K: usize>(
         run(&mut room);
         rooms.lock().unwrap_or_else(PoisonError::into_inner).push(room);
     };
-    let block = |part: usize, s: usize| {
+    let supernode = |part: usize, s: usize| {
         let first = symbolic.columns(s).start - assembly_tree.parts[part].columns.start;
         (
             symbolic.shape(s),
@@ -51,22 +51,22 @@ pub(crate) fn solve_in_place<const K: usize>(
             &assembly_tree.places[symbolic.pattern_range(s)],
         )
     };
-    let up = |part: usize, rows: &mut [[f64; K]]| {
+    let forward_part = |part: usize, rows: &mut [[f64; K]]| {
         with_room(&mut |room| {
             let mut panels = numbers[part].panels.as_slice();
-            for s in assembly_tree.parts[part].blocks.clone() {
-                let (shape, first, places) = block(part, s);
+            for s in assembly_tree.parts[part].supernodes.clone() {
+                let (shape, first, places) = supernode(part, s);
                 let (panel, tail) = panels.split_at(shape.lines());
                 panels = tail;
                 forward(shape, panel, first, places, rows, room);
             }
         });
     };
-    let down = |part: usize, rows: &mut [[f64; K]]| {
+    let backward_part = |part: usize, rows: &mut [[f64; K]]| {
         with_room(&mut |room| {
             let mut panels = numbers[part].panels.as_slice();
-            for s in assembly_tree.parts[part].blocks.clone().rev() {
-                let (shape, first, places) = block(part, s);
+            for s in assembly_tree.parts[part].supernodes.clone().rev() {
+                let (shape, first, places) = supernode(part, s);
                 let (tail, panel) = panels.split_at(panels.len() - shape.lines());
                 panels = tail;
                 backward(shape, panel, first, places, rows, room);
@@ -78,10 +78,18 @@ pub(crate) fn solve_in_place<const K: usize>(
             row[k] += change[k];
         }
     };
-    up_and_down(assembly_tree, x, &mut Vec::new(), [0.0; K], add, up, down);
+    forward_and_backward(
+        assembly_tree,
+        x,
+        &mut Vec::new(),
+        [0.0; K],
+        add,
+        forward_part,
+        backward_part,
+    );
 }
 
-/// x ← L⁻¹ x for the block's columns, their effect subtracted from the rows below.
+/// x ← L⁻¹ x for the supernode's columns, their effect subtracted from the rows below.
 fn forward<const K: usize>(
     shape: Shape,
     panel: &[Line],
@@ -119,7 +127,7 @@ fn forward<const K: usize>(
     }
 }
 
-/// x ← L⁻ᵀ x for the block's columns, given the rows below.
+/// x ← L⁻ᵀ x for the supernode's columns, given the rows below.
 fn backward<const K: usize>(
     shape: Shape,
     panel: &[Line],

@@ -15,7 +15,7 @@ use crate::numerical::prefetch::Prefetch;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::numeric::Numbers;
 use crate::sparse::numeric::line::{Line, Shape};
-use crate::sparse::solve::passes::up_and_down;
+use crate::sparse::solve::passes::forward_and_backward;
 use crate::sparse::symbolic::Symbolic;
 use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 
@@ -54,8 +54,8 @@ impl Real for f64 {
 /// Numbers between those that are read on the way down and those that are asked for: some blocks of the usual size.
 const AHEAD: usize = 1024;
 
-/// A row of right-hand sides: x, y, z and a zero.
-pub(crate) type Row<T> = [T; 4];
+/// One row of three right-hand sides: x, y, z and a zero.
+pub(crate) type Rhs<T> = [T; 4];
 
 /// The factor, and where its parts lie.
 #[derive(Debug)]
@@ -78,11 +78,11 @@ struct Node {
 /// Room for a solve, kept from one to the next.
 #[derive(Debug, Default)]
 pub(crate) struct Room<T> {
-    desks: Vec<Rows<T>>,
+    part_rows: Vec<Rows<T>>,
     below: Mutex<Vec<Rows<T>>>,
 }
 
-type Rows<T> = Vec<Row<T>>;
+type Rows<T> = Vec<Rhs<T>>;
 
 impl<T: Real> Substitution<T> {
     /// Copies a factor's values.
@@ -90,11 +90,11 @@ impl<T: Real> Substitution<T> {
     /// # Errors
     /// [`FactorError::Memory`].
     pub fn new(symbolic: &Symbolic, assembly_tree: &AssemblyTree, numbers: &[Numbers]) -> Result<Self, FactorError> {
-        let mut nodes = Vec::with_capacity(symbolic.block_count());
+        let mut nodes = Vec::with_capacity(symbolic.supernode_count());
         let mut copied = reserved(symbolic.stored())?;
         for (part, numbers) in assembly_tree.parts.iter().zip(numbers) {
             let mut panels = numbers.panels.as_slice();
-            for s in part.blocks.clone() {
+            for s in part.supernodes.clone() {
                 let below = symbolic.pattern_range(s);
                 let shape = symbolic.shape(s);
                 nodes.push(Node {
@@ -121,11 +121,11 @@ impl<T: Real> Substitution<T> {
     }
 
     /// Solves L Lᵀ x = b in place, one row a column of the factor.
-    pub fn solve(&self, x: &mut [Row<T>], room: &mut Room<T>) {
+    pub fn solve(&self, x: &mut [Rhs<T>], room: &mut Room<T>) {
         let arch = Arch::new();
-        let Room { desks, below } = room;
+        let Room { part_rows, below } = room;
         let spare = &*below;
-        let pass = |part: usize, way: Way, x: &mut [Row<T>]| {
+        let pass = |part: usize, way: Way, x: &mut [Rhs<T>]| {
             let mut below = spare
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner)
@@ -133,18 +133,18 @@ impl<T: Real> Substitution<T> {
                 .unwrap_or_default();
             arch.dispatch(Pass {
                 factor: self,
-                nodes: &self.nodes[self.assembly_tree.parts[part].blocks.clone()],
+                nodes: &self.nodes[self.assembly_tree.parts[part].supernodes.clone()],
                 way,
                 x,
                 below: &mut below,
             });
             spare.lock().unwrap_or_else(PoisonError::into_inner).push(below);
         };
-        up_and_down(
+        forward_and_backward(
             &self.assembly_tree,
             x,
-            desks,
-            Row::default(),
+            part_rows,
+            Rhs::default(),
             |row, change| *row = plus(*row, change),
             |part, rows| pass(part, Way::Forward, rows),
             |part, rows| pass(part, Way::Backward, rows),
@@ -153,10 +153,10 @@ impl<T: Real> Substitution<T> {
 
     /// x ← L⁻¹ x for the supernode's columns, their effect subtracted from the rows below.
     #[inline(always)]
-    fn forward(&self, node: &Node, x: &mut [Row<T>], below: &mut Vec<Row<T>>) {
+    fn forward(&self, node: &Node, x: &mut [Rhs<T>], below: &mut Vec<Rhs<T>>) {
         let places = self.places_of(node);
         below.clear();
-        below.resize(places.len(), Row::default());
+        below.resize(places.len(), Rhs::default());
         let mut values = &self.values[node.values..];
         let own = &mut x[node.start as usize..(node.start + node.width) as usize];
         let mut done = 0;
@@ -181,7 +181,7 @@ impl<T: Real> Substitution<T> {
 
     /// x ← L⁻ᵀ x for the supernode's columns, given the rows below.
     #[inline(always)]
-    fn backward(&self, node: &Node, x: &mut [Row<T>], below: &mut Vec<Row<T>>) {
+    fn backward(&self, node: &Node, x: &mut [Rhs<T>], below: &mut Vec<Rhs<T>>) {
         let places = self.places_of(node);
         below.clear();
         below.extend(places.iter().map(|&place| x[place as usize]));
@@ -218,8 +218,8 @@ struct Pass<'a, T> {
     factor: &'a Substitution<T>,
     nodes: &'a [Node],
     way: Way,
-    x: &'a mut [Row<T>],
-    below: &'a mut Vec<Row<T>>,
+    x: &'a mut [Rhs<T>],
+    below: &'a mut Vec<Rhs<T>>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -301,10 +301,10 @@ fn copy_node<T: Real>(panel: &[Line], shape: Shape, copied: &mut Vec<T>) {
 
 /// `rest` starts with the block's own rows.
 #[inline(always)]
-fn forward_block<T: Real, const B: usize>(numbers: &[T], rest: &mut [Row<T>], below: &mut [Row<T>]) {
+fn forward_block<T: Real, const B: usize>(numbers: &[T], rest: &mut [Rhs<T>], below: &mut [Rhs<T>]) {
     let (triangle, numbers) = numbers.split_at(B * B);
     let (own, rest) = rest.split_at_mut(B);
-    let mut values = [Row::default(); B];
+    let mut values = [Rhs::default(); B];
     values.copy_from_slice(own);
     for c in 0..B {
         values[c] = times(values[c], triangle[c * B + c]);
@@ -328,10 +328,10 @@ fn forward_block<T: Real, const B: usize>(numbers: &[T], rest: &mut [Row<T>], be
 
 /// `rest` starts with the block's own rows.
 #[inline(always)]
-fn backward_block<T: Real, const B: usize>(numbers: &[T], rest: &mut [Row<T>], below: &[Row<T>]) {
+fn backward_block<T: Real, const B: usize>(numbers: &[T], rest: &mut [Rhs<T>], below: &[Rhs<T>]) {
     let (triangle, numbers) = numbers.split_at(B * B);
     let (own, rest) = rest.split_at_mut(B);
-    let mut sums = [Row::default(); B];
+    let mut sums = [Rhs::default(); B];
     let (inside, outside) = numbers.split_at(rest.len() * B);
     for (row, numbers) in rest.iter().zip(inside.chunks_exact(B)) {
         for c in 0..B {
@@ -355,24 +355,24 @@ fn backward_block<T: Real, const B: usize>(numbers: &[T], rest: &mut [Row<T>], b
 }
 
 #[inline(always)]
-fn plus<T: Real>(a: Row<T>, b: Row<T>) -> Row<T> {
+fn plus<T: Real>(a: Rhs<T>, b: Rhs<T>) -> Rhs<T> {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]]
 }
 
 #[inline(always)]
-fn minus<T: Real>(a: Row<T>, b: Row<T>) -> Row<T> {
+fn minus<T: Real>(a: Rhs<T>, b: Rhs<T>) -> Rhs<T> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
 }
 
 #[inline(always)]
-fn times<T: Real>(a: Row<T>, factor: T) -> Row<T> {
+fn times<T: Real>(a: Rhs<T>, factor: T) -> Rhs<T> {
     [a[0] * factor, a[1] * factor, a[2] * factor, a[3] * factor]
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
-    use super::{Real, Room, Row};
+    use super::{Real, Rhs, Room};
     use crate::sparse::cholesky::tests::factor_of;
     use pliant_mesh::shapes;
 
@@ -383,7 +383,7 @@ mod tests {
             let (symbolic, _) = factor.parts();
             let count = symbolic.column_count();
             let mut expected: Vec<[f64; 3]> = (0..count).map(|i| [1.0, (i % 7) as f64, -0.3]).collect();
-            let mut found: Vec<Row<T>> = expected
+            let mut found: Vec<Rhs<T>> = expected
                 .iter()
                 .map(|row| [T::of(row[0]), T::of(row[1]), T::of(row[2]), T::default()])
                 .collect();

@@ -1,7 +1,7 @@
-//! The tree of blocks, cut into parts that are worked on one after the other or beside each other.
+//! The assembly tree of supernodes, cut into parts that are worked on one after the other or in parallel.
 //!
-//! Columns stand in postorder, so a subtree is a run of blocks and its columns a run of columns. A subtree is one part
-//! while it is little work; what stands above, the *top*, are parts of one block each. The cut depends on the work
+//! Columns stand in postorder, so a subtree is a run of supernodes and its columns a run of columns. A subtree is one part
+//! while it is little work; the supernodes above, the *top*, are parts of their own. The cut depends on the work
 //! below alone: neither on the number of threads nor on what the rest of the surface is.
 
 use std::ops::Range;
@@ -14,33 +14,33 @@ use crate::sparse::symbolic::{ROOT, Symbolic};
 /// Multiplications and additions of a subtree that is one part.
 const PART: f64 = 3e7;
 
-/// The blocks' tree and its cut.
+/// The supernodes' tree and its cut.
 #[derive(Clone, Debug)]
 pub(crate) struct AssemblyTree {
-    /// Runs of blocks, ascending and without gaps, children before parents.
+    /// Runs of supernodes, ascending and without gaps, children before parents.
     pub parts: Vec<Part>,
-    /// The blocks' patterns, one after the other as the factor has them, in the coordinates of their part: its own
-    /// columns from 0 on, then the rows of its last block's pattern.
+    /// The supernodes' patterns, one after the other as the factor has them, in the coordinates of their part: its own
+    /// columns from 0 on, then the rows of its last supernode's pattern.
     pub places: Vec<u32>,
 }
 
-/// One run of blocks: a subtree whose last block is its root, or one block above the cut.
+/// One run of supernodes: a subtree whose last supernode is its root, or one supernode above the cut.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) struct Part {
-    pub blocks: Range<usize>,
+    pub supernodes: Range<usize>,
     pub columns: Range<usize>,
-    /// The part that takes what this one leaves.
+    /// The part that takes this one's contribution.
     pub parent: Option<usize>,
-    /// The parts that leave something to this one, ascending.
+    /// The parts whose contributions this one takes, ascending.
     pub children: Vec<usize>,
-    /// The rows of its last block's pattern in the coordinates of the parent.
+    /// The rows of its last supernode's pattern in the coordinates of the parent.
     pub outside: Vec<u32>,
 }
 
 impl AssemblyTree {
-    /// Cuts the tree of the factor's blocks.
+    /// Cuts the tree of the factor's supernodes.
     pub fn of(symbolic: &Symbolic) -> Self {
-        let count = symbolic.block_count();
+        let count = symbolic.supernode_count();
         let mut work: Vec<f64> = (0..count).map(|s| symbolic.work(s)).collect();
         let mut first: Vec<usize> = (0..count).collect();
         let mut size = vec![1; count];
@@ -114,7 +114,7 @@ impl AssemblyTree {
 }
 
 fn parts(symbolic: &Symbolic, runs: Vec<Range<usize>>) -> Vec<Part> {
-    let mut part_of = vec![0; symbolic.block_count()];
+    let mut part_of = vec![0; symbolic.supernode_count()];
     for (part, run) in runs.iter().enumerate() {
         part_of[run.clone()].fill(part);
     }
@@ -124,7 +124,7 @@ fn parts(symbolic: &Symbolic, runs: Vec<Range<usize>>) -> Vec<Part> {
         let above = symbolic.parent[root];
         parts.push(Part {
             columns: symbolic.columns(run.start).start..symbolic.columns(root).end,
-            blocks: run,
+            supernodes: run,
             parent: (above != ROOT).then(|| part_of[above as usize]),
             children: Vec::new(),
             outside: Vec::new(),
@@ -133,13 +133,13 @@ fn parts(symbolic: &Symbolic, runs: Vec<Range<usize>>) -> Vec<Part> {
     for part in 0..parts.len() {
         let Some(above) = parts[part].parent else { continue };
         parts[above].children.push(part);
-        // Above a part there is only one block.
+        // Above a part there is only one supernode.
         let (own, pattern) = (
             parts[above].columns.clone(),
-            symbolic.pattern(parts[above].blocks.end - 1),
+            symbolic.pattern(parts[above].supernodes.end - 1),
         );
         let mut place = 0;
-        let places = symbolic.pattern(parts[part].blocks.end - 1).iter().map(|&row| {
+        let places = symbolic.pattern(parts[part].supernodes.end - 1).iter().map(|&row| {
             if (row as usize) < own.end {
                 return row - own.start as u32;
             }
@@ -200,7 +200,7 @@ mod tests {
             let (symbolic, assembly_tree) = factor.parts();
             let mut next = 0;
             for part in &assembly_tree.parts {
-                let range = part.blocks.clone();
+                let range = part.supernodes.clone();
                 assert_eq!(range.start, next, "{name}");
                 next = range.end;
                 let outside = symbolic.pattern(range.end - 1);
@@ -216,7 +216,7 @@ mod tests {
                     assert!(is_root || beyond.all(|row| outside.contains(row)), "{name}");
                 }
                 if let Some(above) = part.parent.map(|above| &assembly_tree.parts[above]) {
-                    let pattern = symbolic.pattern(above.blocks.end - 1);
+                    let pattern = symbolic.pattern(above.supernodes.end - 1);
                     for (&row, &place) in outside.iter().zip(&part.outside) {
                         let found = match (place as usize).checked_sub(above.columns.len()) {
                             Some(place) => pattern[place] as usize,
@@ -226,7 +226,7 @@ mod tests {
                     }
                 }
             }
-            assert_eq!(next, symbolic.block_count(), "{name}");
+            assert_eq!(next, symbolic.supernode_count(), "{name}");
             assert!(
                 assembly_tree.parts.len() > 1 && symbolic.parent.contains(&ROOT),
                 "{name}"

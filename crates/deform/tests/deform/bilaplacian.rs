@@ -1,12 +1,12 @@
-//! The linear shell's options: what each order, coefficient and discretisation does to the shape.
+//! The bi-Laplacian's options: what each order, coefficient and discretisation does to the shape.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Bilaplacian, BindError, Discretisation, Method, Role, ShellOrder, Triangulation};
+use pliant_deform::{Bilaplacian, BilaplacianOrder, BindError, Discretisation, Method, Role, TriangulationKind};
 use pliant_mesh::{Drawn, shapes};
 
 use crate::rig::{Scene, apart, back_substitute, step, turned};
 
-fn shell(order: ShellOrder, stretching: f64, bending: f64, discretisation: Discretisation) -> Method {
+fn bilaplacian(order: BilaplacianOrder, stretching: f64, bending: f64, discretisation: Discretisation) -> Method {
     let mut options = Bilaplacian::default();
     options.order = order;
     options.stretching = stretching;
@@ -15,8 +15,8 @@ fn shell(order: ShellOrder, stretching: f64, bending: f64, discretisation: Discr
     Method::from(options)
 }
 
-pub fn of_order(order: ShellOrder) -> Method {
-    shell(order, 0.0, 1.0, Discretisation::CotangentArea)
+pub fn of_order(order: BilaplacianOrder) -> Method {
+    bilaplacian(order, 0.0, 1.0, Discretisation::CotangentArea)
 }
 
 /// Heights at the middle of a unit strip of `cells` rows, held over n rows at both ends, of which one is lifted by 1:
@@ -53,7 +53,7 @@ fn each_order_converges_to_its_polynomial() {
         |s| s * s * (3.0 - 2.0 * s),
         |s| s * s * s * (10.0 - 15.0 * s + 6.0 * s * s),
     ];
-    for (order, exact) in ShellOrder::ALL.into_iter().zip(exact) {
+    for (order, exact) in BilaplacianOrder::ALL.into_iter().zip(exact) {
         let errors = [12, 24, 48].map(|cells| {
             let (heights, pitch) = strip(cells, of_order(order));
             let errors = heights
@@ -75,7 +75,7 @@ fn each_order_converges_with_second_order_between_the_middles_of_what_holds_it()
         |s| s * s * (3.0 - 2.0 * s),
         |s| s * s * s * (10.0 - 15.0 * s + 6.0 * s * s),
     ];
-    for (order, exact) in [ShellOrder::ThinPlate, ShellOrder::CurvatureVariation]
+    for (order, exact) in [BilaplacianOrder::ThinPlate, BilaplacianOrder::CurvatureVariation]
         .into_iter()
         .zip(exact)
     {
@@ -95,7 +95,7 @@ fn each_order_converges_with_second_order_between_the_middles_of_what_holds_it()
 
 #[test]
 fn order_n_joins_what_is_held_with_continuity_n_minus_1() {
-    for order in ShellOrder::ALL {
+    for order in BilaplacianOrder::ALL {
         // What is held is flat, so the k-th derivative's jump is its value at the rim, by one-sided differences.
         let jumps = [16, 32, 64].map(|cells| {
             let (z, pitch) = strip(cells, of_order(order));
@@ -125,8 +125,8 @@ fn stretching_pulls_the_beam_straight_as_the_formula_says() {
         let errors = [16, 32, 64].map(|cells| {
             let (heights, pitch) = strip(
                 cells,
-                shell(
-                    ShellOrder::ThinPlate,
+                bilaplacian(
+                    BilaplacianOrder::ThinPlate,
                     3.0 * stretching,
                     3.0,
                     Discretisation::CotangentArea,
@@ -151,14 +151,14 @@ fn stretching_pulls_the_beam_straight_as_the_formula_says() {
 }
 
 #[test]
-fn without_bending_the_shell_is_a_membrane_of_any_stretching() {
-    let membrane = strip(20, of_order(ShellOrder::Membrane)).0;
+fn without_bending_it_is_a_membrane_of_any_stretching() {
+    let membrane = strip(20, of_order(BilaplacianOrder::Membrane)).0;
     for stretching in [1e-3, 1.0, 1e6] {
         let mut scene = Scene::new(shapes::grid(20, 20))
             .with(Role::Fixed, |p| p.x < 0.02)
             .with(Role::Handle(0), |p| p.x > 0.98);
-        scene.method = shell(
-            ShellOrder::CurvatureVariation,
+        scene.method = bilaplacian(
+            BilaplacianOrder::CurvatureVariation,
             stretching,
             0.0,
             Discretisation::CotangentArea,
@@ -175,17 +175,17 @@ fn without_bending_the_shell_is_a_membrane_of_any_stretching() {
 /// Every combination of the options, with what makes other triangles where everything else is as usual.
 fn methods() -> Vec<Method> {
     let mut methods = Vec::new();
-    for order in ShellOrder::ALL {
+    for order in BilaplacianOrder::ALL {
         for discretisation in Discretisation::ALL {
             for stretching in [0.0, 30.0] {
-                methods.push(shell(order, stretching, 1.0, discretisation));
+                methods.push(bilaplacian(order, stretching, 1.0, discretisation));
             }
         }
         for (triangulation, anisotropy) in [
-            (Triangulation::IntrinsicDelaunay, 0.0),
-            (Triangulation::Tufted, 0.0),
-            (Triangulation::AsIs, 0.7),
-            (Triangulation::Tufted, 1.0),
+            (TriangulationKind::IntrinsicDelaunay, 0.0),
+            (TriangulationKind::Tufted, 0.0),
+            (TriangulationKind::AsIs, 0.7),
+            (TriangulationKind::Tufted, 1.0),
         ] {
             let mut options = Bilaplacian::default();
             options.order = order;
@@ -203,7 +203,9 @@ fn refused(scene: &Scene, error: &BindError, label: &str) {
         unreachable!()
     };
     assert!(
-        options.order == ShellOrder::CurvatureVariation || label.starts_with("broken") || label.starts_with("soup"),
+        options.order == BilaplacianOrder::CurvatureVariation
+            || label.starts_with("broken")
+            || label.starts_with("soup"),
         "{label}: {error}"
     );
     assert!(
@@ -290,7 +292,7 @@ fn no_option_depends_on_the_unit() {
 
 #[test]
 fn a_band_as_wide_as_the_order_ends_the_influence() {
-    for order in ShellOrder::ALL {
+    for order in BilaplacianOrder::ALL {
         for rings in 1..=3 {
             let (from, to) = (0.5 - 0.01, 0.5 + 0.01 + f64::from(rings - 1) / 24.0);
             let mut scene = Scene::new(shapes::grid(24, 24))
@@ -321,7 +323,7 @@ fn sheared(angle_rad: f64, discretisation: Discretisation) -> Vec<DVec3> {
         .with(Role::Handle(0), |p| {
             square(p).distance(DVec3::new(0.7, 0.4, 0.0)) < 0.12
         });
-    scene.method = shell(ShellOrder::ThinPlate, 0.0, 1.0, discretisation);
+    scene.method = bilaplacian(BilaplacianOrder::ThinPlate, 0.0, 1.0, discretisation);
     scene.moved(&[DAffine3::from_translation(DVec3::Z)])
 }
 
@@ -349,7 +351,7 @@ fn without_areas_dense_vertices_pull_harder() {
         let mut scene = Scene::new(Drawn { positions, ..sheet })
             .with(Role::Fixed, |p| p.x.sqrt() < 1.5 / 48.0)
             .with(Role::Handle(0), |p| p.x.sqrt() > 1.0 - 1.5 / 48.0);
-        scene.method = shell(ShellOrder::ThinPlate, 0.0, 1.0, discretisation);
+        scene.method = bilaplacian(BilaplacianOrder::ThinPlate, 0.0, 1.0, discretisation);
         let displacements = scene.moved(&[DAffine3::from_translation(DVec3::Z)]);
         let exact = |s: f64| s * s * (3.0 - 2.0 * s);
         let errors = scene
