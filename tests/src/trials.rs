@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{
-    Arap, ArapEnergy, Bilaplacian, ConstraintKind, Constraints, Discretisation, Loose, METHODS, Method, Needs,
-    Ordering, Primo, Problem, Role, ShellOrder, SolveError, Triangulation,
+    Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, ConstraintKind, Constraints, Discretisation, Loose, METHODS,
+    Method, Needs, Ordering, Primo, Problem, Role, SolveError, TriangulationKind,
 };
 use pliant_mesh::{Cancel, Model, Progress};
 
@@ -331,10 +331,10 @@ fn method(chance: &mut Chance) -> Method {
     }
     let mut options = Bilaplacian::default();
     options.order = [
-        ShellOrder::ThinPlate,
-        ShellOrder::ThinPlate,
-        ShellOrder::Membrane,
-        ShellOrder::CurvatureVariation,
+        BilaplacianOrder::ThinPlate,
+        BilaplacianOrder::ThinPlate,
+        BilaplacianOrder::Membrane,
+        BilaplacianOrder::CurvatureVariation,
     ][chance.below(4)];
     if chance.share() < 0.4 {
         options.stretching = 10_f64.powf(chance.between(-3.0, 5.0));
@@ -348,7 +348,7 @@ fn method(chance: &mut Chance) -> Method {
         options.discretisation = Discretisation::ALL[chance.below(3)];
     }
     if chance.share() < 0.4 {
-        options.triangulation = Triangulation::ALL[chance.below(3)];
+        options.triangulation = TriangulationKind::ALL[chance.below(3)];
     }
     if chance.share() < 0.4 {
         options.anisotropy = chance.share();

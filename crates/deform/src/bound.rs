@@ -6,10 +6,10 @@ use glam::{DAffine3, DVec3};
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
-use crate::follow::{Followers, followers};
-use crate::handle::{FRAME_CHUNK, Handle, Motion, clear};
+use crate::handles::{FRAME_CHUNK, Handle, Motion, clear};
 use crate::method::{BindInput, BoundMethod, Finite, Solve};
-use crate::partition::Partition;
+use crate::region::follow::{Followers, followers};
+use crate::region::partition::Partition;
 use crate::sparse::cholesky::{Refactorisation, RenewableFactor};
 use crate::{BindError, Budget, HandleBases, Ordering, Problem, SolveError};
 
@@ -28,7 +28,7 @@ pub struct Bound {
     warnings: Vec<String>,
 }
 
-/// The factor of a bound linear shell, of which [`Problem::rebind`] takes over what is the same. Cheap to clone.
+/// The factor of a bound bi-Laplacian, of which [`Problem::rebind`] takes over what is the same. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct ReusableFactor(pub(crate) Arc<RenewableFactor>);
 
@@ -58,7 +58,7 @@ pub struct Step {
     /// Whether further steps to the same targets do nothing: it converged, or met the method's limit.
     pub finished: bool,
     /// The deformation energy, 0 at rest, which has no unit and does not change with the model's scale: for the linear
-    /// shell ½ dᵀ A d (see [`crate::Bilaplacian`]) and what soft handles' springs hold, for ARAP its energy and its springs' over ½ Σ w |e|² of the rest shape. Components
+    /// bi-Laplacian ½ dᵀ A d (see [`crate::Bilaplacian`]) and what soft handles' springs hold, for ARAP its energy and its springs' over ½ Σ w |e|² of the rest shape. Components
     /// without a handle are left out.
     pub energy: f64,
     /// How many steps were taken towards these targets, this one included.
@@ -126,7 +126,7 @@ impl Bound {
     }
 
     /// What binding a problem that differs in a few vertices' roles can take over, where the method has a factor that
-    /// can be renewed: the linear shell. There is much only where [`Problem::rebind`] bound it.
+    /// can be renewed: the bi-Laplacian. There is much only where [`Problem::rebind`] bound it.
     pub fn reusable_factor(&self) -> Option<ReusableFactor> {
         self.method.reusable_factor()
     }

@@ -111,10 +111,10 @@ pub enum BindError {
         /// By how much a constant is missed.
         error: f64,
     },
-    /// A shell of an order above 1 was refused, which one of a lower order need not be.
+    /// A bi-Laplacian of an order above 1 was refused, which one of a lower order need not be.
     #[error("{refused}, or lower the method's `order` from {order}")]
     Order {
-        /// The shell's order.
+        /// The bi-Laplacian's order.
         order: u32,
         /// What stands in its way.
         refused: Box<BindError>,
@@ -128,7 +128,7 @@ pub enum BindError {
         vertex: u32,
         /// How many edges lie between it and the nearest fixed vertex or handle.
         edges: usize,
-        /// The shell's order.
+        /// The bi-Laplacian's order.
         order: u32,
     },
     /// Binding would take more than its [`crate::Budget`].

@@ -2,21 +2,21 @@
 
 use pliant_mesh::Cancel;
 
-use crate::handle::Handle;
-use crate::partition::Partition;
-use crate::shell::assembly::assemble_shell;
-use crate::shell::hubs::Hubs;
-use crate::shell::operator::ShellOperator;
-use crate::shell::plate::operator;
+use crate::bilaplacian::assembly::assemble_bilaplacian;
+use crate::bilaplacian::hubs::Hubs;
+use crate::bilaplacian::operator::BilaplacianOperator;
+use crate::bilaplacian::setup::operator;
+use crate::handles::Handle;
+use crate::region::partition::Partition;
 use crate::sparse::Elimination;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
 use crate::{Bilaplacian, Budget, Ordering, Problem};
 
-/// The operator of a linear shell, and the order in which its vertices are eliminated.
+/// The operator of a bi-Laplacian, and the order in which its vertices are eliminated.
 #[derive(Debug)]
 pub struct Operator {
-    operator: ShellOperator,
+    operator: BilaplacianOperator,
     elimination: Elimination,
 }
 
@@ -49,7 +49,7 @@ impl Operator {
         for (column, &local) in columns.iter().enumerate() {
             column_of[local as usize] = column as u32;
         }
-        let matrix = assemble_shell(
+        let matrix = assemble_bilaplacian(
             &self.operator,
             &columns,
             &column_of,

@@ -9,7 +9,8 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
 use pliant_deform::{
-    Arap, ArapEnergy, Bilaplacian, BindError, Budget, Constraints, Loose, Method, Primo, Problem, Role, ShellOrder,
+    Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, Constraints, Loose, Method, Primo, Problem,
+    Role,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 
@@ -132,7 +133,7 @@ impl Scene {
 
 fn methods() -> Vec<Method> {
     let mut methods = vec![Method::from(Primo::default())];
-    for order in ShellOrder::ALL {
+    for order in BilaplacianOrder::ALL {
         let mut shell = Bilaplacian::default();
         shell.order = order;
         methods.push(shell.into());

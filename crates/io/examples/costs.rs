@@ -16,7 +16,7 @@ use counting::{Counting, HELD, PEAK};
 use glam::DVec3;
 use hostile::{Hostile, MAKERS};
 use pliant_io::{Bytes, Format, MorphTarget, Placement, Resolver, Save, read};
-use pliant_mesh::{Cancel, Progress, Survey, WeldOptions};
+use pliant_mesh::{Cancel, Inspection, Progress, WeldOptions};
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
@@ -60,8 +60,8 @@ fn costs(file: &Hostile) -> Vec<(&'static str, f64, usize)> {
     measured("read", start);
     let Ok(opened) = opened else { return out };
     let start = Instant::now();
-    let survey = Survey::of(opened.drawn.clone(), &WeldOptions::default(), &progress, &cancel).unwrap();
-    drop(survey);
+    let inspection = Inspection::of(opened.drawn.clone(), &WeldOptions::default(), &progress, &cancel).unwrap();
+    drop(inspection);
     measured("weld", start);
     let start = Instant::now();
     let looks = opened.scene.appearance();

@@ -22,7 +22,7 @@ use counting::{Counting, HELD, PEAK};
 
 use glam::DVec3;
 use pliant_io::{Bytes, Format, Opened, Placement, Resolver, Save, read};
-use pliant_mesh::{Cancel, Model, Progress, Survey, WeldOptions};
+use pliant_mesh::{Cancel, Inspection, Model, Progress, WeldOptions};
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
@@ -120,8 +120,8 @@ fn measure(path: &Path) {
     let (look_s, look_peak, _) = memory(|| {
         let opened = read_again();
         let start = Instant::now();
-        let survey = Survey::of(opened.drawn, &welding, &Progress::new(), &Cancel::new());
-        (start.elapsed().as_secs_f64(), (opened.scene, survey))
+        let inspection = Inspection::of(opened.drawn, &welding, &Progress::new(), &Cancel::new());
+        (start.elapsed().as_secs_f64(), (opened.scene, inspection))
     });
     let (weld_s, edit_peak, edit_held) = memory(|| {
         let opened = read_again();

@@ -10,7 +10,7 @@ use std::collections::BinaryHeap;
 use glam::{DVec2, DVec3};
 use pliant_mesh::{Cancel, Cancelled, DrawnVertex};
 
-use crate::new_mesh::Polygons;
+use crate::convert::Polygons;
 
 /// The most corners that are cut by ears.
 const MOST_EARS: usize = 256;

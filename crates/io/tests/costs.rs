@@ -13,7 +13,7 @@ use counting::{ALLOCATED, Counting, HELD, PEAK};
 use glam::DVec3;
 use hostile::{Hostile, MAKERS};
 use pliant_io::{Bytes, Format, MorphTarget, Opened, Placement, ReadError, Resolver, Save, read};
-use pliant_mesh::{Cancel, Progress, Survey, WeldOptions};
+use pliant_mesh::{Cancel, Inspection, Progress, WeldOptions};
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
@@ -40,8 +40,8 @@ fn cost(file: &Hostile) -> [usize; 2] {
     if let Ok(opened) = opened(file, &cancel) {
         drop(opened.scene.appearance());
         drop(opened.scene.objects());
-        let survey = Survey::of(opened.drawn.clone(), &WeldOptions::default(), &Progress::new(), &cancel);
-        drop(survey.unwrap());
+        let inspection = Inspection::of(opened.drawn.clone(), &WeldOptions::default(), &Progress::new(), &cancel);
+        drop(inspection.unwrap());
         let positions: Vec<DVec3> = opened.drawn.positions.iter().map(|p| *p * 0.5 + DVec3::ONE).collect();
         for (format, placement) in [
             (file.format, Placement::SameFile),

@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used, reason = "a test that fails may panic")]
 
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_mesh::{Cancel, Drawn, DrawnVertex, FindingKind, Named, Progress, Survey, WeldOptions, shapes};
+use pliant_mesh::{Cancel, Drawn, DrawnVertex, FindingKind, Inspection, Named, Progress, WeldOptions, shapes};
 
 fn placed(drawn: &Drawn, scale: f64, by: DVec3) -> Drawn {
     shapes::moved(
@@ -58,18 +58,18 @@ fn every_example_stands_where_it_was_found() {
     let mut seen = 0;
     for drawn in all {
         let model = shapes::model(drawn);
-        let (diagnoses, rest) = (model.diagnoses(), model.rest());
-        let sentences: Vec<String> = diagnoses.iter().map(|diagnosis| diagnosis.sentence.clone()).collect();
+        let (located_findings, rest) = (model.located_findings(), model.rest());
+        let sentences: Vec<String> = located_findings
+            .iter()
+            .map(|finding| finding.sentence.clone())
+            .collect();
         assert_eq!(sentences, model.findings.sentences());
-        for diagnosis in &diagnoses {
-            assert_eq!(diagnosis.count, model.findings.of(diagnosis.kind).count);
-            assert_eq!(
-                diagnosis.examples.len(),
-                model.findings.of(diagnosis.kind).examples.len()
-            );
-            for example in &diagnosis.examples {
+        for finding in &located_findings {
+            assert_eq!(finding.count, model.findings.of(finding.kind).count);
+            assert_eq!(finding.examples.len(), model.findings.of(finding.kind).examples.len());
+            for example in &finding.examples {
                 seen += 1;
-                match (diagnosis.kind, diagnosis.kind.named(), example.position) {
+                match (finding.kind, finding.kind.named(), example.position) {
                     (FindingKind::NonFiniteVertices | FindingKind::NonFiniteTriangles, _, place) => {
                         assert_eq!(place, None);
                     }
@@ -95,18 +95,22 @@ fn a_look_finds_what_welding_finds() {
     all.push(Drawn::default());
     for drawn in all {
         let model = shapes::model(drawn.clone());
-        let survey = Survey::of(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new());
-        let survey = survey.expect("nobody cancels it");
-        assert_eq!(survey.findings, model.findings);
-        assert_eq!(survey.diagnoses, model.diagnoses());
-        assert_eq!(survey.components, model.topology.components());
-        assert_eq!(survey.bounds, model.bounds());
+        let inspection = Inspection::of(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new());
+        let inspection = inspection.expect("nobody cancels it");
+        assert_eq!(inspection.findings, model.findings);
+        assert_eq!(inspection.located_findings, model.located_findings());
+        assert_eq!(inspection.components, model.topology.components());
+        assert_eq!(inspection.bounds, model.bounds());
         let counts = [model.surface.positions.len(), model.surface.triangles.len()];
-        assert_eq!([survey.surface_vertices, survey.surface_triangles], counts);
+        assert_eq!([inspection.surface_vertices, inspection.surface_triangles], counts);
         let drawn = &model.drawn;
         let counts = [drawn.file_vertex_count(), drawn.vertex_count(), drawn.triangle_count()];
         assert_eq!(
-            [survey.file_vertices, survey.drawn_vertices, survey.drawn_triangles],
+            [
+                inspection.file_vertices,
+                inspection.drawn_vertices,
+                inspection.drawn_triangles
+            ],
             counts
         );
     }

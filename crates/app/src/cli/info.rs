@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use pliant_io::{Opened, Scene};
-use pliant_mesh::{FindingKind, Survey, WeldOptions};
+use pliant_mesh::{FindingKind, Inspection, WeldOptions};
 use serde_json::{Value, json};
 
 use super::arguments::InfoArguments;
@@ -31,19 +31,29 @@ pub(super) fn run(arguments: &InfoArguments, console: &mut Console<'_>) -> Resul
 struct LookedAt<'a> {
     path: &'a Path,
     scene: Scene,
-    survey: Survey,
+    inspection: Inspection,
 }
 
 fn look_at<'a>(path: &'a Path, watch: &Watch) -> Result<LookedAt<'a>, AppError> {
     let Opened { scene, drawn } = engine::open(path, watch)?;
     let progress = watch.begin("welding");
-    let survey = Survey::of(drawn, &WeldOptions::default(), &progress, &watch.cancel);
-    let survey = survey.map_err(|_| AppError::Interrupted)?;
-    Ok(LookedAt { path, scene, survey })
+    let inspection = Inspection::of(drawn, &WeldOptions::default(), &progress, &watch.cancel);
+    let inspection = inspection.map_err(|_| AppError::Interrupted)?;
+    Ok(LookedAt {
+        path,
+        scene,
+        inspection,
+    })
 }
 
 /// What is told of a file, for a person.
-fn as_text(LookedAt { path, scene, survey }: &LookedAt<'_>) -> String {
+fn as_text(
+    LookedAt {
+        path,
+        scene,
+        inspection,
+    }: &LookedAt<'_>,
+) -> String {
     let summary = scene.summary();
     let mut text = format!("{}: {}\n", shown(path), scene.format());
     let mut line = |what: &str, said: String| {
@@ -72,18 +82,21 @@ fn as_text(LookedAt { path, scene, survey }: &LookedAt<'_>) -> String {
         "vertices",
         format!(
             "{} in the file, {} drawn, {} welded",
-            survey.file_vertices, survey.drawn_vertices, survey.surface_vertices
+            inspection.file_vertices, inspection.drawn_vertices, inspection.surface_vertices
         ),
     );
-    if survey.surface_triangles == 0 {
+    if inspection.surface_triangles == 0 {
         line("triangles", "none: there is nothing to edit in it".to_owned());
     } else {
         line(
             "triangles",
-            format!("{} drawn, {} kept", survey.drawn_triangles, survey.surface_triangles),
+            format!(
+                "{} drawn, {} kept",
+                inspection.drawn_triangles, inspection.surface_triangles
+            ),
         );
     }
-    if let Some(bounds) = survey.bounds {
+    if let Some(bounds) = inspection.bounds {
         let (min, max) = (bounds.min, bounds.max);
         line(
             "bounds",
@@ -93,7 +106,7 @@ fn as_text(LookedAt { path, scene, survey }: &LookedAt<'_>) -> String {
             ),
         );
     }
-    let sizes: Vec<usize> = survey
+    let sizes: Vec<usize> = inspection
         .components
         .iter()
         .map(|component| component.vertex_count)
@@ -106,7 +119,7 @@ fn as_text(LookedAt { path, scene, survey }: &LookedAt<'_>) -> String {
             format!("{} (vertices: {}{more})", sizes.len(), listed.join(", ")),
         );
     }
-    for sentence in survey.findings.sentences() {
+    for sentence in inspection.findings.sentences() {
         line("found", sentence);
     }
     for note in scene.notes() {
@@ -116,13 +129,19 @@ fn as_text(LookedAt { path, scene, survey }: &LookedAt<'_>) -> String {
 }
 
 /// What is told of a file, for a program.
-fn as_json(LookedAt { path, scene, survey }: &LookedAt<'_>) -> Value {
-    let findings = &survey.findings;
+fn as_json(
+    LookedAt {
+        path,
+        scene,
+        inspection,
+    }: &LookedAt<'_>,
+) -> Value {
+    let findings = &inspection.findings;
     let appearance = scene.appearance();
-    let bounds = survey
+    let bounds = inspection
         .bounds
         .map(|bounds| json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() }));
-    let components: Vec<Value> = survey
+    let components: Vec<Value> = inspection
         .components
         .iter()
         .map(|component| {
@@ -138,8 +157,8 @@ fn as_json(LookedAt { path, scene, survey }: &LookedAt<'_>) -> Value {
         .filter(|kind| *kind != FindingKind::Components)
     {
         let finding = findings.of(kind);
-        let diagnosis = survey.diagnoses.iter().find(|diagnosis| diagnosis.kind == kind);
-        let places = diagnosis.into_iter().flat_map(|diagnosis| &diagnosis.examples);
+        let located = inspection.located_findings.iter().find(|finding| finding.kind == kind);
+        let places = located.into_iter().flat_map(|located| &located.examples);
         let places: Vec<Value> = places
             .map(|example| example.position.map_or(Value::Null, |place| json!(place.to_array())))
             .collect();
@@ -153,11 +172,11 @@ fn as_json(LookedAt { path, scene, survey }: &LookedAt<'_>) -> Value {
         "file": path.to_string_lossy(),
         "format": scene.format().extension(),
         "holds": scene.summary(),
-        "vertices": survey.file_vertices,
-        "drawn_vertices": survey.drawn_vertices,
-        "welded_vertices": survey.surface_vertices,
-        "drawn_triangles": survey.drawn_triangles,
-        "triangles": survey.surface_triangles,
+        "vertices": inspection.file_vertices,
+        "drawn_vertices": inspection.drawn_vertices,
+        "welded_vertices": inspection.surface_vertices,
+        "drawn_triangles": inspection.drawn_triangles,
+        "triangles": inspection.surface_triangles,
         "bounding_box": bounds,
         "components": components,
         "normals": appearance.normals.is_some(),

@@ -12,7 +12,7 @@
 //! Poisson's effect, with free borders, and κ a number without unit.
 //!
 //! An affine map costs nothing, so a bumpy region turns at no cost in the majorising quadratic as well, where
-//! |L p' − R L p|² (the second order of Levi & Gotsman 2015 and Oehri et al. 2025) with its rotations held makes it pay
+//! |L p' − R L p|² (the second order of [LG15] and [OHS25]) with its rotations held makes it pay
 //! κ A times its squared curvature. What an affine map of a curved cell could hide, its normals' stretch or tilt, ν
 //! holds as firmly as the membrane holds the rest.
 //!
@@ -32,8 +32,8 @@ use rayon::prelude::*;
 use super::bend::Bend;
 use super::cells::Cells;
 use super::domain::Domain;
+use crate::numerical::eigen::eigenvectors;
 use crate::operators::CHUNK;
-use crate::operators::eigen::eigenvectors;
 
 /// ν. Without it a bent cylinder flattens, its curvature hidden in affine maps; with 0.1 a little, and with 10 or 100 its
 /// shape is that of 1, but bumpy cells turn at a cost again: a scan of 43k vertices takes 26 and 42 steps instead of 15.

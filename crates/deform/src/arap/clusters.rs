@@ -8,7 +8,7 @@
 use pliant_mesh::{DistanceSearch, Surface, SurfaceVertex, Topology};
 
 use super::domain::{ABSENT, Domain};
-use crate::handle::Handle;
+use crate::handles::Handle;
 use crate::{Problem, Role};
 
 /// How many centres that lie apart by 1 there are to a unit of area: 0.81 were found on scans.
@@ -103,7 +103,7 @@ mod tests {
 
     use super::Clusters;
     use crate::arap::domain::{ABSENT, Domain};
-    use crate::handle::Handle;
+    use crate::handles::Handle;
     use crate::{Arap, Constraints, Loose, Method, Problem, Role};
 
     #[test]

@@ -1,7 +1,7 @@
 //! The coarse level of a large surface, which finds in a fraction of the time where the surface will go.
 //!
 //! It has the same energy on a surface of clusters, and dead loads that make its gradient the one of the fine shape that
-//! it was last told of (the full approximation scheme of Brandt 1977, as optimisation Nash 2000): it stands still where
+//! it was last told of (the full approximation scheme of [Bra77], as optimisation [Nas00]): it stands still where
 //! the fine shape does, and what it does otherwise corrects that. What goes back are turns alone. Each fine cell turns
 //! along with the coarse cells around it, and one global step (see `lead`) puts the vertices where the turned cells
 //! want them, so nothing of the clusters shows and what the fine shape has of its own stays.
@@ -15,10 +15,10 @@ use super::domain::{ABSENT, Domain};
 use super::history::Field;
 use super::shape::{Guesses, IDENTITY, Rotation, Shape, wide};
 use super::{ArapSolver, State};
-use crate::blend::Origin;
-use crate::handle::{Handle, Motion};
+use crate::handles::blend::Origin;
+use crate::handles::{Handle, Motion};
 use crate::operators::CHUNK;
-use crate::partition::Partition;
+use crate::region::partition::Partition;
 use crate::{Arap, Constraints, Loose, Method, Ordering, Problem};
 
 /// Vertices in a cluster at least: the smaller, the less stiff against bending, the more like the fine surface, and the

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Arap, ArapSolver};
-use crate::handle::{Motion, clear};
+use crate::handles::{Motion, clear};
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
 };

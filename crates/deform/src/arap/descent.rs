@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use super::history::Field;
 use super::shape::{Guesses, Shape};
 use super::{ArapSolver, State};
+use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
-use crate::sums::CHUNKS_A_TASK;
 
 /// A step must lower the energy by this share of what its slope promises.
 const SUFFICIENT: f64 = 1e-4;

@@ -1,5 +1,5 @@
 //! The first pass over the cells: each one's displaced ring becomes its matrix S, eight cells' rotations are fitted at
-//! once, and the energy is summed. It runs on whatever vectors the machine has (see [`crate::lanes`]).
+//! once, and the energy is summed. It runs on whatever vectors the machine has (see [`crate::numerical::lanes`]).
 
 use std::hint::black_box;
 
@@ -8,8 +8,9 @@ use pulp::{Simd, WithSimd};
 use super::cells::{Cells, Quad, minus};
 use super::gradient_pass::{Turn, times_turn};
 use super::rotation::Rotation;
-use crate::lanes::{Fits, LANES};
-use crate::prefetch::Prefetch;
+use crate::numerical::lane_fits::Fits;
+use crate::numerical::lanes::LANES;
+use crate::numerical::prefetch::Prefetch;
 
 /// Entries between those that are gathered and those that are asked for: some eight cells'.
 const AHEAD: usize = 48;

@@ -5,7 +5,7 @@ use pulp::{Simd, WithSimd};
 
 use super::cells::{Cells, Quad, minus};
 use super::rotation::Rotation;
-use crate::prefetch::Prefetch;
+use crate::numerical::prefetch::Prefetch;
 
 /// Entries between those that are gathered and those that are asked for: some cells'.
 const AHEAD: usize = 24;

@@ -1,4 +1,4 @@
-//! The limited-memory quasi-Newton direction (Nocedal & Wright, algorithm 7.4) in inner products alone.
+//! The limited-memory quasi-Newton direction [NW06, algorithm 7.4] in inner products alone.
 //!
 //! The preconditioner P majorises the energy's Hessian, so the first inverse is its inverse, unscaled, and the last
 //! steps' curvature corrects it: with no memory the direction is exactly a global step of the plain local/global method.
@@ -13,10 +13,10 @@
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
-use crate::sums::CHUNKS_A_TASK;
 
-/// Steps that are remembered. On the survey's bar, cylinder and cactus and a 43k scan 5, 8, 14 and 24 took the same
+/// Steps that are remembered. On the bar, cylinder and cactus of [BS08] and a 43k scan 5, 8, 14 and 24 took the same
 /// iterations within 4%, and 3 a fifth to two fifths more.
 const MEMORY: usize = 5;
 

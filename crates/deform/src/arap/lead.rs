@@ -11,8 +11,8 @@ use super::coarse::Coarse;
 use super::descent::End;
 use super::shape::{Guesses, IDENTITY};
 use super::{ArapSolver, State};
-use crate::blend::{Origin, Screws};
-use crate::handle::Motion;
+use crate::handles::Motion;
+use crate::handles::blend::{Origin, Screws};
 use crate::operators::CHUNK;
 
 /// Coarse steps for new targets: along a drag of 60 frames more than 4 did not get nearer to the minimum, 2 fell behind.

@@ -11,8 +11,8 @@ use super::springs::Spring;
 use crate::budget::reserved;
 use crate::operators::CHUNK;
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::hubs::hub_degree;
 use crate::sparse::matrix::ScaledMatrix;
+use crate::sparse::ordering::hubs::hub_degree;
 use crate::{ArapEnergy, Laplacian};
 
 /// The matrix on the solved vertices, and how constrained ones pull at them.
@@ -40,12 +40,12 @@ impl System {
 }
 
 /// A solved vertex' diagonal entry, and minus the others of its row by local vertex.
-struct Row {
+struct MatrixRow {
     diagonal: f64,
     others: Vec<(u32, f64)>,
 }
 
-/// Assembles the plate of cells that bend: their weights' Laplacian less Σ_i Z_i β_i K_i Z_iᵀ, Z_i's rows being G_iv for
+/// Assembles the bending matrix of cells that bend: their weights' Laplacian less Σ_i Z_i β_i K_i Z_iᵀ, Z_i's rows being G_iv for
 /// the ring's vertices and minus their sum for the cell's own.
 ///
 /// What a hub's cell subtracts couples all its neighbours with each other, and is left out: the quadratic is larger then
@@ -53,16 +53,16 @@ struct Row {
 ///
 /// # Errors
 /// [`FactorError::Memory`].
-pub(crate) fn assemble_plate(cells: &Cells, domain: &Domain, springs: &[Spring]) -> Result<System, FactorError> {
+pub(crate) fn assemble_bending(cells: &Cells, domain: &Domain, springs: &[Spring]) -> Result<System, FactorError> {
     let most = hub_degree(domain.local_of.len());
-    let rows: Vec<Row> = (0..domain.solved_count.div_ceil(CHUNK))
+    let rows: Vec<MatrixRow> = (0..domain.solved_count.div_ceil(CHUNK))
         .into_par_iter()
         .map_init(
             || vec![0_u32; domain.vertices.len()],
             |slots, chunk| {
                 let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(domain.solved_count);
                 range
-                    .map(|column| plate_row(cells, column as u32, most, slots))
+                    .map(|column| bending_row(cells, column as u32, most, slots))
                     .collect::<Vec<_>>()
             },
         )
@@ -72,7 +72,7 @@ pub(crate) fn assemble_plate(cells: &Cells, domain: &Domain, springs: &[Spring])
 }
 
 /// Cells of more than `most` neighbours are hubs'. `slots` are all zero, and are so again behind it.
-fn plate_row(cells: &Cells, column: u32, most: usize, slots: &mut [u32]) -> Row {
+fn bending_row(cells: &Cells, column: u32, most: usize, slots: &mut [u32]) -> MatrixRow {
     let mut others: Vec<(u32, f64)> = Vec::new();
     let mut add = |others: &mut Vec<(u32, f64)>, end: u32, value: f64| {
         let slot = &mut slots[end as usize];
@@ -115,7 +115,7 @@ fn plate_row(cells: &Cells, column: u32, most: usize, slots: &mut [u32]) -> Row 
         slots[*end as usize] = 0;
     }
     let diagonal = -others.swap_remove(0).1;
-    Row { diagonal, others }
+    MatrixRow { diagonal, others }
 }
 
 /// Assembles the Laplacian −L of the energy; `laplacian` has full rows for the solved vertices at least.
@@ -132,10 +132,10 @@ pub(crate) fn assemble(
         ArapEnergy::Spokes => largest_weights(laplacian),
         ArapEnergy::SpokesAndRims | ArapEnergy::Smooth => Vec::new(),
     };
-    let rows: Vec<Row> = domain.vertices[..domain.solved_count]
+    let rows: Vec<MatrixRow> = domain.vertices[..domain.solved_count]
         .iter()
         .map(|&vertex| {
-            let mut row = Row {
+            let mut row = MatrixRow {
                 diagonal: 0.0,
                 others: Vec::new(),
             };
@@ -156,7 +156,7 @@ pub(crate) fn assemble(
     assembled(&rows, domain, springs)
 }
 
-fn assembled(rows: &[Row], domain: &Domain, springs: &[Spring]) -> Result<System, FactorError> {
+fn assembled(rows: &[MatrixRow], domain: &Domain, springs: &[Spring]) -> Result<System, FactorError> {
     let mut diagonal: Vec<f64> = rows.iter().map(|row| row.diagonal).collect();
     for spring in springs {
         diagonal[spring.local as usize] += spring.strength;
@@ -165,7 +165,7 @@ fn assembled(rows: &[Row], domain: &Domain, springs: &[Spring]) -> Result<System
         .iter()
         .map(|&value| if value > 0.0 { value.sqrt().recip() } else { 1.0 })
         .collect();
-    let below = |(column, row): (usize, &Row)| {
+    let below = |(column, row): (usize, &MatrixRow)| {
         let solved = column as u32..domain.solved_count as u32;
         1 + row.others.iter().filter(|(other, _)| solved.contains(other)).count()
     };

@@ -2,7 +2,7 @@
 //!
 //! The energy is a function of the positions alone, E(p) = min over the cells' rotations, and is minimised by L-BFGS on
 //! top of the factored Laplacian with a line search on the true energy, so it never rises. With no memory a step *is*
-//! one iteration of the usual local/global method (Sorkine & Alexa 2007), which descends slowly: an iteration of ours
+//! one iteration of the usual local/global method [SA07], which descends slowly: an iteration of ours
 //! costs a tenth more and needs an order of magnitude fewer.
 //!
 //! Parts: `domain` numbers the vertices, `rims` and `spokes` make the two energies' `cells` and `bending` adds the smooth
@@ -49,12 +49,12 @@ use self::lead::Corrections;
 use self::precondition::{MapRoom, PreconditionError, Preconditioner, WeightInput};
 use self::shape::{Guesses, IDENTITY, Scratch, Shape};
 use self::springs::Springs;
-use crate::blend::HandleFrame;
-use crate::handle::{Handle, Motion};
+use crate::handles::blend::HandleFrame;
+use crate::handles::{Handle, Motion};
+use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
-use crate::partition::Partition;
+use crate::region::partition::Partition;
 use crate::sparse::Elimination;
-use crate::sums::CHUNKS_A_TASK;
 use crate::{BindError, Laplacian, Ordering, Problem, Role};
 
 /// The bound method, with the shape it is at.
@@ -157,7 +157,7 @@ impl ArapSolver {
             ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => {
                 matrix::assemble(&laplacian, &domain, springs.all(), options.energy)
             }
-            ArapEnergy::Smooth => matrix::assemble_plate(&cells, &domain, springs.all()),
+            ArapEnergy::Smooth => matrix::assemble_bending(&cells, &domain, springs.all()),
         };
         let too_large = |_| BindError::OutOfMemory {
             free_count: domain.solved_count,

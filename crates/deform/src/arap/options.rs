@@ -39,9 +39,9 @@ named_choices! {
     /// Which edges an ARAP cell consists of.
     #[non_exhaustive]
     pub enum ArapEnergy {
-        /// Those from its vertex to the neighbours (Sorkine & Alexa 2007), negative weights floored.
+        /// Those from its vertex to the neighbours [SA07], negative weights floored.
         Spokes = "spokes",
-        /// All edges of its vertex's triangles (Chao et al. 2010), with plain cotangents; never negative.
+        /// All edges of its vertex's triangles [CPSS10], with plain cotangents; never negative.
         SpokesAndRims = "spokes-and-rims",
         /// Spokes and rims, and every cell held to an affine map of its own: a thin plate in which neither bumps nor free
         /// borders tell, for what Levi & Gotsman (2015) and Oehri et al. (2025) smooth. No spikes at handles of a single

@@ -7,11 +7,11 @@ use super::cells::Quad;
 use super::domain::Domain;
 use super::matrix::System;
 use crate::budget::{Budget, filled};
+use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::substitution::{Real, Room, Row, Substitution};
-use crate::sums::CHUNKS_A_TASK;
+use crate::sparse::solve::substitution::{Real, Rhs, Room, Substitution};
 
 /// The inverse of the system on the solved vertices, or nearly so.
 ///
@@ -32,8 +32,8 @@ enum Solver {
 /// Room for applying it, kept from one step to the next.
 #[derive(Debug, Default)]
 pub(crate) struct MapRoom {
-    single: (Vec<Row<f32>>, Room<f32>),
-    double: (Vec<Row<f64>>, Room<f64>),
+    single: (Vec<Rhs<f32>>, Room<f32>),
+    double: (Vec<Rhs<f64>>, Room<f64>),
 }
 
 /// Why there is none.
@@ -142,10 +142,10 @@ impl Preconditioner {
         solver: &Substitution<T>,
         field: &[F],
         row: impl Fn(&F) -> Quad + Sync,
-        x: &mut Vec<Row<T>>,
+        x: &mut Vec<Rhs<T>>,
         room: &mut Room<T>,
     ) {
-        x.resize(field.len(), Row::default());
+        x.resize(field.len(), Rhs::default());
         x.par_chunks_mut(CHUNK)
             .zip(field.par_chunks(CHUNK))
             .zip(self.scale.par_chunks(CHUNK))
@@ -243,7 +243,7 @@ pub(crate) struct WeightInput<'a> {
 }
 
 /// `mapped` ← S x in single precision.
-fn narrowed<T: Real>(x: &[Row<T>], scale: &[f64], mapped: &mut [[f32; 3]]) {
+fn narrowed<T: Real>(x: &[Rhs<T>], scale: &[f64], mapped: &mut [[f32; 3]]) {
     mapped
         .par_chunks_mut(CHUNK)
         .zip(x.par_chunks(CHUNK))

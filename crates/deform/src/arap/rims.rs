@@ -1,4 +1,4 @@
-//! The energy over spokes and rims (Chao et al. 2010): a vertex's cell is all edges of its triangles.
+//! The energy over spokes and rims [CPSS10]: a vertex's cell is all edges of its triangles.
 //!
 //! E = ½ Σ_i Σ_f∋i ⅓ Σ_e∈f w_fe |e' − R_i e|², with w_fe half the cotangent opposite e in f, plain, negative ones
 //! included: each triangle's inner sum is a squared norm whatever its shape, so nothing is ever negative. With the ⅓ the

@@ -1,4 +1,4 @@
-//! The energy over spokes (Sorkine & Alexa 2007): a vertex's cell is the edges to its neighbours.
+//! The energy over spokes [SA07]: a vertex's cell is the edges to its neighbours.
 //!
 //! E = ½ Σ_i ½ Σ_j w_ij |e'_ij − R_i e_ij|² with w_ij = ½ Σ cot, floored: across obtuse triangles it is negative, and
 //! then the rest shape is no minimum, nor need there be one. The floor is a hair above zero, so that the system stays

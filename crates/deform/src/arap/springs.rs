@@ -8,8 +8,8 @@ use super::cells::{Quad, minus, quad};
 use super::domain::Domain;
 use super::history::Field;
 use super::shape::Shape;
-use crate::handle::{Handle, Motion};
-use crate::partition::Partition;
+use crate::handles::{Handle, Motion};
+use crate::region::partition::Partition;
 use crate::{Laplacian, Problem};
 
 /// The springs of all soft handles, and what else pulls.

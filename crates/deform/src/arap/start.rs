@@ -7,8 +7,8 @@ use super::cells::{quad, vector};
 use super::domain::ABSENT;
 use super::shape::{Guesses, Shape, narrow, wide};
 use super::{ArapSolver, Prescribed, State};
-use crate::blend::{Origin, Screw, Screws, carried};
-use crate::handle::Motion;
+use crate::handles::Motion;
+use crate::handles::blend::{Origin, Screw, Screws, carried};
 use crate::operators::CHUNK;
 
 /// The blend from the rest shape is passed over for so many targets at most: it costs as much as the step after it and

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::handle::{Motion, clear};
+use crate::handles::{Motion, clear};
 use crate::method::option::{Number, options};
 use crate::method::{BindInput, BoundMethod, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped};
 use crate::{BindError, SolveError};

@@ -18,7 +18,7 @@ use crate::Ordering;
 
 /// Every method, in the order in which they are shown. A new one adds its line here.
 pub const METHODS: &[&MethodDeclaration] = &[
-    &crate::shell::DECLARATION,
+    &crate::bilaplacian::DECLARATION,
     &crate::arap::DECLARATION,
     &crate::primo::DECLARATION,
     #[cfg(feature = "identity-method")]

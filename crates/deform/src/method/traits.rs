@@ -7,9 +7,9 @@ use glam::DVec3;
 use pliant_mesh::{Cancel, Progress};
 
 use super::{MethodDeclaration, Needs, OptionRefused, OptionValue, Solve};
-use crate::handle::{Handle, Motion};
-use crate::operators::net::Net;
-use crate::partition::Partition;
+use crate::handles::{Handle, Motion};
+use crate::operators::triangulation::Triangulation;
+use crate::region::partition::Partition;
 use crate::sparse::cholesky::Refactorisation;
 use crate::{BindError, HandleBases, Ordering, Problem, ReusableFactor, SolveError};
 
@@ -45,8 +45,8 @@ pub(crate) trait DeformMethod: Options {
     }
 
     /// The triangles that its operator is made on.
-    fn net<'a>(&self, problem: &Problem<'a>) -> Net<'a> {
-        Net::of_surface(problem.surface, problem.topology)
+    fn triangulation<'a>(&self, problem: &Problem<'a>) -> Triangulation<'a> {
+        Triangulation::of_surface(problem.surface, problem.topology)
     }
 
     /// Computes what does not depend on the handles' transforms.

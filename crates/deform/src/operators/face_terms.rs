@@ -1,4 +1,4 @@
-//! What one triangle adds to the Laplacian and to its corners' areas, by discretisation (survey, section 5.1).
+//! What one triangle adds to the Laplacian and to its corners' areas, by discretisation [BS08, section 5.1].
 
 use pliant_mesh::{SurfaceVertex, area_of_lengths, cotangents, mixed_corner_areas};
 use rayon::prelude::*;
@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::Discretisation;
 use crate::operators::CHUNK;
 use crate::operators::mollification::lack;
-use crate::operators::net::Net;
+use crate::operators::triangulation::Triangulation;
 
 /// ½ cot 60°: an equilateral triangle's weight on each of its edges.
 const HALF_COTANGENT_60: f64 = 0.288_675_134_594_812_9;
@@ -39,17 +39,17 @@ impl Metric {
         }
     }
 
-    pub fn of(net: &Net, discretisation: Discretisation) -> Self {
+    pub fn of(triangulation: &Triangulation, discretisation: Discretisation) -> Self {
         if discretisation == Discretisation::CotangentArea {
             return Self::cotangent_area();
         }
-        let total = total_area(net);
+        let total = total_area(triangulation);
         // A surface of no area at all still has a shape to solve on.
         let mean = |count: usize| if total > 0.0 { total / count as f64 } else { 1.0 };
         Self {
             discretisation,
-            mean_face_area: mean(net.face_count()) * net.share(),
-            mean_vertex_area: mean(net.vertex_count()) * net.share(),
+            mean_face_area: mean(triangulation.face_count()) * triangulation.share(),
+            mean_vertex_area: mean(triangulation.vertex_count()) * triangulation.share(),
         }
     }
 
@@ -84,13 +84,13 @@ impl Metric {
 }
 
 /// Of all triangles, summed in chunks of a fixed size, so that the number of threads doesn't show.
-fn total_area(net: &Net) -> f64 {
-    let count = net.face_count();
+fn total_area(triangulation: &Triangulation) -> f64 {
+    let count = triangulation.face_count();
     let partial: Vec<f64> = (0..count.div_ceil(CHUNK))
         .into_par_iter()
         .map(|chunk| {
             (chunk * CHUNK..((chunk + 1) * CHUNK).min(count))
-                .map(|face| area_of_lengths(net.lengths(face as u32)))
+                .map(|face| area_of_lengths(triangulation.lengths(face as u32)))
                 .sum()
         })
         .collect();

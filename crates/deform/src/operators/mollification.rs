@@ -1,4 +1,4 @@
-//! Intrinsic mollification (Sharp and Crane 2020, section 4.5): edges made longer where a triangle is too flat for
+//! Intrinsic mollification [SC20, section 4.5]: edges made longer where a triangle is too flat for
 //! cotangents.
 
 /// By how much two edges of a triangle are made to exceed the third, in units of the longest.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Primo, PrimoSolver};
-use crate::handle::{Motion, clear};
+use crate::handles::{Motion, clear};
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
 };
@@ -84,7 +84,7 @@ impl BoundMethod for PrimoSolver {
         PrimoSolver::factor_len(self)
     }
 
-    /// A step took 17 ms on the survey's bar (5,122 solved vertices, two cores): one shape a step is what keeps a window
+    /// A step took 17 ms on the bar of [BS08] (5,122 solved vertices, two cores): one shape a step is what keeps a window
     /// going.
     fn step_cost(&self) -> usize {
         20 * self.vertices.vertices.len()

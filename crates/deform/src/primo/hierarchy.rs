@@ -18,7 +18,7 @@ use super::system::{Block, own_block};
 use crate::budget::Budget;
 use crate::operators::CHUNK;
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::graph::elimination;
+use crate::sparse::ordering::graph::elimination;
 
 /// Up to so many bodies are solved for directly.
 pub(crate) const DIRECT: usize = 16_000;

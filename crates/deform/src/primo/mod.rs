@@ -1,4 +1,4 @@
-//! Coupled prisms (Botsch, Pauly, Gross, Kobbelt 2006): every triangle a rigid prism, elastically joined to its
+//! Coupled prisms [BPGK06]: every triangle a rigid prism, elastically joined to its
 //! neighbours over the quads that they share at rest.
 //!
 //! The prisms' rotations are the unknowns. Where they are least stretched, given how they are turned, is a linear problem
@@ -9,7 +9,7 @@
 //! hardly changes while they turn together, so the rest pose's serves for many steps, and is renewed where a minimum is
 //! far. The line search looks at the true energy, which never rises.
 //!
-//! Measured on the survey's bar (12,106 faces), iterations to within 1% of the least energy at a thickness of 0.02: with
+//! Measured on the bar of [BS08] (12,106 faces), iterations to within 1% of the least energy at a thickness of 0.02: with
 //! translations among the unknowns and the rest pose's matrix over 1000, or 10 plain Gauss–Newton steps that each factor;
 //! with translations eliminated 23, or 17 with the matrix renewed every twelve steps.
 //!
@@ -51,13 +51,13 @@ use self::prisms::Prisms;
 use self::springs::Springs;
 use self::sweep::Colours;
 use self::vertices::Vertices;
-use crate::blend::HandleFrame;
-use crate::handle::{Handle, Motion};
-use crate::lbfgs::Memory;
-use crate::partition::Partition;
+use crate::handles::blend::HandleFrame;
+use crate::handles::{Handle, Motion};
+use crate::numerical::lbfgs::Memory;
+use crate::region::partition::Partition;
 use crate::sparse::Elimination;
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::graph::elimination;
+use crate::sparse::ordering::graph::elimination;
 use crate::{BindError, Problem};
 
 /// The bound method, with the pose it is at.
@@ -243,8 +243,8 @@ mod tests {
 
     use super::pose::tests::noise;
     use super::{Primo, PrimoSolver, State};
-    use crate::handle::{Handle, Motion};
-    use crate::partition::Partition;
+    use crate::handles::{Handle, Motion};
+    use crate::region::partition::Partition;
     use crate::{Constraints, Loose, Method, Problem, Role};
 
     /// A solver with the lowest tenth of z fixed and the highest a handle, and the handle's motion.

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use super::joints::{Joints, Side};
 use super::springs::Springs;
+use crate::numerical::sums::Field;
 use crate::operators::CHUNK;
-use crate::sums::Field;
 
 /// The bodies' motions from rest.
 #[derive(Clone, Debug)]
@@ -154,12 +154,12 @@ pub(crate) mod tests {
 
     use super::Pose;
     use crate::Role;
+    use crate::numerical::sums::Field;
     use crate::primo::edges::Edges;
     use crate::primo::joints::{Joints, Material};
     use crate::primo::prisms::Prisms;
     use crate::primo::springs::Springs;
     use crate::primo::system::gauss_newton;
-    use crate::sums::Field;
 
     pub fn noise(k: usize) -> f64 {
         2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract()

@@ -4,8 +4,8 @@ use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
 
 use super::PrimoSolver;
-use crate::blend::{Origin, Screw, Screws, carried};
-use crate::handle::Motion;
+use crate::handles::Motion;
+use crate::handles::blend::{Origin, Screw, Screws, carried};
 use crate::operators::CHUNK;
 
 impl PrimoSolver {

@@ -1,4 +1,4 @@
-//! Local shape matching: each prism turned the best way between its neighbours as they are (Botsch et al. 2006,
+//! Local shape matching: each prism turned the best way between its neighbours as they are ([BPGK06],
 //! section 4.2), which unfolds what Newton's method can't.
 //!
 //! Prisms of one colour share no joint and turn at once; each turn is the least of the energy over one rotation, so a
@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use super::joints::Joints;
 use super::pose::Pose;
 use super::{PrimoSolver, State};
+use crate::numerical::rotation::fit;
 use crate::operators::CHUNK;
-use crate::rotation::fit;
 
 /// The most sweeps before Newton's method goes on with what there is.
 const SWEEPS: u32 = 200;

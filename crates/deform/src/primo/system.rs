@@ -28,7 +28,7 @@ pub(crate) type Block = [[f64; 6]; 6];
 pub(crate) const DOF: usize = 6;
 
 /// One prism's blocks: its own, and those beside its solved neighbours, which are listed once each.
-struct Row {
+struct BlockRow {
     own: Block,
     others: Vec<(u32, Block)>,
 }
@@ -38,10 +38,11 @@ struct Row {
 /// # Errors
 /// [`FactorError::Memory`].
 pub(crate) fn gauss_newton(joints: &Joints, pose: &Pose) -> Result<ScaledMatrix, FactorError> {
-    let mut rows: Vec<Row> = reserved(joints.count())?;
+    let mut rows: Vec<BlockRow> = reserved(joints.count())?;
     let each = (0..joints.count()).into_par_iter().with_min_len(CHUNK);
     rows.par_extend(each.map(|prism| row(joints, pose, prism)));
-    let below = |(prism, row): (usize, &Row)| row.others.iter().filter(|(other, _)| *other as usize > prism).count();
+    let below =
+        |(prism, row): (usize, &BlockRow)| row.others.iter().filter(|(other, _)| *other as usize > prism).count();
     let blocks: usize = rows.iter().enumerate().map(below).sum();
     let entries = rows.len() * DOF * (DOF + 1) / 2 + blocks * DOF * DOF;
     u32::try_from(entries).map_err(|_| FactorError::Memory)?;
@@ -84,8 +85,8 @@ pub(crate) fn gauss_newton(joints: &Joints, pose: &Pose) -> Result<ScaledMatrix,
     Ok(matrix)
 }
 
-fn row(joints: &Joints, pose: &Pose, prism: usize) -> Row {
-    let mut row = Row {
+fn row(joints: &Joints, pose: &Pose, prism: usize) -> BlockRow {
+    let mut row = BlockRow {
         own: [[0.0; 6]; 6],
         others: Vec::with_capacity(3),
     };

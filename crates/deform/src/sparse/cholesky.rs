@@ -1,7 +1,7 @@
-//! The sparse Cholesky factor L Lᵀ, block by block, in the order that the matrix already has.
+//! The supernodal sparse Cholesky factor L Lᵀ, in the order that the matrix already has [Dav06].
 //!
-//! The order comes in blocks of columns (`dissection`, `leaf`). `symbolic` finds their rows, `multifrontal` factors over
-//! the parts that `assembly_tree` cuts, `triangular` solves over the same.
+//! The ordering brings its supernodes (`ordering`). `symbolic` finds their rows, `numeric` factors over the parts that
+//! `symbolic::assembly_tree` cuts, and `solve` substitutes over the same parts.
 //!
 //! A simplicial factorisation of the same systems took 720 and 12,300 ms at 45,797 and 183,208 free vertices where a
 //! supernodal one took 114 and 840 (horse.ply and once subdivided, one core).
@@ -12,15 +12,15 @@ use std::sync::Arc;
 use pliant_mesh::Cancel;
 
 use crate::budget::Budget;
-use crate::sparse::assembly_tree::AssemblyTree;
-use crate::sparse::elimination::Elimination;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
-use crate::sparse::multifrontal::Numbers;
-use crate::sparse::reuse::{Named, equal_parts, worth_keeping};
-use crate::sparse::substitution::{Real, Substitution};
+use crate::sparse::numeric::Numbers;
+use crate::sparse::numeric::reuse::{Named, equal_parts, worth_keeping};
+use crate::sparse::ordering::elimination::Elimination;
+use crate::sparse::solve::substitution::{Real, Substitution};
 use crate::sparse::symbolic::Symbolic;
-use crate::sparse::{multifrontal, triangular};
+use crate::sparse::symbolic::assembly_tree::AssemblyTree;
+use crate::sparse::{numeric, solve};
 
 /// A factor of the scaled matrix.
 #[derive(Debug)]
@@ -55,7 +55,7 @@ pub(crate) struct RenewableFactor {
 const SHIFTS: [f64; 6] = [0.0, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5];
 
 impl Factor {
-    /// Factors the matrix, whose columns stand in blocks that end at `ends`, with `shift` added to its unit diagonal.
+    /// Factors the matrix, whose columns stand in supernodes that end at `ends`, with `shift` added to its unit diagonal.
     #[cfg(test)]
     pub fn of(matrix: &ScaledMatrix, ends: &[u32], shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
         let mut factor = Self::analysed(matrix, ends, Budget::default())?;
@@ -102,7 +102,7 @@ impl Factor {
     /// Factors into what [`Factor::analysed`] left empty.
     pub fn fill(&mut self, matrix: &ScaledMatrix, shift: f64, cancel: &Cancel) -> Result<(), FactorError> {
         let (symbolic, assembly_tree) = (&self.symbolic, &self.assembly_tree);
-        self.numbers = multifrontal::factor(matrix, shift, symbolic, assembly_tree, &[], &[], cancel)?;
+        self.numbers = numeric::factor(matrix, shift, symbolic, assembly_tree, &[], &[], cancel)?;
         Ok(())
     }
 
@@ -126,7 +126,9 @@ impl Factor {
 
     /// Multiplications and additions of a factorisation.
     pub fn work(&self) -> f64 {
-        (0..self.symbolic.block_count()).map(|s| self.symbolic.work(s)).sum()
+        (0..self.symbolic.supernode_count())
+            .map(|s| self.symbolic.work(s))
+            .sum()
     }
 
     #[cfg(test)]
@@ -136,7 +138,7 @@ impl Factor {
 
     /// Solves for K right-hand sides in place.
     pub fn solve<const K: usize>(&self, x: &mut [[f64; K]]) {
-        triangular::solve_in_place(&self.symbolic, &self.assembly_tree, &self.numbers, x);
+        solve::solve_in_place(&self.symbolic, &self.assembly_tree, &self.numbers, x);
     }
 }
 
@@ -171,7 +173,7 @@ impl RenewableFactor {
                 Refactorisation::Never | Refactorisation::From(_) => Vec::new(),
             };
             let (symbolic, assembly_tree) = (&factor.symbolic, &factor.assembly_tree);
-            match multifrontal::factor(&matrix, shift, symbolic, assembly_tree, &known, &kept, cancel) {
+            match numeric::factor(&matrix, shift, symbolic, assembly_tree, &known, &kept, cancel) {
                 Ok(numbers) => {
                     factor.numbers = numbers;
                     return Ok(Self {
@@ -238,24 +240,24 @@ pub(crate) mod tests {
     use crate::Budget;
     use crate::Laplacian;
     use crate::Ordering;
-    use crate::shell::assembly::assemble_shell;
-    use crate::shell::hubs::Hubs;
-    use crate::shell::operator::ShellOperator;
+    use crate::bilaplacian::assembly::assemble_bilaplacian;
+    use crate::bilaplacian::hubs::Hubs;
+    use crate::bilaplacian::operator::BilaplacianOperator;
     use crate::sparse::Elimination;
     use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
     use pliant_mesh::{Cancel, Drawn, Progress, shapes};
 
     /// The matrix's factor with every ninth vertex held, in the order that binding takes.
     pub(crate) fn factor_of(drawn: Drawn) -> Factor {
-        let (matrix, ends) = plate_of(drawn);
+        let (matrix, ends) = bilaplacian_of(drawn);
         Factor::of(&matrix, &ends, 0.0, &Cancel::new()).unwrap()
     }
 
     fn matrix() -> (ScaledMatrix, Vec<u32>) {
-        plate_of(shapes::torus(14, 9))
+        bilaplacian_of(shapes::torus(14, 9))
     }
 
-    fn plate_of(drawn: Drawn) -> (ScaledMatrix, Vec<u32>) {
+    fn bilaplacian_of(drawn: Drawn) -> (ScaledMatrix, Vec<u32>) {
         let model = shapes::model(drawn);
         let count = model.surface.positions.len();
         let laplacian = Laplacian::of(&model.surface, &model.topology, &vec![1.0; count]);
@@ -266,8 +268,8 @@ pub(crate) mod tests {
         for (column, &vertex) in columns.iter().enumerate() {
             column_of[vertex as usize] = column as u32;
         }
-        let operator = ShellOperator::new(laplacian, &Bilaplacian::default(), 1.0);
-        let matrix = assemble_shell(&operator, &columns, &column_of, &Hubs::default(), Budget::default());
+        let operator = BilaplacianOperator::new(laplacian, &Bilaplacian::default(), 1.0);
+        let matrix = assemble_bilaplacian(&operator, &columns, &column_of, &Hubs::default(), Budget::default());
         (matrix.unwrap(), ends)
     }
 
@@ -333,8 +335,8 @@ pub(crate) mod tests {
 
     #[test]
     fn the_bits_of_factor_and_solution_do_not_depend_on_the_number_of_threads() {
-        // Large enough for tasks, and for supernodes of more than one block.
-        let (matrix, ends) = plate_of(shapes::icosphere(5));
+        // Large enough for tasks, and for supernodes of more strips than one dense step takes.
+        let (matrix, ends) = bilaplacian_of(shapes::icosphere(5));
         let outcome = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
@@ -373,8 +375,9 @@ pub(crate) mod tests {
         for (column, &vertex) in order.iter().enumerate() {
             column_of[vertex as usize] = column as u32;
         }
-        let operator = ShellOperator::new(laplacian, &Bilaplacian::default(), 1.0);
-        let mut matrix = assemble_shell(&operator, &order, &column_of, &Hubs::default(), Budget::default()).unwrap();
+        let operator = BilaplacianOperator::new(laplacian, &Bilaplacian::default(), 1.0);
+        let mut matrix =
+            assemble_bilaplacian(&operator, &order, &column_of, &Hubs::default(), Budget::default()).unwrap();
         // Nothing is held: let every vertex be held a little.
         for column in 0..count {
             matrix.lower_values[matrix.lower_offsets[column] as usize] += 0.1;
@@ -395,8 +398,8 @@ pub(crate) mod tests {
         };
         let all = {
             let factor = Factor::analysed(&matrix, &elimination.ends, Budget::default()).unwrap();
-            let lines = |part: &crate::sparse::assembly_tree::Part| {
-                crate::sparse::symbolic::lines_left(factor.symbolic.pattern(part.blocks.end - 1).len())
+            let lines = |part: &crate::sparse::symbolic::assembly_tree::Part| {
+                crate::sparse::symbolic::contribution_lines(factor.symbolic.pattern(part.supernodes.end - 1).len())
             };
             8 * factor.assembly_tree.parts.iter().map(lines).sum::<usize>()
         };

@@ -1,12 +1,12 @@
 //! Stiffer along what is long: the shell as if it were stretched along its principal axes.
 
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_deform::{Bilaplacian, Method, Role, ShellOrder};
+use pliant_deform::{Bilaplacian, BilaplacianOrder, Method, Role};
 use pliant_mesh::{Drawn, shapes};
 
 use crate::rig::{Scene, apart};
 
-fn method(order: ShellOrder, anisotropy: f64) -> Method {
+fn method(order: BilaplacianOrder, anisotropy: f64) -> Method {
     let mut options = Bilaplacian::default();
     options.order = order;
     options.anisotropy = anisotropy;
@@ -15,7 +15,7 @@ fn method(order: ShellOrder, anisotropy: f64) -> Method {
 
 /// A sheet 4 long in x and `width` wide, turned away from the axes, its rim held and a patch inside lifted by 1; heights
 /// and the positions within the sheet.
-fn sheet(width: f64, turn: DQuat, order: ShellOrder, anisotropy: f64) -> (Vec<DVec3>, Vec<f64>) {
+fn sheet(width: f64, turn: DQuat, order: BilaplacianOrder, anisotropy: f64) -> (Vec<DVec3>, Vec<f64>) {
     let flat = shapes::grid(40, 20);
     let positions = flat
         .positions
@@ -63,7 +63,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 fn it_is_the_shell_of_the_stretched_sheet() {
     // What may move of this sheet varies in x and y as 4 · 0.84 to 1 · 0.68.
     let turn = DQuat::from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 0.7);
-    for order in ShellOrder::ALL {
+    for order in BilaplacianOrder::ALL {
         let isotropic = sheet(1.0, turn, order, 0.0).1;
         let whole = sheet(1.0, turn, order, 1.0).1;
         assert!(largest_difference(&isotropic, &whole) > 0.02, "{order:?}");
@@ -85,7 +85,7 @@ fn it_is_the_shell_of_the_stretched_sheet() {
 #[test]
 fn the_longer_way_bends_less_the_more_anisotropic() {
     let bends = [0.0, 0.25, 0.5, 0.75, 1.0].map(|anisotropy| {
-        let (places, heights) = sheet(1.0, DQuat::IDENTITY, ShellOrder::ThinPlate, anisotropy);
+        let (places, heights) = sheet(1.0, DQuat::IDENTITY, BilaplacianOrder::ThinPlate, anisotropy);
         let row: Vec<f64> = places
             .iter()
             .zip(&heights)
@@ -103,7 +103,7 @@ fn the_longer_way_bends_less_the_more_anisotropic() {
 #[test]
 fn what_varies_alike_in_all_directions_is_not_stretched_to_the_last_bit() {
     for anisotropy in [0.3, 1.0] {
-        for order in ShellOrder::ALL {
+        for order in BilaplacianOrder::ALL {
             // Caps at both ends of every axis: what is between varies alike along all of them.
             let mut scene = Scene::new(shapes::icosphere(3))
                 .with(Role::Fixed, |p| p.min_element() < -0.9)
@@ -124,7 +124,7 @@ fn unevenness(anisotropy: f64) -> f64 {
     let mut scene = Scene::new(shapes::bar(4, 4, 32))
         .with(Role::Fixed, |p| p.z < 1.5)
         .with(Role::Handle(0), |p| p.z > 30.5);
-    scene.method = method(ShellOrder::ThinPlate, anisotropy);
+    scene.method = method(BilaplacianOrder::ThinPlate, anisotropy);
     let centre = DVec3::new(2.0, 2.0, 0.0);
     let twist =
         DAffine3::from_translation(centre) * DAffine3::from_rotation_z(ANGLE_RAD) * DAffine3::from_translation(-centre);
@@ -159,7 +159,7 @@ fn a_twisted_bar_is_twisted_the_more_evenly_the_more_anisotropic() {
 #[test]
 fn place_and_unit_do_not_matter() {
     let mut scene = Scene::new(shapes::tube(16, 24, 6.0)).with_ends(true);
-    scene.method = method(ShellOrder::ThinPlate, 0.8);
+    scene.method = method(BilaplacianOrder::ThinPlate, 0.8);
     let targets = vec![DAffine3::from_translation(DVec3::X); scene.handle_count];
     let here = scene.moved(&targets);
     let place = DAffine3::from_translation(DVec3::new(3e5, -2e5, 1e5));

@@ -1,15 +1,15 @@
 //! With which continuity the shell joins what holds it, boundary by boundary.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{BindError, Role, ShellOrder};
+use pliant_deform::{BilaplacianOrder, BindError, Role};
 use pliant_mesh::shapes;
 
+use crate::bilaplacian::of_order;
 use crate::rig::{Scene, apart, back_substitute, step, turned};
-use crate::shell::of_order;
 
 /// Heights along a unit strip that joins the fixed end with the continuity `near` and the lifted one with `far`, from
 /// the last held row to the first lifted one, and their pitch.
-fn strip(cells: usize, order: ShellOrder, near: f64, far: f64) -> (Vec<f64>, f64) {
+fn strip(cells: usize, order: BilaplacianOrder, near: f64, far: f64) -> (Vec<f64>, f64) {
     let rows = order.number() as f64;
     let step = 1.0 / cells as f64;
     let (from, to) = ((rows - 0.5) * step, 1.0 - (rows - 0.5) * step);
@@ -39,24 +39,24 @@ fn strip(cells: usize, order: ShellOrder, near: f64, far: f64) -> (Vec<f64>, f64
 type Polynomial = fn(f64) -> f64;
 
 /// Order, continuity at the fixed end and at the lifted one, and the beam's polynomial with these ends.
-const BEAMS: [(ShellOrder, f64, f64, Polynomial); 9] = [
-    (ShellOrder::ThinPlate, 0.0, 0.0, |s| s),
-    (ShellOrder::ThinPlate, 0.0, 1.0, |s| 0.5 * s * (3.0 - s * s)),
-    (ShellOrder::ThinPlate, 1.0, 0.0, |s| 0.5 * s * s * (3.0 - s)),
-    (ShellOrder::ThinPlate, 2.0, 1.0, |s| s * s * (3.0 - 2.0 * s)),
-    (ShellOrder::CurvatureVariation, 2.0, 2.0, |s| {
+const BEAMS: [(BilaplacianOrder, f64, f64, Polynomial); 9] = [
+    (BilaplacianOrder::ThinPlate, 0.0, 0.0, |s| s),
+    (BilaplacianOrder::ThinPlate, 0.0, 1.0, |s| 0.5 * s * (3.0 - s * s)),
+    (BilaplacianOrder::ThinPlate, 1.0, 0.0, |s| 0.5 * s * s * (3.0 - s)),
+    (BilaplacianOrder::ThinPlate, 2.0, 1.0, |s| s * s * (3.0 - 2.0 * s)),
+    (BilaplacianOrder::CurvatureVariation, 2.0, 2.0, |s| {
         s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
     }),
-    (ShellOrder::CurvatureVariation, 1.0, 2.0, |s| {
+    (BilaplacianOrder::CurvatureVariation, 1.0, 2.0, |s| {
         s * s * (10.0 - 15.0 * s * s + 8.0 * s * s * s) / 3.0
     }),
-    (ShellOrder::CurvatureVariation, 0.0, 2.0, |s| {
+    (BilaplacianOrder::CurvatureVariation, 0.0, 2.0, |s| {
         s * (15.0 - 10.0 * s * s + 3.0 * s * s * s * s) / 8.0
     }),
-    (ShellOrder::CurvatureVariation, 1.0, 1.0, |s| {
+    (BilaplacianOrder::CurvatureVariation, 1.0, 1.0, |s| {
         0.5 * s * s * (5.0 - 5.0 * s * s + 2.0 * s * s * s)
     }),
-    (ShellOrder::CurvatureVariation, 0.0, 0.0, |s| s),
+    (BilaplacianOrder::CurvatureVariation, 0.0, 0.0, |s| s),
 ];
 
 #[test]
@@ -113,7 +113,10 @@ fn the_surface_joins_with_the_continuity_that_was_asked_for_and_no_more() {
 
 #[test]
 fn a_hinge_with_a_spring_turns_as_far_at_every_resolution() {
-    for (order, whole) in [(ShellOrder::ThinPlate, 0.0), (ShellOrder::CurvatureVariation, 1.0)] {
+    for (order, whole) in [
+        (BilaplacianOrder::ThinPlate, 0.0),
+        (BilaplacianOrder::CurvatureVariation, 1.0),
+    ] {
         let mut last = f64::INFINITY;
         for share in [0.0, 0.3, 0.6, 0.9, 1.0] {
             let jump = [24, 48, 96].map(|cells| {
@@ -136,7 +139,7 @@ fn a_hinge_with_a_spring_turns_as_far_at_every_resolution() {
 #[test]
 fn full_continuity_changes_nothing_and_every_class_binds_with_any() {
     for (name, drawn) in shapes::classes() {
-        for order in [ShellOrder::ThinPlate, ShellOrder::CurvatureVariation] {
+        for order in [BilaplacianOrder::ThinPlate, BilaplacianOrder::CurvatureVariation] {
             for fixed in [true, false] {
                 let mut scene = Scene::new(drawn.clone()).with_ends(fixed);
                 scene.method = of_order(order);
@@ -160,7 +163,7 @@ fn full_continuity_changes_nothing_and_every_class_binds_with_any() {
                     }
                     Err(error) => {
                         assert!(error.vertex().is_some(), "{name}: {error}");
-                        assert_eq!(order, ShellOrder::CurvatureVariation, "{name}: {error}");
+                        assert_eq!(order, BilaplacianOrder::CurvatureVariation, "{name}: {error}");
                     }
                 }
             }

@@ -1,7 +1,7 @@
 //! Energies against another computation of them: cotangents from angles, dense matrices, quadratic forms.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Bilaplacian, Method, ShellOrder};
+use pliant_deform::{Bilaplacian, BilaplacianOrder, Method};
 use pliant_mesh::{Drawn, shapes};
 
 use crate::rig::{Scene, back_substitute, turned};
@@ -92,7 +92,7 @@ fn sound() -> Vec<Drawn> {
 fn the_energy_of_a_step_is_the_quadratic_form_of_the_dense_matrix() {
     let mut compared = 0;
     for (number, drawn) in sound().into_iter().enumerate() {
-        for order in ShellOrder::ALL {
+        for order in BilaplacianOrder::ALL {
             for (stretching, bending) in [(0.0, 1.0), (300.0, 0.2), (5.0, 0.0)] {
                 let mut options = Bilaplacian::default();
                 (options.order, options.stretching, options.bending) = (order, stretching, bending);
@@ -103,7 +103,7 @@ fn the_energy_of_a_step_is_the_quadratic_form_of_the_dense_matrix() {
                 scene.method = Method::from(options.clone());
                 if bending == 0.0 {
                     // Nothing but stretching: the order says nothing.
-                    options.order = ShellOrder::Membrane;
+                    options.order = BilaplacianOrder::Membrane;
                 }
                 let bound = &mut scene.bind();
                 let size = scene.diagonal();

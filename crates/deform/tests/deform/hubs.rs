@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Arap, ArapEnergy, Bilaplacian, BindError, Budget, Method, Primo, Role, ShellOrder};
+use pliant_deform::{Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, Method, Primo, Role};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Progress, SurfaceVertex, shapes};
 
 use crate::rig::{Scene, settle};
@@ -35,10 +35,10 @@ fn scene(drawn: Drawn, method: Method) -> Scene {
     scene
 }
 
-fn shell(order: ShellOrder) -> Method {
-    let mut shell = Bilaplacian::default();
-    shell.order = order;
-    shell.into()
+fn bilaplacian(order: BilaplacianOrder) -> Method {
+    let mut options = Bilaplacian::default();
+    options.order = order;
+    options.into()
 }
 
 fn methods() -> Vec<Method> {
@@ -49,7 +49,7 @@ fn methods() -> Vec<Method> {
         arap.into()
     };
     let energies = [ArapEnergy::Spokes, ArapEnergy::SpokesAndRims, ArapEnergy::Smooth];
-    let mut methods: Vec<Method> = ShellOrder::ALL.into_iter().map(shell).collect();
+    let mut methods: Vec<Method> = BilaplacianOrder::ALL.into_iter().map(bilaplacian).collect();
     methods.extend(energies.map(arap));
     methods.push(Primo::default().into());
     methods
@@ -84,9 +84,9 @@ fn a_crowded_surface_bends_by_every_method() {
 #[test]
 fn a_surface_that_nothing_holds_moves_rigidly_with_its_handle_around_hubs_too() {
     let shift = DVec3::new(0.3, -0.2, 0.5);
-    for order in ShellOrder::ALL {
+    for order in BilaplacianOrder::ALL {
         let mut scene = Scene::new(fan(800)).with(Role::Handle(0), |p| p.x > 0.8);
-        scene.method = shell(order);
+        scene.method = bilaplacian(order);
         for d in scene.moved(&[DAffine3::from_translation(shift)]) {
             assert!(d.distance(shift) < 1e-9, "{order:?}: {d}");
         }
@@ -162,13 +162,13 @@ fn a_strip_too_long_for_its_order_is_refused_at_once_and_a_lower_order_bends_it(
         let mut scene = Scene::new(shapes::grid(21_000, 1))
             .with(Role::Fixed, |p| p.x < 1e-6)
             .with(Role::Handle(0), |p| p.x > 1.0 - 1e-6);
-        scene.method = shell(order);
+        scene.method = bilaplacian(order);
         scene
     };
-    let refused = long(ShellOrder::CurvatureVariation).try_bind().err();
+    let refused = long(BilaplacianOrder::CurvatureVariation).try_bind().err();
     let Some(BindError::Slender { edges, order: 3, .. }) = refused else {
         unreachable!("{refused:?}")
     };
     assert!((10_000..10_600).contains(&edges), "{edges}");
-    assert!(long(ShellOrder::Membrane).try_bind().is_ok());
+    assert!(long(BilaplacianOrder::Membrane).try_bind().is_ok());
 }

@@ -3,6 +3,7 @@
 
 mod anisotropy;
 mod arap;
+mod bilaplacian;
 mod components;
 mod continuity;
 mod energies;
@@ -16,5 +17,4 @@ mod primo;
 mod rebind;
 mod rig;
 mod robust;
-mod shell;
 mod soft;

@@ -1,7 +1,7 @@
 //! Systems that factor badly: vast contrasts of stiffness, flattened shapes, almost nothing that holds.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Bilaplacian, Method, Role, ShellOrder};
+use pliant_deform::{Bilaplacian, BilaplacianOrder, Method, Role};
 use pliant_mesh::{Drawn, shapes};
 
 use crate::rig::{Scene, apart, back_substitute, step, turned};
@@ -120,7 +120,7 @@ fn slivers_and_needles_are_solved() {
 
 /// A shape that nothing but one soft handle holds, by springs of next to nothing: against the shell they are lost in
 /// rounding, and without them every translation is free.
-fn adrift(drawn: &Drawn, order: ShellOrder, weight: f64) -> Scene {
+fn adrift(drawn: &Drawn, order: BilaplacianOrder, weight: f64) -> Scene {
     let mut scene = Scene::new(drawn.clone()).with_ends(false);
     for role in &mut scene.roles {
         if *role == Role::Handle(1) {
@@ -139,7 +139,7 @@ fn adrift(drawn: &Drawn, order: ShellOrder, weight: f64) -> Scene {
 fn what_does_not_factor_is_stiffened_and_said_or_refused_with_the_place() {
     let (mut stiffened, mut refused) = (0, 0);
     for (name, drawn) in shapes::classes() {
-        for order in ShellOrder::ALL {
+        for order in BilaplacianOrder::ALL {
             for exponent in [6, 10, 13, 15, 17, 20, 30] {
                 let scene = adrift(&drawn, order, 0.1_f64.powi(exponent));
                 let label = format!("{name} {order:?} 1e-{exponent}");

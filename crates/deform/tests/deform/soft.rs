@@ -1,15 +1,15 @@
 //! Soft handles: weights that mean the same on every mesh, hard handles at one end and none at the other.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{ArapEnergy, BindError, Constraints, Role, ShellOrder};
+use pliant_deform::{ArapEnergy, BilaplacianOrder, BindError, Constraints, Role};
 use pliant_mesh::{Cancel, Progress, shapes};
 
+use crate::bilaplacian::of_order;
 use crate::nonlinear::{Iterative, scene};
 use crate::rig::{Scene, apart, back_substitute, settle, step, turned};
-use crate::shell::of_order;
 
 /// A square plate held at its rim, a square in it the handle.
-fn plate(cells: usize, order: ShellOrder, weight: Option<f64>) -> Scene {
+fn plate(cells: usize, order: BilaplacianOrder, weight: Option<f64>) -> Scene {
     let inside = |v: f64, from: f64, to: f64| v > from - 1e-9 && v < to + 1e-9;
     let mut scene = Scene::new(shapes::grid(cells, cells))
         .with(Role::Fixed, |p| {
@@ -35,7 +35,7 @@ fn height(scene: &Scene) -> f64 {
 
 #[test]
 fn a_heavier_weight_comes_nearer_from_nothing_to_a_hard_handle() {
-    for order in ShellOrder::ALL {
+    for order in BilaplacianOrder::ALL {
         let weights = [1e-6, 1e-3, 0.1, 1.0, 10.0, 1e3, 1e6, 1e12];
         let heights = weights.map(|weight| height(&plate(20, order, Some(weight))));
         assert!(
@@ -96,7 +96,7 @@ fn soft_handles_that_move_alike_carry_everything_rigidly() {
 
 #[test]
 fn a_weight_means_the_same_at_every_resolution_and_in_every_unit() {
-    for order in ShellOrder::ALL {
+    for order in BilaplacianOrder::ALL {
         for weight in [0.3, 3.0, 30.0] {
             let heights = [20, 40, 80].map(|cells| height(&plate(cells, order, Some(weight))));
             // What is held and what is the handle ends half a cell further out: of first order.
@@ -124,7 +124,7 @@ fn a_weight_means_the_same_at_every_resolution_and_in_every_unit() {
 #[test]
 fn a_stiffer_shell_gives_a_soft_handle_less() {
     let heights = [0.1, 1.0, 10.0].map(|stiffness| {
-        let mut scene = plate(20, ShellOrder::ThinPlate, Some(1.0));
+        let mut scene = plate(20, BilaplacianOrder::ThinPlate, Some(1.0));
         scene.stiffness.fill(stiffness);
         height(&scene)
     });
@@ -183,10 +183,12 @@ fn the_laws_of_hard_handles_hold_for_soft_ones_on_every_class() {
 #[test]
 fn a_weight_that_is_none_is_refused_and_another_method_says_that_it_holds_hard() {
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let refused = plate(8, ShellOrder::ThinPlate, Some(value)).try_bind().unwrap_err();
+        let refused = plate(8, BilaplacianOrder::ThinPlate, Some(value))
+            .try_bind()
+            .unwrap_err();
         assert!(matches!(refused, BindError::SoftWeight { handle: 0, .. }), "{refused}");
     }
-    let mut scene = plate(8, ShellOrder::ThinPlate, Some(1.0));
+    let mut scene = plate(8, BilaplacianOrder::ThinPlate, Some(1.0));
     scene.soft.push(None);
     assert!(matches!(
         scene.try_bind(),

@@ -84,7 +84,7 @@ pub(crate) fn method_to_value(method: &Method) -> Value {
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
-    use pliant_deform::{Bilaplacian, Discretisation, ShellOrder};
+    use pliant_deform::{Bilaplacian, BilaplacianOrder, Discretisation};
 
     use super::*;
 
@@ -104,7 +104,7 @@ mod tests {
             stretching, bending, ..
         } = *options;
         assert_eq!((stretching, bending), (2.5, 0.5));
-        assert_eq!(options.order, ShellOrder::CurvatureVariation);
+        assert_eq!(options.order, BilaplacianOrder::CurvatureVariation);
         assert_eq!(options.discretisation, Discretisation::Uniform);
         for value in [
             value,

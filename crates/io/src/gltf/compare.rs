@@ -6,13 +6,13 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::ops::Range;
 
-use super::accessor::Layout;
-use super::document::Document;
-use super::json::{At, Json};
-use crate::difference::{self, Difference, What};
+use crate::gltf::document::Document;
+use crate::gltf::document::accessor::Layout;
+use crate::gltf::document::json::{At, Json};
+use crate::scene::difference::{self, Difference, What};
 
 /// What differs, in the order of the first file's text.
-pub(super) fn differences(a: &Document, b: &Document) -> Vec<Difference> {
+pub(crate) fn differences(a: &Document, b: &Document) -> Vec<Difference> {
     let mut comparison = Comparison {
         a,
         b,

@@ -2,15 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use super::container;
-use super::container::without_padding;
-use super::document::{Buffer, Document, ImageFile};
-use super::json::{At, Edits, Json};
-use super::uri::{self, Address};
+use crate::gltf::document::container;
+use crate::gltf::document::container::without_padding;
+use crate::gltf::document::json::{At, Edits, Json};
+use crate::gltf::document::uri::{self, Address};
+use crate::gltf::document::{Buffer, Document, ImageFile};
 use crate::save::{OutputFile, Role, numbered};
 
 /// The neighbours that a save writes, while they are gathered.
-pub(super) struct Gathered {
+pub(crate) struct Gathered {
     pub files: Vec<OutputFile>,
     /// Names that are not free for a neighbour which needs another one.
     taken: BTreeSet<String>,
@@ -59,7 +59,7 @@ impl Gathered {
 }
 
 /// The paths by which the file that was read names its neighbours.
-pub(super) fn paths(document: &Document) -> impl Iterator<Item = &str> {
+pub(crate) fn paths(document: &Document) -> impl Iterator<Item = &str> {
     let of_buffers = document.buffers.iter().filter_map(|buffer| match buffer {
         Buffer::Neighbour { path, .. } => Some(path.as_str()),
         _ => None,
@@ -73,13 +73,13 @@ pub(super) fn paths(document: &Document) -> impl Iterator<Item = &str> {
 
 /// Whether a reader that follows `path` step by step arrives at the file `name`. One that goes through a folder and
 /// back (`b/../a.bin`) needs that folder, which OUT's may lack.
-pub(super) fn leads_to(path: &str, name: &str) -> bool {
+pub(crate) fn leads_to(path: &str, name: &str) -> bool {
     let steps = path.split('/').filter(|step| !matches!(*step, "" | "."));
     steps.eq(name.split('/'))
 }
 
 /// The `uri` of each element of a section that has one.
-pub(super) fn uris(json: &Json, section: &str) -> Vec<Option<At>> {
+pub(crate) fn uris(json: &Json, section: &str) -> Vec<Option<At>> {
     let list = json.member(json.root(), section);
     let elements = list.into_iter().flat_map(|list| json.elements(list));
     elements.map(|element| json.member(element, "uri")).collect()

@@ -6,13 +6,13 @@ use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
 use crate::Bytes;
+use crate::appearance::colour::linear_of_srgb;
 use crate::appearance::{AlphaMode, Image, Material, Origin, Wrap};
-use crate::colour::linear_of_srgb;
 use crate::gltf::stays_inside;
-use crate::notes::Notes;
 use crate::quote::quoted;
 use crate::save::{OutputFile, Role};
 use crate::source::Source;
+use crate::source::notes::Notes;
 use crate::text::excerpt;
 
 /// One material for each name, in order, and the images they use.

@@ -11,8 +11,8 @@ use pliant_mesh::{Cancelled, DrawnVertex};
 
 use super::Stored;
 use super::statements::NONE;
-use crate::course::{Course, STEP};
-use crate::moved::Moved;
+use crate::save::course::{Course, STEP};
+use crate::save::moved::Moved;
 use crate::text::{Cursor, Splice, push_f32, push_f64};
 
 /// Users of one `vn` that turn away from their mean by more than this are told of: the cosine of 5 degrees.

@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::objects::short_name;
+use crate::scene::objects::short_name;
 use crate::source::{Looks, Source};
 use crate::text::{Cursor, excerpt, malformed_at};
 use crate::{Format, ReadError};

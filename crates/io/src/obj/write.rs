@@ -6,14 +6,14 @@ use std::ops::Range;
 use pliant_mesh::Cancelled;
 
 use super::materials;
+use crate::appearance::colour::{srgb_bytes_of_linear, srgb_of_linear};
 use crate::appearance::{AlphaMode, Material, Origin};
-use crate::colour::{srgb_bytes_of_linear, srgb_of_linear};
-use crate::course::Course;
+use crate::convert::NewMesh;
+use crate::convert::faces::{for_each_face, lost, lost_where};
 use crate::gltf::{FROM_OUTSIDE, NO_IMAGE};
 use crate::images::decodes;
-use crate::new_faces::{for_each_face, lost, lost_where};
-use crate::new_mesh::NewMesh;
 use crate::quote::quoted;
+use crate::save::course::Course;
 use crate::save::{OutputFile, Role, Saved, own_stem};
 use crate::text::{push_f32, push_f64};
 use crate::{Appearance, SaveError};

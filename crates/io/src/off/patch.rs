@@ -4,8 +4,8 @@ use glam::DVec3;
 use pliant_mesh::{Cancelled, DrawnVertex};
 
 use super::Stored;
-use crate::course::Course;
-use crate::moved::Moved;
+use crate::save::course::Course;
+use crate::save::moved::Moved;
 use crate::text::{Cursor, Splice, push_f32, push_f64};
 
 /// The new bytes.

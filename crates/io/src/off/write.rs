@@ -1,11 +1,11 @@
 //! A new OFF file (COFF where there are colours) from any other kind.
 
 use crate::SaveError;
-use crate::colour::srgb_bytes_of_linear;
-use crate::course::Course;
-use crate::new_faces::{face_count, for_each_face, has_materials, lost, lost_where, merged};
-use crate::new_mesh::NewMesh;
+use crate::appearance::colour::srgb_bytes_of_linear;
+use crate::convert::NewMesh;
+use crate::convert::faces::{face_count, for_each_face, has_materials, lost, lost_where, merged};
 use crate::save::Saved;
+use crate::save::course::Course;
 use crate::text::push_f64;
 
 /// Writes a mesh's positions, colours and faces. Normals are left to the reader: the variants that hold them beside

@@ -7,9 +7,9 @@ use super::Stored;
 use super::header::{Element, Kind};
 use super::scalar::{Encoding, Scalar, Walk, encode};
 use crate::SaveError;
-use crate::course::Course;
-use crate::moved::Moved;
-use crate::new_faces::coarse_in_f32;
+use crate::convert::faces::coarse_in_f32;
+use crate::save::course::Course;
+use crate::save::moved::Moved;
 use crate::text::{Splice, push_f32, push_f64};
 
 /// The new bytes and the warnings.

@@ -3,11 +3,11 @@
 use pliant_mesh::DrawnVertex;
 
 use crate::SaveError;
-use crate::colour::srgb_bytes_of_linear;
-use crate::course::Course;
-use crate::new_faces::{coarse_in_f32, face_count, for_each_face, has_materials, lost, lost_where, merged};
-use crate::new_mesh::NewMesh;
+use crate::appearance::colour::srgb_bytes_of_linear;
+use crate::convert::NewMesh;
+use crate::convert::faces::{coarse_in_f32, face_count, for_each_face, has_materials, lost, lost_where, merged};
 use crate::save::Saved;
+use crate::save::course::Course;
 
 /// Writes a mesh as PLY: positions (as `double` where `float` would round visibly), and normals, texture coordinates
 /// and colours where the mesh has them.

@@ -4,9 +4,9 @@ use glam::DVec3;
 use pliant_mesh::Cancelled;
 
 use super::{changed_facets, facet_normal};
-use crate::course::{Course, STEP};
-use crate::moved::Moved;
-use crate::new_faces::coarse_in_f32;
+use crate::convert::faces::coarse_in_f32;
+use crate::save::course::{Course, STEP};
+use crate::save::moved::Moved;
 use crate::source::{Looks, Source};
 use crate::text::{Cursor, Splice, excerpt, malformed_at, push_f32, push_f64};
 use crate::{Format, ReadError};

@@ -4,8 +4,8 @@ use glam::{DVec3, Vec3};
 use pliant_mesh::Cancelled;
 
 use super::{changed_facets, facet_normal};
-use crate::course::{Course, STEP};
-use crate::moved::Moved;
+use crate::save::course::{Course, STEP};
+use crate::save::moved::Moved;
 use crate::source::Source;
 use crate::{Format, ReadError};
 

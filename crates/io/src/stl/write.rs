@@ -1,10 +1,10 @@
 //! A new binary STL file from any other kind.
 
 use crate::SaveError;
-use crate::course::Course;
-use crate::new_faces::{coarse_in_f32, has_materials, lost, lost_where};
-use crate::new_mesh::NewMesh;
+use crate::convert::NewMesh;
+use crate::convert::faces::{coarse_in_f32, has_materials, lost, lost_where};
 use crate::save::Saved;
+use crate::save::course::Course;
 
 use super::facet_normal;
 

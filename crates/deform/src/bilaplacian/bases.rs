@@ -1,0 +1,158 @@
+//! Handle bases: a frame as one small product a vertex, with no solve in it.
+//!
+//! A handle moves affinely and the bi-Laplacian is linear, so the solved vertices' displacement is Σ_h B_h (T_h − I) with
+//! B_h = −A_ff⁻¹ A_fh [q 1], four columns a handle solved once at bind [BK04].
+//!
+//! Where nothing is fixed the weights of all handles sum to 1, and that must survive rounding to f32, or a plain
+//! translation would leave dents. So there the motion of one *reference* handle's centre is taken out first and added
+//! back whole: what is left to the rounded weights is how the handles differ.
+
+use std::collections::TryReserveError;
+
+use glam::{DMat3, DVec3};
+
+use crate::budget::filled;
+use crate::handles::Motion;
+
+/// What the handles' transforms do to each vertex that is solved for.
+///
+/// The columns of handle h are those of q = (p − centre_h) / radius_h and of the constant, so the displacement of a
+/// row's vertex is Σ_h radius_h (A_h − I) b_h.xyz + b_h.w t_h, where A_h is the linear part of the handle's transform
+/// and t_h what it does to the handle's centre. **f32**, which costs 1e-7 of the handles' motion.
+#[derive(Clone, Debug, Default)]
+pub struct HandleBases {
+    vertices: Vec<u32>,
+    handle_count: usize,
+    rows: Vec<[f32; 4]>,
+    runs: Vec<Run>,
+}
+
+/// Successive rows with the same reference handle.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+struct Run {
+    end: usize,
+    reference: Option<u16>,
+}
+
+impl HandleBases {
+    /// The surface vertices that are solved for, ascending: one a row.
+    pub fn vertices(&self) -> &[u32] {
+        &self.vertices
+    }
+
+    /// How many handles a row has.
+    pub fn handle_count(&self) -> usize {
+        self.handle_count
+    }
+
+    /// Row-major: `handle_count` entries (x, y, z, constant) a row.
+    pub fn rows(&self) -> &[[f32; 4]] {
+        &self.rows
+    }
+
+    /// The share that handle `handle` has in each row's vertex: about 1 beside it, 0 at what is fixed.
+    pub fn weight(&self, row: usize, handle: usize) -> f32 {
+        self.rows[row * self.handle_count + handle][3]
+    }
+
+    /// Bases over `vertices` (ascending) from one column block a handle; `reference` names the reference handle of a
+    /// vertex in a component where nothing is fixed.
+    ///
+    /// # Errors
+    /// Where the machine has no memory for them.
+    pub(crate) fn new(
+        vertices: Vec<u32>,
+        blocks: &[Vec<[f32; 4]>],
+        reference: impl Fn(u32) -> Option<u16>,
+    ) -> Result<Self, TryReserveError> {
+        let mut rows = filled([0.0; 4], vertices.len() * blocks.len())?;
+        for (handle, block) in blocks.iter().enumerate() {
+            for (row, entry) in block.iter().enumerate() {
+                rows[row * blocks.len() + handle] = *entry;
+            }
+        }
+        let mut runs: Vec<Run> = Vec::new();
+        for (row, &vertex) in vertices.iter().enumerate() {
+            let reference = reference(vertex);
+            match runs.last_mut() {
+                Some(run) if run.reference == reference => run.end = row + 1,
+                _ => runs.push(Run {
+                    end: row + 1,
+                    reference,
+                }),
+            }
+        }
+        Ok(Self {
+            vertices,
+            handle_count: blocks.len(),
+            rows,
+            runs,
+        })
+    }
+
+    /// What the motions make of the solved ones among the vertices from `first` on.
+    #[inline(always)]
+    pub(crate) fn evaluate(&self, tables: &Tables, first: usize, out: &mut [DVec3]) {
+        let place = |vertex: usize| self.vertices.partition_point(|&other| (other as usize) < vertex);
+        let (mut row, end) = (place(first), place(first + out.len()));
+        let mut run = self.runs.partition_point(|run| run.end <= row);
+        while row < end {
+            let Run {
+                end: run_end,
+                reference,
+            } = self.runs[run];
+            let (base, table) = tables.get(reference);
+            let until = run_end.min(end);
+            let entries = self.rows[row * self.handle_count..until * self.handle_count].chunks_exact(self.handle_count);
+            for (&vertex, entries) in self.vertices[row..until].iter().zip(entries) {
+                let mut sum = base;
+                for (entry, motion) in entries.iter().zip(table) {
+                    // f32 ends here: from the stored basis on everything is f64.
+                    let [x, y, z, w] = entry.map(f64::from);
+                    sum += motion[0] * x + motion[1] * y + motion[2] * z + motion[3] * w;
+                }
+                out[vertex as usize - first] = sum;
+            }
+            row = until;
+            run += 1;
+        }
+    }
+}
+
+/// The motions' columns relative to each reference handle in use.
+pub(crate) struct Tables {
+    plain: Vec<[DVec3; 4]>,
+    relative: Vec<Option<Relative>>,
+}
+
+/// The reference handle's shift and the motions' columns with it taken out.
+type Relative = (DVec3, Vec<[DVec3; 4]>);
+
+impl Tables {
+    /// Of the motions, for `bases`.
+    pub fn of(motions: &[Motion], bases: &HandleBases) -> Self {
+        let columns = |base: DVec3| {
+            let column = |motion: &Motion| {
+                let DMat3 { x_axis, y_axis, z_axis } = motion.linear;
+                [x_axis, y_axis, z_axis, motion.shift - base]
+            };
+            motions.iter().map(column).collect::<Vec<_>>()
+        };
+        let mut relative = vec![None; motions.len()];
+        for reference in bases.runs.iter().filter_map(|run| run.reference).map(usize::from) {
+            let base = motions[reference].shift;
+            relative[reference].get_or_insert_with(|| (base, columns(base)));
+        }
+        Self {
+            plain: columns(DVec3::ZERO),
+            relative,
+        }
+    }
+
+    fn get(&self, reference: Option<u16>) -> (DVec3, &[[DVec3; 4]]) {
+        match reference.and_then(|handle| self.relative[usize::from(handle)].as_ref()) {
+            Some((base, table)) => (*base, table),
+            None => (DVec3::ZERO, &self.plain),
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! The bi-Laplacian as one of the methods.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::bilaplacian::Bilaplacian;
+use crate::bilaplacian::solver::BilaplacianSolver;
+use crate::handles::{Motion, clear};
+use crate::method::{
+    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, OptionRefused, Solve,
+    Stepped,
+};
+use crate::operators::triangulation::Triangulation;
+use crate::{BindError, HandleBases, Problem, ReusableFactor, SolveError};
+
+pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
+    name: "bilaplacian",
+    title: "Thin plate",
+    when_to_use: "Bends like a thin plate, at once: for small turns and smooth bulges.",
+    keywords: "bilaplacian bi-laplacian biharmonic linear shell laplacian",
+    options: Bilaplacian::OPTIONS,
+    heeds: &[
+        ConstraintKind::SoftHandles,
+        ConstraintKind::Continuity,
+        ConstraintKind::Stiffness,
+    ],
+    default: || Bilaplacian::default().into(),
+    first_choice: || Bilaplacian::default().into(),
+};
+
+impl DeformMethod for Bilaplacian {
+    fn declaration(&self) -> &'static MethodDeclaration {
+        &DECLARATION
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::Surface {
+            reach: self.operator_power(),
+            ordering_power: Some(self.operator_power()),
+        }
+    }
+
+    fn solve(&self) -> Solve {
+        Solve::Direct
+    }
+
+    fn check(&self) -> Result<(), OptionRefused> {
+        if self.bending + self.stretching > 0.0 {
+            return Ok(());
+        }
+        Err(OptionRefused {
+            option: "bending".to_owned(),
+            allowed: "a number above 0 where `stretching` is 0".to_owned(),
+        })
+    }
+
+    fn triangulation<'a>(&self, problem: &Problem<'a>) -> Triangulation<'a> {
+        Triangulation::of_options(problem, self)
+    }
+
+    fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
+        Ok(Box::new(BilaplacianSolver::bind(self, input)?))
+    }
+}
+
+impl BoundMethod for BilaplacianSolver {
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        let finite = self.frame(motions, displacements);
+        Ok(Stepped {
+            converged: true,
+            energy: self.energy(motions),
+            finite,
+        })
+    }
+
+    fn step_by_back_substitution(
+        &mut self,
+        motions: &[Motion],
+        displacements: &mut [DVec3],
+    ) -> Result<Stepped, SolveError> {
+        clear(displacements);
+        for (handle, motion) in motions.iter().enumerate() {
+            for (vertex, coordinates) in self.prescribed(handle) {
+                displacements[vertex as usize] = motion.displace(coordinates);
+            }
+        }
+        self.back_substitute(displacements)?;
+        Ok(Stepped {
+            converged: true,
+            energy: BilaplacianSolver::energy_of(self, motions, displacements),
+            finite: Finite::Unknown,
+        })
+    }
+
+    fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {
+        Some(BilaplacianSolver::energy_of(self, motions, displacements))
+    }
+
+    fn handle_bases(&self) -> Option<&HandleBases> {
+        Some(self.bases())
+    }
+
+    fn reusable_factor(&self) -> Option<ReusableFactor> {
+        Some(ReusableFactor(Arc::clone(self.factored())))
+    }
+
+    fn solved_count(&self) -> usize {
+        self.bases().vertices().len()
+    }
+
+    fn factor_len(&self) -> usize {
+        BilaplacianSolver::factor_len(self)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        BilaplacianSolver::warnings(self)
+    }
+}

@@ -1,0 +1,194 @@
+//! The bound bi-Laplacian: A_ff d_f = −A_fc d_c, factored, refined and checked.
+//!
+//! A factorisation that succeeds proves nothing: condition numbers reach 1e15 on real scans. So every solve is refined
+//! (see `refine`), and every bind solves for the constant 1, whose solution is known, and refuses where it is missed.
+
+use std::sync::Arc;
+
+use pliant_mesh::Cancel;
+use rayon::prelude::*;
+
+use crate::BindError;
+use crate::bilaplacian::assembly::assemble_bilaplacian;
+use crate::bilaplacian::hubs::Hubs;
+use crate::bilaplacian::operator::BilaplacianOperator;
+use crate::budget::{Budget, bytes_of};
+use crate::operators::CHUNK;
+use crate::sparse::Elimination;
+use crate::sparse::cholesky::{Refactorisation, RenewableFactor};
+use crate::sparse::factor_error::FactorError;
+use crate::sparse::low_rank::LowRank;
+use crate::sparse::matrix::CONSTRAINED;
+
+/// The factored system over the local vertices of its Laplacian.
+#[derive(Debug)]
+pub(crate) struct BilaplacianSystem {
+    pub operator: BilaplacianOperator,
+    /// The local vertex of each column of the factor.
+    columns: Vec<u32>,
+    /// The column of each of the operator's springs.
+    spring_columns: Vec<u32>,
+    factored: Arc<RenewableFactor>,
+    /// What hubs add to the factor; none without hubs.
+    low_rank: Option<LowRank>,
+    /// How slowly refinement went at the check: [`crate::bilaplacian::refine`].
+    pub(crate) contraction: f64,
+}
+
+/// Where the system could not be factored or solved, as a surface vertex.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) enum SystemError {
+    NotPositiveDefinite { vertex: u32 },
+    Inaccurate { vertex: u32, error: f64 },
+    OutOfMemory,
+    Budget,
+    Cancelled,
+}
+
+/// Shifts of the unit diagonal that are tried one after the other. Refinement with the unshifted operator takes their
+/// effect out again; the check of the constant says whether it did.
+const SHIFTS: [f64; 4] = [0.0, 1e-13, 1e-11, 1e-9];
+
+impl BilaplacianSystem {
+    /// Factors the system in which the vertices of `elimination` are solved for, eliminated in that order; the
+    /// operator's Laplacian has full rows for them and their neighbours.
+    pub fn new(
+        operator: BilaplacianOperator,
+        elimination: Elimination,
+        refactorisation: Refactorisation,
+        budget: Budget,
+        cancel: &Cancel,
+    ) -> Result<Self, SystemError> {
+        let laplacian = &operator.laplacian;
+        let numbered = |elimination: &Elimination| {
+            let columns = laplacian.locals(&elimination.order);
+            let mut column_of = vec![CONSTRAINED; laplacian.vertices().len()];
+            for (column, &local) in columns.iter().enumerate() {
+                column_of[local as usize] = column as u32;
+            }
+            (columns, column_of)
+        };
+        let (mut columns, mut column_of) = numbered(&elimination);
+        let hubs = Hubs::of(&operator, &column_of);
+        let mut elimination = elimination;
+        if !hubs.is_empty() {
+            // The ordering has the surface's own hubs last; those of other triangles follow here.
+            elimination = elimination
+                .with_last(|vertex| laplacian.local(vertex).is_some_and(|local| hubs.contains(local as u32)));
+            (columns, column_of) = numbered(&elimination);
+        }
+        let rank = hubs.rank(&operator);
+        let of_hubs = bytes_of(LowRank::stored_at_rank(columns.len(), rank), size_of::<f64>());
+        let budget = budget.without(of_hubs).map_err(|_| SystemError::Budget)?;
+        let spring_columns = operator
+            .springs
+            .locals()
+            .iter()
+            .map(|&local| column_of[local as usize])
+            .collect();
+        let refused = |error| match error {
+            FactorError::Memory => SystemError::OutOfMemory,
+            FactorError::Budget => SystemError::Budget,
+            FactorError::Cancelled => SystemError::Cancelled,
+            FactorError::Pivot(column) => {
+                let local = columns.get(column).map_or(0, |&local| local as usize);
+                SystemError::NotPositiveDefinite {
+                    vertex: operator.laplacian.vertices()[local],
+                }
+            }
+        };
+        let matrix = assemble_bilaplacian(&operator, &columns, &column_of, &hubs, budget).map_err(refused)?;
+        cancel.check().map_err(|_| SystemError::Cancelled)?;
+        let factored =
+            RenewableFactor::of(matrix, elimination, &SHIFTS, refactorisation, budget, cancel).map_err(refused)?;
+        let mut low_rank = None;
+        if !hubs.is_empty() {
+            let (vectors, c) = hubs.correction(&operator, &column_of, factored.scale());
+            low_rank = Some(LowRank::of(&factored.factor, vectors, &c).map_err(refused)?);
+        }
+        Ok(Self {
+            operator,
+            columns,
+            spring_columns,
+            factored: Arc::new(factored),
+            low_rank,
+            contraction: 0.0,
+        })
+    }
+
+    /// The local vertices that are solved for.
+    pub fn columns(&self) -> &[u32] {
+        &self.columns
+    }
+
+    /// x ← (S A S)⁻¹ x, or nearly so.
+    pub fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]]) {
+        self.factored.factor.solve(x);
+        if let Some(low_rank) = &self.low_rank {
+            low_rank.correct(x);
+        }
+    }
+
+    /// How many numbers the factor stores.
+    pub fn factor_len(&self) -> usize {
+        self.factored.factor.stored() + self.low_rank.as_ref().map_or(0, LowRank::stored)
+    }
+
+    /// What a system that is nearly the same can take over.
+    pub fn factored(&self) -> &Arc<RenewableFactor> {
+        &self.factored
+    }
+
+    /// What was added to the scaled matrix' unit diagonal to factor it; 0 where nothing had to be.
+    pub fn shift(&self) -> f64 {
+        self.factored.shift
+    }
+
+    /// S: the scale of each column.
+    pub fn scale(&self) -> &[f64] {
+        self.factored.scale()
+    }
+
+    /// S (W (c − d) − A d) on the solved vertices, by differences along edges and springs.
+    pub fn scaled_residual<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
+        let potential = self.operator.potential(d);
+        let mut residual: Vec<[f64; K]> = self
+            .columns
+            .par_iter()
+            .with_min_len(CHUNK)
+            .zip(self.scale())
+            .map(|(&local, &scale)| {
+                self.operator
+                    .force(local as usize, &potential)
+                    .map(|value| -value * scale)
+            })
+            .collect();
+        for (spring, &column) in self.spring_columns.iter().enumerate() {
+            let pull = self.operator.pull(spring, d);
+            for k in 0..K {
+                residual[column as usize][k] += self.scale()[column as usize] * pull[k];
+            }
+        }
+        residual
+    }
+}
+
+impl SystemError {
+    /// The error as the caller sees it.
+    pub fn into_bind_error(self, component_of: impl Fn(u32) -> u32, free_count: usize) -> BindError {
+        match self {
+            Self::NotPositiveDefinite { vertex } => BindError::NotPositiveDefinite {
+                component: component_of(vertex),
+                vertex,
+            },
+            Self::Inaccurate { vertex, error } => BindError::Inaccurate {
+                component: component_of(vertex),
+                vertex,
+                error,
+            },
+            Self::OutOfMemory => BindError::OutOfMemory { free_count },
+            Self::Budget => BindError::budget(free_count),
+            Self::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! The bi-Laplacian method: its [`options`](Bilaplacian), its operator, its factored system and its frames. It is linear:
+//! A d = 0, so a frame is a product with the handle bases [BK04, BS08].
+
+pub(crate) mod assembly;
+mod bases;
+mod continuity;
+mod declaration;
+pub(crate) mod factored;
+pub(crate) mod hubs;
+pub(crate) mod operator;
+mod options;
+mod refine;
+pub(crate) mod setup;
+mod slender;
+mod solver;
+mod springs;
+
+pub use bases::HandleBases;
+pub(crate) use declaration::DECLARATION;
+pub use options::{Bilaplacian, BilaplacianOrder, Discretisation, TriangulationKind};

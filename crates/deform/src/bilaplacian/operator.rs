@@ -1,0 +1,209 @@
+//! The bi-Laplacian's operator A = k_s (−L) + k_b (−L)(−M⁻¹ L)ⁿ⁻¹, applied by differences along edges.
+//!
+//! One factor −L stands outermost in both terms, so A d = −L φ with φ = k_s d + k_b (−M⁻¹ L)ⁿ⁻¹ d: zero on constants
+//! to the last bit at every order.
+//!
+//! Painted stiffness s scales the density of the energy, ½ ∫ k_s s |∇d|² + k_b s |Δd|²: the faces' cotangents in
+//! stretching and in the middle L of order 3, the cells of M⁻¹ at order 2. What is stiff keeps its curvature, turns with
+//! what holds it, and joins what is soft without a crease. (With the cotangents of both outer L scaled, which is
+//! ∫ |div(s ∇d)|², it is the slope in space that stiff parts keep: they don't turn, and crease at their rim.)
+
+use rayon::prelude::*;
+
+use crate::bilaplacian::springs::Springs;
+use crate::operators::CHUNK;
+use crate::sparse::ordering::hubs::hub_degree;
+use crate::{Bilaplacian, Laplacian};
+
+/// What A makes forces of: φ, and d itself where stretching has an L of its own.
+#[derive(Debug)]
+pub(crate) struct Potential<'a, const K: usize> {
+    phi: Vec<[f64; K]>,
+    d: &'a [[f64; K]],
+}
+
+/// A over the local vertices of its Laplacian, which has full rows around everything that moves.
+///
+/// A *field* has one entry a local vertex and then one a spring, which is where its handle wants the spring's vertex.
+#[derive(Debug)]
+pub(crate) struct BilaplacianOperator {
+    pub laplacian: Laplacian,
+    /// The L between two others at order 3, where it is not the same.
+    pub middle: Option<Laplacian>,
+    /// The L of stretching, where it is not the same.
+    pub stretched: Option<Laplacian>,
+    /// s of each local vertex' cell at order 2; empty where it is 1 everywhere.
+    pub cell_stiffness: Vec<f64>,
+    /// The soft handles' springs, W in (A + W) d = W c.
+    pub springs: Springs,
+    /// A vertex with more solved neighbours than this is a hub: see [`crate::bilaplacian::hubs`].
+    pub hub_degree: usize,
+    /// n: how many times L stands in the second term.
+    pub power: u32,
+    /// k_s over the squared diagonal.
+    pub stretching: f64,
+    /// k_b times the diagonal to the power 2 (n − 2).
+    pub bending: f64,
+}
+
+impl BilaplacianOperator {
+    /// With the options' coefficients for a surface of this diagonal.
+    pub fn new(laplacian: Laplacian, options: &Bilaplacian, diagonal: f64) -> Self {
+        let square = if diagonal > 0.0 { diagonal * diagonal } else { 1.0 };
+        let power = options.operator_power();
+        let bending = match power {
+            1 => options.bending / square,
+            2 => options.bending,
+            _ => options.bending * square,
+        };
+        Self {
+            hub_degree: hub_degree(laplacian.vertices().len()),
+            laplacian,
+            middle: None,
+            stretched: None,
+            cell_stiffness: Vec::new(),
+            springs: Springs::default(),
+            power,
+            stretching: options.stretching / square,
+            bending,
+        }
+    }
+
+    /// How many entries a field has.
+    pub fn field_len(&self) -> usize {
+        self.laplacian.vertices().len() + self.springs.len()
+    }
+
+    /// The local vertex that a field's entry is for.
+    pub fn local_of(&self, place: usize) -> u32 {
+        match place.checked_sub(self.laplacian.vertices().len()) {
+            Some(spring) => self.springs.local(spring),
+            None => place as u32,
+        }
+    }
+
+    /// Hangs a handle's local vertices on springs of a weight (see [`crate::Constraints`]); returns their places in a field.
+    pub fn soften(&mut self, locals: &[u32], weight: f64) -> Vec<u32> {
+        let area = |local: u32| self.laplacian.inverse_areas()[local as usize].recip();
+        let square_wave_number = std::f64::consts::PI.powi(2) / locals.iter().map(|&local| area(local)).sum::<f64>();
+        let resistance =
+            self.stretching * square_wave_number + self.bending * square_wave_number.powi(self.power as i32);
+        let strengths: Vec<f64> = locals.iter().map(|&local| weight * resistance * area(local)).collect();
+        let first = self.field_len() as u32;
+        self.springs.add(self.laplacian.vertices().len(), locals, &strengths);
+        (first..self.field_len() as u32).collect()
+    }
+
+    /// By how much a field's spring pulls at its vertex: W_i (c_i − d_i).
+    pub fn pull<const K: usize>(&self, spring: usize, d: &[[f64; K]]) -> [f64; K] {
+        let anchor = d[self.laplacian.vertices().len() + spring];
+        let own = d[self.springs.local(spring) as usize];
+        std::array::from_fn(|k| self.springs.strength(spring) * (anchor[k] - own[k]))
+    }
+
+    /// By how much the cell of a local vertex is stiffer than 1 at order 2.
+    #[inline]
+    pub fn cell_stiffness(&self, local: usize) -> f64 {
+        self.cell_stiffness.get(local).copied().unwrap_or(1.0)
+    }
+
+    /// φ of K functions on the local vertices, right wherever a neighbour's row is full.
+    pub fn potential<'a, const K: usize>(&self, d: &'a [[f64; K]]) -> Potential<'a, K> {
+        if self.power == 1 {
+            return Potential { phi: d.to_vec(), d };
+        }
+        let mut phi = self.laplacian.per_area(d);
+        if self.power == 3 {
+            phi = self.middle().per_area(&phi);
+        }
+        let sign = if self.power == 2 { -self.bending } else { self.bending };
+        let shared_stretching = if self.stretched.is_none() { self.stretching } else { 0.0 };
+        phi.par_iter_mut()
+            .with_min_len(CHUNK)
+            .zip(d)
+            .enumerate()
+            .for_each(|(local, (phi, d))| {
+                let factor = sign * self.cell_stiffness(local);
+                for k in 0..K {
+                    phi[k] *= factor;
+                    if shared_stretching > 0.0 {
+                        phi[k] += shared_stretching * d[k];
+                    }
+                }
+            });
+        Potential { phi, d }
+    }
+
+    /// (A d)_i of `local`, given d's potential.
+    #[inline]
+    pub fn force<const K: usize>(&self, local: usize, potential: &Potential<'_, K>) -> [f64; K] {
+        let factor = if self.power == 1 {
+            -(self.stretching + self.bending)
+        } else {
+            -1.0
+        };
+        let mut force = self.laplacian.row(local, &potential.phi).map(|value| factor * value);
+        if let Some(stretched) = &self.stretched {
+            let row = stretched.row(local, potential.d);
+            for k in 0..K {
+                force[k] -= self.stretching * row[k];
+            }
+        }
+        force
+    }
+
+    /// ½ dᵀ A d over K functions and the springs' ½ (c − d)ᵀ W (c − d), summed from squares of differences, so that large
+    /// common motions cost no digits.
+    pub fn energy<const K: usize>(&self, d: &[[f64; K]]) -> f64 {
+        let hung: f64 = (0..self.springs.len())
+            .map(|spring| {
+                let pull = self.pull(spring, d);
+                pull.iter().map(|pull| pull * pull).sum::<f64>() / self.springs.strength(spring)
+            })
+            .sum();
+        let stretch = |laplacian: &Laplacian, f: &[[f64; K]]| {
+            sum_of_rows(laplacian.vertices().len(), |local| edges(laplacian, local, f))
+        };
+        let bend = match self.power {
+            1 => stretch(&self.laplacian, d),
+            2 => sum_of_rows(self.laplacian.vertices().len(), |local| {
+                let row = self.laplacian.row(local, d);
+                self.cell_stiffness(local)
+                    * self.laplacian.inverse_areas()[local]
+                    * row.iter().map(|value| value * value).sum::<f64>()
+            }),
+            _ => stretch(self.middle(), &self.laplacian.per_area(d)),
+        };
+        let stretched = if self.stretching > 0.0 {
+            self.stretching * stretch(self.stretched.as_ref().unwrap_or(&self.laplacian), d)
+        } else {
+            0.0
+        };
+        0.5 * (stretched + self.bending * bend + hung)
+    }
+
+    /// The L between two others at order 3.
+    pub fn middle(&self) -> &Laplacian {
+        self.middle.as_ref().unwrap_or(&self.laplacian)
+    }
+}
+
+/// This vertex' share of −fᵀ L f: half of each edge's, and all of it where the other end's row is not full.
+fn edges<const K: usize>(laplacian: &Laplacian, local: usize, f: &[[f64; K]]) -> f64 {
+    let ends = laplacian.neighbours(local).iter().zip(laplacian.weights(local));
+    ends.map(|(&other, weight)| {
+        let share = if laplacian.is_full(other as usize) { 0.5 } else { 1.0 };
+        let square: f64 = (0..K).map(|k| (f[other as usize][k] - f[local][k]).powi(2)).sum();
+        share * weight * square
+    })
+    .sum()
+}
+
+/// Summed in chunks of a fixed size, so that the number of threads doesn't show.
+fn sum_of_rows(count: usize, row: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let partial: Vec<f64> = (0..count.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|chunk| (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).map(&row).sum())
+        .collect();
+    partial.iter().sum()
+}

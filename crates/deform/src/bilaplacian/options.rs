@@ -1,0 +1,137 @@
+//! Options of the bi-Laplacian [BS08, section 2]: what the surface is made of, and on which operator.
+
+use crate::method::option::{Choice, Choices, Number, OptionType, named_choices, options};
+use crate::{OptionKind, OptionValue};
+
+/// The largest coefficient.
+const LARGEST: f64 = 1e12;
+
+options! {
+    /// The bi-Laplacian A d = 0 between what is held and the handles, with
+    ///
+    /// A = k_s (−L) + k_b (−L)(−M⁻¹ L)ⁿ⁻¹,
+    ///
+    /// which at order n = 2 is (−k_s L + k_b L M⁻¹ L) d = 0 [BS08, equation 8]. A is symmetric and positive definite on
+    /// what is solved for. Lengths are measured in diagonals of the surface's bounding box, so neither coefficient depends
+    /// on the model's unit, and only their ratio shows in the shape; the energy ½ dᵀ A d has no unit.
+    ///
+    /// Painted stiffness s scales the energy's density, ½ ∫ k_s s |∇d|² + k_b s |Δd|² at order 2 and s |∇Δd|² at order 3: a
+    /// part of stiffness 10 resists bending ten times as much, and turns with what holds it.
+    pub struct Bilaplacian {
+        /// Which derivative of the displacement is kept small.
+        order: BilaplacianOrder = Choice {
+            default: BilaplacianOrder::ThinPlate,
+            help: "what resists: the area, the bending, or its change",
+        },
+        /// k_b, the resistance to what the order names. With 0 there is only stretching, a membrane.
+        bending: f64 = Number {
+            default: 1.0,
+            range: [0.0, LARGEST],
+            unit: "",
+            help: "resistance k_b to what the order names",
+        },
+        /// k_s, the resistance to stretching, in units of k_b per squared diagonal at order 2 and per the fitting power
+        /// of it at the others.
+        stretching: f64 = Number {
+            default: 0.0,
+            range: [0.0, LARGEST],
+            unit: "k_b/d²",
+            help: "resistance k_s to stretching, d being the model's diagonal",
+        },
+        /// How the Laplacian is discretised.
+        discretisation: Discretisation = Choice {
+            default: Discretisation::CotangentArea,
+            help: "weights of the Laplacian",
+        },
+        /// Which triangles it is made on.
+        triangulation: TriangulationKind = Choice {
+            default: TriangulationKind::AsIs,
+            help: "triangles of the Laplacian: as they are, or without negative weights (\"tufted\" on non-manifold \
+                   meshes, too)",
+        },
+        /// From 0, as the surface lies in space, to 1, as if it were stretched along the principal axes of the part that
+        /// may move until that varied alike along all of them, though by no more than a factor 10: stiffer along what is
+        /// long [BK04].
+        anisotropy: f64 = Number {
+            default: 0.0,
+            range: [0.0, 1.0],
+            unit: "",
+            help: "stiffer along what is long: 0 not at all, 1 as if the part that may move were as wide as long",
+        },
+    }
+}
+
+/// The order n of the bi-Laplacian: its surfaces join what is held with continuity Cⁿ⁻¹ [BK04].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum BilaplacianOrder {
+    /// n = 1, −L d = 0: least area. Joins with a crease.
+    Membrane,
+    /// n = 2, L M⁻¹ L d = 0: least curvature. Joins with equal tangents.
+    ThinPlate,
+    /// n = 3, −L M⁻¹ L M⁻¹ L d = 0: least change of curvature. Joins with equal curvature.
+    CurvatureVariation,
+}
+
+named_choices! {
+    /// The weights w_ij and areas M_ii of the Laplacian [BS08, section 5.1].
+    pub enum Discretisation {
+        /// w_ij = 1, M_ii = Σ_j w_ij: blind to the triangles' shapes. Up to one factor for the whole surface, which makes
+        /// it agree with the others where all triangles are equilateral; edges at a boundary count half, as they do there.
+        Uniform = "uniform",
+        /// w_ij = ½ (cot α + cot β), M_ii the same for all: blind to how dense the vertices are.
+        Cotangent = "cotangent",
+        /// w_ij = ½ (cot α + cot β), M_ii the vertex' own area [BS08, equation 7].
+        CotangentArea = "cotangent-area",
+    }
+}
+
+named_choices! {
+    /// The triangles that the Laplacian is made on; their vertices are the surface's.
+    pub enum TriangulationKind {
+        /// The surface's.
+        AsIs = "as-is",
+        /// The surface's, with edges flipped within it until no weight is negative, except at edges with more or less than
+        /// two triangles [FSBS06].
+        IntrinsicDelaunay = "intrinsic-delaunay",
+        /// The surface's tufted cover, flipped: no weight is negative on any triangles [SC20].
+        Tufted = "tufted",
+    }
+}
+
+impl Bilaplacian {
+    /// The power of L in the system: the order, or 1 where nothing but stretching is left.
+    pub fn operator_power(&self) -> u32 {
+        if self.bending == 0.0 { 1 } else { self.order.number() }
+    }
+}
+
+impl BilaplacianOrder {
+    /// Every order, by rising number.
+    pub const ALL: [Self; 3] = [Self::Membrane, Self::ThinPlate, Self::CurvatureVariation];
+
+    /// n: 1, 2 or 3.
+    pub fn number(self) -> u32 {
+        match self {
+            Self::Membrane => 1,
+            Self::ThinPlate => 2,
+            Self::CurvatureVariation => 3,
+        }
+    }
+}
+
+impl OptionType for BilaplacianOrder {
+    fn to_value(self) -> OptionValue {
+        OptionValue::Whole(self.number())
+    }
+
+    fn of_value(value: OptionValue) -> Option<Self> {
+        let is_it = |order: &Self| value == OptionValue::Whole(order.number());
+        Self::ALL.into_iter().find(is_it)
+    }
+}
+
+impl Choices for BilaplacianOrder {
+    const KIND: OptionKind = OptionKind::Numbered {
+        choices: &[(1, "membrane"), (2, "thin plate"), (3, "least change of curvature")],
+    };
+}

@@ -1,0 +1,86 @@
+//! From a problem to its operator and to what its handles prescribe.
+
+use pliant_mesh::{SurfaceVertex, bounding_box};
+
+use crate::bilaplacian::continuity::join;
+use crate::bilaplacian::operator::BilaplacianOperator;
+use crate::handles::Handle;
+use crate::operators::triangulation::{Graph, Triangulation};
+use crate::region::partition::Partition;
+use crate::sparse::ordering::hubs::hub_degree;
+use crate::{Bilaplacian, Laplacian, Problem};
+
+/// A handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
+pub(crate) type Prescribed = Vec<(u32, [f64; 4])>;
+
+/// The problem's operator, and each handle's places in a field and their coordinates.
+pub(crate) fn operator(
+    problem: &Problem,
+    options: &Bilaplacian,
+    partition: &Partition,
+    handles: &[Handle],
+) -> (BilaplacianOperator, Vec<Prescribed>) {
+    let triangulation = &partition.triangulation;
+    let rows = bent_rows(triangulation, &partition.solved, handles);
+    let diagonal = bounding_box(&problem.surface.positions).map_or(0.0, |bounds| bounds.diagonal());
+    let on = |stiffness: &[f64]| Laplacian::on(triangulation, stiffness, &rows, options.discretisation, &|_, _| 1.0);
+    let is_painted = problem.stiffness.iter().any(|stiffness| *stiffness != 1.0);
+    let mut operator;
+    if is_painted && options.operator_power() > 1 {
+        operator = BilaplacianOperator::new(on(&vec![1.0; problem.stiffness.len()]), options, diagonal);
+        match operator.power {
+            2 => {
+                let vertices = operator.laplacian.vertices().iter();
+                operator.cell_stiffness = vertices.map(|&vertex| problem.stiffness[vertex as usize]).collect();
+            }
+            _ => operator.middle = Some(on(problem.stiffness)),
+        }
+        operator.stretched = (operator.stretching > 0.0).then(|| on(problem.stiffness));
+    } else {
+        operator = BilaplacianOperator::new(on(problem.stiffness), options, diagonal);
+    }
+    operator.hub_degree = hub_degree(triangulation.vertex_count());
+    join(&mut operator, triangulation, problem, options, &rows, diagonal);
+    let prescribed = prescribe(&mut operator, problem, partition, handles);
+    (operator, prescribed)
+}
+
+/// The vertices where L d can differ from zero: solved ones, handles and their neighbours, ascending. Their rows are
+/// enough at every order: further out all inner factors are zero, as they should be.
+fn bent_rows(triangulation: &Triangulation, solved: &[u32], handles: &[Handle]) -> Vec<u32> {
+    let mut bent = vec![false; triangulation.vertex_count()];
+    for &vertex in solved.iter().chain(handles.iter().flat_map(|handle| &handle.vertices)) {
+        bent[vertex as usize] = true;
+        for neighbour in triangulation.neighbours(SurfaceVertex(vertex)) {
+            bent[neighbour.index()] = true;
+        }
+    }
+    (0..bent.len())
+        .filter(|&vertex| bent[vertex])
+        .map(|vertex| vertex as u32)
+        .collect()
+}
+
+/// Each handle's places in a field and their coordinates; soft handles' are hung on springs.
+fn prescribe(
+    operator: &mut BilaplacianOperator,
+    problem: &Problem,
+    partition: &Partition,
+    handles: &[Handle],
+) -> Vec<Vec<(u32, [f64; 4])>> {
+    let mut prescribed = Vec::with_capacity(handles.len());
+    for (handle, &weight) in handles.iter().zip(&partition.soft) {
+        let (mut places, mut coordinates) = (Vec::new(), Vec::new());
+        for &vertex in &handle.vertices {
+            if let Some(local) = operator.laplacian.local(vertex) {
+                places.push(local as u32);
+                coordinates.push(handle.coordinates(problem.surface.positions[vertex as usize]));
+            }
+        }
+        if let Some(weight) = weight {
+            places = operator.soften(&places, weight);
+        }
+        prescribed.push(places.into_iter().zip(coordinates).collect());
+    }
+    prescribed
+}

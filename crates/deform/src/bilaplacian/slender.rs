@@ -1,0 +1,54 @@
+//! Surfaces too long for their order, refused before anything is computed on them.
+//!
+//! The least eigenvalue of the n-th power of the Laplacian falls with the 2n-th power of how many edges lie between a
+//! vertex and what holds it. Strips of a million triangles end so: no digit is left, and refinement takes a minute to
+//! find that out.
+
+use pliant_mesh::SurfaceVertex;
+
+use crate::BindError;
+use crate::operators::triangulation::{Graph, Triangulation};
+
+/// Where edges to what holds a surface, to the 2n-th power, exceed this, no digit is left. Strips at order 3 were solved
+/// to seven digits at 4·10¹⁸, to three at 2·10²⁰, and to none at 6·10²².
+const HOPELESS: f64 = 1e24;
+
+/// Refuses what is farther than `order` allows from every vertex that is not `solved` (ascending).
+///
+/// # Errors
+/// [`BindError::Slender`] with the vertex that is farthest.
+pub(crate) fn check(triangulation: &Triangulation, solved: &[u32], order: u32) -> Result<(), BindError> {
+    let most = HOPELESS.powf(0.5 / f64::from(order));
+    if (solved.len() as f64) < most {
+        return Ok(());
+    }
+    let mut is_solved = vec![false; triangulation.vertex_count()];
+    solved.iter().for_each(|&vertex| is_solved[vertex as usize] = true);
+    // Ring by ring from what is held.
+    let mut ring: Vec<u32> = (0..is_solved.len())
+        .filter(|&v| !is_solved[v])
+        .map(|v| v as u32)
+        .collect();
+    let (mut edges, mut farthest) = (0, 0);
+    while let Some(&first) = ring.first() {
+        farthest = first;
+        let mut next = Vec::new();
+        for vertex in ring {
+            for beside in triangulation.neighbours(SurfaceVertex(vertex)) {
+                if std::mem::replace(&mut is_solved[beside.index()], false) {
+                    next.push(beside.0);
+                }
+            }
+        }
+        edges += usize::from(!next.is_empty());
+        ring = next;
+    }
+    if (edges as f64) < most {
+        return Ok(());
+    }
+    Err(BindError::Slender {
+        vertex: farthest,
+        edges,
+        order,
+    })
+}

@@ -1,0 +1,362 @@
+//! The bi-Laplacian's method: what binding it computes, and its two ways to a frame.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_mesh::{Cancel, SurfaceVertex};
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+use crate::bilaplacian::bases::Tables;
+use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
+use crate::bilaplacian::setup::{Prescribed, operator};
+use crate::bilaplacian::slender;
+use crate::budget::filled;
+use crate::handles::{FRAME_CHUNK, Motion};
+use crate::method::{BindInput, Finite};
+use crate::operators::repairs;
+use crate::region::partition::Partition;
+use crate::sparse::cholesky::RenewableFactor;
+use crate::{Bilaplacian, BindError, HandleBases, Problem, SolveError};
+
+/// The bound bi-Laplacian.
+#[derive(Debug)]
+pub(crate) struct BilaplacianSolver {
+    system: BilaplacianSystem,
+    bases: HandleBases,
+    /// Each handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
+    prescribed: Vec<Vec<(u32, [f64; 4])>>,
+    /// E = ½ Σ_hk tr(X_hᵀ G_hk X_k) over the motions' 4×3 matrices X; row-major, one 4×4 block a pair of handles.
+    energy_blocks: Vec<[[f64; 4]; 4]>,
+}
+
+/// How far off a solution may be, relative to its largest value.
+const TOLERANCE: f64 = 1e-7;
+
+impl BilaplacianSolver {
+    /// Assembles, factors, checks, and solves for the bases of `handles`.
+    pub fn bind(options: &Bilaplacian, input: &BindInput<'_>) -> Result<Self, BindError> {
+        let &BindInput {
+            problem,
+            partition,
+            handles,
+            refactorisation,
+            progress,
+            cancel,
+            ..
+        } = input;
+        let solved = &partition.solved;
+        let component_of = |vertex: u32| problem.topology.component(SurfaceVertex(vertex));
+        let refuse = |error: SystemError| of_order(options, error.into_bind_error(component_of, solved.len()));
+        slender::check(&partition.triangulation, solved, options.operator_power())?;
+        let elimination = input.ordering()?.elimination(solved);
+        cancel.check()?;
+        progress.set(0.1);
+        let (operator, prescribed) = operator(problem, options, partition, handles);
+        cancel.check()?;
+        progress.set(0.2);
+        let mut system =
+            BilaplacianSystem::new(operator, elimination, refactorisation, partition.budget, cancel).map_err(refuse)?;
+        progress.set(0.7);
+        let solved_locals = system.operator.laplacian.locals(solved);
+        // The constant is solved for beside the first handle: one pass over the factor for both.
+        let mut columns = Vec::with_capacity(handles.len());
+        match prescribed.split_first() {
+            None => {
+                let mut ones = vec![[1.0]; system.operator.field_len()];
+                system.check(&mut ones, cancel).map_err(refuse)?;
+            }
+            Some((first, others)) => {
+                let mut d = vec![[0.0, 0.0, 0.0, 0.0, 1.0]; system.operator.field_len()];
+                for &(place, [x, y, z, w]) in first {
+                    d[place as usize] = [x, y, z, w, 1.0];
+                }
+                let error = system.check(&mut d, cancel).map_err(refuse)?;
+                columns.push(Columns::of(&system, &d, first, &prescribed, &solved_locals, error));
+                progress.set(0.85);
+                let solve = |own: &Prescribed| {
+                    cancel.check()?;
+                    let mut d = vec![[0.0; 4]; system.operator.field_len()];
+                    for &(place, coordinates) in own {
+                        d[place as usize] = coordinates;
+                    }
+                    let error = system.solve(&mut d, cancel).error;
+                    cancel.check()?;
+                    Ok(Columns::of(&system, &d, own, &prescribed, &solved_locals, error))
+                };
+                columns.extend(others.par_iter().map(solve).collect::<Result<Vec<_>, BindError>>()?);
+            }
+        }
+        for column in &columns {
+            if column.error.is_nan() || column.error > TOLERANCE {
+                let vertex = column.worst_vertex;
+                let (component, error) = (component_of(vertex), column.error);
+                let refused = BindError::Inaccurate {
+                    component,
+                    vertex,
+                    error,
+                };
+                return Err(of_order(options, refused));
+            }
+        }
+        let pairs = filled([[0.0; 4]; 4], handles.len() * handles.len());
+        let mut energy_blocks = pairs.map_err(|_| BindError::OutOfMemory {
+            free_count: solved.len(),
+        })?;
+        for (k, column) in columns.iter().enumerate() {
+            for (h, block) in column.energies.iter().enumerate() {
+                energy_blocks[h * handles.len() + k] = *block;
+            }
+        }
+        let reference = reference_handles(problem, partition);
+        let blocks: Vec<Vec<[f32; 4]>> = columns.into_iter().map(|column| column.rows).collect();
+        let bases = HandleBases::new(solved.clone(), &blocks, |vertex| {
+            reference[component_of(vertex) as usize]
+        });
+        let bases = bases.map_err(|_| BindError::OutOfMemory {
+            free_count: solved.len(),
+        })?;
+        progress.set(1.0);
+        Ok(Self {
+            system,
+            bases,
+            prescribed,
+            energy_blocks,
+        })
+    }
+
+    /// What binding nearly the same problem can take over.
+    pub fn factored(&self) -> &Arc<RenewableFactor> {
+        self.system.factored()
+    }
+
+    /// The handles' bases.
+    pub fn bases(&self) -> &HandleBases {
+        &self.bases
+    }
+
+    /// Fills all of `displacements` from the bases, chunk by chunk: each goes through memory once.
+    pub fn frame(&self, motions: &[Motion], displacements: &mut [DVec3]) -> Finite {
+        let tables = Tables::of(motions, &self.bases);
+        let arch = Arch::new();
+        let is_finite = displacements
+            .par_chunks_mut(FRAME_CHUNK)
+            .enumerate()
+            .map(|(chunk, out)| {
+                arch.dispatch(Frame {
+                    solver: self,
+                    motions,
+                    tables: &tables,
+                    first: chunk * FRAME_CHUNK,
+                    out,
+                })
+            })
+            .reduce(|| true, |a, b| a && b);
+        if is_finite { Finite::Yes } else { Finite::Unknown }
+    }
+
+    /// Sentences about what had to be repaired.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut sentences: Vec<String> = repairs(self.system.operator.laplacian.mollified_faces())
+            .into_iter()
+            .collect();
+        if self.system.shift() > 0.0 {
+            sentences.push(format!(
+                "the shell was barely stable on this mesh: it was stiffened by {:.0e} of its diagonal and refined",
+                self.system.shift()
+            ));
+        }
+        sentences
+    }
+
+    /// How many numbers the factor stores.
+    pub fn factor_len(&self) -> usize {
+        self.system.factor_len()
+    }
+
+    /// The energy of a frame, from the motions alone: no pass over the surface.
+    pub fn energy(&self, motions: &[Motion]) -> f64 {
+        let columns = |motion: &Motion| {
+            [
+                motion.linear.x_axis,
+                motion.linear.y_axis,
+                motion.linear.z_axis,
+                motion.shift,
+            ]
+        };
+        let mut sum = 0.0;
+        for (h, left) in motions.iter().map(columns).enumerate() {
+            for (k, right) in motions.iter().map(columns).enumerate() {
+                let block = &self.energy_blocks[h * motions.len() + k];
+                for i in 0..4 {
+                    for j in 0..4 {
+                        sum += block[i][j] * left[i].dot(right[j]);
+                    }
+                }
+            }
+        }
+        // Rigid motions leave a rounding error of either sign; what is not a number stays so.
+        if sum > 0.0 || sum.is_nan() { 0.5 * sum } else { 0.0 }
+    }
+
+    /// The energy of any displacements, one a surface vertex, with soft handles wanting what `motions` say; components
+    /// without a handle are left out.
+    pub fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
+        let mut d = self.field(displacements);
+        let first_spring = self.system.operator.laplacian.vertices().len();
+        for (own, motion) in self.prescribed.iter().zip(motions) {
+            for &(place, coordinates) in own.iter().filter(|(place, _)| *place as usize >= first_spring) {
+                d[place as usize] = motion.displace(coordinates).to_array();
+            }
+        }
+        self.system.operator.energy(&d)
+    }
+
+    /// Displacements, one a surface vertex, as a field.
+    fn field(&self, displacements: &[DVec3]) -> Vec<[f64; 3]> {
+        let operator = &self.system.operator;
+        let vertices = operator.laplacian.vertices();
+        (0..operator.field_len())
+            .map(|place| displacements[vertices[operator.local_of(place) as usize] as usize].to_array())
+            .collect()
+    }
+
+    /// Solves for the solved vertices' displacements from whatever the other vertices' are, and those of soft handles'
+    /// vertices, which are taken as what the handles want.
+    ///
+    /// # Errors
+    /// Where the solution stays too far from the operator's.
+    pub fn back_substitute(&self, displacements: &mut [DVec3]) -> Result<(), SolveError> {
+        let vertices = self.system.operator.laplacian.vertices();
+        let mut d = self.field(displacements);
+        let error = self.system.solve(&mut d, &Cancel::new()).error;
+        for &local in self.system.columns() {
+            displacements[vertices[local as usize] as usize] = DVec3::from_array(d[local as usize]);
+        }
+        // What is not finite is the gate's to say.
+        if error.is_finite() && error > TOLERANCE {
+            Err(SolveError::Inaccurate { error })
+        } else {
+            Ok(())
+        }
+    }
+
+    /// The handles' vertices and coordinates, as surface vertices, ascending.
+    pub fn prescribed(&self, handle: usize) -> impl Iterator<Item = (u32, [f64; 4])> + '_ {
+        self.prescribed[handle]
+            .iter()
+            .map(|&(place, coordinates)| (self.vertex(place), coordinates))
+    }
+
+    /// The surface vertex that a field's entry is for.
+    fn vertex(&self, place: u32) -> u32 {
+        let operator = &self.system.operator;
+        operator.laplacian.vertices()[operator.local_of(place as usize) as usize]
+    }
+}
+
+/// The refusal with a lower order as a further remedy, where there is one.
+fn of_order(options: &Bilaplacian, refused: BindError) -> BindError {
+    let order = options.operator_power();
+    match refused {
+        BindError::NotPositiveDefinite { .. } | BindError::Inaccurate { .. } if order > 1 => BindError::Order {
+            order,
+            refused: Box::new(refused),
+        },
+        _ => refused,
+    }
+}
+
+/// One handle's four columns.
+struct Columns {
+    /// On the solved vertices, ascending. **f32**.
+    rows: Vec<[f32; 4]>,
+    /// C_hᵀ F of this handle against each handle h, F the force that it takes at h: A B, or the springs' W (C − B).
+    energies: Vec<[[f64; 4]; 4]>,
+    error: f64,
+    worst_vertex: u32,
+}
+
+impl Columns {
+    /// Of a solution whose first four functions are the handle's.
+    fn of<const K: usize>(
+        system: &BilaplacianSystem,
+        d: &[[f64; K]],
+        own: &Prescribed,
+        prescribed: &[Prescribed],
+        solved_locals: &[u32],
+        error: f64,
+    ) -> Self {
+        let operator = &system.operator;
+        let first_spring = operator.laplacian.vertices().len();
+        let potential = operator.potential(d);
+        let energy = |handle: &Prescribed| {
+            let mut block = [[0.0; 4]; 4];
+            for &(place, coordinates) in handle {
+                let force = match (place as usize).checked_sub(first_spring) {
+                    Some(spring) => operator.pull(spring, d),
+                    None => operator.force(place as usize, &potential),
+                };
+                for i in 0..4 {
+                    for j in 0..4 {
+                        block[i][j] += coordinates[i] * force[j];
+                    }
+                }
+            }
+            block
+        };
+        let row = |&local: &u32| std::array::from_fn(|k| d[local as usize][k] as f32);
+        let worst_vertex = own.first().map_or(0, |&(place, _)| {
+            operator.laplacian.vertices()[operator.local_of(place as usize) as usize]
+        });
+        Self {
+            rows: solved_locals.iter().map(row).collect(),
+            energies: prescribed.iter().map(energy).collect(),
+            error,
+            worst_vertex,
+        }
+    }
+}
+
+/// A chunk of a frame: the displacements of the vertices from `first` on, and whether all are finite.
+///
+/// A closure would be compiled apart from the vectors that it is called for.
+struct Frame<'a> {
+    solver: &'a BilaplacianSolver,
+    motions: &'a [Motion],
+    tables: &'a Tables,
+    first: usize,
+    out: &'a mut [DVec3],
+}
+
+impl WithSimd for Frame<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> bool {
+        let Self { solver, first, out, .. } = self;
+        out.fill(DVec3::ZERO);
+        for (own, motion) in solver.prescribed.iter().zip(self.motions) {
+            let place = |vertex: usize| own.partition_point(|&(place, _)| (solver.vertex(place) as usize) < vertex);
+            for &(at, coordinates) in &own[place(first)..place(first + out.len())] {
+                out[solver.vertex(at) as usize - first] = motion.displace(coordinates);
+            }
+        }
+        solver.bases.evaluate(self.tables, first, out);
+        out.iter().all(|displacement| displacement.is_finite())
+    }
+}
+
+/// The lowest handle of each component in which nothing is fixed.
+fn reference_handles(problem: &Problem, partition: &Partition) -> Vec<Option<u16>> {
+    let mut reference = vec![None; partition.held.len()];
+    for (handle, vertices) in partition.handles.iter().enumerate().rev() {
+        for &vertex in vertices {
+            let component = problem.topology.component(SurfaceVertex(vertex)) as usize;
+            if !partition.held[component] {
+                reference[component] = Some(handle as u16);
+            }
+        }
+    }
+    reference
+}

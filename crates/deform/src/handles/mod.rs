@@ -1,0 +1,97 @@
+//! A handle's vertices in coordinates of its own, and what a transform does in them.
+//!
+//! The coordinates are centred on the handle and scaled to it. Bases in f32 over world coordinates lose 3e-3 at ten
+//! thousand diagonals from the origin; over these 3e-8, wherever the scan stands.
+
+pub(crate) mod blend;
+
+use glam::{DAffine3, DMat3, DVec3};
+use rayon::prelude::*;
+
+/// Surface vertices that one task displaces.
+pub(crate) const FRAME_CHUNK: usize = 4096;
+
+/// A handle's vertices and its frame.
+#[derive(Clone, Debug)]
+pub(crate) struct Handle {
+    /// Its surface vertices, ascending.
+    pub vertices: Vec<u32>,
+    /// The mean of their rest positions.
+    pub world_centre: DVec3,
+    /// The largest distance of one from the centre; 1 where all are in one place.
+    pub radius: f64,
+}
+
+/// What a transform changes: the displacement of the point `world_centre + radius * q` is `linear * q + shift`.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Motion {
+    pub linear: DMat3,
+    pub shift: DVec3,
+}
+
+impl Default for Motion {
+    /// Rest: a matrix's own default is the identity.
+    fn default() -> Self {
+        Self {
+            linear: DMat3::ZERO,
+            shift: DVec3::ZERO,
+        }
+    }
+}
+
+impl Handle {
+    /// The frame of a handle with at least one vertex.
+    pub fn new(vertices: Vec<u32>, world_positions: &[DVec3]) -> Self {
+        let origin = vertices
+            .first()
+            .map_or(DVec3::ZERO, |&vertex| world_positions[vertex as usize]);
+        let offset = vertices
+            .iter()
+            .map(|&vertex| world_positions[vertex as usize] - origin)
+            .sum::<DVec3>();
+        let world_centre = origin + offset / vertices.len().max(1) as f64;
+        let radius = vertices
+            .iter()
+            .map(|&vertex| world_positions[vertex as usize].distance(world_centre))
+            .fold(0.0, f64::max);
+        Self {
+            vertices,
+            world_centre,
+            radius: if radius > 0.0 { radius } else { 1.0 },
+        }
+    }
+
+    /// A point in the handle's own coordinates, with a last entry 1 for the constant.
+    pub fn coordinates(&self, world_point: DVec3) -> [f64; 4] {
+        let q = (world_point - self.world_centre) / self.radius;
+        [q.x, q.y, q.z, 1.0]
+    }
+
+    /// What `world_target` changes, zero to the last bit where it is the identity.
+    pub fn motion(&self, world_target: &DAffine3) -> Motion {
+        let change = world_target.matrix3 - DMat3::IDENTITY;
+        Motion {
+            linear: change * self.radius,
+            shift: change * self.world_centre + world_target.translation,
+        }
+    }
+}
+
+impl Motion {
+    /// The displacement of a point given by its coordinates.
+    pub fn displace(&self, coordinates: [f64; 4]) -> DVec3 {
+        self.linear * DVec3::new(coordinates[0], coordinates[1], coordinates[2]) + self.shift * coordinates[3]
+    }
+
+    /// Whether nothing moves.
+    pub fn is_rest(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// All zero.
+pub(crate) fn clear(displacements: &mut [DVec3]) {
+    displacements
+        .par_chunks_mut(FRAME_CHUNK)
+        .for_each(|chunk| chunk.fill(DVec3::ZERO));
+}

@@ -1,0 +1,140 @@
+//! The rotation R that maximises tr(Rᵀ S) for a 3×3 matrix S: a cell's best rotation, S = Σ w e' eᵀ.
+//!
+//! By Newton's method on the rotations, started from the last one. With B = Rᵀ S, a the axial vector of B's skew part
+//! and H = tr(B) I − sym(B), the step is R ← R exp(H⁻¹ a), and a rotation is the maximum exactly if a = 0 and H is
+//! positive semidefinite: every other critical point is a saddle or a minimum. So one or two steps from a warm start
+//! are enough, reflected and flat cells need no case of their own, and what the test of H refuses is solved anew by the
+//! largest eigenvector of Horn's 4×4 matrix (see `rigid_fit`), which is always a proper rotation.
+
+use glam::{DMat3, DQuat, DVec3};
+
+use crate::numerical::rigid_fit::best_rotation;
+
+/// Newton steps before a start is given up.
+pub(crate) const STEPS: u32 = 6;
+
+/// The skew part that counts as none, in units of tr(B).
+pub(crate) const STATIONARY: f64 = 1e-14;
+
+/// A turn, in radians, from which no further step is needed: convergence is quadratic at least, and what is left of it
+/// enters the energy squared once more. As a descent settles its turns get smaller, and the rotations exact.
+pub(crate) const SMALL_RAD: f64 = 3e-3;
+
+/// What is added to H, in units of its trace: a cell whose edges lie on one line leaves the turn about it open, and
+/// keeps the one it had.
+pub(crate) const OPEN: f64 = 1e-12;
+
+/// The best rotation for `s`, from the guess `start`; `start` itself where `s` is zero or not finite.
+#[inline]
+pub(crate) fn fit(s: &DMat3, start: DQuat) -> DQuat {
+    if let Some(rotation) = newton(s, start) {
+        return rotation;
+    }
+    fit_anew(s, start)
+}
+
+/// As [`fit`], where Newton's method from `start` did not get there.
+#[cold]
+pub(crate) fn fit_anew(s: &DMat3, start: DQuat) -> DQuat {
+    let size = s.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    if !(size > 0.0 && s.is_finite()) {
+        return start;
+    }
+    let rotation = best_rotation(&s.transpose());
+    // Where the maximum is not unique Newton cannot do better, and is not asked again.
+    newton(s, rotation).unwrap_or(rotation)
+}
+
+#[inline]
+fn newton(s: &DMat3, start: DQuat) -> Option<DQuat> {
+    let mut rotation = start;
+    for _ in 0..STEPS {
+        let r = DMat3::from_quat(rotation);
+        let b = r.transpose() * *s;
+        let (x, y, z) = (b.x_axis, b.y_axis, b.z_axis);
+        let skew = DVec3::new(y.z - z.y, z.x - x.z, x.y - y.x);
+        let trace = x.x + y.y + z.z;
+        // H's entries; its trace is twice B's.
+        let open = OPEN * trace;
+        let (hxx, hyy, hzz) = (y.y + z.z + open, x.x + z.z + open, x.x + y.y + open);
+        let (hxy, hxz, hyz) = (-0.5 * (y.x + x.y), -0.5 * (z.x + x.z), -0.5 * (z.y + y.z));
+        // H = L D Lᵀ.
+        let (i1, lxy, lxz) = (hxx.recip(), hxy / hxx, hxz / hxx);
+        let d2 = hyy - lxy * hxy;
+        let m = hyz - lxy * hxz;
+        let lyz = m / d2;
+        let d3 = hzz - lxz * hxz - lyz * m;
+        // Also false where anything is not a number.
+        if !(trace > 0.0 && hxx > 0.0 && d2 > 0.0 && d3 > 0.0) {
+            return None;
+        }
+        let residual = skew.abs().max_element();
+        if residual <= STATIONARY * trace {
+            return Some(rotation);
+        }
+        let u = skew.x;
+        let v = skew.y - lxy * u;
+        let w = (skew.z - lxz * u - lyz * v) / d3;
+        let v = v / d2 - lyz * w;
+        let turn = DVec3::new(u * i1 - lxy * v - lxz * w, v, w);
+        if turn.is_nan() || turn.length_squared() >= 4.0 {
+            return None;
+        }
+        // The unit quaternion of exp(turn), to second order.
+        let step = DQuat::from_xyzw(0.5 * turn.x, 0.5 * turn.y, 0.5 * turn.z, 1.0);
+        rotation = (rotation * step).normalize();
+        if turn.length_squared() < SMALL_RAD * SMALL_RAD {
+            return Some(rotation);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::fit;
+    use glam::{DMat3, DQuat, DVec3};
+
+    fn axis(i: u32) -> DVec3 {
+        DVec3::new(
+            f64::from(i * 7 % 11) - 5.0,
+            f64::from(i * 5 % 13) - 6.0,
+            f64::from(i % 7) - 2.5,
+        )
+        .normalize()
+    }
+
+    /// R diag(σ) Vᵀ for rotations R and V: its best rotation is R Vᵀ while σ's sum of each pair is positive.
+    #[test]
+    fn the_rotation_is_found_from_any_start_also_in_flat_and_reflected_cells() {
+        for stretches in [
+            DVec3::new(3.0, 2.0, 1.0),
+            DVec3::new(1.0, 1.0, 0.0),
+            DVec3::new(3.0, 1.0, -0.5),
+            DVec3::splat(1e-9),
+            DVec3::new(5e8, 1e8, -9e7),
+        ] {
+            for i in 0..60 {
+                let rotation = DQuat::from_axis_angle(axis(i), 0.1 * f64::from(i));
+                let v = DMat3::from_quat(DQuat::from_axis_angle(axis(i + 17), 2.0));
+                let s = DMat3::from_quat(rotation) * v * DMat3::from_diagonal(stretches) * v.transpose();
+                let start = DQuat::from_axis_angle(axis(i + 5), 0.3 * f64::from(i % 21));
+                let error = 1.0 - fit(&s, start).dot(rotation).abs();
+                assert!(error < 1e-12, "{stretches} {i}: {error:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_open_stays_as_it_was_and_nothing_is_not_finite() {
+        let start = DQuat::from_axis_angle(axis(3), 1.0);
+        assert_eq!(fit(&DMat3::ZERO, start), start);
+        assert_eq!(fit(&DMat3::from_cols(DVec3::NAN, DVec3::X, DVec3::X), start), start);
+        let line = DMat3::from_cols(DVec3::X, DVec3::ZERO, DVec3::ZERO);
+        let twist = DQuat::from_rotation_x(0.7);
+        assert!(fit(&line, twist).dot(twist).abs() > 1.0 - 1e-12);
+        // A mirrored isotropic cell has no single best rotation; any that is proper will do.
+        assert!(fit(&(-DMat3::IDENTITY), start).is_normalized());
+    }
+}

@@ -1,0 +1,153 @@
+//! What a Laplacian is made on: triangles with edge lengths, and who neighbours whom.
+//!
+//! Either the surface's own triangles, measured in space or along stretched axes, or intrinsic ones on the same vertices,
+//! whose edges run straight within the surface and need not be edges of it.
+
+mod flips;
+mod intrinsic;
+mod principal;
+mod surface;
+mod tufted;
+
+use pliant_mesh::{Surface, SurfaceVertex, Topology};
+
+use crate::operators::triangulation::intrinsic::Intrinsic;
+use crate::operators::triangulation::principal::stretches;
+use crate::operators::triangulation::surface::SurfaceTriangulation;
+use crate::{Bilaplacian, Problem, TriangulationKind};
+
+/// Triangles with edge lengths over the surface's vertices.
+#[derive(Clone, Debug)]
+pub(crate) enum Triangulation<'a> {
+    /// Its own.
+    Surface(SurfaceTriangulation<'a>),
+    /// Others on its vertices.
+    Intrinsic(Box<Intrinsic>, &'a Topology),
+}
+
+/// A graph over the surface's vertices.
+pub(crate) trait Graph: Sync {
+    /// The vertices that share an edge with this one, ascending.
+    fn neighbours(&self, vertex: SurfaceVertex) -> &[SurfaceVertex];
+}
+
+impl Graph for Topology {
+    fn neighbours(&self, vertex: SurfaceVertex) -> &[SurfaceVertex] {
+        Topology::neighbours(self, vertex)
+    }
+}
+
+impl Graph for Triangulation<'_> {
+    fn neighbours(&self, vertex: SurfaceVertex) -> &[SurfaceVertex] {
+        match self {
+            Self::Surface(triangulation) => triangulation.topology.neighbours(vertex),
+            Self::Intrinsic(triangulation, _) => triangulation.neighbours(vertex),
+        }
+    }
+}
+
+impl<'a> Triangulation<'a> {
+    /// The surface's own triangles as they stand in space.
+    pub fn of_surface(surface: &'a Surface, topology: &'a Topology) -> Self {
+        Self::Surface(SurfaceTriangulation {
+            surface,
+            topology,
+            stretches: Vec::new(),
+        })
+    }
+
+    /// What the bi-Laplacian's options ask for.
+    pub fn of_options(problem: &Problem<'a>, options: &Bilaplacian) -> Self {
+        let triangulation = SurfaceTriangulation {
+            surface: problem.surface,
+            topology: problem.topology,
+            stretches: stretches(problem, options.anisotropy),
+        };
+        match options.triangulation {
+            TriangulationKind::AsIs => Self::Surface(triangulation),
+            TriangulationKind::IntrinsicDelaunay => {
+                Self::Intrinsic(Box::new(Intrinsic::delaunay(&triangulation)), triangulation.topology)
+            }
+            TriangulationKind::Tufted => {
+                Self::Intrinsic(Box::new(Intrinsic::tufted(&triangulation)), triangulation.topology)
+            }
+        }
+    }
+
+    /// Of the surface: its components are those of either kind.
+    pub fn topology(&self) -> &'a Topology {
+        match self {
+            Self::Surface(triangulation) => triangulation.topology,
+            Self::Intrinsic(_, topology) => topology,
+        }
+    }
+
+    /// How many vertices there are.
+    pub fn vertex_count(&self) -> usize {
+        match self {
+            Self::Surface(triangulation) => triangulation.surface.positions.len(),
+            Self::Intrinsic(triangulation, _) => triangulation.vertex_count(),
+        }
+    }
+
+    /// How many triangles there are.
+    pub fn face_count(&self) -> usize {
+        match self {
+            Self::Surface(triangulation) => triangulation.surface.triangles.len(),
+            Self::Intrinsic(triangulation, _) => triangulation.face_count(),
+        }
+    }
+
+    /// Visits the triangles around a vertex, each once, ascending.
+    pub fn for_each_face(&self, vertex: SurfaceVertex, visit: impl FnMut(u32)) {
+        match self {
+            Self::Surface(triangulation) => triangulation
+                .topology
+                .faces(vertex, &triangulation.surface.triangles)
+                .for_each(visit),
+            Self::Intrinsic(triangulation, _) => triangulation.faces(vertex).iter().copied().for_each(visit),
+        }
+    }
+
+    /// A triangle's corners; an intrinsic one may have a vertex twice.
+    pub fn corners(&self, face: u32) -> [SurfaceVertex; 3] {
+        match self {
+            Self::Surface(triangulation) => triangulation.surface.triangles[face as usize],
+            Self::Intrinsic(triangulation, _) => triangulation.corners(face),
+        }
+    }
+
+    /// A triangle's edge lengths, entry `i` opposite corner `i`.
+    pub fn lengths(&self, face: u32) -> [f64; 3] {
+        match self {
+            Self::Surface(triangulation) => triangulation.lengths(face),
+            Self::Intrinsic(triangulation, _) => triangulation.lengths(face),
+        }
+    }
+
+    /// The share of each triangle in the surface: ½ where the surface is covered twice.
+    pub fn share(&self) -> f64 {
+        match self {
+            Self::Surface(_) => 1.0,
+            Self::Intrinsic(triangulation, _) => triangulation.share(),
+        }
+    }
+
+    /// How many triangles were given longer edges before anything was computed on them.
+    pub fn mollified_faces(&self) -> usize {
+        match self {
+            Self::Surface(_) => 0,
+            Self::Intrinsic(triangulation, _) => triangulation.mollified_faces(),
+        }
+    }
+
+    /// Sentences for a person about what had to be left.
+    pub fn warning(&self) -> Option<&'static str> {
+        match self {
+            Self::Intrinsic(triangulation, _) if !triangulation.is_delaunay() => {
+                Some("the intrinsic triangulation could not be made Delaunay throughout: some weights stay negative")
+            }
+            _ => None,
+        }
+    }
+}

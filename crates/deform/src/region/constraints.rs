@@ -1,0 +1,69 @@
+//! How firmly handles pull, and how smoothly the surface joins what holds it.
+
+use std::ops::RangeInclusive;
+
+use crate::{BindError, Loose, Problem};
+
+/// What constrained vertices do beyond their roles. The default is hard handles, joined as smoothly as the method can.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Constraints<'a> {
+    /// Of each handle: `None` where its vertices go exactly where it goes; for a *soft* one its weight, a number above
+    /// 0 without unit. Empty: all are hard.
+    ///
+    /// A soft handle pulls at each of its vertices i by a spring of strength
+    ///
+    /// W_i = w M_ii (k_s q + k_b qⁿ), q = π² / Σ M_ii,
+    ///
+    /// n the bi-Laplacian's order and the sum over the handle: w times what the bi-Laplacian opposes to a half wave as long as the
+    /// handle is wide, so that at 1 both give way to each other. Neither the resolution of the mesh nor its unit shows
+    /// in it. The larger w, the nearer to a hard handle.
+    pub soft: &'a [Option<f64>],
+    /// Of each surface vertex: with which continuity Cᵏ the free surface joins it, if it is constrained, and at most
+    /// Cⁿ⁻¹, n the bi-Laplacian's order; from 0 to 2 [BK04]. 0 is a hinge, 1 keeps the tangents, 2 the
+    /// curvature; a number between is a hinge with a spring that is as stiff at every resolution. Empty: 2 everywhere.
+    pub continuity: &'a [f64],
+    /// What single components do that nothing holds, by their number in the topology, in place of [`Problem::loose`];
+    /// of several entries the last one counts.
+    pub parts: &'a [(u32, Loose)],
+}
+
+/// What a continuity may be.
+pub const CONTINUITY_RANGE: RangeInclusive<f64> = 0.0..=2.0;
+
+impl Constraints<'_> {
+    /// The weight of a handle, if it is soft.
+    pub(crate) fn weight(&self, handle: u16) -> Option<f64> {
+        self.soft.get(usize::from(handle)).copied().flatten()
+    }
+
+    /// Whether every table fits the problem and every number is one that it may be.
+    pub(crate) fn check(&self, problem: &Problem) -> Result<(), BindError> {
+        let vertex_count = problem.surface.positions.len();
+        for (table, found, expected) in [
+            ("the table of handles' weights", self.soft.len(), problem.handle_count),
+            ("the continuity table", self.continuity.len(), vertex_count),
+        ] {
+            if found != 0 && found != expected {
+                return Err(BindError::Length { table, found, expected });
+            }
+        }
+        for (handle, &value) in self.soft.iter().enumerate() {
+            if let Some(value) = value
+                && !(value.is_finite() && value > 0.0)
+            {
+                return Err(BindError::SoftWeight { handle, value });
+            }
+        }
+        match self
+            .continuity
+            .iter()
+            .position(|value| !CONTINUITY_RANGE.contains(value))
+        {
+            Some(vertex) => Err(BindError::Continuity {
+                vertex: vertex as u32,
+                value: self.continuity[vertex],
+            }),
+            None => Ok(()),
+        }
+    }
+}

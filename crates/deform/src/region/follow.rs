@@ -1,0 +1,319 @@
+//! Loose components travel rigidly with the nearest part of the surface that is being deformed.
+//!
+//! Real models are many pieces: a helmet has 55 components, and moving its shell alone would tear it apart. A loose
+//! component is tied to a *patch*, the surface around the point of the driven components that it comes nearest to,
+//! about as large as itself, and takes the rigid motion that fits the patch's displacements best. One that bends along
+//! has such a tie at several of its vertices, evenly spread, and between them the motions are blended as in an embedded
+//! deformation [SSP07]: each place by the four nearest, with weights (1 − d/d₅)², d₅ the fifth's distance.
+
+use std::collections::{BTreeMap, HashSet};
+
+use glam::DVec3;
+use pliant_mesh::{Bvh, Surface, SurfaceVertex, Topology};
+use rayon::prelude::*;
+
+use crate::Loose;
+use crate::numerical::rigid_fit::RigidMotion;
+
+/// All components that follow, and what.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Followers {
+    /// The places that something is tied to, each once.
+    ties: Vec<Tie>,
+    rigid: Vec<Rigid>,
+    bending: Vec<Bending>,
+}
+
+/// A vertex that moves with one tie, as all of its component do.
+#[derive(Clone, Copy, Debug)]
+struct Rigid {
+    vertex: SurfaceVertex,
+    tie: u32,
+    world_rest: DVec3,
+}
+
+/// A component that bends along.
+#[derive(Clone, Debug)]
+struct Bending {
+    vertices: Vec<SurfaceVertex>,
+    /// Their rest positions.
+    world_rest: Vec<DVec3>,
+    /// The first of its ties.
+    first_tie: usize,
+    /// Of each vertex the ties that move it, counted from the first, with their shares, whose sum is 1.
+    shares: Vec<[(u16, f64); BLENDED]>,
+}
+
+/// The patch that a place of a component follows.
+#[derive(Clone, Debug)]
+struct Tie {
+    /// Vertices of a driven component.
+    patch: Vec<SurfaceVertex>,
+    /// Their rest positions.
+    world_rest: Vec<DVec3>,
+}
+
+/// Where a tie is, and how far its patch reaches.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    middle: SurfaceVertex,
+    radius: f64,
+}
+
+/// How many ties move a vertex of a component that bends along.
+const BLENDED: usize = 4;
+
+/// At how many of its vertices a component that bends along is tied, at most.
+const MOST_TIES: usize = 64;
+
+/// A patch with more vertices than this is thinned out evenly: a fit needs no more.
+const PATCH_SAMPLES: usize = 256;
+
+/// A patch reaches at least this many mean edge lengths at its middle.
+const PATCH_EDGES: f64 = 3.0;
+
+/// Where more components follow than this they are crumbs, and each is tied to the least patch, which those beside it
+/// share: patches as large as each of very many components would take much more room than the mesh.
+const CRUMBS: usize = 10_000;
+
+/// Ties each of the components `following` to the nearest of the components `driven`.
+pub(crate) fn followers(
+    surface: &Surface,
+    topology: &Topology,
+    following: &[(u32, Loose)],
+    driven: &[u32],
+) -> Followers {
+    if following.is_empty() || driven.is_empty() {
+        return Followers::default();
+    }
+    let is_driven = |corner: SurfaceVertex| driven.binary_search(&topology.component(corner)).is_ok();
+    let triangles: Vec<_> = surface
+        .triangles
+        .iter()
+        .copied()
+        .filter(|corners| is_driven(corners[0]))
+        .collect();
+    let nearby = Bvh::build(&surface.positions, &triangles);
+    let reach = if following.len() > CRUMBS { 0.0 } else { 1.0 };
+    let place = |middle: SurfaceVertex, radius: f64| Place {
+        middle,
+        radius: (reach * radius).max(PATCH_EDGES * mean_edge(surface, topology, middle)),
+    };
+    // All that is kept of a component that follows as a whole is its place.
+    let rigid: Vec<Option<Place>> = following
+        .par_iter()
+        .map(|&(component, how)| {
+            let vertices = topology.vertices_of(component);
+            let (middle, radius) = (how == Loose::Follow).then(|| nearest(surface, vertices, &nearby))??;
+            Some(place(middle, radius))
+        })
+        .collect();
+    // Components that are tied to the same patch share it.
+    let key = |place: &Place| (place.middle, place.radius.to_bits());
+    let mut numbers: BTreeMap<(SurfaceVertex, u64), u32> = BTreeMap::new();
+    let mut places = Vec::new();
+    let mut followers = Followers::default();
+    for (&(component, _), place) in following.iter().zip(&rigid) {
+        let Some(place) = place else { continue };
+        let tie = *numbers.entry(key(place)).or_insert_with(|| {
+            places.push(*place);
+            places.len() as u32 - 1
+        });
+        followers
+            .rigid
+            .extend(topology.vertices_of(component).map(|vertex| Rigid {
+                vertex,
+                tie,
+                world_rest: surface.positions[vertex.index()],
+            }));
+    }
+    for &(component, how) in following {
+        if how == Loose::Bend
+            && let Some((bending, knots)) = bending(surface, topology, component, &nearby, places.len())
+        {
+            places.extend(knots.into_iter().map(|(middle, radius)| place(middle, radius)));
+            followers.bending.push(bending);
+        }
+    }
+    followers.ties = places.par_iter().map(|place| tie(surface, topology, place)).collect();
+    followers
+}
+
+fn positions_of(surface: &Surface, vertices: &[SurfaceVertex]) -> Vec<DVec3> {
+    vertices
+        .iter()
+        .map(|vertex| surface.positions[vertex.index()])
+        .collect()
+}
+
+/// The vertex of the driven surface that the component of these vertices comes nearest to, and half the diagonal of its
+/// bounding box.
+fn nearest(
+    surface: &Surface,
+    vertices: impl Iterator<Item = SurfaceVertex>,
+    nearby: &Bvh,
+) -> Option<(SurfaceVertex, f64)> {
+    let mut nearest: Option<(SurfaceVertex, f64)> = None;
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for point in vertices.map(|vertex| surface.positions[vertex.index()]) {
+        if let Some(found) = nearby.nearest_vertex(point)
+            && nearest.is_none_or(|(_, distance)| found.1 < distance)
+        {
+            nearest = Some(found);
+        }
+        (low, high) = (low.min(point), high.max(point));
+    }
+    nearest.map(|(middle, _)| (middle, 0.5 * low.distance(high)))
+}
+
+/// A component that bends along, whose ties are the next from `first_tie` on: their middles and radii.
+fn bending(
+    surface: &Surface,
+    topology: &Topology,
+    component: u32,
+    nearby: &Bvh,
+    first_tie: usize,
+) -> Option<(Bending, Vec<(SurfaceVertex, f64)>)> {
+    let vertices: Vec<SurfaceVertex> = topology.vertices_of(component).collect();
+    let world_rest = positions_of(surface, &vertices);
+    let (knots, spacing) = spread(&world_rest);
+    let place = |&knot: &usize| Some((nearby.nearest_vertex(world_rest[knot])?.0, 0.5 * spacing));
+    let places = knots.iter().map(place).collect::<Option<_>>()?;
+    let shares = world_rest
+        .par_iter()
+        .map(|&point| shares_at(point, knots.iter().map(|&knot| world_rest[knot])))
+        .collect();
+    let bending = Bending {
+        vertices,
+        world_rest,
+        first_tie,
+        shares,
+    };
+    Some((bending, places))
+}
+
+/// At most [`MOST_TIES`] of the points, each as far as can be from those before it, and how far apart they are in the
+/// end.
+fn spread(points: &[DVec3]) -> (Vec<usize>, f64) {
+    let mut distances = vec![f64::INFINITY; points.len()];
+    let (mut chosen, mut next, mut spacing) = (Vec::new(), 0, 0.0);
+    while chosen.len() < MOST_TIES.min(points.len()) {
+        chosen.push(next);
+        let mut farthest = 0.0;
+        let from = points[next];
+        for (number, (distance, point)) in distances.iter_mut().zip(points).enumerate() {
+            *distance = distance.min(point.distance(from));
+            if *distance > farthest {
+                (farthest, next) = (*distance, number);
+            }
+        }
+        spacing = farthest;
+        if farthest == 0.0 {
+            break;
+        }
+    }
+    (chosen, spacing)
+}
+
+/// The nearest ties and their shares.
+fn shares_at(point: DVec3, ties: impl Iterator<Item = DVec3>) -> [(u16, f64); BLENDED] {
+    let mut nearest = [(0_u16, f64::INFINITY); BLENDED + 1];
+    for (number, tie) in (0..).zip(ties) {
+        let distance = tie.distance(point);
+        let place = nearest.partition_point(|&(_, nearer)| nearer <= distance);
+        if place < nearest.len() {
+            nearest[place..].rotate_right(1);
+            nearest[place] = (number, distance);
+        }
+    }
+    let beyond = nearest[BLENDED].1;
+    let mut shares = [(0, 0.0); BLENDED];
+    for (share, (number, distance)) in shares.iter_mut().zip(nearest) {
+        let weight = match distance {
+            _ if distance.is_infinite() => 0.0,
+            // As few ties as are blended: there is no fifth.
+            _ if beyond.is_infinite() => 1.0 / (1e-12 + distance),
+            _ => (1.0 - distance / beyond.max(f64::MIN_POSITIVE)).max(0.0).powi(2),
+        };
+        *share = (number, weight);
+    }
+    let sum: f64 = shares.iter().map(|(_, weight)| weight).sum();
+    if sum > 0.0 {
+        shares.iter_mut().for_each(|(_, weight)| *weight /= sum);
+    } else {
+        shares[0].1 = 1.0;
+    }
+    shares
+}
+
+fn tie(surface: &Surface, topology: &Topology, place: &Place) -> Tie {
+    let patch = thinned(patch_around(surface, topology, place));
+    Tie {
+        world_rest: positions_of(surface, &patch),
+        patch,
+    }
+}
+
+/// The mean length of the edges at a vertex.
+fn mean_edge(surface: &Surface, topology: &Topology, vertex: SurfaceVertex) -> f64 {
+    let centre = surface.positions[vertex.index()];
+    let ring = topology.neighbours(vertex);
+    let length = |other: &SurfaceVertex| surface.positions[other.index()].distance(centre);
+    ring.iter().map(length).sum::<f64>() / ring.len().max(1) as f64
+}
+
+/// The vertices joined to the middle within the radius, in walking order.
+fn patch_around(surface: &Surface, topology: &Topology, place: &Place) -> Vec<SurfaceVertex> {
+    let centre = surface.positions[place.middle.index()];
+    let distance = |vertex: SurfaceVertex| surface.positions[vertex.index()].distance(centre);
+    // A table of all vertices for each of many patches would cost more than all patches.
+    let mut seen = HashSet::from([place.middle]);
+    let mut patch = vec![place.middle];
+    let mut next = 0;
+    while let Some(&vertex) = patch.get(next) {
+        next += 1;
+        for &beside in topology.neighbours(vertex) {
+            if distance(beside) <= place.radius && seen.insert(beside) {
+                patch.push(beside);
+            }
+        }
+    }
+    patch
+}
+
+fn thinned(patch: Vec<SurfaceVertex>) -> Vec<SurfaceVertex> {
+    let stride = patch.len().div_ceil(PATCH_SAMPLES);
+    patch.into_iter().step_by(stride.max(1)).collect()
+}
+
+impl Followers {
+    /// Whether nothing follows.
+    pub fn is_empty(&self) -> bool {
+        self.rigid.is_empty() && self.bending.is_empty()
+    }
+
+    /// Writes the followers' displacements, given those of the driven components.
+    pub fn carry(&self, displacements: &mut [DVec3]) {
+        let motion = |tie: &Tie| {
+            let moved: Vec<DVec3> = tie.patch.iter().map(|vertex| displacements[vertex.index()]).collect();
+            RigidMotion::fit(&tie.world_rest, &moved)
+        };
+        let motions: Vec<Option<RigidMotion>> = self.ties.par_iter().map(motion).collect();
+        let moved = |tie: usize, rest: DVec3| Some(motions.get(tie)?.as_ref()?.displace(rest));
+        for own in &self.rigid {
+            if let Some(displacement) = moved(own.tie as usize, own.world_rest) {
+                displacements[own.vertex.index()] = displacement;
+            }
+        }
+        for own in &self.bending {
+            for ((vertex, &rest), shares) in own.vertices.iter().zip(&own.world_rest).zip(&own.shares) {
+                let shares = shares.iter();
+                let parts =
+                    shares.filter_map(|&(tie, share)| Some(moved(own.first_tie + usize::from(tie), rest)? * share));
+                if let Some(displacement) = parts.reduce(|sum, more| sum + more) {
+                    displacements[vertex.index()] = displacement;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! What the roles mean on a surface: who is solved for, who is held and how firmly, who follows.
+
+pub(crate) mod constraints;
+pub(crate) mod follow;
+pub(crate) mod partition;

@@ -1,0 +1,311 @@
+//! Who is solved for, who is prescribed, who follows: what the roles mean on this surface.
+//!
+//! Only vertices that a handle can reach are solved for. The system's graph is that of Lⁿ, n the bi-Laplacian's order, so
+//! influence travels n edges at a time, across constrained vertices too, and ends where a band of constrained vertices
+//! is n rings wide.
+//! Free vertices that it does not reach have the solution zero and stay out of the factor: binding costs what is
+//! deformed, not what is loaded.
+
+use pliant_mesh::SurfaceVertex;
+
+use crate::budget::bytes_of;
+use crate::method::option::joined;
+use crate::operators::triangulation::{Graph, Triangulation};
+use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, METHODS, Needs, Problem, Role};
+
+/// The vertices by what happens to them, all lists ascending.
+#[derive(Debug)]
+pub(crate) struct Partition<'a> {
+    /// The triangles that the method's operator is made on.
+    pub triangulation: Triangulation<'a>,
+    /// Free vertices that some handle influences, and those of soft handles.
+    pub solved: Vec<u32>,
+    /// The vertices of each handle.
+    pub handles: Vec<Vec<u32>>,
+    /// Each handle's weight, `None` where it is hard.
+    pub soft: Vec<Option<f64>>,
+    /// Components that hold a handle, ascending.
+    pub driven: Vec<u32>,
+    /// Components that hold neither a handle nor a fixed vertex and are to follow, ascending, and how.
+    pub following: Vec<(u32, Loose)>,
+    /// Of each component: whether it holds a fixed vertex.
+    pub held: Vec<bool>,
+    /// How many vertices have the role [`Role::Free`].
+    pub free_count: usize,
+    /// How much memory may be taken for them.
+    pub budget: Budget,
+    /// Sentences for a person about components.
+    pub warnings: Vec<String>,
+}
+
+impl<'a> Partition<'a> {
+    /// Checks the problem's tables and sorts its vertices.
+    pub fn of(problem: &Problem<'a>) -> Result<Self, BindError> {
+        check(problem)?;
+        let method = problem.method.implementation();
+        let triangulation = method.triangulation(problem);
+        let mut handles = vec![Vec::new(); problem.handle_count];
+        let component_count = problem.topology.components().len();
+        let mut held = vec![false; component_count];
+        let mut driven = vec![false; component_count];
+        let mut free_count = 0;
+        for (vertex, &role) in problem.roles.iter().enumerate() {
+            let component = problem.topology.component(SurfaceVertex(vertex as u32)) as usize;
+            match role {
+                Role::Fixed => held[component] = true,
+                Role::Free => free_count += 1,
+                Role::Handle(handle) => {
+                    handles[usize::from(handle)].push(vertex as u32);
+                    driven[component] = true;
+                }
+            }
+        }
+        if let Some(handle) = handles.iter().position(Vec::is_empty) {
+            return Err(BindError::EmptyHandle { handle });
+        }
+        let indices = |test: &dyn Fn(usize) -> bool| {
+            (0..component_count)
+                .filter(|&c| test(c))
+                .map(|c| c as u32)
+                .collect::<Vec<_>>()
+        };
+        let loose_of = problem.loose_by_component();
+        let (loose, mut warnings) = match method.needs() {
+            // Where nothing needs to be connected, nothing is loose.
+            Needs::Points => (Vec::new(), Vec::new()),
+            Needs::Surface { .. } => {
+                let loose = indices(&|c| !held[c] && !driven[c]);
+                let warnings = warnings(problem, &loose, &loose_of, &indices(&|c| driven[c] && !held[c]));
+                (loose, warnings)
+            }
+        };
+        let follows = |component: u32| match loose_of[component as usize] {
+            Loose::Rest => None,
+            how => (!handles.is_empty()).then_some((component, how)),
+        };
+        let heeds_soft = problem.method.declaration().heeds(ConstraintKind::SoftHandles);
+        let soft: Vec<Option<f64>> = (0..problem.handle_count)
+            .map(|handle| problem.constraints.weight(handle as u16).filter(|_| heeds_soft))
+            .collect();
+        warnings.extend(unheeded(problem));
+        warnings.extend(triangulation.warning().map(str::to_owned));
+        Ok(Self {
+            solved: solved(problem, &triangulation, &handles, &soft),
+            triangulation,
+            following: loose.into_iter().filter_map(follows).collect(),
+            handles,
+            soft,
+            driven: indices(&|c| driven[c]),
+            held,
+            free_count,
+            budget: Budget::default(),
+            warnings,
+        })
+    }
+}
+
+impl Partition<'_> {
+    /// Takes over the budget, less what is kept of every handle at every solved vertex and pair of handles.
+    ///
+    /// # Errors
+    /// [`BindError::Handles`] where that alone exceeds it.
+    pub fn take_budget(&mut self, budget: Budget) -> Result<(), BindError> {
+        let (handles, solved) = (self.handles.len(), self.solved.len());
+        let bytes = bytes_of(handles, ROW * solved).saturating_add(bytes_of(handles, PAIR * handles));
+        self.budget = budget.without(bytes).map_err(|_| BindError::Handles {
+            handle_count: handles,
+            free_count: solved,
+        })?;
+        Ok(())
+    }
+}
+
+/// Bytes of a handle's basis at a vertex, while all are put together: twice four numbers in single precision.
+const ROW: usize = 32;
+
+/// Bytes of the energy's block of a pair of handles: 4 × 4 numbers.
+const PAIR: usize = 128;
+
+/// Whether every table fits the surface and every number is one that it may be.
+fn check(problem: &Problem) -> Result<(), BindError> {
+    let expected = problem.surface.positions.len();
+    for (table, found) in [
+        ("the roles' table", problem.roles.len()),
+        ("the stiffness table", problem.stiffness.len()),
+    ] {
+        if found != expected {
+            return Err(BindError::Length { table, found, expected });
+        }
+    }
+    problem.constraints.check(problem)?;
+    for (vertex, role) in problem.roles.iter().enumerate() {
+        if let Role::Handle(handle) = *role
+            && usize::from(handle) >= problem.handle_count
+        {
+            return Err(BindError::UnknownHandle {
+                vertex: vertex as u32,
+                handle,
+                handle_count: problem.handle_count,
+            });
+        }
+    }
+    for (vertex, &value) in problem.stiffness.iter().enumerate() {
+        if !(value.is_finite() && value > 0.0) {
+            return Err(BindError::Stiffness {
+                vertex: vertex as u32,
+                value,
+            });
+        }
+    }
+    match problem
+        .surface
+        .positions
+        .iter()
+        .position(|position| !position.is_finite())
+    {
+        Some(vertex) => Err(BindError::Position { vertex: vertex as u32 }),
+        None => Ok(()),
+    }
+}
+
+/// Who is solved for, ascending: of a surface the free vertices that handles reach, by walks of which no `reach`
+/// successive vertices are constrained; of points all free ones. A soft handle's vertices count as free.
+fn solved(problem: &Problem, triangulation: &Triangulation, handles: &[Vec<u32>], soft: &[Option<f64>]) -> Vec<u32> {
+    let is_free = |vertex: usize| match problem.roles[vertex] {
+        Role::Free => true,
+        Role::Fixed => false,
+        Role::Handle(handle) => soft[usize::from(handle)].is_some(),
+    };
+    let chosen = |is_chosen: &dyn Fn(usize) -> bool| {
+        (0..problem.roles.len())
+            .filter(|&vertex| is_chosen(vertex))
+            .map(|vertex| vertex as u32)
+            .collect()
+    };
+    let reach = match problem.method.needs() {
+        Needs::Points => return chosen(&is_free),
+        Needs::Surface { reach, .. } => reach,
+    };
+    // How many edges a walk may go on from here before it must meet a free vertex; at a reached one, `reach`.
+    let mut left = vec![0; problem.roles.len()];
+    let mut queue: Vec<u32> = handles.iter().flatten().copied().collect();
+    for &vertex in &queue {
+        left[vertex as usize] = reach;
+    }
+    while let Some(vertex) = queue.pop() {
+        let beyond = left[vertex as usize] - 1;
+        for &next in triangulation.neighbours(SurfaceVertex(vertex)) {
+            let allowed = if is_free(next.index()) { reach } else { beyond };
+            if allowed > left[next.index()] {
+                left[next.index()] = allowed;
+                queue.push(next.0);
+            }
+        }
+    }
+    chosen(&|vertex| left[vertex] > 0 && is_free(vertex))
+}
+
+/// What is said of constraints that the method does not heed, with the methods that do.
+fn unheeded(problem: &Problem) -> Vec<String> {
+    let constraints = &problem.constraints;
+    let soft = constraints.soft.iter().position(Option::is_some);
+    let has_joints = constraints
+        .continuity
+        .iter()
+        .any(|&value| value != *CONTINUITY_RANGE.end());
+    let is_painted = problem.stiffness.iter().any(|&value| value != 1.0);
+    let name = problem.method.name();
+    let asked = [
+        (
+            ConstraintKind::SoftHandles,
+            soft.map(|handle| format!("handle {handle} is soft, and {name} holds every handle hard")),
+            "soft handles",
+        ),
+        (
+            ConstraintKind::Continuity,
+            has_joints.then(|| format!("{name} has no choice of continuity")),
+            "hinges and smooth joints",
+        ),
+        (
+            ConstraintKind::Stiffness,
+            is_painted.then(|| format!("{name} takes no notice of painted stiffness")),
+            "parts that are stiffer than others",
+        ),
+    ];
+    let declaration = problem.method.declaration();
+    asked
+        .into_iter()
+        .filter(|(kind, ..)| !declaration.heeds(*kind))
+        .filter_map(|(kind, what, purpose)| {
+            let others = METHODS.iter().filter(|other| other.heeds(kind));
+            let others = joined(others.map(|other| other.name.to_owned()), "or");
+            Some(format!("{}: take {others} for {purpose}", what?))
+        })
+        .collect()
+}
+
+/// How many components are named one by one before they are only counted.
+const NAMED: usize = 4;
+
+fn warnings(problem: &Problem, loose: &[u32], loose_of: &[Loose], unheld: &[u32]) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if problem.handle_count == 0 {
+        return sentences;
+    }
+    let size = |component: u32| problem.topology.components()[component as usize].vertex_count;
+    let sum = |components: &[u32]| components.iter().map(|&component| size(component)).sum::<usize>();
+    for (how, [it, they]) in [
+        (
+            Loose::Follow,
+            [
+                "follows the nearest deformed surface",
+                "follow the nearest deformed surface",
+            ],
+        ),
+        (
+            Loose::Bend,
+            [
+                "bends along with the nearest deformed surface",
+                "bend along with the nearest deformed surface",
+            ],
+        ),
+        (Loose::Rest, ["stays and follows nothing", "stay and follow nothing"]),
+    ] {
+        let alike = loose
+            .iter()
+            .copied()
+            .filter(|&component| loose_of[component as usize] == how);
+        let alike: Vec<u32> = alike.collect();
+        if alike.len() > NAMED {
+            sentences.push(format!(
+                "{} components ({} vertices, from component {} on) hold no handle and no fixed vertex: they {they}",
+                alike.len(),
+                sum(&alike),
+                alike[0],
+            ));
+            continue;
+        }
+        for component in alike {
+            sentences.push(format!(
+                "component {component} ({} vertices) holds no handle and no fixed vertex: it {it}",
+                size(component),
+            ));
+        }
+    }
+    if unheld.len() <= NAMED {
+        for &component in unheld {
+            sentences.push(format!(
+                "component {component} ({} vertices) holds a handle but no fixed vertex: nothing holds it back",
+                size(component)
+            ));
+        }
+    } else {
+        sentences.push(format!(
+            "{} components ({} vertices, from component {} on) hold a handle but no fixed vertex: nothing holds them back",
+            unheld.len(),
+            sum(unheld),
+            unheld[0]
+        ));
+    }
+    sentences
+}

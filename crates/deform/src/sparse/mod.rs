@@ -1,0 +1,14 @@
+//! Sparse symmetric systems [Dav06]: `ordering`, `symbolic` and `numeric` factorisation, and `solve`, which is forward and
+//! backward substitution. `cholesky` is the factor that joins them.
+
+pub(crate) mod cholesky;
+pub(crate) mod factor_error;
+pub(crate) mod low_rank;
+pub(crate) mod matrix;
+pub(crate) mod numeric;
+pub(crate) mod ordering;
+pub(crate) mod solve;
+pub(crate) mod symbolic;
+
+pub use ordering::Ordering;
+pub(crate) use ordering::elimination::Elimination;

@@ -1,0 +1,51 @@
+//! A graph whose vertices are labelled by the part that each is in.
+
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+use pliant_mesh::SurfaceVertex;
+
+use crate::operators::triangulation::Graph;
+
+/// The label of what stands in no part any more.
+pub(crate) const CUT_OUT: u32 = 0;
+
+/// A graph and its vertices' labels: at first 1 everywhere, then halves of part i are 2 i and 2 i + 1.
+///
+/// A part writes the labels of its own vertices alone, and reads beyond them only whether a vertex is its own: so the
+/// order in which parts are cut does not show.
+pub(crate) struct Labelled<'a, G> {
+    graph: &'a G,
+    labels: Vec<AtomicU32>,
+}
+
+impl<'a, G: Graph> Labelled<'a, G> {
+    /// All of a graph of `count` vertices as one part.
+    pub fn whole(graph: &'a G, count: usize) -> Self {
+        Self {
+            graph,
+            labels: (0..count).map(|_| AtomicU32::new(1)).collect(),
+        }
+    }
+
+    /// The part that a vertex is in.
+    pub fn label(&self, vertex: u32) -> u32 {
+        self.labels[vertex as usize].load(Relaxed)
+    }
+
+    /// Moves a vertex into another part.
+    pub fn set_label(&self, vertex: u32, label: u32) {
+        self.labels[vertex as usize].store(label, Relaxed);
+    }
+
+    /// A vertex' neighbours, in whichever part.
+    pub fn ring(&self, vertex: u32) -> &[SurfaceVertex] {
+        self.graph.neighbours(SurfaceVertex(vertex))
+    }
+
+    /// Whether a walk of at most `edges` edges leads to this label.
+    pub fn reaches(&self, vertex: u32, edges: u32, label: u32) -> bool {
+        let ring = self.ring(vertex);
+        ring.iter().any(|n| self.label(n.0) == label)
+            || edges > 1 && ring.iter().any(|n| self.reaches(n.0, edges - 1, label))
+    }
+}

@@ -1,0 +1,113 @@
+//! What any kind of file can be written from anew.
+
+pub(crate) mod faces;
+
+use std::ops::Range;
+
+use glam::DVec3;
+use pliant_mesh::{DrawnVertex, FileVertex};
+
+use crate::save::course::Course;
+use crate::save::moved::{Moved, check_single};
+use crate::{Appearance, SaveError};
+
+/// A deformed shape with its looks, free of the kind of file it came from.
+///
+/// Vertices are the drawn ones (an OBJ's corner with its own UV is a vertex of its own); `file_vertex` says which of
+/// them are one vertex of the file that was read.
+pub(crate) struct NewMesh<'a> {
+    /// OUT's file name.
+    pub name: &'a str,
+    /// New world positions, one a drawn vertex; may be non-finite where the file's were.
+    pub positions: &'a [DVec3],
+    /// Triangles over drawn vertices, in `appearance.groups`' order.
+    pub triangles: &'a [[DrawnVertex; 3]],
+    /// The file's own polygons, where it has any that are not triangles.
+    pub polygons: Option<Polygons>,
+    /// The file vertex behind each drawn vertex.
+    pub file_vertex: &'a [FileVertex],
+    /// How many vertices the file that was read has.
+    pub file_vertex_count: usize,
+    /// Whether named parts stay apart, in kinds that need vertices of their own for that.
+    pub parting: Parting,
+    /// Looks, with the normals already carried along with the deformation.
+    pub appearance: Appearance,
+}
+
+/// What becomes of named parts in a kind of file in which parts do not share vertices.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Parting {
+    /// Each name is a part of its own.
+    ByName,
+    /// All become one, so that vertices keep their order and number.
+    Joined,
+}
+
+/// Faces as the file has them, triangles among them: a face with n corners is n − 2 of the drawn triangles, in order.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Polygons {
+    /// Where each face's corners begin in `corners`; one entry more than there are faces.
+    pub offsets: Vec<u32>,
+    /// Drawn vertices, counter-clockwise seen from outside.
+    pub corners: Vec<DrawnVertex>,
+}
+
+impl Polygons {
+    /// How many faces there are.
+    pub fn len(&self) -> usize {
+        self.offsets.len().saturating_sub(1)
+    }
+
+    /// The corners of a face.
+    pub fn face(&self, face: usize) -> &[DrawnVertex] {
+        let span: Range<usize> = self.offsets[face] as usize..self.offsets[face + 1] as usize;
+        &self.corners[span]
+    }
+}
+
+impl<'a> NewMesh<'a> {
+    /// The moved shape with `appearance`, whose normals are carried along here. Refuses a position beyond single
+    /// precision.
+    pub fn of(
+        moved: &Moved<'a>,
+        mut appearance: Appearance,
+        name: &'a str,
+        polygons: Option<Polygons>,
+        parting: Parting,
+        course: &Course<'_>,
+    ) -> Result<Self, SaveError> {
+        let (of_check, course) = course.split(0.1);
+        // What the file itself says is no number stays so; what is one has to stay one.
+        for (v, &position) in moved.positions.iter().enumerate() {
+            of_check.pass(v, moved.positions.len())?;
+            if position.is_finite() {
+                check_single(position, moved.drawn.file_vertex[v])?;
+            }
+        }
+        if let Some(normals) = appearance.normals.as_mut()
+            && !moved.is_nothing()
+        {
+            let rest: Vec<DVec3> = normals.iter().map(|&n| glam::Vec3::from(n).as_dvec3()).collect();
+            let (of_frames, course) = course.split(0.9);
+            let frames = moved.frames(&rest, &of_frames)?;
+            for (v, normal) in normals.iter_mut().enumerate() {
+                course.pass(v, rest.len())?;
+                let vertex = DrawnVertex(v as u32);
+                if moved.moves(vertex) {
+                    // f32 begins here: normals are displayed and saved as f32 in every kind of file.
+                    *normal = frames.carry_normal(vertex, rest[v]).as_vec3().to_array();
+                }
+            }
+        }
+        Ok(Self {
+            name,
+            positions: moved.positions,
+            triangles: &moved.drawn.triangles,
+            polygons,
+            file_vertex: &moved.drawn.file_vertex,
+            file_vertex_count: moved.drawn.file_vertex_count,
+            parting,
+            appearance,
+        })
+    }
+}

@@ -1,0 +1,243 @@
+//! How a glTF looks: attributes of its drawn vertices, materials and images.
+
+pub(crate) mod maps;
+pub(crate) mod uv_sets;
+
+use std::collections::HashMap;
+
+use ::gltf::json;
+use ::gltf::json::validation::Checked;
+use glam::{DMat3, DVec3, Vec3};
+use pliant_mesh::{Cancel, Object};
+use rayon::prelude::*;
+
+use crate::appearance::{AlphaMode, Appearance, Group, Image, Material, Origin, Wrap};
+use crate::gltf::document::json::At;
+use crate::gltf::document::uri;
+use crate::gltf::document::{Document, ImageFile};
+use crate::gltf::geometry::primitive::Primitive;
+use crate::gltf::geometry::{self, Instance, Pieces};
+use crate::scene::objects;
+
+/// Vertices that a thread handles at a time.
+const CHUNK: usize = 1 << 14;
+
+/// The appearance of the drawn set that `pieces` describe.
+pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Appearance {
+    let mut out = Appearance {
+        normals: gather(pieces, [0.0; 3], |instance| {
+            let normals = normals(document, instance, primitive(meshes, instance))?;
+            let world = normal_matrix(instance);
+            let turn = |n: &[f32; 3]| {
+                (world * Vec3::from_array(*n).as_dvec3())
+                    .normalize_or_zero()
+                    .as_vec3()
+                    .to_array()
+            };
+            Some(normals.par_iter().with_min_len(CHUNK).map(turn).collect())
+        }),
+        uvs: gather(pieces, [0.0; 2], |instance| {
+            let primitive = primitive(meshes, instance);
+            let mut uvs = attribute::<2>(document, instance, primitive.uv)?;
+            uvs.iter_mut().for_each(|uv| *uv = primitive.uv_transform.apply(*uv));
+            Some(uvs)
+        }),
+        second_uvs: gather(pieces, [0.0; 2], |instance| {
+            attribute::<2>(document, instance, primitive(meshes, instance).second_uv)
+        }),
+        colours: gather(pieces, [255; 4], |instance| {
+            let accessor = primitive(meshes, instance).colour?;
+            let has_alpha = document.layout(accessor).ok()?.lanes == 4;
+            let colours = attribute::<4>(document, instance, Some(accessor))?;
+            let byte = |x: f32| (x * 255.0).round().clamp(0.0, 255.0) as u8;
+            let whole = |[r, g, b, a]: [f32; 4]| [r, g, b, if has_alpha { a } else { 1.0 }].map(byte);
+            Some(colours.into_iter().map(whole).collect())
+        }),
+        groups: Vec::new(),
+        materials: document
+            .materials
+            .iter()
+            .enumerate()
+            .map(|(number, material)| {
+                let mut material = self::material(document, material);
+                maps::dress(document, number, &mut material);
+                material
+            })
+            .collect(),
+        images: (0..document.images.len())
+            .map(|image| self::image(document, image))
+            .collect(),
+    };
+    // Primitives without a material share one that stands behind the file's own.
+    let default_material = out.materials.len();
+    if pieces.pieces.iter().any(|piece| {
+        of_piece(meshes, pieces, piece.instance, piece.primitive)
+            .material
+            .is_none()
+    }) {
+        out.materials.push(material(document, &json::Material::default()));
+    }
+    let mut names = Names::of(document);
+    out.groups = pieces
+        .pieces
+        .iter()
+        .map(|piece| Group {
+            triangles: piece.triangles.clone(),
+            material: of_piece(meshes, pieces, piece.instance, piece.primitive)
+                .material
+                .unwrap_or(default_material),
+            node_name: names.get(document.nodes_at[pieces.instances[piece.instance].node]),
+        })
+        .collect();
+    out
+}
+
+/// What the drawn set's nodes and materials tell apart; a node without a name is called as its mesh is.
+pub(crate) fn objects(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<Object> {
+    let mut names = Names::of(document);
+    objects::gathered(pieces.pieces.iter().map(|piece| {
+        let instance = &pieces.instances[piece.instance];
+        let material = of_piece(meshes, pieces, piece.instance, piece.primitive).material;
+        let name = names.get(document.nodes_at[instance.node]);
+        objects::TriangleRun {
+            key: (instance.node, material),
+            name: if name.is_empty() {
+                names.get(document.meshes_at[instance.mesh])
+            } else {
+                name
+            },
+            material: material.map_or_else(String::new, |material| names.get(document.materials_at[material])),
+            triangles: piece.triangles.clone(),
+        }
+    }))
+}
+
+/// Names as they are shown, each read once.
+struct Names<'a> {
+    document: &'a Document,
+    known: HashMap<At, String>,
+}
+
+impl<'a> Names<'a> {
+    fn of(document: &'a Document) -> Self {
+        Self {
+            document,
+            known: HashMap::new(),
+        }
+    }
+
+    /// The name of a node, mesh or material.
+    fn get(&mut self, object: At) -> String {
+        let name = || objects::short_name(&self.document.name(object));
+        self.known.entry(object).or_insert_with(name).clone()
+    }
+}
+
+/// The rest normals of all drawn vertices in world space, of unit length, zero where there are none.
+pub(crate) fn world_normals(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<DVec3> {
+    let mut out = Vec::new();
+    for instance in &pieces.instances {
+        let normals = normals(document, instance, primitive(meshes, instance));
+        let normals = normals.unwrap_or_else(|| vec![[0.0; 3]; instance.vertices.len()]);
+        let world = normal_matrix(instance);
+        let turn = |n: &[f32; 3]| (world * Vec3::from_array(*n).as_dvec3()).normalize_or_zero();
+        out.par_extend(normals.par_iter().with_min_len(CHUNK).map(turn));
+    }
+    out
+}
+
+/// An instance's rest normals in its node's space, default morph targets applied; `None` where it has none.
+fn normals(document: &Document, instance: &Instance, primitive: &Primitive) -> Option<Vec<[f32; 3]>> {
+    let mut normals = attribute::<3>(document, instance, primitive.normal)?;
+    let targets = instance
+        .weights
+        .iter()
+        .map(|&(target, weight)| (primitive.targets[target].normal, weight));
+    // A target whose normals can't be read leaves the others as they are.
+    let _ = geometry::apply_targets(document, &mut normals, targets, &Cancel::new());
+    Some(normals)
+}
+
+/// An attribute of an instance's vertices; `None` where it has none of the right count.
+pub(crate) fn attribute<const N: usize>(
+    document: &Document,
+    instance: &Instance,
+    accessor: Option<usize>,
+) -> Option<Vec<[f32; N]>> {
+    let layout = document.layout(accessor?).ok()?;
+    (layout.count == instance.vertices.len()).then(|| layout.floats(document))
+}
+
+fn primitive<'a>(meshes: &'a [Vec<Primitive>], instance: &Instance) -> &'a Primitive {
+    &meshes[instance.mesh][instance.primitive]
+}
+
+fn of_piece<'a>(meshes: &'a [Vec<Primitive>], pieces: &Pieces, instance: usize, primitive: usize) -> &'a Primitive {
+    &meshes[pieces.instances[instance].mesh][primitive]
+}
+
+fn normal_matrix(instance: &Instance) -> DMat3 {
+    instance.world_from_node.matrix3.inverse().transpose()
+}
+
+/// One attribute of all drawn vertices; `None` where no instance has it.
+fn gather<T: Copy + Send>(
+    pieces: &Pieces,
+    missing: T,
+    of_instance: impl Fn(&Instance) -> Option<Vec<T>>,
+) -> Option<Vec<T>> {
+    let mut out: Option<Vec<T>> = None;
+    for instance in &pieces.instances {
+        let (start, end) = (instance.vertices.start as usize, instance.vertices.end as usize);
+        match (of_instance(instance), out.as_mut()) {
+            (Some(values), Some(out)) => out.extend(values),
+            (Some(values), None) => {
+                let mut all = vec![missing; start];
+                all.extend(values);
+                out = Some(all);
+            }
+            (None, Some(out)) => out.resize(end, missing),
+            (None, None) => {}
+        }
+    }
+    out
+}
+
+fn material(document: &Document, material: &json::Material) -> Material {
+    let surface = &material.pbr_metallic_roughness;
+    let base = surface
+        .base_color_texture
+        .as_ref()
+        .and_then(|info| maps::image_of(document, info.index.value()));
+    let alpha = match material.alpha_mode {
+        Checked::Valid(json::material::AlphaMode::Mask) => {
+            AlphaMode::Mask(material.alpha_cutoff.as_ref().map_or(0.5, |cutoff| cutoff.0))
+        }
+        Checked::Valid(json::material::AlphaMode::Blend) => AlphaMode::Blend,
+        _ => AlphaMode::Opaque,
+    };
+    Material {
+        name: material.name.clone().unwrap_or_default(),
+        base_colour: surface.base_color_factor.0,
+        base_colour_image: base.map(|(image, _)| image),
+        metallic: surface.metallic_factor.0,
+        roughness: surface.roughness_factor.0,
+        double_sided: material.double_sided,
+        alpha,
+        wrap: base.map_or([Wrap::Repeat; 2], |(_, wrap)| wrap),
+        ..Material::default()
+    }
+}
+
+fn image(document: &Document, image: usize) -> Image {
+    let (name, origin) = match &document.images[image] {
+        ImageFile::Neighbour { path, .. } if uri::inside(path).is_none() => (path.clone(), Origin::Outside),
+        ImageFile::Neighbour { path, .. } => (path.clone(), Origin::Inside),
+        _ => (document.name(document.images_at[image]), Origin::Inside),
+    };
+    Image {
+        name,
+        encoded: document.image(image).unwrap_or_default(),
+        origin,
+    }
+}

@@ -1,0 +1,45 @@
+//! What can be wrong with a glTF, before it is known which file it was.
+
+use pliant_mesh::Cancelled;
+
+use crate::{Format, ReadError};
+
+/// A reason to refuse a glTF.
+#[derive(Debug)]
+pub(crate) enum Fault {
+    /// Something is not as glTF asks.
+    Malformed(String),
+    /// More is asked for than the bytes justify.
+    TooLarge(String),
+    /// A buffer's file can't be had.
+    Neighbour {
+        uri: String,
+        reason: String,
+    },
+    Cancelled(Cancelled),
+}
+
+impl Fault {
+    /// The error that names the file.
+    pub fn of_file(self, name: &str, format: Format) -> ReadError {
+        let name = name.to_owned();
+        match self {
+            Self::Malformed(reason) => ReadError::Malformed { name, format, reason },
+            Self::TooLarge(what) => ReadError::TooLarge { name, what },
+            Self::Neighbour { uri, reason } => ReadError::Neighbour { name, uri, reason },
+            Self::Cancelled(cancelled) => ReadError::Cancelled(cancelled),
+        }
+    }
+}
+
+impl From<String> for Fault {
+    fn from(reason: String) -> Self {
+        Self::Malformed(reason)
+    }
+}
+
+impl From<Cancelled> for Fault {
+    fn from(cancelled: Cancelled) -> Self {
+        Self::Cancelled(cancelled)
+    }
+}

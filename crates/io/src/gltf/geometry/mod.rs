@@ -1,0 +1,375 @@
+//! The drawn set of a glTF: every vertex of the default scene's triangles, seen through its node.
+//!
+//! **Numbering.** File vertices are the elements of POSITION accessors. Accessors come in the order in which the
+//! file's primitives first name them: meshes in the file's order, a mesh's primitives in theirs, whether drawn or not
+//! and whatever their mode; one that several primitives name is counted once.
+//!
+//! Drawn vertices come node by node (depth first), primitive by primitive. Primitives of one mesh that name the same
+//! accessors share their drawn vertices, so that a mesh cut into a hundred materials is not multiplied by a hundred.
+
+pub(crate) mod draco;
+pub(crate) mod meshopt;
+pub(crate) mod primitive;
+pub(crate) mod tree;
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use glam::{DAffine3, Vec3};
+use pliant_mesh::{Cancel, Drawn, DrawnVertex, FileVertex, Progress};
+use rayon::prelude::*;
+
+use crate::gltf::document::Document;
+use crate::gltf::document::fault::Fault;
+use crate::gltf::document::json::At;
+use crate::gltf::geometry::primitive::{Mode, Primitive};
+use crate::gltf::geometry::tree::Placed;
+
+/// The drawn vertices of one attribute set seen through one node.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) struct Instance {
+    pub node: usize,
+    pub mesh: usize,
+    pub world_from_node: DAffine3,
+    /// Its drawn vertices: element `e` is vertex `vertices.start + e`.
+    pub vertices: Range<u32>,
+    /// The primitive whose attributes these are (others of the mesh may name the same).
+    pub primitive: usize,
+    /// The morph targets that are applied by default, with their weights.
+    pub weights: Vec<(usize, f64)>,
+}
+
+/// The triangles of one primitive seen through one node.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) struct Piece {
+    pub instance: usize,
+    pub primitive: usize,
+    /// Range of the drawn triangles.
+    pub triangles: Range<u32>,
+}
+
+/// How the drawn set is made up.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub(crate) struct Pieces {
+    pub instances: Vec<Instance>,
+    pub pieces: Vec<Piece>,
+}
+
+/// What a piece takes, however few triangles it has: its own description, a group's and an object's.
+const PIECE_BYTES: usize = 256;
+
+/// Vertices that a thread handles at a time.
+const CHUNK: usize = 1 << 14;
+
+/// Reads the drawn set.
+pub(crate) fn drawn(
+    document: &Document,
+    meshes: &[Vec<Primitive>],
+    placed: &[Placed],
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<(Drawn, Pieces), Fault> {
+    let (first_file_vertex, file_vertex_count) = number_file_vertices(document, meshes)?;
+    let mut drawn = Drawn {
+        file_vertex_count,
+        ..Drawn::default()
+    };
+    let mut pieces = Pieces::default();
+    let mut budget = document.drawing_budget();
+    let mut weights = Weights::default();
+    let mut first_alike: HashMap<usize, Vec<usize>> = HashMap::new();
+    for (number, place) in placed.iter().enumerate() {
+        cancel.check()?;
+        let primitives = &meshes[place.mesh];
+        let alike = first_alike
+            .entry(place.mesh)
+            .or_insert_with(|| primitive::first_alike(primitives));
+        let mut instance_of: HashMap<usize, usize> = HashMap::new();
+        let applied = weights.of(document, place);
+        for (number, primitive) in primitives.iter().enumerate() {
+            cancel.check()?;
+            spend(&mut budget, 1, PIECE_BYTES, "runs of triangles")?;
+            let (Some(mode), Some(position)) = (primitive.mode, primitive.position) else {
+                continue;
+            };
+            if !matches!(mode, Mode::Triangles | Mode::Strip | Mode::Fan) {
+                continue;
+            }
+            let here = || format!("mesh {} primitive {number}", place.mesh);
+            primitive
+                .check_decoded(document)
+                .map_err(|what| format!("{} {what}", here()))?;
+            let layout = document.layout(position)?;
+            if layout.lanes != 3 {
+                return Err(format!("{}: POSITION is not made of three numbers each", here()).into());
+            }
+            let instance = match instance_of.get(&alike[number]) {
+                Some(&known) => known,
+                None => {
+                    spend(
+                        &mut budget,
+                        layout.count,
+                        size_of::<[f64; 3]>() + size_of::<FileVertex>(),
+                        "vertices",
+                    )?;
+                    let start = drawn.positions.len() as u32;
+                    let weights: Vec<(usize, f64)> = applied
+                        .iter()
+                        .copied()
+                        .take_while(|(target, _)| *target < primitive.targets.len())
+                        .collect();
+                    // Every target is read for every instance that applies it.
+                    spend(
+                        &mut budget,
+                        weights.len().saturating_mul(layout.count.max(2)),
+                        size_of::<[f32; 3]>(),
+                        "numbers of morph targets",
+                    )?;
+                    let mut positions = layout.floats::<3>(document);
+                    let targets = weights
+                        .iter()
+                        .map(|&(target, weight)| (primitive.targets[target].position, weight));
+                    apply_targets(document, &mut positions, targets, cancel)?;
+                    place_vertices(
+                        &positions,
+                        place.world_from_node,
+                        first_file_vertex[position],
+                        &mut drawn,
+                    );
+                    let vertices = start..drawn.positions.len() as u32;
+                    let Placed {
+                        node,
+                        mesh,
+                        world_from_node,
+                    } = *place;
+                    pieces.instances.push(Instance {
+                        node,
+                        mesh,
+                        world_from_node,
+                        vertices,
+                        primitive: number,
+                        weights,
+                    });
+                    instance_of.insert(alike[number], pieces.instances.len() - 1);
+                    pieces.instances.len() - 1
+                }
+            };
+            let corner_count = corner_count(document, primitive, layout.count)?;
+            spend(
+                &mut budget,
+                triangle_count(mode, corner_count),
+                size_of::<[DrawnVertex; 3]>(),
+                "triangles",
+            )?;
+            let corners = corners(document, primitive, layout.count).map_err(|what| format!("{} {what}", here()))?;
+            let start = drawn.triangles.len() as u32;
+            let is_mirrored = place.world_from_node.matrix3.determinant() < 0.0;
+            let winding = if is_mirrored {
+                Winding::Flipped
+            } else {
+                Winding::AsStored
+            };
+            corners.triangles(
+                mode,
+                winding,
+                pieces.instances[instance].vertices.start,
+                &mut drawn.triangles,
+            );
+            let triangles = start..drawn.triangles.len() as u32;
+            pieces.pieces.push(Piece {
+                instance,
+                primitive: number,
+                triangles,
+            });
+        }
+        progress.set((number + 1) as f32 / placed.len() as f32);
+    }
+    Ok((drawn, pieces))
+}
+
+/// The first file vertex of each accessor that is a POSITION, and how many file vertices there are.
+fn number_file_vertices(document: &Document, meshes: &[Vec<Primitive>]) -> Result<(Vec<Option<u32>>, usize), Fault> {
+    let mut first = vec![None; document.accessors.len()];
+    let mut count = 0_u64;
+    for position in meshes.iter().flatten().filter_map(|primitive| primitive.position) {
+        if first[position].is_none() {
+            first[position] = Some(count as u32);
+            count = count.saturating_add(document.accessors[position].count.0);
+        }
+    }
+    // Every element of a sound accessor has a byte in the file, but several accessors may share it.
+    let most = document.drawing_budget() / size_of::<u32>();
+    if count > most.min(u32::MAX as usize) as u64 {
+        return Err(Fault::TooLarge(format!("{count} vertices")));
+    }
+    Ok((first, count as usize))
+}
+
+fn spend(budget: &mut usize, count: usize, bytes_each: usize, what: &str) -> Result<(), Fault> {
+    let left = count
+        .checked_mul(bytes_each)
+        .and_then(|bytes| budget.checked_sub(bytes));
+    *budget = left.ok_or_else(|| Fault::TooLarge(format!("{count} {what} more, each seen through a node,")))?;
+    Ok(())
+}
+
+/// The weights that nodes and meshes give to morph targets, each list read once.
+#[derive(Default)]
+struct Weights {
+    of_mesh: HashMap<usize, Vec<(usize, f64)>>,
+    of_node: Vec<(usize, f64)>,
+}
+
+impl Weights {
+    /// The targets that a node, or else its mesh, applies, with their weights.
+    fn of(&mut self, document: &Document, place: &Placed) -> &[(usize, f64)] {
+        let json = &document.json;
+        let read = |list: At| {
+            let numbers = json.elements(list).map(|at| json.number(at).unwrap_or(0.0));
+            let applied = numbers.enumerate();
+            applied
+                .filter(|(_, weight)| *weight != 0.0 && weight.is_finite())
+                .collect()
+        };
+        match json.member(document.nodes_at[place.node], "weights") {
+            Some(own) => {
+                self.of_node = read(own);
+                &self.of_node
+            }
+            None => self.of_mesh.entry(place.mesh).or_insert_with(|| {
+                let list = json.member(document.meshes_at[place.mesh], "weights");
+                list.map(read).unwrap_or_default()
+            }),
+        }
+    }
+}
+
+/// Adds the ways of morph targets, each times its weight. A target of another count is refused in words.
+pub(crate) fn apply_targets(
+    document: &Document,
+    elements: &mut [[f32; 3]],
+    targets: impl Iterator<Item = (Option<usize>, f64)>,
+    cancel: &Cancel,
+) -> Result<(), Fault> {
+    for (accessor, weight) in targets {
+        cancel.check()?;
+        let Some(accessor) = accessor else { continue };
+        let layout = document.layout(accessor)?;
+        if layout.count != elements.len() || layout.lanes != 3 {
+            let reason = format!("accessor {accessor}, a morph target, is not of its base's size");
+            return Err(Fault::Malformed(reason));
+        }
+        for (element, way) in elements.iter_mut().zip(layout.floats::<3>(document)) {
+            (0..3).for_each(|lane| element[lane] = (f64::from(element[lane]) + weight * f64::from(way[lane])) as f32);
+        }
+    }
+    Ok(())
+}
+
+fn place_vertices(
+    positions: &[[f32; 3]],
+    world_from_node: DAffine3,
+    first_file_vertex: Option<u32>,
+    drawn: &mut Drawn,
+) {
+    let first = first_file_vertex.unwrap_or(0);
+    let world = |p: &[f32; 3]| world_from_node.transform_point3(Vec3::from_array(*p).as_dvec3());
+    drawn
+        .positions
+        .par_extend(positions.par_iter().with_min_len(CHUNK).map(world));
+    drawn
+        .file_vertex
+        .extend((first..).take(positions.len()).map(FileVertex));
+}
+
+/// The corners of a primitive: indices into its vertices, or all of them in order.
+enum Corners {
+    Listed(Vec<u32>),
+    Counted(u32),
+}
+
+/// Which way round a triangle is taken.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Winding {
+    AsStored,
+    Flipped,
+}
+
+/// How many corners a primitive has, without reading them.
+fn corner_count(document: &Document, primitive: &Primitive, vertex_count: usize) -> Result<usize, String> {
+    let Some(accessor) = primitive.indices else {
+        return Ok(vertex_count);
+    };
+    Ok(document.layout(accessor)?.count)
+}
+
+/// At most how many triangles so many corners make.
+fn triangle_count(mode: Mode, corner_count: usize) -> usize {
+    if mode == Mode::Triangles {
+        corner_count / 3
+    } else {
+        corner_count.saturating_sub(2)
+    }
+}
+
+fn corners(document: &Document, primitive: &Primitive, vertex_count: usize) -> Result<Corners, String> {
+    let Some(accessor) = primitive.indices else {
+        return Ok(Corners::Counted(vertex_count as u32));
+    };
+    let indices = document
+        .layout(accessor)?
+        .indices(document)
+        .map_err(|what| format!("has indices that {what}"))?;
+    match indices
+        .par_iter()
+        .with_min_len(CHUNK)
+        .position_first(|&index| index as usize >= vertex_count)
+    {
+        Some(at) => Err(format!(
+            "has index {} where it has {vertex_count} vertices",
+            indices[at]
+        )),
+        None => Ok(Corners::Listed(indices)),
+    }
+}
+
+impl Corners {
+    fn len(&self) -> usize {
+        match self {
+            Self::Listed(indices) => indices.len(),
+            Self::Counted(count) => *count as usize,
+        }
+    }
+
+    /// Appends the triangles over drawn vertices that begin at `first`. A strip's stitches (two equal corners) are
+    /// left out: they are there to be skipped.
+    fn triangles(&self, mode: Mode, winding: Winding, first: u32, out: &mut Vec<[DrawnVertex; 3]>) {
+        let corner = |k: usize| match self {
+            Self::Listed(indices) => indices[k],
+            Self::Counted(_) => k as u32,
+        };
+        let triangle = |t: usize| match mode {
+            Mode::Strip if t % 2 == 1 => [corner(t + 1), corner(t), corner(t + 2)],
+            Mode::Strip => [corner(t), corner(t + 1), corner(t + 2)],
+            Mode::Fan => [corner(0), corner(t + 1), corner(t + 2)],
+            _ => [corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)],
+        };
+        let wound = |[a, b, c]: [u32; 3]| {
+            let corners = if winding == Winding::Flipped {
+                [a, c, b]
+            } else {
+                [a, b, c]
+            };
+            corners.map(|corner| DrawnVertex(first + corner))
+        };
+        let all = (0..triangle_count(mode, self.len()))
+            .into_par_iter()
+            .with_min_len(CHUNK);
+        if mode == Mode::Triangles {
+            out.par_extend(all.map(|t| wound(triangle(t))));
+        } else {
+            let is_drawn = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+            out.par_extend(all.map(triangle).filter(is_drawn).map(wound));
+        }
+    }
+}

@@ -1,0 +1,318 @@
+//! The copy-on-write plan of a save: which meshes are cloned and which accessors are copied, so that what did not change
+//! keeps what it shares.
+//!
+//! A mesh that several nodes show is cloned where the nodes come to differ; the nodes that did not move, or else the
+//! first ones, keep the original. An accessor that several primitives name is copied where they come to differ;
+//! whatever did not change (or is no vertex attribute at all: morph targets, animations, skins) keeps the original.
+
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+
+use crate::gltf::document::Document;
+use crate::gltf::document::json::At;
+use crate::gltf::geometry::Pieces;
+use crate::gltf::geometry::primitive::Primitive;
+use crate::gltf::save::changes::{Change, InstanceChange, Rest, Semantic};
+use crate::save::course::Course;
+use pliant_mesh::Cancelled;
+
+/// A mesh after the edit: the file's own, or a clone of it.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) struct MeshCopy {
+    pub mesh: usize,
+    /// `None` for the file's own mesh; the nodes that a clone is for.
+    pub clone_for: Option<Vec<usize>>,
+    /// The instance that each primitive's attributes come from, where it is drawn.
+    pub instances: Vec<Option<usize>>,
+}
+
+impl MeshCopy {
+    /// The instance that says what becomes of each primitive. One that is not drawn (the lines along a surface's edges, say)
+    /// follows a drawn one of its mesh that names the same positions.
+    pub fn followed_instances(&self, primitives: &[Primitive]) -> Vec<Option<usize>> {
+        let mut leader: HashMap<Option<usize>, usize> = HashMap::new();
+        for (instance, primitive) in self.instances.iter().zip(primitives) {
+            if let Some(instance) = instance {
+                leader.entry(primitive.position).or_insert(*instance);
+            }
+        }
+        let each = self.instances.iter().zip(primitives);
+        each.map(|(instance, primitive)| instance.or_else(|| leader.get(&primitive.position).copied()))
+            .collect()
+    }
+}
+
+/// A primitive's attribute in one of the copies.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct AttributeUse {
+    pub copy: usize,
+    pub primitive: usize,
+    pub semantic: Semantic,
+}
+
+/// One version of an accessor after the edit, and the attributes that need it.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) struct AccessorVersion<'a> {
+    pub change: &'a Change,
+    pub semantic: Semantic,
+    pub used_by: Vec<AttributeUse>,
+}
+
+/// What becomes of an accessor: the version that it takes itself, then those that need a new accessor.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) struct AccessorPlan<'a> {
+    pub in_place: AccessorVersion<'a>,
+    pub copies: Vec<AccessorVersion<'a>>,
+}
+
+static UNCHANGED: Change = Change::new();
+
+/// Nodes of one mesh with this many different edits: further ones are told apart by their exact numbers alone, instead
+/// of being compared with each of them.
+const MOST_CLASSES_COMPARED: usize = 64;
+
+/// A number for each instance's changes, by attribute; equal for equal ones.
+fn hashes(changes: &[InstanceChange]) -> Vec<[u64; 3]> {
+    let of_change = |change: &Change| {
+        let mut hasher = DefaultHasher::new();
+        for (element, new) in change {
+            // Adding zero makes 0 of -0, which is equal to it.
+            (element, new.map(|number| (number + 0.0).to_bits())).hash(&mut hasher);
+        }
+        hasher.finish()
+    };
+    let of_instance = |instance: &InstanceChange| Semantic::ALL.map(|semantic| of_change(instance.of(semantic)));
+    changes.iter().map(of_instance).collect()
+}
+
+/// The meshes after the edit, the file's own first (mesh `m` is copy `m`), then the clones.
+pub(crate) fn plan_meshes(
+    document: &Document,
+    meshes: &[Vec<Primitive>],
+    pieces: &Pieces,
+    changes: &[InstanceChange],
+    course: &Course<'_>,
+) -> Result<Vec<MeshCopy>, Cancelled> {
+    let hashes = hashes(changes);
+    let mut copies: Vec<MeshCopy> = meshes
+        .iter()
+        .enumerate()
+        .map(|(mesh, primitives)| MeshCopy {
+            mesh,
+            clone_for: None,
+            instances: vec![None; primitives.len()],
+        })
+        .collect();
+    let mut clones = Vec::new();
+    let mut rest = Rest::default();
+    for (mesh, uses) in uses(meshes, pieces) {
+        let mut is_same = |a: &[Option<usize>], b: &[Option<usize>]| {
+            let mut primitives = meshes[mesh].iter().zip(a.iter().zip(b));
+            primitives.all(|(primitive, instances)| match instances {
+                (Some(a), Some(b)) => Semantic::ALL.into_iter().all(|semantic| {
+                    let [a, b] = [a, b].map(|&instance| changes[instance].of(semantic));
+                    let accessor = semantic.accessor(primitive);
+                    accessor.is_none_or(|accessor| rest.comes_to_the_same(document, accessor, a, b))
+                }),
+                (a, b) => a == b,
+            })
+        };
+        let mut classes: Vec<(Vec<Option<usize>>, Vec<usize>)> = Vec::new();
+        let mut class_of: HashMap<u64, usize> = HashMap::new();
+        for (node, instances) in uses {
+            course.reach(0, 1)?;
+            let mut hasher = DefaultHasher::new();
+            instances
+                .iter()
+                .for_each(|instance| instance.map(|instance| hashes[instance]).hash(&mut hasher));
+            let likely = class_of.entry(hasher.finish());
+            let mut candidates = match likely {
+                Entry::Occupied(ref entry) => *entry.get()..*entry.get() + 1,
+                Entry::Vacant(_) => 0..classes.len().min(MOST_CLASSES_COMPARED),
+            };
+            let class = candidates.find(|&class| is_same(&classes[class].0, &instances));
+            let class = class.unwrap_or(classes.len());
+            likely.or_insert(class);
+            match classes.get_mut(class) {
+                Some((_, nodes)) => nodes.push(node),
+                None => classes.push((instances, vec![node])),
+            }
+        }
+        let is_unmoved =
+            |instances: &[Option<usize>]| instances.iter().flatten().all(|&instance| changes[instance].is_empty());
+        let own = classes
+            .iter()
+            .position(|(instances, _)| is_unmoved(instances))
+            .unwrap_or(0);
+        for (number, (instances, nodes)) in classes.into_iter().enumerate() {
+            if number == own {
+                copies[mesh].instances = instances;
+            } else {
+                clones.push(MeshCopy {
+                    mesh,
+                    clone_for: Some(nodes),
+                    instances,
+                });
+            }
+        }
+    }
+    copies.extend(clones);
+    Ok(copies)
+}
+
+/// A node that shows a mesh, and the instance of each primitive.
+type NodeUse = (usize, Vec<Option<usize>>);
+
+/// By mesh: the nodes that show it, in the order of drawing, with the instance of each primitive.
+fn uses(meshes: &[Vec<Primitive>], pieces: &Pieces) -> BTreeMap<usize, Vec<NodeUse>> {
+    let mut uses: BTreeMap<usize, Vec<NodeUse>> = BTreeMap::new();
+    for piece in &pieces.pieces {
+        let instance = &pieces.instances[piece.instance];
+        let of_mesh = uses.entry(instance.mesh).or_default();
+        // Pieces of one node stand together.
+        if of_mesh.last().is_none_or(|(node, _)| *node != instance.node) {
+            of_mesh.push((instance.node, vec![None; meshes[instance.mesh].len()]));
+        }
+        if let Some((_, instances)) = of_mesh.last_mut() {
+            instances[piece.primitive] = Some(piece.instance);
+        }
+    }
+    uses
+}
+
+/// The plan of each accessor that any attribute needs changed.
+pub(crate) fn plan_accessors<'a>(
+    document: &Document,
+    meshes: &[Vec<Primitive>],
+    copies: &[MeshCopy],
+    changes: &'a [InstanceChange],
+    course: &Course<'_>,
+) -> Result<BTreeMap<usize, AccessorPlan<'a>>, Cancelled> {
+    let hashes = hashes(changes);
+    let mut versions: BTreeMap<usize, Vec<AccessorVersion<'a>>> = BTreeMap::new();
+    // For each accessor and hash, which of the accessor's versions have it.
+    let mut known: HashMap<(usize, u64), Vec<usize>> = HashMap::new();
+    for (copy, of_copy) in copies.iter().enumerate() {
+        course.reach(0, 1)?;
+        let primitives = &meshes[of_copy.mesh];
+        // Primitives that are not drawn follow a drawn one that names the same accessor.
+        let mut leader: HashMap<(usize, usize), usize> = HashMap::new();
+        for (instance, named) in of_copy.instances.iter().zip(primitives) {
+            for (place, semantic) in Semantic::ALL.into_iter().enumerate() {
+                if let (Some(instance), Some(accessor)) = (instance, semantic.accessor(named)) {
+                    leader.entry((place, accessor)).or_insert(*instance);
+                }
+            }
+        }
+        for (primitive, named) in primitives.iter().enumerate() {
+            for (place, semantic) in Semantic::ALL.into_iter().enumerate() {
+                let Some(accessor) = semantic.accessor(named) else {
+                    continue;
+                };
+                let instance = of_copy.instances[primitive].or_else(|| leader.get(&(place, accessor)).copied());
+                let (change, hash) = instance.map_or((&UNCHANGED, UNCHANGED_HASH), |instance| {
+                    let change = changes[instance].of(semantic);
+                    let hash = if change.is_empty() {
+                        UNCHANGED_HASH
+                    } else {
+                        hashes[instance][place]
+                    };
+                    (change, hash)
+                });
+                let of_accessor = versions.entry(accessor).or_default();
+                let attribute = AttributeUse {
+                    copy,
+                    primitive,
+                    semantic,
+                };
+                let alike = known.entry((accessor, hash)).or_default();
+                let same = |&place: &usize| {
+                    let other = of_accessor[place].change;
+                    std::ptr::eq(other, change) || other == change
+                };
+                match alike.iter().copied().find(same) {
+                    Some(place) => of_accessor[place].used_by.push(attribute),
+                    None => {
+                        alike.push(of_accessor.len());
+                        of_accessor.push(AccessorVersion {
+                            change,
+                            semantic,
+                            used_by: vec![attribute],
+                        });
+                    }
+                }
+            }
+        }
+    }
+    versions.retain(|_, versions| versions.iter().any(|version| !version.change.is_empty()));
+    let elsewhere = used_elsewhere(document, meshes);
+    let plans = versions
+        .into_iter()
+        .filter_map(|(accessor, mut versions)| {
+            if elsewhere.contains(&accessor) && versions.iter().all(|version| !version.change.is_empty()) {
+                let semantic = versions.first()?.semantic;
+                versions.push(AccessorVersion {
+                    change: &UNCHANGED,
+                    semantic,
+                    used_by: Vec::new(),
+                });
+            }
+            let own = versions
+                .iter()
+                .position(|version| version.change.is_empty())
+                .unwrap_or(0);
+            let in_place = versions.remove(own);
+            Some((
+                accessor,
+                AccessorPlan {
+                    in_place,
+                    copies: versions,
+                },
+            ))
+        })
+        .collect();
+    Ok(plans)
+}
+
+/// Stands for the hash of what does not change.
+const UNCHANGED_HASH: u64 = 0;
+
+/// Accessors that something else than a primitive's POSITION, NORMAL or TANGENT reads.
+fn used_elsewhere(document: &Document, meshes: &[Vec<Primitive>]) -> BTreeSet<usize> {
+    let json = &document.json;
+    let section = |key: &str| {
+        json.member(json.root(), key)
+            .into_iter()
+            .flat_map(|list| json.elements(list))
+    };
+    let mut named: Vec<At> = Vec::new();
+    for primitive in meshes.iter().flatten() {
+        let targets = json
+            .member(primitive.at, "targets")
+            .into_iter()
+            .flat_map(|targets| json.elements(targets));
+        named.extend(targets.flat_map(|target| json.members(target)).map(|(_, value)| value));
+        named.extend(json.member(primitive.at, "indices"));
+        let attributes = json
+            .member(primitive.at, "attributes")
+            .into_iter()
+            .flat_map(|at| json.members(at));
+        let ours = Semantic::ALL.map(|semantic| Some(semantic.key().to_owned()));
+        named.extend(
+            attributes
+                .filter(|&(key, _)| !ours.contains(&json.string(key)))
+                .map(|(_, value)| value),
+        );
+    }
+    named.extend(section("skins").filter_map(|skin| json.member(skin, "inverseBindMatrices")));
+    let samplers = section("animations").filter_map(|animation| json.member(animation, "samplers"));
+    for sampler in samplers.flat_map(|samplers| json.elements(samplers)) {
+        named.extend(["input", "output"].iter().filter_map(|key| json.member(sampler, key)));
+    }
+    named
+        .into_iter()
+        .filter_map(|at| json.number(at))
+        .map(|number| number as usize)
+        .collect()
+}

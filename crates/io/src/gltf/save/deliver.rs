@@ -1,0 +1,230 @@
+//! A patched glTF as files: the container it came in, the neighbours that have to go with it.
+
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
+use crate::gltf::document::container;
+use crate::gltf::document::json::{At, Edits, Json};
+use crate::gltf::document::uri;
+use crate::gltf::document::{Buffer, Document, ImageFile};
+use crate::gltf::neighbours::{self, Gathered, leads_to};
+use crate::gltf::save::patch::Patched;
+use crate::save::{OutputFile, Placement, Role, Save, Saved, own_stem};
+use crate::{Format, SaveError, quoted};
+
+/// The files of a glTF saved as the kind it was read as.
+pub(crate) fn in_its_kind(document: &Document, patched: Patched<'_>, save: &Save<'_>) -> Result<Saved, SaveError> {
+    let mut edits = Edits::default();
+    let is_unchanged = patched.is_unchanged();
+    let own_names = own_names(document, save.name);
+    let mut gathered = Gathered::of(document);
+    let mut warnings = patched.warnings;
+    // The patched text is parsed again only where it differs from the one that was read.
+    let json = match &patched.text {
+        Cow::Borrowed(_) => None,
+        Cow::Owned(text) => Some(reparsed(text)?),
+    };
+    let json = json.as_ref().unwrap_or(&document.json);
+    let buffer_uris = neighbours::uris(json, "buffers");
+    let image_uris = neighbours::uris(json, "images");
+    for (buffer, bytes) in patched.buffers.iter().enumerate() {
+        let is_changed = matches!(bytes, Cow::Owned(_));
+        match &document.buffers[buffer] {
+            Buffer::Bin(_) | Buffer::Absent | Buffer::Decoded(_) => {}
+            Buffer::Data(_) => {
+                if let Some(at) = buffer_uris[buffer].filter(|_| is_changed) {
+                    let old = json.string(at).unwrap_or_default();
+                    let mime = old
+                        .get(5..)
+                        .and_then(|rest| rest.split([';', ',']).next())
+                        .unwrap_or_default();
+                    edits.replace(json.span(at), uri::json_data_uri(mime, bytes));
+                }
+            }
+            Buffer::Neighbour { path, .. } => {
+                let name = match save.placement {
+                    Placement::SameFile if !is_changed => continue,
+                    Placement::SameFolder if is_unchanged => continue,
+                    Placement::SameFile | Placement::OtherFolder => inside(path)?,
+                    Placement::SameFolder => own_names[buffer].clone(),
+                };
+                let name = gathered.add(name, Role::Buffer, bytes);
+                if let Some(at) = buffer_uris[buffer].filter(|_| !leads_to(path, &name)) {
+                    edits.replace(json.span(at), uri::json_uri(&name));
+                }
+            }
+        }
+    }
+    match save.placement {
+        Placement::OtherFolder => bring_images(document, json, &image_uris, &mut gathered, &mut edits, &mut warnings)?,
+        Placement::SameFile => {
+            // What shares a changed buffer's place, and did not change, gets a place of its own.
+            let buffers = document.buffers.iter().zip(&patched.buffers).zip(&buffer_uris);
+            let buffers = buffers.filter_map(|((buffer, bytes), at)| match (buffer, bytes) {
+                (Buffer::Neighbour { path, .. }, Cow::Borrowed(bytes)) => Some((Role::Buffer, path, *bytes, at)),
+                _ => None,
+            });
+            let images = document.images.iter().zip(&image_uris);
+            let images = images.filter_map(|(image, at)| match image {
+                ImageFile::Neighbour { path, bytes } => Some((Role::Image, path, bytes.as_deref()?, at)),
+                _ => None,
+            });
+            for (role, path, bytes, at) in buffers.chain(images) {
+                let Some(name) = uri::inside(path).filter(|name| gathered.differs(name, bytes)) else {
+                    continue;
+                };
+                let name = gathered.add(name, role, bytes);
+                if let Some(at) = at {
+                    edits.replace(json.span(*at), uri::json_uri(&name));
+                }
+            }
+        }
+        Placement::SameFolder => {}
+    }
+    let text = if edits.is_empty() {
+        patched.text
+    } else {
+        Cow::Owned(edits.apply(json.text(), 0..json.text().len()))
+    };
+    let bytes = match &document.container {
+        _ if is_unchanged && edits.is_empty() => document.file.to_vec(),
+        Some(instances) => {
+            let bin = document
+                .buffers
+                .iter()
+                .position(|buffer| matches!(buffer, Buffer::Bin(_)));
+            let bin = bin.map(|buffer| &patched.buffers[buffer][..]);
+            // A BIN chunk that no buffer is stays as it is.
+            let bin = bin.or_else(|| instances.bin.clone().map(|range| &document.file[range]));
+            let further = &document.file[instances.further_chunks.clone()];
+            let trailing = &document.file[instances.trailing.clone()];
+            container::join(container::without_padding(&text), bin, further, trailing)
+                .ok_or(SaveError::TooLarge { format: save.format })?
+        }
+        None => with_mark(document, &text),
+    };
+    Ok(saved(save, bytes, gathered.files, warnings))
+}
+
+/// A `.gltf` and its buffer, of a GLB: the BIN chunk becomes a neighbour of OUT's own name.
+pub(crate) fn unpacked(document: &Document, patched: Patched<'_>, save: &Save<'_>) -> Result<Saved, SaveError> {
+    let json = reparsed(&patched.text)?;
+    let mut edits = Edits::default();
+    let own_names = own_names(document, save.name);
+    let mut gathered = Gathered::of(document);
+    let mut warnings = patched.warnings;
+    let list = json.member(json.root(), "buffers");
+    let buffers_at: Vec<_> = list.into_iter().flat_map(|list| json.elements(list)).collect();
+    for (buffer, bytes) in patched.buffers.iter().enumerate() {
+        // What was decoded is no buffer of the file.
+        let Some(&at) = buffers_at.get(buffer) else { break };
+        let own = match &document.buffers[buffer] {
+            Buffer::Data(_) if matches!(bytes, Cow::Borrowed(_)) => continue,
+            Buffer::Absent | Buffer::Decoded(_) => continue,
+            Buffer::Neighbour { path, .. } if save.placement == Placement::OtherFolder => {
+                let name = gathered.add(inside(path)?, Role::Buffer, bytes);
+                if !leads_to(path, &name) {
+                    edits.set_member(&json, at, "uri", &uri::json_uri(&name));
+                }
+                continue;
+            }
+            Buffer::Bin(_) | Buffer::Data(_) | Buffer::Neighbour { .. } => &own_names[buffer],
+        };
+        edits.set_member(&json, at, "uri", &uri::json_uri(own));
+        // A chunk is padded, a file need not be.
+        let told = json
+            .member(at, "byteLength")
+            .and_then(|at| json.number(at))
+            .map(|number| number as usize);
+        let length = told
+            .filter(|&told| told <= bytes.len() && bytes.len() - told < 4)
+            .unwrap_or(bytes.len());
+        gathered.add(own.clone(), Role::Buffer, &bytes[..length]);
+    }
+    if save.placement == Placement::OtherFolder {
+        let image_uris = neighbours::uris(&json, "images");
+        bring_images(document, &json, &image_uris, &mut gathered, &mut edits, &mut warnings)?;
+    }
+    let text = edits.apply(json.text(), 0..json.text().len());
+    Ok(saved(
+        save,
+        container::without_padding(&text).to_vec(),
+        gathered.files,
+        warnings,
+    ))
+}
+
+pub(crate) fn saved(save: &Save<'_>, bytes: Vec<u8>, neighbours: Vec<OutputFile>, warnings: Vec<String>) -> Saved {
+    let mut saved = Saved::alone(save.name, bytes, warnings);
+    saved.files.extend(neighbours);
+    saved
+}
+
+/// A text that patches made, parsed again.
+pub(crate) fn reparsed(text: &[u8]) -> Result<Json, SaveError> {
+    Json::parse(text.to_vec()).map_err(|what| SaveError::CannotHold {
+        what,
+        format: Format::Gltf,
+        remedy: "this is a fault of the program, so report it with the file".to_owned(),
+    })
+}
+
+fn with_mark(document: &Document, text: &[u8]) -> Vec<u8> {
+    let mark: &[u8] = if document.has_mark { b"\xef\xbb\xbf" } else { b"" };
+    [mark, text].concat()
+}
+
+fn inside(path: &str) -> Result<String, SaveError> {
+    uri::inside(path).ok_or_else(|| SaveError::NeighbourOutside { uri: path.to_owned() })
+}
+
+/// The images beside the file, to be written beside OUT.
+fn bring_images(
+    document: &Document,
+    json: &Json,
+    uris: &[Option<At>],
+    gathered: &mut Gathered,
+    edits: &mut Edits,
+    warnings: &mut Vec<String>,
+) -> Result<(), SaveError> {
+    for (image, at) in document.images.iter().zip(uris) {
+        let ImageFile::Neighbour { path, bytes } = image else {
+            continue;
+        };
+        let name = inside(path)?;
+        let Some(bytes) = bytes else {
+            let path = quoted(path);
+            warnings.push(format!("The image {path} was missing and could not be brought along."));
+            continue;
+        };
+        let name = gathered.add(name, Role::Image, bytes);
+        if let Some(at) = at.filter(|_| !leads_to(path, &name)) {
+            edits.replace(json.span(at), uri::json_uri(&name));
+        }
+    }
+    Ok(())
+}
+
+/// A name for each buffer that is OUT's own: its stem, numbered from the second one on, and none that a neighbour of
+/// the file that was read already has.
+fn own_names(document: &Document, out: &str) -> Vec<String> {
+    let stem = own_stem(out);
+    let mut taken: BTreeSet<String> = neighbours::paths(document).filter_map(uri::inside).collect();
+    let mut names = Vec::new();
+    let mut number = 1;
+    for _ in &document.buffers {
+        let name = loop {
+            let name = if number == 1 {
+                format!("{stem}.bin")
+            } else {
+                format!("{stem}_{number}.bin")
+            };
+            number += 1;
+            if taken.insert(name.clone()) {
+                break name;
+            }
+        };
+        names.push(name);
+    }
+    names
+}

@@ -1,0 +1,76 @@
+//! Saving a glTF: what moved becomes changes, the changes become a patch, and the patch is delivered as files.
+
+mod accessors;
+mod changes;
+mod copy_on_write;
+mod deliver;
+mod morph;
+mod overlap;
+mod pack;
+mod patch;
+mod unpack;
+
+use super::Stored;
+use crate::save::course::Course;
+use crate::save::moved::Moved;
+use crate::save::{MorphTarget, Save, Saved};
+use crate::{Format, SaveError};
+use patch::Patched;
+
+impl Stored {
+    /// The file as GLB or `.gltf`, with the moved vertices' numbers in place of the stored ones.
+    pub fn save(&self, save: &Save<'_>, moved: &Moved<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
+        let Self {
+            document,
+            meshes,
+            pieces,
+            ..
+        } = self;
+        let patched = if moved.is_nothing() {
+            Patched::unchanged(document)
+        } else {
+            let changes = changes::changes(document, meshes, pieces, moved, &course.part(0.0, 0.8))?;
+            accessors::with_changes(document, meshes, pieces, &changes, save.format, &course.part(0.8, 0.9))?
+        };
+        course.reach(9, 10)?;
+        self.deliver(patched, save)
+    }
+
+    /// The file as GLB or `.gltf`, its shape as it was, with the moved vertices' way as one more morph target.
+    pub fn save_as_morph(
+        &self,
+        save: &Save<'_>,
+        moved: &Moved<'_>,
+        target: &MorphTarget<'_>,
+        course: &Course<'_>,
+    ) -> Result<Saved, SaveError> {
+        let Self {
+            document,
+            meshes,
+            pieces,
+            ..
+        } = self;
+        let mut patched = Patched::unchanged(document);
+        if moved.is_nothing() {
+            patched
+                .warnings
+                .push("Nothing moved, so no morph target was added.".to_owned());
+        } else {
+            let changes = changes::changes(document, meshes, pieces, moved, &course.part(0.0, 0.8))?;
+            let course = course.part(0.8, 0.9);
+            patched = morph::with_target(document, meshes, pieces, &changes, target, save.format, &course)?;
+        }
+        course.reach(9, 10)?;
+        self.deliver(patched, save)
+    }
+
+    fn deliver(&self, patched: Patched<'_>, save: &Save<'_>) -> Result<Saved, SaveError> {
+        let document = &self.document;
+        match (self.format, save.format) {
+            (Format::Glb, Format::Gltf) => deliver::unpacked(document, patched, save),
+            // A GLB that is called .gltf goes through `in_its_kind`, which keeps its container.
+            (Format::Gltf, Format::Glb) if document.container.is_none() => pack::packed(document, patched, save),
+            _ => deliver::in_its_kind(document, patched, save),
+        }
+    }
+}

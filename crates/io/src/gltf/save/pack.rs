@@ -1,0 +1,240 @@
+//! A `.gltf` packed into a GLB: its buffers and images become one BIN chunk.
+
+use std::borrow::Cow;
+use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
+
+use crate::SaveError;
+use crate::gltf::document::container::{self, without_padding};
+use crate::gltf::document::json::{At, Edits, Json};
+use crate::gltf::document::{Buffer, Document, ImageFile};
+use crate::gltf::save::deliver::{reparsed, saved};
+use crate::gltf::save::patch::Patched;
+use crate::gltf::{FROM_OUTSIDE, NO_IMAGE, uri};
+use crate::images::decode::mime_type;
+use crate::images::decodes;
+use crate::quote::quoted;
+use crate::save::{Save, Saved};
+
+/// The GLB of a `.gltf`. Images whose bytes are missing or of no kind that glTF knows keep their address.
+pub(crate) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>) -> Result<Saved, SaveError> {
+    let json = reparsed(&patched.text)?;
+    let mut warnings = patched.warnings;
+    let mut edits = Edits::default();
+    let mut bin: Vec<u8> = Vec::new();
+    let mut homes = Vec::new();
+    let mut placeholders = Vec::new();
+    // Where bytes that several name are packed: once.
+    let mut packed: HashMap<(usize, Range<usize>), usize> = HashMap::new();
+    refuse_unused(document, save)?;
+    for (buffer, bytes) in document.buffers.iter().zip(&patched.buffers) {
+        homes.push(match buffer {
+            Buffer::Decoded(_) => break,
+            // What stands in for compressed bytes stays a buffer without any.
+            Buffer::Absent => {
+                placeholders.push(homes.len());
+                Home::Placeholder(placeholders.len())
+            }
+            Buffer::Neighbour { path, bytes: own } => {
+                if uri::inside(path).is_none() {
+                    warnings.push(format!("{} {FROM_OUTSIDE}", quoted(path)));
+                }
+                match bytes {
+                    Cow::Borrowed(_) => {
+                        Home::Packed(*packed.entry(own.place()).or_insert_with(|| append(&mut bin, bytes)))
+                    }
+                    Cow::Owned(_) => Home::Packed(append(&mut bin, bytes)),
+                }
+            }
+            _ => Home::Packed(append(&mut bin, bytes)),
+        });
+    }
+    move_views(&json, &homes, &mut edits);
+    let mut views: Vec<String> = Vec::new();
+    let mut sound: HashMap<(usize, Range<usize>), bool> = HashMap::new();
+    let view_count = elements(&json, "bufferViews").len();
+    let mut view_of: HashMap<(usize, Range<usize>), usize> = HashMap::new();
+    for (number, at) in elements(&json, "images").into_iter().enumerate() {
+        let told = json.member(at, "mimeType").and_then(|at| json.string(at));
+        let bytes = match &document.images[number] {
+            ImageFile::Data(bytes) | ImageFile::Neighbour { bytes: Some(bytes), .. } => bytes,
+            ImageFile::Neighbour { path, bytes: None } => {
+                let path = quoted(path);
+                warnings.push(format!("The image {path} was missing and could not be packed."));
+                continue;
+            }
+            ImageFile::View(_) | ImageFile::Absent => continue,
+        };
+        if let ImageFile::Neighbour { path, .. } = &document.images[number]
+            && uri::inside(path).is_none()
+        {
+            // A stranger's file may point at anything there, and would carry it away as an image.
+            if !*sound.entry(bytes.place()).or_insert_with(|| decodes(bytes)) {
+                let path = quoted(path);
+                warnings.push(format!("{path} {NO_IMAGE}"));
+                continue;
+            }
+            warnings.push(format!("{} {FROM_OUTSIDE}", quoted(path)));
+        }
+        let Some(mime) = mime_type(bytes).map(str::to_owned).or(told.clone()) else {
+            warnings.push(format!("Image {number} is of an unknown kind and was not packed."));
+            continue;
+        };
+        let Some((key, value)) = json
+            .members(at)
+            .find(|&(key, _)| json.string(key).as_deref() == Some("uri"))
+        else {
+            continue;
+        };
+        let view = *view_of.entry(bytes.place()).or_insert_with(|| {
+            let start = *packed.entry(bytes.place()).or_insert_with(|| append(&mut bin, bytes));
+            let length = bytes.len();
+            views.push(format!(
+                "{{\"buffer\":0,\"byteOffset\":{start},\"byteLength\":{length}}}"
+            ));
+            view_count + views.len() - 1
+        });
+        let mime = if told.is_none() {
+            format!(",\"mimeType\":\"{mime}\"")
+        } else {
+            String::new()
+        };
+        edits.replace(json.span(key), "\"bufferView\"");
+        edits.replace(json.span(value), format!("{view}{mime}"));
+    }
+    append_section(&json, "bufferViews", &views, &mut edits);
+    set_buffers(&json, bin.len(), &placeholders, &mut edits);
+    let text = edits.apply(json.text(), 0..json.text().len());
+    let bin = (!bin.is_empty() || !document.buffers.is_empty()).then_some(&bin[..]);
+    let bytes = container::join(without_padding(&text), bin, &[], &[]);
+    let bytes = bytes.ok_or(SaveError::TooLarge { format: save.format })?;
+    Ok(saved(save, bytes, Vec::new(), warnings))
+}
+
+/// Refuses a buffer outside the file's folder that no accessor reads: a stranger's file may point at anything there,
+/// and would carry it away.
+fn refuse_unused(document: &Document, save: &Save<'_>) -> Result<(), SaveError> {
+    let is_outside = |buffer: &Buffer| matches!(buffer, Buffer::Neighbour { path, .. } if uri::inside(path).is_none());
+    if !document.buffers.iter().any(is_outside) {
+        return Ok(());
+    }
+    let json = &document.json;
+    let views = document.accessors.iter().flat_map(|accessor| {
+        let sparse = accessor.sparse.iter();
+        let sparse = sparse.flat_map(|sparse| [sparse.indices.buffer_view, sparse.values.buffer_view]);
+        accessor.buffer_view.into_iter().chain(sparse)
+    });
+    let images = document.images.iter().filter_map(|image| match image {
+        ImageFile::View(view) => Some(*view),
+        _ => None,
+    });
+    let views: BTreeSet<usize> = views.map(|view| view.value()).chain(images).collect();
+    // The text says where a view stands; one that was decoded from compressed bytes stands elsewhere by now.
+    let mut used: BTreeSet<usize> = BTreeSet::new();
+    for &at in views.iter().filter_map(|&view| document.views_at.get(view)) {
+        let extensions = json.member(at, "extensions");
+        let of_extensions = extensions.into_iter().flat_map(|at| json.members(at));
+        let places = std::iter::once(at).chain(of_extensions.map(|(_, extension)| extension));
+        let numbers = places.filter_map(|at| json.number(json.member(at, "buffer")?));
+        used.extend(numbers.map(|number| number as usize));
+    }
+    for (number, buffer) in document.buffers.iter().enumerate() {
+        if let Buffer::Neighbour { path, .. } = buffer
+            && is_outside(buffer)
+            && !used.contains(&number)
+        {
+            return Err(SaveError::CannotHold {
+                what: format!(
+                    "{}, a buffer outside the file's own folder that nothing in it reads,",
+                    quoted(path)
+                ),
+                format: save.format,
+                remedy: "take it out of the file's buffers".to_owned(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Puts bytes at the next multiple of four and says where they begin.
+fn append(bin: &mut Vec<u8>, bytes: &[u8]) -> usize {
+    let start = bin.len().next_multiple_of(4);
+    bin.resize(start, 0);
+    bin.extend_from_slice(bytes);
+    start
+}
+
+/// Where a buffer goes.
+#[derive(Clone, Copy)]
+enum Home {
+    /// Into the one buffer, from this byte on.
+    Packed(usize),
+    /// It stays a buffer of its own, of this number.
+    Placeholder(usize),
+}
+
+/// Lets every buffer view, and what it says of compressed bytes, point where its buffer went.
+fn move_views(json: &Json, homes: &[Home], edits: &mut Edits) {
+    for view in elements(json, "bufferViews") {
+        let extensions = json.member(view, "extensions");
+        let of_extensions = extensions.into_iter().flat_map(|at| json.members(at));
+        for at in std::iter::once(view).chain(of_extensions.map(|(_, extension)| extension)) {
+            let number = |key: &str| json.member(at, key).and_then(|at| json.number(at));
+            let Some(home) = number("buffer").and_then(|buffer| homes.get(buffer as usize)) else {
+                continue;
+            };
+            let (new, start) = match *home {
+                Home::Packed(start) => (0, start),
+                Home::Placeholder(new) => (new, 0),
+            };
+            let new = new.to_string();
+            if let Some(buffer) = json
+                .member(at, "buffer")
+                .filter(|&buffer| json.raw(buffer) != new.as_bytes())
+            {
+                edits.replace(json.span(buffer), new);
+            }
+            if start > 0 {
+                let offset = number("byteOffset").unwrap_or(0.0) as usize + start;
+                edits.set_member(json, at, "byteOffset", &offset.to_string());
+            }
+        }
+    }
+}
+
+/// Leaves one buffer without an address, the first one's other members kept, and behind it the placeholders.
+fn set_buffers(json: &Json, length: usize, placeholders: &[usize], edits: &mut Edits) {
+    let Some(list) = json.member(json.root(), "buffers") else {
+        if length > 0 {
+            edits.set_member(json, json.root(), "buffers", &format!("[{{\"byteLength\":{length}}}]"));
+        }
+        return;
+    };
+    let old: Vec<At> = json.elements(list).collect();
+    let text = |at: At| String::from_utf8_lossy(json.raw(at)).into_owned();
+    let first = (0..old.len()).find(|number| placeholders.binary_search(number).is_err());
+    let kept = first.into_iter().flat_map(|first| json.members(old[first]));
+    let kept = kept.filter(|&(key, _)| !matches!(json.string(key).as_deref(), Some("uri" | "byteLength")));
+    let mut members: Vec<String> = vec![format!("\"byteLength\":{length}")];
+    members.extend(kept.map(|(key, value)| format!("{}:{}", text(key), text(value))));
+    let mut buffers = Vec::new();
+    // The placeholders' numbers begin at 1, so the packed buffer stands there even if it is empty.
+    if length > 0 || !placeholders.is_empty() {
+        buffers.push(format!("{{{}}}", members.join(",")));
+    }
+    buffers.extend(placeholders.iter().map(|&number| text(old[number])));
+    edits.replace(json.span(list), format!("[{}]", buffers.join(",")));
+}
+
+fn append_section(json: &Json, key: &str, new: &[String], edits: &mut Edits) {
+    match json.member(json.root(), key) {
+        Some(list) => edits.append_elements(json, list, new),
+        None if new.is_empty() => {}
+        None => edits.set_member(json, json.root(), key, &format!("[{}]", new.join(","))),
+    }
+}
+
+fn elements(json: &Json, key: &str) -> Vec<At> {
+    json.member(json.root(), key)
+        .map_or_else(Vec::new, |list| json.elements(list).collect())
+}

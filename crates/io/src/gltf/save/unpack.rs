@@ -1,0 +1,132 @@
+//! Draco-compressed meshes that an edit changed, written out plainly.
+//!
+//! A mesh's compressed data holds all its attributes at once, so that one of them can't change alone: its accessors
+//! get bytes of their own and its primitives lose the extension, in the mesh and in its clones alike.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::gltf::document::Document;
+use crate::gltf::document::json::{At, Edits};
+use crate::gltf::geometry::draco::{self, Filled};
+use crate::gltf::geometry::primitive::Primitive;
+use crate::gltf::save::copy_on_write::{AccessorPlan, MeshCopy};
+use crate::gltf::save::patch::{Patch, cannot_hold};
+use crate::{Format, SaveError};
+
+impl Patch<'_> {
+    /// Unpacks every mesh of which a compressed accessor changed.
+    pub(crate) fn unpack(
+        &mut self,
+        meshes: &[Vec<Primitive>],
+        copies: &[MeshCopy],
+        plans: &BTreeMap<usize, AccessorPlan<'_>>,
+        format: Format,
+    ) -> Result<(), SaveError> {
+        let document = self.document;
+        let is_changed = |accessor: usize| document.is_filled(accessor) && plans.contains_key(&accessor);
+        let mut copies_of_mesh: Vec<Vec<usize>> = vec![Vec::new(); meshes.len()];
+        for (number, copy) in copies.iter().enumerate() {
+            copies_of_mesh[copy.mesh].push(number);
+        }
+        let mut plain: BTreeSet<usize> = BTreeSet::new();
+        let (mut unpacked, mut packed) = (0, 0);
+        for (mesh, primitives) in meshes.iter().enumerate() {
+            let compressed: Vec<(&Primitive, Filled)> = primitives
+                .iter()
+                .filter_map(|primitive| {
+                    let extension = draco::extension_of(document, primitive)?;
+                    Some((primitive, Filled::of(document, primitive, extension)))
+                })
+                .collect();
+            if !compressed.iter().any(|(_, filled)| filled.accessors().any(is_changed)) {
+                packed += compressed.len();
+                continue;
+            }
+            unpacked += compressed.len();
+            for (primitive, filled) in &compressed {
+                plain.extend(filled.accessors());
+                for &number in &copies_of_mesh[mesh] {
+                    remove_extension(document, self.edits_of_copy(copies, number), primitive.at);
+                }
+            }
+        }
+        for accessor in plain {
+            // One whose own numbers changed was written anew already.
+            let is_written = plans
+                .get(&accessor)
+                .is_some_and(|plan| !plan.in_place.change.is_empty());
+            if document.is_filled(accessor) && !is_written {
+                self.write_out(accessor, format)?;
+            }
+        }
+        if unpacked > 0 && packed == 0 {
+            self.take_off_lists(draco::EXTENSION);
+        }
+        Ok(())
+    }
+
+    /// Gives an accessor the bytes that it was decoded to.
+    fn write_out(&mut self, accessor: usize, format: Format) -> Result<(), SaveError> {
+        let document = self.document;
+        let layout = document.layout(accessor).map_err(|what| cannot_hold(what, format))?;
+        let Some(dense) = layout.dense else { return Ok(()) };
+        let is_indices = layout.lanes == 1;
+        // Vertex attributes begin at multiples of four.
+        let padding = if is_indices {
+            0
+        } else {
+            dense.size.next_multiple_of(4) - dense.size
+        };
+        let bytes = document.buffer(dense.buffer);
+        let content = (0..dense.count).flat_map(|element| {
+            let element = bytes[dense.element(element)].iter().copied();
+            element.chain(std::iter::repeat_n(0, padding))
+        });
+        let members = match (is_indices, padding) {
+            (true, _) => ",\"target\":34963".to_owned(),
+            (false, 0) => ",\"target\":34962".to_owned(),
+            (false, _) => format!(",\"byteStride\":{},\"target\":34962", dense.size + padding),
+        };
+        let view = self.new_view(None, content, &members);
+        let view = view.ok_or_else(|| cannot_hold(self.why_no_view(accessor), format))?;
+        let at = document.accessors_at[accessor];
+        self.edits
+            .set_member(&document.json, at, "bufferView", &view.to_string());
+        // Without a view of its own an accessor's offset said nothing; in the new one its elements begin at the start.
+        if let Some(offset) = document.json.member(at, "byteOffset") {
+            self.edits.replace(document.json.span(offset), "0");
+        }
+        Ok(())
+    }
+
+    /// Takes an extension off the lists of those used and required.
+    fn take_off_lists(&mut self, name: &str) {
+        let json = &self.document.json;
+        let mut emptied = Vec::new();
+        for list in ["extensionsUsed", "extensionsRequired"] {
+            let Some(at) = json.member(json.root(), list) else {
+                continue;
+            };
+            let names: Vec<Option<String>> = json.elements(at).map(|at| json.string(at)).collect();
+            match names.iter().position(|other| other.as_deref() == Some(name)) {
+                None => {}
+                // An empty list is not allowed.
+                Some(_) if names.len() == 1 => emptied.push(list),
+                Some(place) => self.edits.remove_element(json, at, place),
+            }
+        }
+        self.edits.remove_members(json, json.root(), &emptied);
+    }
+}
+
+fn remove_extension(document: &Document, edits: &mut Edits, primitive: At) {
+    let json = &document.json;
+    let Some(extensions) = json.member(primitive, "extensions") else {
+        return;
+    };
+    if json.members(extensions).count() == 1 {
+        edits.remove_members(json, primitive, &["extensions"]);
+    } else {
+        edits.remove_members(json, extensions, &[draco::EXTENSION]);
+    }
+}

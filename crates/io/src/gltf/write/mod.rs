@@ -1,0 +1,141 @@
+//! A new glTF from the other kinds: a node and a mesh for each named part, a primitive for each material in it.
+//!
+//! A file of one part keeps the order and number of the drawn vertices; of several, each takes the vertices that it
+//! uses, in their order, so that those on a rim between two come twice. Where the shape stands so far out that f32 would round it,
+//! the vertices are taken relative to its centre and the node carries the way there.
+
+mod attributes;
+mod buffer;
+mod looks;
+mod parts;
+
+use glam::{DVec3, Vec3};
+use pliant_mesh::bounding_box;
+use serde_json::json;
+
+use crate::convert::NewMesh;
+use crate::convert::faces::coarse_in_f32;
+use crate::gltf::join_glb;
+use crate::save::course::Course;
+use crate::save::{OutputFile, Role, Saved, own_stem};
+use crate::{Format, SaveError};
+use attributes::{attributes, indices, unit_normals};
+use buffer::Built;
+use looks::Looks;
+use parts::{order, parts};
+
+/// The mesh as a GLB.
+pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
+    let built = build(mesh, Format::Glb, course)?;
+    let text = built.root.to_string();
+    let bytes = join_glb(text.as_bytes(), &built.bin).ok_or(SaveError::TooLarge { format: Format::Glb })?;
+    Ok(Saved {
+        triangles: built.triangles,
+        ..Saved::alone(mesh.name, bytes, built.warnings)
+    })
+}
+
+/// The mesh as a `.gltf` and its buffer, which is called as OUT is.
+pub(crate) fn write_new_gltf(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
+    let mut built = build(mesh, Format::Gltf, course)?;
+    let buffer_name = format!("{}.bin", own_stem(mesh.name));
+    built.root["buffers"][0]["uri"] = crate::gltf::encoded_uri(&buffer_name).into();
+    let text = format!("{:#}\n", built.root);
+    let mut saved = Saved::alone(mesh.name, text.into_bytes(), built.warnings);
+    saved.triangles = built.triangles;
+    saved.files.push(OutputFile {
+        name: buffer_name,
+        role: Role::Buffer,
+        bytes: built.bin,
+    });
+    Ok(saved)
+}
+
+fn build(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Built, SaveError> {
+    course.reach(0, 1)?;
+    let (of_looks, course) = course.split(0.5);
+    let (of_parts, of_normals) = of_looks.split(0.5);
+    let mut out = Built::default();
+    let finite: Vec<DVec3> = mesh
+        .positions
+        .iter()
+        .copied()
+        .filter(|position| position.is_finite())
+        .collect();
+    let centre = coarse_in_f32(&finite).and_then(|_| bounding_box(&finite));
+    let centre = centre.map_or(DVec3::ZERO, |bounds| bounds.centre());
+    // f32 begins here: glTF positions are f32.
+    let positions: Vec<Vec3> = mesh
+        .positions
+        .iter()
+        .map(|&position| (position - centre).as_vec3())
+        .collect();
+    let parts = parts(mesh, &positions, &mut out.warnings, &of_parts)?;
+    if parts.is_empty() {
+        return Err(SaveError::CannotHold {
+            what: "a shape without triangles".to_owned(),
+            format,
+            remedy: "save it as the kind it was".to_owned(),
+        });
+    }
+    out.triangles = order(&parts, mesh.triangles.len());
+    let normals = unit_normals(mesh, &of_normals)?;
+    let mut looks = Looks::default();
+    let mut number = vec![u32::MAX; positions.len()];
+    let (mut nodes, mut meshes) = (Vec::new(), Vec::new());
+    for (place, part) in parts.iter().enumerate() {
+        let course = course.part(
+            place as f32 / parts.len() as f32,
+            (place + 1) as f32 / parts.len() as f32,
+        );
+        let vertices = match parts.len() {
+            1 => (0..positions.len() as u32).collect(),
+            _ => part.vertices(mesh),
+        };
+        for (own, &v) in (0..).zip(&vertices) {
+            number[v as usize] = own;
+        }
+        let (of_attributes, course) = course.split(0.7);
+        let attributes = attributes(&mut out, mesh, &positions, &normals, &vertices, &of_attributes)?;
+        let mut primitives = Vec::new();
+        for (place, (material, triangles)) in part.triangles.iter().enumerate() {
+            course.reach(place, part.triangles.len())?;
+            let corner = |k: usize| mesh.triangles[triangles[k / 3] as usize][k % 3];
+            let corners = (0..3 * triangles.len()).map(|k| number[corner(k).index()]);
+            let indices = indices(&mut out, corners, vertices.len());
+            let mut primitive = json!({ "attributes": attributes, "indices": indices });
+            if let Some(known) = mesh.appearance.materials.get(*material) {
+                primitive["material"] = looks.material(&mut out, mesh, *material, known).into();
+            }
+            primitives.push(primitive);
+        }
+        let name = if part.name.is_empty() {
+            stem(mesh.name)
+        } else {
+            part.name
+        };
+        let mut node = json!({ "name": name, "mesh": place });
+        if centre != DVec3::ZERO {
+            node["translation"] = json!(centre.to_array());
+        }
+        nodes.push(node);
+        meshes.push(json!({ "name": name, "primitives": primitives }));
+    }
+    let mut root = json!({
+        "asset": { "version": "2.0", "generator": "Pliant" },
+        "scene": 0,
+        "scenes": [{ "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
+        "nodes": nodes,
+        "meshes": meshes,
+        "buffers": [{ "byteLength": out.bin.len() }],
+        "bufferViews": out.views,
+        "accessors": out.accessors,
+    });
+    looks.add_to(&mut root);
+    out.root = root;
+    Ok(out)
+}
+
+fn stem(name: &str) -> &str {
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
+}

@@ -1,0 +1,233 @@
+//! Wavefront OBJ, read with the place of every number, so that saving changes the moved vertices' `v` lines (and the
+//! `vn` lines that only they use) and no other byte.
+//!
+//! Our own reader instead of `tobj`'s, which renumbers vertices, drops unused ones and keeps f32. `tobj` reads the
+//! materials. Every `v` line is a file vertex; see [`corners`] for how corners with texture coordinates and normals
+//! are drawn.
+
+mod corners;
+mod materials;
+mod patch;
+mod rename;
+mod statements;
+mod write;
+
+use std::sync::Arc;
+
+use pliant_mesh::{Drawn, DrawnVertex, Object};
+
+use crate::appearance::Group;
+use crate::appearance::colour::{byte, linear_of_srgb};
+use crate::convert::Polygons;
+use crate::save::OutputFile;
+use crate::save::course::Course;
+use crate::save::moved::Moved;
+use crate::scene::objects;
+use crate::scene::summary::Summary;
+use crate::source::Source;
+use crate::text::line_of;
+use crate::{Appearance, ReadError, SaveError};
+use materials::Materials;
+use statements::{NONE, Statements};
+
+pub(crate) use rename::{library_renamed, texture_renamed};
+pub(crate) use write::write_new;
+
+/// An OBJ file as stored.
+#[derive(Debug)]
+pub(crate) struct Stored {
+    bytes: Arc<Vec<u8>>,
+    /// Without its positions, corners and faces, which the drawn set and `polygons` replace.
+    statements: Statements,
+    /// The `vt` of each drawn vertex; empty where none has one.
+    uv: Vec<u32>,
+    /// The `vn` of each drawn vertex; empty where none has one.
+    normal: Vec<u32>,
+    /// The faces, where one has more than three corners.
+    polygons: Option<Polygons>,
+    /// The `v` line of each drawn vertex.
+    position: Vec<u32>,
+    groups: Vec<Group>,
+    materials: Materials,
+    notes: Vec<String>,
+}
+
+/// Reads an OBJ file and asks for its material libraries and textures.
+pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
+    let mut statements = statements::parse(source)?;
+    let corners = corners::draw(&statements, source.cancel)?;
+    let libraries: Vec<&[u8]> = statements
+        .libraries
+        .iter()
+        .map(|span| &source.bytes[span.clone()])
+        .collect();
+    let mut materials = materials::look_up(source, &libraries, &statements.material_names);
+    let groups = groups(&statements, &corners, &mut materials);
+    let mut notes = std::mem::take(&mut materials.notes).sentences();
+    notes.extend(left_out(source, &statements));
+    let has_polygons = corners.drawn.triangles.len() != statements.face_ends.len();
+    statements.positions = Vec::new();
+    statements.corners = Vec::new();
+    let face_ends = std::mem::take(&mut statements.face_ends);
+    let polygons = has_polygons.then(|| Polygons {
+        offsets: [0].into_iter().chain(face_ends.iter().map(|&end| end as u32)).collect(),
+        corners: corners.drawn_of_corner.iter().copied().map(DrawnVertex).collect(),
+    });
+    let stored = Stored {
+        bytes: source.bytes.clone(),
+        statements,
+        uv: corners.uv,
+        normal: corners.normal,
+        polygons,
+        position: corners.drawn.file_vertex.iter().map(|vertex| vertex.0).collect(),
+        groups,
+        materials,
+        notes,
+    };
+    Ok((stored, corners.drawn))
+}
+
+/// One group a run; faces without a material get a plain one behind the named ones.
+fn groups(statements: &Statements, corners: &corners::Corners, materials: &mut Materials) -> Vec<Group> {
+    let ends = corners
+        .run_triangles
+        .iter()
+        .skip(1)
+        .copied()
+        .chain([corners.drawn.triangles.len() as u32]);
+    let plain = materials.materials.len();
+    if statements.runs.iter().any(|run| run.material.is_none()) {
+        materials.materials.push(materials::plain(""));
+    }
+    let spans = corners.run_triangles.iter().zip(ends);
+    statements
+        .runs
+        .iter()
+        .zip(spans)
+        .map(|(run, (&start, end))| Group {
+            triangles: start..end,
+            material: run.material.unwrap_or(plain),
+            node_name: run.object.clone(),
+        })
+        .collect()
+}
+
+/// Sentences about what is in the file but can't be drawn.
+fn left_out(source: &Source<'_>, statements: &Statements) -> Vec<String> {
+    let mut notes = Vec::new();
+    let line = |at| line_of(source.bytes, at);
+    let plural = |count: usize, one: &str| {
+        if count == 1 {
+            format!("1 {one}")
+        } else {
+            format!("{count} {one}s")
+        }
+    };
+    if let (count @ 1.., at) = statements.left_out {
+        notes.push(format!(
+            "{} with fewer than three corners left out of the surface (the first in line {}); the file keeps them.",
+            plural(count, "face"),
+            line(at)
+        ));
+    }
+    if let (count @ 1.., at) = statements.dangling {
+        notes.push(format!(
+            "{} drawn without a texture coordinate or normal that the file names but doesn't hold (the first in line {}).",
+            plural(count, "face corner"),
+            line(at)
+        ));
+    }
+    notes
+}
+
+impl Stored {
+    pub(crate) fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    pub(crate) fn summary(&self) -> Summary {
+        let objects = self.groups.chunk_by(|a, b| a.node_name == b.node_name).count();
+        Summary {
+            meshes: objects,
+            primitives: self.groups.len(),
+            nodes: objects,
+            materials: self.statements.material_names.len(),
+            images: self.materials.images.len(),
+            ..Summary::default()
+        }
+    }
+
+    pub(crate) fn objects(&self) -> Vec<Object> {
+        objects::gathered(self.groups.iter().map(|group| objects::TriangleRun {
+            key: (&group.node_name, group.material),
+            name: group.node_name.clone(),
+            material: objects::short_name(&self.materials.materials[group.material].name),
+            triangles: group.triangles.clone(),
+        }))
+    }
+
+    pub(crate) fn appearance(&self) -> Appearance {
+        let count = self.position.len();
+        let statements = &self.statements;
+        let look_up = |table: &[u32], v: usize| table.get(v).copied().filter(|&index| index != NONE);
+        let uvs = (!self.uv.is_empty()).then(|| {
+            (0..count)
+                .map(|v| look_up(&self.uv, v).map_or([0.0; 2], |index| statements.uvs[index as usize]))
+                .map(|[u, v]| [u, 1.0 - v])
+                .collect()
+        });
+        let normals = (!self.normal.is_empty()).then(|| {
+            let unit = |index: u32| statements.normals[index as usize].try_normalize().unwrap_or_default();
+            // f32: normals are displayed and saved as f32 in every other kind of file.
+            (0..count)
+                .map(|v| look_up(&self.normal, v).map_or([0.0; 3], |index| unit(index).as_vec3().to_array()))
+                .collect()
+        });
+        Appearance {
+            normals,
+            uvs,
+            second_uvs: None,
+            colours: self.colours(),
+            groups: self.groups.clone(),
+            materials: self.materials.materials.clone(),
+            images: self.materials.images.clone(),
+        }
+    }
+
+    /// Colours behind the positions: sRGB from 0 to 1, or to 255 where one is larger than 1.
+    fn colours(&self) -> Option<Vec<[u8; 4]>> {
+        let colours = &self.statements.colours;
+        if colours.is_empty() {
+            return None;
+        }
+        let most = colours
+            .iter()
+            .flatten()
+            .fold(1.0f32, |most, &channel| most.max(channel));
+        let scale = if most > 1.0 { 1.0 / 255.0 } else { 1.0 };
+        let drawn = |&position: &u32| {
+            let [r, g, b] = colours[position as usize].map(|channel| byte(linear_of_srgb(channel * scale)));
+            [r, g, b, 255]
+        };
+        Some(self.position.iter().map(drawn).collect())
+    }
+
+    pub(crate) fn polygons(&self) -> Option<Polygons> {
+        self.polygons.clone()
+    }
+
+    /// The libraries and textures that a copy in another folder needs beside it, and warnings.
+    pub(crate) fn neighbours(&self) -> (Vec<OutputFile>, Vec<String>) {
+        materials::neighbours(&self.materials)
+    }
+
+    /// A warning that names what of the materials a file of another kind goes without.
+    pub(crate) fn materials_lost(&self, kind: &str) -> Option<String> {
+        materials::unread_lost(&self.materials, kind)
+    }
+
+    /// The file with the moved vertices' numbers changed, and warnings.
+    pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
+        Ok(patch::patched(self, moved, course)?)
+    }
+}

@@ -1,0 +1,123 @@
+//! OFF and its COFF, NOFF and STOFF variants, read with the place of every vertex, so that saving changes the moved
+//! vertices' coordinates (and normals) and no other byte: comments, colours and faces stay as they are written.
+
+mod header;
+mod patch;
+mod records;
+mod write;
+
+use std::sync::Arc;
+
+use pliant_mesh::{Drawn, FileVertex};
+
+use crate::appearance::colour::{byte, linear_of_srgb};
+use crate::appearance::{Group, Material};
+use crate::convert::Polygons;
+use crate::polygon::{cut_faces, left_out_note};
+use crate::save::course::Course;
+use crate::save::moved::Moved;
+use crate::scene::summary::Summary;
+use crate::source::Source;
+use crate::{Appearance, ReadError, SaveError};
+use records::Records;
+
+pub(crate) use write::write_new;
+
+/// An OFF file as stored.
+#[derive(Debug)]
+pub(crate) struct Stored {
+    bytes: Arc<Vec<u8>>,
+    /// Without its positions and faces, which the drawn set and `polygons` replace.
+    records: Records,
+    /// The faces, where one has more than three corners.
+    polygons: Option<Polygons>,
+    triangle_count: u32,
+    notes: Vec<String>,
+}
+
+/// Reads an OFF file.
+pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
+    let (header, cursor) = header::parse(source)?;
+    let mut records = records::read(source, &header, cursor)?;
+    let positions = std::mem::take(&mut records.positions);
+    let corners = std::mem::take(&mut records.corners);
+    let face_ends = std::mem::take(&mut records.face_ends);
+    let (triangles, polygons) = cut_faces(&positions, corners, &face_ends, source.cancel)?;
+    let notes = left_out_note(records.left_out).into_iter().collect();
+    let count = positions.len();
+    let drawn = Drawn {
+        positions,
+        triangles,
+        file_vertex: (0..count as u32).map(FileVertex).collect(),
+        file_vertex_count: count,
+    };
+    let triangle_count = drawn.triangles.len() as u32;
+    Ok((
+        Stored {
+            bytes: source.bytes.clone(),
+            records,
+            polygons,
+            triangle_count,
+            notes,
+        },
+        drawn,
+    ))
+}
+
+impl Stored {
+    pub(crate) fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    pub(crate) fn summary(&self) -> Summary {
+        let meshes = usize::from(self.triangle_count > 0);
+        Summary {
+            meshes,
+            primitives: meshes,
+            nodes: meshes,
+            ..Summary::default()
+        }
+    }
+
+    pub(crate) fn appearance(&self) -> Appearance {
+        let records = &self.records;
+        // Colours are written from 0 to 1 or to 255; a file's largest channel tells.
+        let most = records
+            .colours
+            .iter()
+            .flatten()
+            .fold(1.0f32, |most, &channel| most.max(channel));
+        let scale = if most > 1.0 { 1.0 / 255.0 } else { 1.0 };
+        let colour = |&[r, g, b, alpha]: &[f32; 4]| {
+            let [r, g, b] = [r, g, b].map(|channel| byte(linear_of_srgb(channel * scale)));
+            [r, g, b, if alpha.is_nan() { 255 } else { byte(alpha * scale) }]
+        };
+        let unit = |normal: &glam::DVec3| normal.normalize_or_zero().as_vec3().to_array();
+        Appearance {
+            normals: (!records.normals.is_empty()).then(|| records.normals.iter().map(unit).collect()),
+            uvs: (!records.uvs.is_empty()).then(|| records.uvs.iter().map(|&[u, v]| [u, 1.0 - v]).collect()),
+            second_uvs: None,
+            colours: (!records.colours.is_empty()).then(|| records.colours.iter().map(colour).collect()),
+            groups: vec![Group {
+                triangles: 0..self.triangle_count,
+                material: 0,
+                node_name: String::new(),
+            }],
+            // Scan formats know no culling, so both sides are drawn.
+            materials: vec![Material {
+                double_sided: true,
+                ..Material::default()
+            }],
+            images: Vec::new(),
+        }
+    }
+
+    pub(crate) fn polygons(&self) -> Option<Polygons> {
+        self.polygons.clone()
+    }
+
+    /// The file with the moved vertices' numbers changed, and warnings.
+    pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
+        Ok((patch::patched(self, moved, course)?, Vec::new()))
+    }
+}

@@ -1,0 +1,186 @@
+//! Local frames of a deformation: how normals and tangents are carried along with the vertices that moved.
+//!
+//! Normals are not recomputed, since a file's own may be custom, smoothed across seams or hard at edges. Each is
+//! turned by the deformation gradient F of the faces around it: n' ∝ F⁻ᵀ n and t' ∝ F t. Drawn vertices with
+//! bit-equal rest position and bit-equal rest normal are twins split by a texture seam, so they share one F (the
+//! area-weighted mean over the faces of all of them) and no seam shows; the two sides of a hard edge have different
+//! normals, so each keeps to its own faces.
+
+use glam::{DMat3, DVec3};
+use pliant_mesh::{Cancelled, Drawn, DrawnVertex, face_gradient};
+use rayon::prelude::*;
+
+use crate::save::bits::bit_equal;
+use crate::save::course::Course;
+
+/// Frames closer to the identity than this leave stored numbers as they are: f32 resolves 6e-8.
+const UNTURNED: f64 = 1e-7;
+
+/// Triangles whose gradients are made in parallel before they are summed up in order: a fixed size, so that sums do
+/// not depend on the number of threads.
+const BLOCK: usize = 1 << 16;
+
+const NO_GROUP: u32 = u32::MAX;
+
+/// The deformation gradient at each moved drawn vertex, in world space.
+pub(crate) struct Frames {
+    /// Group of each drawn vertex, or [`NO_GROUP`].
+    group_of: Vec<u32>,
+    /// Mean gradient of each group; `None` where it is the identity or no face has an area.
+    gradients: Vec<Option<DMat3>>,
+}
+
+impl Frames {
+    /// The frames between a rest shape and new positions (one a drawn vertex), grouped by the rest normals given.
+    pub fn of(drawn: &Drawn, positions: &[DVec3], normals: &[DVec3], course: &Course<'_>) -> Result<Self, Cancelled> {
+        let (of_groups, course) = course.split(0.4);
+        let (group_of, group_count) = group(drawn, positions, normals, &of_groups)?;
+        let mut sums = vec![(DMat3::ZERO, 0.0_f64); group_count];
+        for (number, block) in drawn.triangles.chunks(BLOCK).enumerate() {
+            course.reach(number * BLOCK, drawn.triangles.len())?;
+            let gradients: Vec<(DMat3, f64)> = block
+                .par_iter()
+                .map(|corners| {
+                    if corners.iter().all(|corner| group_of[corner.index()] == NO_GROUP) {
+                        return (DMat3::ZERO, 0.0);
+                    }
+                    let rest = corners.map(|corner| drawn.positions[corner.index()]);
+                    let deformed = corners.map(|corner| positions[corner.index()]);
+                    let area = 0.5 * (rest[1] - rest[0]).cross(rest[2] - rest[0]).length();
+                    let gradient = face_gradient(rest, deformed);
+                    if area > 0.0 && gradient.is_finite() {
+                        (gradient * area, area)
+                    } else {
+                        (DMat3::ZERO, 0.0)
+                    }
+                })
+                .collect();
+            for (corners, (gradient, area)) in block.iter().zip(gradients) {
+                if area == 0.0 {
+                    continue;
+                }
+                let groups = corners.map(|corner| group_of[corner.index()]);
+                for (k, &of_corner) in groups.iter().enumerate() {
+                    if of_corner != NO_GROUP && !groups[..k].contains(&of_corner) {
+                        let sum = &mut sums[of_corner as usize];
+                        sum.0 += gradient;
+                        sum.1 += area;
+                    }
+                }
+            }
+        }
+        let gradients = sums
+            .into_iter()
+            .map(|(sum, area)| turning(sum * area.recip()))
+            .collect();
+        Ok(Self { group_of, gradients })
+    }
+
+    /// The gradient at a drawn vertex, in world space; `None` where the vertex did not move, its surroundings did not
+    /// turn or stretch, or no face around it has an area. Then its normal and tangent stay as stored.
+    pub fn gradient(&self, vertex: DrawnVertex) -> Option<DMat3> {
+        match self.group_of[vertex.index()] {
+            NO_GROUP => None,
+            group => self.gradients[group as usize],
+        }
+    }
+
+    /// A drawn vertex's world-space normal after the deformation, of the length it had.
+    pub fn carry_normal(&self, vertex: DrawnVertex, normal: DVec3) -> DVec3 {
+        self.gradient(vertex)
+            .map_or(normal, |gradient| carried_normal(gradient, normal))
+    }
+}
+
+/// `normal` carried by the inverse transpose of `gradient`, of the length it had; itself where that has no direction.
+pub(crate) fn carried_normal(gradient: DMat3, normal: DVec3) -> DVec3 {
+    // The cofactor matrix is det(F) F⁻ᵀ: the same direction without a division, and defined for a singular F.
+    let [x, y, z] = [gradient.x_axis, gradient.y_axis, gradient.z_axis];
+    let cofactor = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+    let sign = if gradient.determinant() < 0.0 { -1.0 } else { 1.0 };
+    match (cofactor * normal * sign).try_normalize() {
+        Some(direction) => direction * normal.length(),
+        None => normal,
+    }
+}
+
+/// `tangent` carried by `gradient`, of the length it had, and at the angle it had to its normal (a right one in any
+/// sound file), which `new_normal` replaces; itself where that has no direction.
+pub(crate) fn carried_tangent(gradient: DMat3, normal: DVec3, new_normal: DVec3, tangent: DVec3) -> DVec3 {
+    let (Some(old_up), Some(up)) = (normal.try_normalize(), new_normal.try_normalize()) else {
+        return (gradient * tangent)
+            .try_normalize()
+            .map_or(tangent, |direction| direction * tangent.length());
+    };
+    let height = tangent.dot(old_up);
+    let breadth = (tangent - height * old_up).length();
+    let moved = gradient * tangent;
+    match (moved - moved.dot(up) * up).try_normalize() {
+        Some(direction) => direction * breadth + up * height,
+        None => tangent,
+    }
+}
+
+/// The mean gradient, unless it is the identity or not a number.
+fn turning(mean: DMat3) -> Option<DMat3> {
+    let off = (mean - DMat3::IDENTITY)
+        .to_cols_array()
+        .into_iter()
+        .fold(0.0, |most: f64, x| most.max(x.abs()));
+    (mean.is_finite() && off > UNTURNED).then_some(mean)
+}
+
+/// Numbers the groups of moved twins by their first vertex, so that neighbours' sums stand near each other: numbered as
+/// the hashes fall, every sum would miss the cache. Sorting by a hash instead of filling a table keeps it parallel.
+fn group(
+    drawn: &Drawn,
+    positions: &[DVec3],
+    normals: &[DVec3],
+    course: &Course<'_>,
+) -> Result<(Vec<u32>, usize), Cancelled> {
+    course.reach(0, 4)?;
+    // Adding zero makes 0 of -0, which exporters mix across a seam.
+    let bits = |x: f64| (x + 0.0).to_bits();
+    let key = |v: usize| {
+        let [a, b, c] = drawn.positions[v].to_array().map(bits);
+        let [d, e, f] = normals.get(v).copied().unwrap_or(DVec3::ZERO).to_array().map(bits);
+        [a, b, c, d, e, f]
+    };
+    let mut moved: Vec<(u64, u32)> = (0..positions.len())
+        .into_par_iter()
+        .filter(|&v| !bit_equal(drawn.positions[v], positions[v]))
+        .map(|v| (hash(key(v)), v as u32))
+        .collect();
+    course.reach(1, 4)?;
+    moved.par_sort_unstable();
+    course.reach(2, 4)?;
+    // First the lowest twin of each, which is itself where it has none.
+    let mut group_of = vec![NO_GROUP; positions.len()];
+    for run in moved.chunk_by(|a, b| a.0 == b.0) {
+        for (k, &(_, v)) in run.iter().enumerate() {
+            let twin = run[..k]
+                .iter()
+                .find(|&&(_, other)| key(other as usize) == key(v as usize));
+            group_of[v as usize] = twin.map_or(v, |&(_, other)| group_of[other as usize]);
+        }
+    }
+    course.reach(3, 4)?;
+    // A twin is never above, so its number is known already.
+    let mut group_count = 0;
+    for v in 0..group_of.len() {
+        if group_of[v] == v as u32 {
+            group_of[v] = group_count;
+            group_count += 1;
+        } else if group_of[v] != NO_GROUP {
+            group_of[v] = group_of[group_of[v] as usize];
+        }
+    }
+    Ok((group_of, group_count as usize))
+}
+
+/// A multiplicative hash of the key's words.
+fn hash(key: [u64; 6]) -> u64 {
+    key.iter().fold(0x9e37_79b9_7f4a_7c15, |hash: u64, &word| {
+        (hash.rotate_left(23) ^ word).wrapping_mul(0xff51_afd7_ed55_8ccd) ^ (hash >> 29)
+    })
+}

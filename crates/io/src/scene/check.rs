@@ -1,0 +1,185 @@
+//! Whether a file that was read back shows what was to be saved.
+
+use std::ops::Range;
+
+use glam::DVec3;
+use pliant_mesh::{Drawn, DrawnVertex};
+
+use crate::convert::Polygons;
+use crate::save::bits::bit_equal;
+use crate::scene::{Opened, Scene, Stored};
+use crate::{Format, MorphTarget, Save};
+
+impl Scene {
+    /// Compares `back`, which was read from the bytes of a save of this scene, with what `save` asked for; in words
+    /// what differs. `triangles` is the save's own [`triangles`](crate::Saved::triangles), and with `morph` the edit
+    /// shows as far as the target's weight.
+    ///
+    /// A save in the file's own kind keeps its vertices and their order, so each of them is compared. Another kind may
+    /// number them anew: there every corner of every face is. Positions are taken as the kind stores them: in glTF to
+    /// a few roundings to f32 in the node's space, elsewhere to the bit.
+    ///
+    /// # Errors
+    /// The first thing that differs.
+    pub fn check_read_back(
+        &self,
+        save: &Save<'_>,
+        morph: Option<&MorphTarget<'_>>,
+        triangles: Option<&[u32]>,
+        back: &Opened,
+    ) -> Result<(), String> {
+        let wanted = |vertex: usize| {
+            let (rest, new) = (save.drawn.positions[vertex], save.positions[vertex]);
+            match morph {
+                Some(morph) if !bit_equal(rest, new) => rest + (new - rest) * morph.weight,
+                Some(_) => rest,
+                None => new,
+            }
+        };
+        let stored = Precision::of(back);
+        match (self.stored(), save.format) {
+            (Stored::Gltf(_), Format::Glb | Format::Gltf) => {
+                same_count("vertices", back.drawn.positions.len(), save.drawn.positions.len())?;
+                let vertices = 0..save.drawn.positions.len();
+                each(vertices.map(|vertex| (vertex, wanted(vertex))), back, &stored)?;
+                if back.drawn.triangles == save.drawn.triangles {
+                    Ok(())
+                } else {
+                    Err("its triangles join other vertices".to_owned())
+                }
+            }
+            (_, format) if format == self.format() => {
+                same_count("vertices", back.drawn.file_vertex_count, save.drawn.file_vertex_count)?;
+                same_count("triangles", back.drawn.triangles.len(), save.drawn.triangles.len())?;
+                let wanted = of_file_vertices(save.drawn, wanted);
+                let of_file = back.drawn.file_vertex.iter().enumerate();
+                each(of_file.map(|(v, file)| (v, wanted[file.index()])), back, &stored)
+            }
+            (_, Format::Glb | Format::Gltf | Format::Stl) => {
+                let count = triangles.map_or(save.drawn.triangles.len(), <[u32]>::len);
+                same_count("triangles", back.drawn.triangles.len(), count)?;
+                let source = |place: usize| triangles.map_or(place, |triangles| triangles[place] as usize);
+                let corners = back.drawn.triangles.iter().enumerate().flat_map(|(place, triangle)| {
+                    let from = save.drawn.triangles[source(place)];
+                    triangle.iter().zip(from).map(|(v, from)| (v.index(), from.index()))
+                });
+                each(corners.map(|(v, from)| (v, wanted(from))), back, &stored)
+            }
+            _ => {
+                let (of_save, of_back) = (Faces::of(self, save.drawn), Faces::of(&back.scene, &back.drawn));
+                let (mut of_save, mut of_back) = (of_save.iter(), of_back.iter());
+                for face in 0.. {
+                    match (of_save.next(), of_back.next()) {
+                        (None, None) => break,
+                        (Some(from), Some(corners)) if from.len() == corners.len() => {
+                            let corners = corners.iter().zip(from);
+                            let corners = corners.map(|(v, from)| (v.index(), wanted(from.index())));
+                            each(corners, back, &stored)?;
+                        }
+                        _ => return Err(format!("face {face} has another number of corners")),
+                    }
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// How the kind of a file that was read back stores positions.
+enum Precision<'a> {
+    /// Ranges of drawn vertices, ascending, and how far each coordinate of theirs may be off.
+    Within(Vec<(Range<u32>, DVec3)>),
+    /// As the nearest number of a type, by axis.
+    Nearest(&'a Scene),
+}
+
+impl<'a> Precision<'a> {
+    fn of(back: &'a Opened) -> Self {
+        match back.scene.stored() {
+            Stored::Gltf(stored) => Self::Within(stored.roundings(&back.drawn)),
+            _ => Self::Nearest(&back.scene),
+        }
+    }
+
+    /// Whether drawn vertex `v`, which is `found`, is `wanted` as stored.
+    fn holds(&self, v: usize, found: DVec3, wanted: DVec3) -> bool {
+        let lanes = found.to_array().into_iter().zip(wanted.to_array());
+        match self {
+            Self::Within(ranges) => {
+                let range = ranges.partition_point(|(range, _)| range.end as usize <= v);
+                let within = ranges.get(range).map_or(DVec3::ZERO, |(_, within)| *within);
+                (lanes.zip(within.to_array()))
+                    .all(|((found, wanted), within)| is_equal(found, wanted) || (found - wanted).abs() <= within)
+            }
+            Self::Nearest(scene) => (lanes.enumerate()).all(|(axis, (found, wanted))| {
+                is_equal(found, wanted) || is_equal(found, scene.nearest_stored(axis, wanted))
+            }),
+        }
+    }
+}
+
+/// Equality in which a NaN equals itself.
+fn is_equal(a: f64, b: f64) -> bool {
+    a == b || (a.is_nan() && b.is_nan())
+}
+
+fn same_count(what: &str, found: usize, wanted: usize) -> Result<(), String> {
+    if found == wanted {
+        Ok(())
+    } else {
+        Err(format!("it has {found} {what} instead of {wanted}"))
+    }
+}
+
+/// Compares drawn vertices of `back`, each with the position that it is to have.
+fn each(mut wanted: impl Iterator<Item = (usize, DVec3)>, back: &Opened, stored: &Precision<'_>) -> Result<(), String> {
+    let wrong = wanted.find(|&(v, wanted)| !stored.holds(v, back.drawn.positions[v], wanted));
+    match wrong {
+        None => Ok(()),
+        Some((v, wanted)) => {
+            let [found, wanted] = [back.drawn.positions[v], wanted].map(|p| format!("({}, {}, {})", p.x, p.y, p.z));
+            let vertex = back.drawn.file_vertex[v].0;
+            Err(format!("vertex {vertex} stands at {found} instead of {wanted}"))
+        }
+    }
+}
+
+/// Where each file vertex is to stand: at its first drawn vertex that moved, or at rest.
+fn of_file_vertices(drawn: &Drawn, wanted: impl Fn(usize) -> DVec3) -> Vec<DVec3> {
+    let mut out: Vec<Option<DVec3>> = vec![None; drawn.file_vertex_count];
+    let mut has_moved = vec![false; drawn.file_vertex_count];
+    for (v, file) in drawn.file_vertex.iter().enumerate() {
+        let (file, wanted) = (file.index(), wanted(v));
+        let moves = !bit_equal(wanted, drawn.positions[v]);
+        if out[file].is_none() || (moves && !has_moved[file]) {
+            out[file] = Some(wanted);
+        }
+        has_moved[file] |= moves;
+    }
+    out.into_iter().map(Option::unwrap_or_default).collect()
+}
+
+/// A file's own faces.
+enum Faces<'a> {
+    Triangles(&'a [[DrawnVertex; 3]]),
+    Polygons(Polygons),
+}
+
+impl<'a> Faces<'a> {
+    fn of(scene: &Scene, drawn: &'a Drawn) -> Self {
+        let polygons = scene.polygons().map(Self::Polygons);
+        polygons.unwrap_or(Self::Triangles(&drawn.triangles))
+    }
+
+    /// The faces that are drawn; those with fewer than three corners are not.
+    fn iter(&self) -> impl Iterator<Item = &[DrawnVertex]> {
+        let (triangles, polygons): (&[[DrawnVertex; 3]], _) = match self {
+            Self::Triangles(triangles) => (triangles, None),
+            Self::Polygons(polygons) => (&[], Some(polygons)),
+        };
+        let polygons = polygons.into_iter();
+        let polygons = polygons.flat_map(|polygons| (0..polygons.len()).map(|face| polygons.face(face)));
+        let triangles = triangles.iter().map(<[DrawnVertex; 3]>::as_slice);
+        triangles.chain(polygons.filter(|face| face.len() > 2))
+    }
+}

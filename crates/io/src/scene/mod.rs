@@ -1,0 +1,361 @@
+//! A file as stored, whatever its kind, and the one place where kinds are told apart.
+//!
+//! Each kind is one module with the same face: `read(&Source) -> Result<(Stored, Drawn), ReadError>`;
+//! `Stored::{notes, summary, appearance, write}`, where `write(&Moved, &Course)` gives the file back with only the moved
+//! vertices' numbers changed, and warnings (it is called only when something moved); and `write_new(&NewMesh, &Course)`,
+//! which makes a file of that kind from any other.
+
+mod check;
+pub(crate) mod difference;
+pub(crate) mod objects;
+pub(crate) mod summary;
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_mesh::{Cancel, Drawn, Object, Progress};
+
+use crate::convert::faces::{lost, lost_where};
+use crate::convert::{NewMesh, Parting, Polygons};
+use crate::save::bits::bit_equal;
+use crate::save::course::Course;
+use crate::save::moved::Moved;
+use crate::save::{MorphTarget, Placement, Save, Saved};
+use crate::scene::difference::Difference;
+use crate::scene::summary::Summary;
+use crate::source::{Resolver, Source};
+use crate::{Appearance, Bytes, Format, ReadError, SaveError, gltf, obj, off, ply, stl};
+
+/// What [`read`] gives.
+#[derive(Debug)]
+pub struct Opened {
+    /// The file as stored.
+    pub scene: Scene,
+    /// What it shows.
+    pub drawn: Drawn,
+}
+
+/// A file as stored, nothing thrown away.
+#[derive(Debug)]
+pub struct Scene {
+    format: Format,
+    bytes: Arc<Vec<u8>>,
+    stored: Stored,
+}
+
+#[derive(Debug)]
+pub(crate) enum Stored {
+    Gltf(gltf::Stored),
+    Obj(obj::Stored),
+    Ply(ply::Stored),
+    Stl(stl::Stored),
+    Off(off::Stored),
+}
+
+/// Reads a file of the given kind. `name` is used in messages only; `resolver` is asked for neighbours.
+pub fn read(
+    bytes: Vec<u8>,
+    format: Format,
+    name: &str,
+    resolver: &dyn Resolver,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<Opened, ReadError> {
+    cancel.check()?;
+    let bytes = Arc::new(bytes);
+    let source = Source {
+        bytes: &bytes,
+        name,
+        resolver,
+        progress,
+        cancel,
+    };
+    let (stored, drawn) = match format {
+        Format::Glb | Format::Gltf => {
+            let (stored, drawn) = gltf::read(&source, format)?;
+            (Stored::Gltf(stored), drawn)
+        }
+        Format::Obj => {
+            let (stored, drawn) = obj::read(&source)?;
+            (Stored::Obj(stored), drawn)
+        }
+        Format::Ply => {
+            let (stored, drawn) = ply::read(&source)?;
+            (Stored::Ply(stored), drawn)
+        }
+        Format::Stl => {
+            let (stored, drawn) = stl::read(&source)?;
+            (Stored::Stl(stored), drawn)
+        }
+        Format::Off => {
+            let (stored, drawn) = off::read(&source)?;
+            (Stored::Off(stored), drawn)
+        }
+    };
+    cancel.check()?;
+    progress.set(1.0);
+    Ok(Opened {
+        scene: Scene { format, bytes, stored },
+        drawn,
+    })
+}
+
+/// A saved file's own neighbours.
+impl Resolver for Saved {
+    fn read(&self, uri: &str) -> Result<Bytes, String> {
+        let file = self.files.iter().find(|file| file.name == uri);
+        file.map_or_else(
+            || Err("it was not written".to_owned()),
+            |file| Ok(file.bytes.clone().into()),
+        )
+    }
+}
+
+impl Scene {
+    /// The kind that was read.
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
+    /// What a person should know about how the file was read (a node left out, an image missing), as sentences.
+    pub fn notes(&self) -> &[String] {
+        match &self.stored {
+            Stored::Gltf(stored) => stored.notes(),
+            Stored::Obj(stored) => stored.notes(),
+            Stored::Ply(stored) => stored.notes(),
+            Stored::Stl(stored) => stored.notes(),
+            Stored::Off(stored) => stored.notes(),
+        }
+    }
+
+    /// What the file holds, counted.
+    pub fn summary(&self) -> Summary {
+        match &self.stored {
+            Stored::Gltf(stored) => stored.summary(),
+            Stored::Obj(stored) => stored.summary(),
+            Stored::Ply(stored) => stored.summary(),
+            Stored::Stl(stored) => stored.summary(),
+            Stored::Off(stored) => stored.summary(),
+        }
+    }
+
+    /// What the file tells apart: the triangles that one node shows in one material. One object, or none, where the
+    /// file's kind knows no nodes.
+    pub fn objects(&self) -> Vec<Object> {
+        match &self.stored {
+            Stored::Gltf(stored) => stored.objects(),
+            Stored::Obj(stored) => stored.objects(),
+            Stored::Ply(_) | Stored::Stl(_) | Stored::Off(_) => Vec::new(),
+        }
+    }
+
+    /// How the scene looks at rest; decoded from the stored bytes at each call.
+    pub fn appearance(&self) -> Appearance {
+        match &self.stored {
+            Stored::Gltf(stored) => stored.appearance(),
+            Stored::Obj(stored) => stored.appearance(),
+            Stored::Ply(stored) => stored.appearance(),
+            Stored::Stl(stored) => stored.appearance(),
+            Stored::Off(stored) => stored.appearance(),
+        }
+    }
+
+    /// The file as `save` asks for it. Nothing moved and the same kind: the very bytes that were read.
+    ///
+    /// # Errors
+    /// What can't be held; [`SaveError::Cancelled`] soon after `cancel` is raised.
+    pub fn save(&self, save: &Save<'_>, progress: &Progress, cancel: &Cancel) -> Result<Saved, SaveError> {
+        let saved = self.save_parted(save, Parting::ByName, &Course::new(progress, cancel))?;
+        progress.set(1.0);
+        Ok(saved)
+    }
+
+    fn save_parted(&self, save: &Save<'_>, parting: Parting, course: &Course<'_>) -> Result<Saved, SaveError> {
+        course.reach(0, 1)?;
+        let moved = Moved::of(save.drawn, save.positions)?;
+        let own = |(bytes, warnings)| Saved::alone(save.name, bytes, warnings);
+        match (&self.stored, save.format) {
+            (Stored::Gltf(stored), Format::Glb | Format::Gltf) => stored.save(save, &moved, course),
+            (Stored::Obj(stored), Format::Obj) if save.placement == Placement::OtherFolder => {
+                let unchanged = moved.is_nothing().then(|| (self.bytes.to_vec(), Vec::new()));
+                let mut saved = own(unchanged.map_or_else(|| stored.write(&moved, course), Ok)?);
+                let (files, warnings) = stored.neighbours();
+                saved.files.extend(files);
+                saved.warnings.extend(warnings);
+                Ok(saved)
+            }
+            (_, format) if format == self.format && moved.is_nothing() => Ok(own((self.bytes.to_vec(), Vec::new()))),
+            (Stored::Obj(stored), Format::Obj) => stored.write(&moved, course).map(own),
+            (Stored::Ply(stored), Format::Ply) => stored.write(&moved, course).map(own),
+            (Stored::Stl(stored), Format::Stl) => stored.write(&moved, course).map(own),
+            (Stored::Off(stored), Format::Off) => stored.write(&moved, course).map(own),
+            (_, format) => {
+                let appearance = self.appearance();
+                let has_normals = appearance.normals.is_some() && !moved.is_nothing();
+                let (of_looks, course) = course.split(if has_normals { 0.4 } else { 0.0 });
+                let mesh = NewMesh::of(&moved, appearance, save.name, self.polygons(), parting, &of_looks)?;
+                let mut saved = match format {
+                    Format::Glb => gltf::write::write_new(&mesh, &course),
+                    Format::Gltf => gltf::write::write_new_gltf(&mesh, &course),
+                    Format::Obj => obj::write_new(&mesh, &course),
+                    Format::Ply => ply::write_new(&mesh, &course),
+                    Format::Stl => stl::write_new(&mesh, &course),
+                    Format::Off => off::write_new(&mesh, &course),
+                }?;
+                saved.warnings.extend(self.motion_lost(format));
+                if let Stored::Obj(stored) = &self.stored {
+                    saved.warnings.extend(stored.materials_lost(&format.to_string()));
+                }
+                Ok(saved)
+            }
+        }
+    }
+
+    /// The file with the edit as a morph target: the shape stays, and the way to `save.positions` is added to each
+    /// edited mesh. Only glTF holds such; a file of another kind is written as glTF first, its vertices as they are.
+    ///
+    /// # Errors
+    /// As [`Self::save`].
+    pub fn save_as_morph(
+        &self,
+        save: &Save<'_>,
+        target: &MorphTarget<'_>,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Saved, SaveError> {
+        let saved = self.with_morph(save, target, &Course::new(progress, cancel))?;
+        progress.set(1.0);
+        Ok(saved)
+    }
+
+    fn with_morph(&self, save: &Save<'_>, target: &MorphTarget<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
+        course.reach(0, 1)?;
+        if !matches!(save.format, Format::Glb | Format::Gltf) {
+            return Err(SaveError::CannotHold {
+                what: "a morph target".to_owned(),
+                format: save.format,
+                remedy: "save as .glb".to_owned(),
+            });
+        }
+        let moved = Moved::of(save.drawn, save.positions)?;
+        if let Stored::Gltf(stored) = &self.stored {
+            return stored.save_as_morph(save, &moved, target, course);
+        }
+        // Joined, the written vertices are the drawn ones.
+        let at_rest = Save {
+            positions: &save.drawn.positions,
+            ..*save
+        };
+        let (of_rest, course) = course.split(0.4);
+        let (of_reading, course) = course.split(0.4);
+        let rest = self.save_parted(&at_rest, Parting::Joined, &of_rest)?;
+        let fault = |what: String| SaveError::CannotHold {
+            what,
+            format: save.format,
+            remedy: "this is a fault of the program, so report it with the file".to_owned(),
+        };
+        let file = rest.files[0].bytes.clone();
+        let written = read(file, save.format, save.name, &rest, &of_reading.progress, course.cancel);
+        let written = written.map_err(|error| match error {
+            ReadError::Cancelled(cancelled) => SaveError::Cancelled(cancelled),
+            error => fault(error.to_string()),
+        })?;
+        if written.drawn.positions.len() != save.positions.len() {
+            return Err(fault("a shape whose vertices are not all written".to_owned()));
+        }
+        // Its positions were rounded to f32; the way is taken from there.
+        let ways = save.drawn.positions.iter().zip(save.positions);
+        let positions: Vec<DVec3> = (written.drawn.positions.iter().zip(ways))
+            .map(|(&written, (&rest, &new))| {
+                if bit_equal(rest, new) {
+                    written
+                } else {
+                    written + (new - rest)
+                }
+            })
+            .collect();
+        let mut saved = written.scene.with_morph(
+            &Save {
+                drawn: &written.drawn,
+                positions: &positions,
+                placement: Placement::OtherFolder,
+                ..*save
+            },
+            target,
+            &course,
+        )?;
+        saved.warnings.splice(0..0, rest.warnings);
+        saved.triangles = rest.triangles;
+        Ok(saved)
+    }
+
+    /// A warning about what moves a scene, which no kind but glTF holds.
+    fn motion_lost(&self, format: Format) -> Option<String> {
+        let summary = self.summary();
+        let motion = [
+            ("skins", lost_where(summary.skins > 0)),
+            ("animations", lost_where(summary.animations > 0)),
+            ("morph targets", lost_where(summary.morph_targets > 0)),
+        ];
+        lost(&format.to_string(), &motion)
+    }
+
+    /// What differs between this file and another, given what [`read`] gave with each; nothing where they hold the
+    /// same. Two glTF are compared part by part, whatever their containers and wherever their numbers stand; others by
+    /// what they show, and, where they are of one kind, by whether anything beside the shape differs.
+    pub fn differences(&self, drawn: &Drawn, other: &Self, other_drawn: &Drawn) -> Vec<Difference> {
+        if self.format == other.format
+            && self.bytes == other.bytes
+            && !matches!(self.format, Format::Gltf | Format::Obj)
+        {
+            return Vec::new();
+        }
+        if let (Stored::Gltf(a), Stored::Gltf(b)) = (&self.stored, &other.stored) {
+            return a.differences(b);
+        }
+        let shown = |scene: &Self| (scene.appearance(), scene.summary());
+        let mut out = difference::of_shapes((drawn, &shown(self).0), (other_drawn, &shown(other).0));
+        // An STL's normals follow its shape, rounded from more digits than it keeps.
+        let is_comparable = self.format == other.format && self.format != Format::Stl;
+        if is_comparable && drawn.positions.len() == other_drawn.positions.len() {
+            // With the other's shape this file would be the other, if nothing else differs.
+            let save = Save {
+                drawn,
+                positions: &other_drawn.positions,
+                format: self.format,
+                name: "same",
+                placement: Placement::SameFolder,
+            };
+            if let Ok(saved) = self.save(&save, &Progress::new(), &Cancel::new()) {
+                out.extend(difference::of_bytes(&saved.files[0].bytes, &other.bytes));
+            }
+        }
+        out
+    }
+
+    /// The file in its own kind.
+    pub(crate) fn stored(&self) -> &Stored {
+        &self.stored
+    }
+
+    /// The number nearest to `value` that the file's kind stores for a coordinate of the given axis. glTF stores them
+    /// in the space of nodes, so that it has none.
+    pub(crate) fn nearest_stored(&self, axis: usize, value: f64) -> f64 {
+        match &self.stored {
+            Stored::Ply(stored) => stored.nearest(axis, value),
+            // f32: STL holds nothing finer, and where its text is finer it holds the value itself.
+            Stored::Stl(_) => f64::from(value as f32),
+            Stored::Gltf(_) | Stored::Obj(_) | Stored::Off(_) => value,
+        }
+    }
+
+    /// The file's own polygons over drawn vertices, where it has any that are not triangles.
+    pub(crate) fn polygons(&self) -> Option<Polygons> {
+        match &self.stored {
+            Stored::Gltf(_) | Stored::Stl(_) => None,
+            Stored::Obj(stored) => stored.polygons(),
+            Stored::Ply(stored) => stored.polygons(),
+            Stored::Off(stored) => stored.polygons(),
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! What a file tells apart, gathered from the runs of triangles in which it stands.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::ops::Range;
+
+use pliant_mesh::Object;
+
+/// The most characters of a name that every run of triangles gets a copy of: as many as a person would read. The file
+/// keeps it all.
+const LONGEST_NAME: usize = 120;
+
+/// A name as it is shown.
+pub(crate) fn short_name(name: &str) -> String {
+    name.chars().take(LONGEST_NAME).collect()
+}
+
+/// A run of triangles: what tells it apart from others, and how that is called.
+pub(crate) struct TriangleRun<Key> {
+    /// Runs with equal keys are one object.
+    pub(crate) key: Key,
+    /// The node's name.
+    pub(crate) name: String,
+    /// The material's name.
+    pub(crate) material: String,
+    /// Range of the drawn triangles.
+    pub(crate) triangles: Range<u32>,
+}
+
+/// The objects in the order in which the runs first name them; runs without triangles make none.
+pub(crate) fn gathered<Key: Eq + Hash>(runs: impl Iterator<Item = TriangleRun<Key>>) -> Vec<Object> {
+    let mut known: HashMap<Key, usize> = HashMap::new();
+    let mut objects: Vec<Object> = Vec::new();
+    for run in runs.filter(|run| !run.triangles.is_empty()) {
+        let TriangleRun {
+            key,
+            name,
+            material,
+            triangles,
+        } = run;
+        let next = objects.len();
+        let number = *known.entry(key).or_insert(next);
+        match objects.get_mut(number) {
+            Some(object) => object.triangles.push(triangles),
+            None => objects.push(Object {
+                name,
+                material,
+                triangles: vec![triangles],
+            }),
+        }
+    }
+    objects
+}

@@ -1,0 +1,139 @@
+//! STL, binary and ascii: three corners a facet, each a file vertex of its own; welding joins them.
+//!
+//! Saving changes the moved corners' numbers and the normals of their facets, and no other byte: headers, attribute
+//! bytes, solids' names and white space stay.
+
+mod ascii;
+mod binary;
+mod write;
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_mesh::{Drawn, DrawnVertex, FileVertex};
+
+use crate::appearance::{Group, Material};
+use crate::save::course::Course;
+use crate::save::moved::Moved;
+use crate::scene::summary::Summary;
+use crate::source::Source;
+use crate::{Appearance, ReadError, SaveError};
+
+pub(crate) use write::write_new;
+
+/// An STL file as stored.
+#[derive(Debug)]
+pub(crate) struct Stored {
+    bytes: Arc<Vec<u8>>,
+    layout: Layout,
+    facet_count: usize,
+    notes: Vec<String>,
+}
+
+#[derive(Debug)]
+enum Layout {
+    Binary,
+    /// The byte of each facet's `facet` keyword.
+    Ascii(Vec<usize>),
+}
+
+/// Reads an STL file of either kind.
+///
+/// Binary files that begin with "solid" exist, and so do ascii files of any length: a file is binary when its length
+/// is that of its facet count, ascii when it isn't and begins with "solid", and else binary with something behind the
+/// facets.
+pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
+    let bytes: &[u8] = source.bytes;
+    let mut notes = Vec::new();
+    let begins_as_ascii = bytes
+        .trim_ascii_start()
+        .get(..5)
+        .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    let (positions, layout) = if begins_as_ascii && !binary::has_exact_length(bytes) {
+        let (positions, facets) = ascii::read(source)?;
+        (positions, Layout::Ascii(facets))
+    } else {
+        (binary::read(source, &mut notes)?, Layout::Binary)
+    };
+    let count = positions.len() as u32;
+    let drawn = Drawn {
+        triangles: (0..count / 3)
+            .map(|facet| [0, 1, 2].map(|k| DrawnVertex(3 * facet + k)))
+            .collect(),
+        file_vertex: (0..count).map(FileVertex).collect(),
+        file_vertex_count: positions.len(),
+        positions,
+    };
+    Ok((
+        Stored {
+            bytes: source.bytes.clone(),
+            layout,
+            facet_count: drawn.triangles.len(),
+            notes,
+        },
+        drawn,
+    ))
+}
+
+impl Stored {
+    pub(crate) fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    pub(crate) fn summary(&self) -> Summary {
+        let meshes = usize::from(self.facet_count > 0);
+        Summary {
+            meshes,
+            primitives: meshes,
+            nodes: meshes,
+            ..Summary::default()
+        }
+    }
+
+    /// No normals: a facet's own would show every triangle of a scan.
+    pub(crate) fn appearance(&self) -> Appearance {
+        Appearance {
+            groups: vec![Group {
+                triangles: 0..self.facet_count as u32,
+                material: 0,
+                node_name: String::new(),
+            }],
+            materials: vec![Material {
+                double_sided: true,
+                ..Material::default()
+            }],
+            ..Appearance::default()
+        }
+    }
+
+    /// The file with the moved corners' numbers and their facets' normals changed, and warnings.
+    pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
+        let bytes = match &self.layout {
+            Layout::Binary => binary::patched(&self.bytes, self.facet_count, moved, course)?,
+            Layout::Ascii(facets) => ascii::patched(&self.bytes, facets, moved, course)?,
+        };
+        Ok((bytes, Vec::new()))
+    }
+}
+
+/// A facet's unit normal by its corners' winding; zero where it has no area, as STL says of unknown normals.
+fn facet_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a).normalize_or_zero()
+}
+
+/// The facets with a moved corner, in rising order: their number, their corners as they now stand, and which moved.
+fn changed_facets<'a>(moved: &'a Moved<'_>) -> impl Iterator<Item = (usize, [DVec3; 3], [bool; 3])> + 'a {
+    moved
+        .of_file()
+        .chunks_exact(3)
+        .enumerate()
+        .filter(|(_, facet)| facet.iter().any(Option::is_some))
+        .map(|(number, facet)| {
+            let at = |k: usize| facet[k].unwrap_or(moved.drawn.positions[3 * number + k]);
+            (
+                number,
+                [at(0), at(1), at(2)],
+                [0, 1, 2].map(|k: usize| facet[k].is_some()),
+            )
+        })
+}

@@ -1,0 +1,65 @@
+//! A file's geometry inspected: its counts and findings, without the tables that an edit needs.
+
+use crate::findings::topological::Parts;
+use crate::topology::components::Component;
+use crate::topology::rings::topology_findings;
+use crate::weld::{Welded, weld};
+use crate::{Bounds, Cancel, Cancelled, Drawn, Findings, LocatedFinding, Progress, WeldOptions, bounding_box};
+
+/// What [`Model::weld`](crate::Model::weld) would find, in less memory and time: nothing can be edited by it.
+#[derive(Clone, Debug, Default)]
+pub struct Inspection {
+    /// How many vertices the file has, drawn or not.
+    pub file_vertices: usize,
+    /// How many vertices are drawn: one of the file's through two nodes is two.
+    pub drawn_vertices: usize,
+    /// How many triangles are drawn.
+    pub drawn_triangles: usize,
+    /// How many vertices the welded surface has.
+    pub surface_vertices: usize,
+    /// How many triangles it has.
+    pub surface_triangles: usize,
+    /// The bounding box of the vertices that kept triangles use; `None` of an empty surface.
+    pub bounds: Option<Bounds>,
+    /// The surface's connected parts by falling vertex count, equal ones by their first file vertex.
+    pub components: Vec<Component>,
+    /// What is wrong with the mesh.
+    pub findings: Findings,
+    /// The same with the places of examples.
+    pub located_findings: Vec<LocatedFinding>,
+}
+
+impl Inspection {
+    /// Welds `drawn`, looks at the surface and lets it go.
+    pub fn of(drawn: Drawn, options: &WeldOptions, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
+        let Welded {
+            surface,
+            drawn,
+            components,
+            mut findings,
+        } = weld(drawn, options, progress, cancel)?;
+        cancel.check()?;
+        let vertex_count = surface.positions.len();
+        let found = topology_findings(vertex_count, &surface.triangles, cancel)?;
+        cancel.check()?;
+        progress.set(0.9);
+        let parts = Parts {
+            surface: &surface,
+            drawn: &drawn,
+            components: &components,
+        };
+        parts.report(&found, &mut findings);
+        progress.set(1.0);
+        Ok(Self {
+            file_vertices: drawn.file_vertex_count(),
+            drawn_vertices: drawn.vertex_count(),
+            drawn_triangles: drawn.triangle_count(),
+            surface_vertices: vertex_count,
+            surface_triangles: surface.triangles.len(),
+            bounds: bounding_box(&surface.positions),
+            components: components.all,
+            located_findings: findings.located_findings(&drawn, &surface),
+            findings,
+        })
+    }
+}

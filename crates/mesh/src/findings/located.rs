@@ -1,0 +1,103 @@
+//! A mesh's findings with the positions of their examples, so that a panel can jump to each.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use crate::{DrawnSet, DrawnVertex, FindingKind, Findings, Model, Named, Surface};
+
+/// A finding with its sentence and the positions of its first examples.
+#[derive(Clone, PartialEq, Debug)]
+pub struct LocatedFinding {
+    /// What it is.
+    pub kind: FindingKind,
+    /// How many there are.
+    pub count: usize,
+    /// The same for a person.
+    pub sentence: String,
+    /// The first few.
+    pub examples: Vec<Example>,
+}
+
+/// One of the things that were found.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Example {
+    /// Its number: of what, [`FindingKind::named`] says.
+    pub number: u32,
+    /// Where it is at rest, in world space (of a triangle: its centre); `None` where it has no finite place or is not
+    /// drawn.
+    pub position: Option<DVec3>,
+}
+
+impl Model {
+    /// What is wrong with the mesh, each with the places of its first examples, in the order of [`Findings::sentences`].
+    /// One look at every vertex, so made on request.
+    pub fn located_findings(&self) -> Vec<LocatedFinding> {
+        self.findings.located_findings(&self.drawn, &self.surface)
+    }
+}
+
+impl Findings {
+    /// What is wrong with the mesh that `drawn` was welded into.
+    pub(crate) fn located_findings(&self, drawn: &DrawnSet, surface: &Surface) -> Vec<LocatedFinding> {
+        let told = || {
+            FindingKind::ALL
+                .into_iter()
+                .filter_map(|kind| Some((kind, self.sentence(kind)?)))
+        };
+        let named = told()
+            .filter(|(kind, _)| kind.named() == Named::FileVertex)
+            .flat_map(|(kind, _)| self.of(kind).examples.iter().copied());
+        let places = places_of_file_vertices(drawn, surface, named);
+        let place = |kind: FindingKind, number: u32| match kind.named() {
+            Named::FileVertex => places.get(&number).copied(),
+            Named::DrawnTriangle => centre_of_drawn_triangle(drawn, surface, number),
+        };
+        told()
+            .map(|(kind, sentence)| {
+                let finding = self.of(kind);
+                let example = |&number: &u32| Example {
+                    number,
+                    position: place(kind, number),
+                };
+                LocatedFinding {
+                    kind,
+                    count: finding.count,
+                    sentence,
+                    examples: finding.examples.iter().map(example).collect(),
+                }
+            })
+            .collect()
+    }
+}
+
+/// Where file vertices are first drawn at a finite place.
+fn places_of_file_vertices(
+    drawn: &DrawnSet,
+    surface: &Surface,
+    wanted: impl Iterator<Item = u32>,
+) -> HashMap<u32, DVec3> {
+    let mut is_wanted = vec![false; drawn.file_vertex_count()];
+    for vertex in wanted {
+        if let Some(is_wanted) = is_wanted.get_mut(vertex as usize) {
+            *is_wanted = true;
+        }
+    }
+    let mut places = HashMap::new();
+    for (drawn_vertex, file_vertex) in (0..).map(DrawnVertex).zip(drawn.file_vertices()) {
+        if is_wanted.get(file_vertex.index()) == Some(&true) {
+            let position = drawn.position(drawn_vertex, surface);
+            if position.is_finite() {
+                places.entry(file_vertex.0).or_insert(position);
+            }
+        }
+    }
+    places
+}
+
+fn centre_of_drawn_triangle(drawn: &DrawnSet, surface: &Surface, triangle: u32) -> Option<DVec3> {
+    let corners = drawn.triangle(triangle, surface)?;
+    let places = corners.map(|v| drawn.position(v, surface));
+    let centre = places.iter().sum::<DVec3>() / 3.0;
+    centre.is_finite().then_some(centre)
+}

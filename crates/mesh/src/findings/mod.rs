@@ -1,0 +1,302 @@
+//! What loading found wrong with a mesh, as numbers with examples and as sentences for a person.
+
+pub(crate) mod finding;
+mod inspection;
+mod located;
+pub(crate) mod topological;
+
+pub use finding::Finding;
+pub use inspection::Inspection;
+pub use located::{Example, LocatedFinding};
+
+/// What loading found wrong with a mesh. Vertices are named by their file vertex, triangles by their drawn triangle.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Findings {
+    /// File vertices whose position is not finite (or beyond 1e60): set aside.
+    pub non_finite_vertices: Finding,
+    /// Triangles left out because they use such a vertex.
+    pub non_finite_triangles: Finding,
+    /// File vertices that no triangle uses: set aside, they keep their place.
+    pub unreferenced_vertices: Finding,
+    /// Triangles left out because two of their corners were welded into one.
+    pub collapsed_triangles: Finding,
+    /// Triangles kept although they have no area to speak of.
+    pub zero_area_triangles: Finding,
+    /// Triangles left out because an earlier one has the same three vertices.
+    pub duplicate_triangles: Finding,
+    /// Edges with more than two triangles; the examples are vertices on them.
+    pub non_manifold_edges: Finding,
+    /// Vertices whose triangles form more than one fan.
+    pub non_manifold_vertices: Finding,
+    /// Edges whose two triangles disagree about which side is outside; the examples are vertices on them.
+    pub misoriented_edges: Finding,
+    /// Closed parts whose triangles face inwards; the examples are their first vertices. A part within the box of
+    /// another closed part is taken for a cavity, which has to.
+    pub inside_out_components: Finding,
+    /// Edges with one triangle only; the examples are vertices on them.
+    pub boundary_edges: Finding,
+    /// Holes; the examples are vertices on their rims.
+    pub boundary_loops: Finding,
+    /// Connected parts, largest first; the examples are their first vertices.
+    pub components: Finding,
+    /// Parts with less than a hundredth of the largest one's vertices; the examples are their first vertices.
+    pub loose_bits: Finding,
+}
+
+/// One of the things that loading looks for.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+#[expect(missing_docs, reason = "each variant is the field of its name in `Findings`")]
+pub enum FindingKind {
+    NonFiniteVertices,
+    NonFiniteTriangles,
+    UnreferencedVertices,
+    CollapsedTriangles,
+    ZeroAreaTriangles,
+    DuplicateTriangles,
+    NonManifoldEdges,
+    NonManifoldVertices,
+    MisorientedEdges,
+    InsideOutComponents,
+    BoundaryEdges,
+    BoundaryLoops,
+    Components,
+    LooseBits,
+}
+
+/// What a finding's examples are numbers of.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Named {
+    /// The file's vertices.
+    FileVertex,
+    /// The drawn triangles.
+    DrawnTriangle,
+}
+
+impl FindingKind {
+    /// Every kind, in the order in which they are told.
+    pub const ALL: [Self; 14] = [
+        Self::NonFiniteVertices,
+        Self::NonFiniteTriangles,
+        Self::UnreferencedVertices,
+        Self::CollapsedTriangles,
+        Self::ZeroAreaTriangles,
+        Self::DuplicateTriangles,
+        Self::NonManifoldEdges,
+        Self::NonManifoldVertices,
+        Self::MisorientedEdges,
+        Self::InsideOutComponents,
+        Self::BoundaryEdges,
+        Self::BoundaryLoops,
+        Self::Components,
+        Self::LooseBits,
+    ];
+
+    /// Its name in machine-readable output.
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::NonFiniteVertices => "non_finite_vertices",
+            Self::NonFiniteTriangles => "non_finite_triangles",
+            Self::UnreferencedVertices => "unreferenced_vertices",
+            Self::CollapsedTriangles => "collapsed_triangles",
+            Self::ZeroAreaTriangles => "zero_area_triangles",
+            Self::DuplicateTriangles => "duplicate_triangles",
+            Self::NonManifoldEdges => "non_manifold_edges",
+            Self::NonManifoldVertices => "non_manifold_vertices",
+            Self::MisorientedEdges => "misoriented_edges",
+            Self::InsideOutComponents => "inside_out_components",
+            Self::BoundaryEdges => "boundary_edges",
+            Self::BoundaryLoops => "boundary_loops",
+            Self::Components => "components",
+            Self::LooseBits => "loose_bits",
+        }
+    }
+
+    /// What its examples are numbers of.
+    pub const fn named(self) -> Named {
+        match self {
+            Self::NonFiniteTriangles
+            | Self::CollapsedTriangles
+            | Self::ZeroAreaTriangles
+            | Self::DuplicateTriangles => Named::DrawnTriangle,
+            _ => Named::FileVertex,
+        }
+    }
+}
+
+impl Findings {
+    /// How many examples a finding keeps.
+    pub const EXAMPLES: usize = 8;
+
+    /// The finding of a kind.
+    pub fn of(&self, kind: FindingKind) -> &Finding {
+        match kind {
+            FindingKind::NonFiniteVertices => &self.non_finite_vertices,
+            FindingKind::NonFiniteTriangles => &self.non_finite_triangles,
+            FindingKind::UnreferencedVertices => &self.unreferenced_vertices,
+            FindingKind::CollapsedTriangles => &self.collapsed_triangles,
+            FindingKind::ZeroAreaTriangles => &self.zero_area_triangles,
+            FindingKind::DuplicateTriangles => &self.duplicate_triangles,
+            FindingKind::NonManifoldEdges => &self.non_manifold_edges,
+            FindingKind::NonManifoldVertices => &self.non_manifold_vertices,
+            FindingKind::MisorientedEdges => &self.misoriented_edges,
+            FindingKind::InsideOutComponents => &self.inside_out_components,
+            FindingKind::BoundaryEdges => &self.boundary_edges,
+            FindingKind::BoundaryLoops => &self.boundary_loops,
+            FindingKind::Components => &self.components,
+            FindingKind::LooseBits => &self.loose_bits,
+        }
+    }
+
+    /// A sentence about a kind; `None` where it is as in a clean, closed, connected mesh, and for rims' edges, which
+    /// their holes tell of.
+    pub fn sentence(&self, kind: FindingKind) -> Option<String> {
+        let finding = self.of(kind);
+        let vertices = ["vertex", "vertices"];
+        let triangles = ["triangle", "triangles"];
+        let edges = ["edge", "edges"];
+        let at_vertex = "at vertex ";
+        let (nouns, at, rests) = match kind {
+            FindingKind::NonFiniteVertices => (
+                vertices,
+                "",
+                [
+                    "has a position that is not a finite number and was set aside",
+                    "have positions that are not finite numbers and were set aside",
+                ],
+            ),
+            FindingKind::NonFiniteTriangles => (
+                triangles,
+                "",
+                [
+                    "uses such a vertex and was left out",
+                    "use such vertices and were left out",
+                ],
+            ),
+            FindingKind::UnreferencedVertices => (
+                vertices,
+                "",
+                [
+                    "is used by no triangle and keeps its place",
+                    "are used by no triangle and keep their places",
+                ],
+            ),
+            FindingKind::CollapsedTriangles => (
+                triangles,
+                "",
+                [
+                    "has two corners in one place and was left out",
+                    "have two corners in one place and were left out",
+                ],
+            ),
+            FindingKind::ZeroAreaTriangles => (triangles, "", ["has no area", "have no area"]),
+            FindingKind::DuplicateTriangles => (
+                triangles,
+                "",
+                [
+                    "repeats an earlier one and was left out",
+                    "repeat earlier ones and were left out",
+                ],
+            ),
+            FindingKind::NonManifoldEdges => (
+                edges,
+                at_vertex,
+                ["has more than two triangles", "have more than two triangles"],
+            ),
+            FindingKind::NonManifoldVertices => (
+                vertices,
+                "",
+                [
+                    "joins parts that share nothing else there",
+                    "join parts that share nothing else there",
+                ],
+            ),
+            FindingKind::MisorientedEdges => (
+                edges,
+                at_vertex,
+                [
+                    "lies between triangles that disagree about which side is outside",
+                    "lie between triangles that disagree about which side is outside",
+                ],
+            ),
+            FindingKind::InsideOutComponents => (
+                ["closed part", "closed parts"],
+                at_vertex,
+                [
+                    "is inside out: its triangles face inwards",
+                    "are inside out: their triangles face inwards",
+                ],
+            ),
+            FindingKind::BoundaryEdges => return None,
+            FindingKind::BoundaryLoops => {
+                let rim = self.boundary_edges.count;
+                let holes = finding.counted("hole", "holes", at_vertex);
+                let (has, edges) = (
+                    if finding.count == 1 { "has" } else { "have" },
+                    if rim == 1 { "edge" } else { "edges" },
+                );
+                return (!finding.is_empty()).then(|| format!("{holes} {has} {rim} {edges} on the rim."));
+            }
+            FindingKind::Components => {
+                let parts = finding.count;
+                return (parts > 1).then(|| format!("The surface has {parts} parts that don't touch."));
+            }
+            FindingKind::LooseBits => (
+                ["loose bit", "loose bits"],
+                at_vertex,
+                [
+                    "has less than a hundredth of the largest part's vertices",
+                    "have less than a hundredth of the largest part's vertices each",
+                ],
+            ),
+        };
+        let rest = rests[usize::from(finding.count != 1)];
+        let [one, many] = nouns;
+        (!finding.is_empty()).then(|| format!("{} {rest}.", finding.counted(one, many, at)))
+    }
+
+    /// One sentence for each thing that is not as in a clean, closed, connected mesh; none for such a mesh.
+    pub fn sentences(&self) -> Vec<String> {
+        FindingKind::ALL
+            .into_iter()
+            .filter_map(|kind| self.sentence(kind))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sentences_count_name_and_agree() {
+        let mut findings = Findings::default();
+        assert!(findings.sentences().is_empty());
+        findings.collapsed_triangles = Finding::of(&[7]);
+        findings.non_manifold_edges = Finding::of(&[1, 2, 9]);
+        findings.duplicate_triangles = Finding::of(&[1, 2, 3, 4, 5]);
+        findings.boundary_edges = Finding::of(&[0, 1, 2, 3]);
+        findings.boundary_loops = Finding::of(&[0]);
+        findings.components = Finding::of(&[0, 5]);
+        findings.loose_bits = Finding::of(&[5]);
+        assert_eq!(
+            findings.sentences(),
+            [
+                "1 triangle (7) has two corners in one place and was left out.",
+                "5 triangles (1, 2, 3, ...) repeat earlier ones and were left out.",
+                "3 edges (at vertex 1, 2 and 9) have more than two triangles.",
+                "1 hole (at vertex 0) has 4 edges on the rim.",
+                "The surface has 2 parts that don't touch.",
+                "1 loose bit (at vertex 5) has less than a hundredth of the largest part's vertices.",
+            ]
+        );
+    }
+
+    #[test]
+    fn every_kind_is_listed_once_by_a_name_of_its_own() {
+        let mut keys: Vec<&str> = FindingKind::ALL.iter().map(|kind| kind.key()).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        assert_eq!(keys.len(), FindingKind::ALL.len());
+        assert!(FindingKind::ALL.is_sorted());
+    }
+}

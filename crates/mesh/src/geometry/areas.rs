@@ -1,0 +1,83 @@
+//! Areas and volumes of whole surfaces.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::geometry::{area_of_lengths, cotangents, edge_lengths, face_area};
+use crate::surface::corners;
+use crate::{Surface, SurfaceVertex};
+
+/// Triangles a piece of a sum: sums are cut alike whatever the number of threads.
+const PIECE: usize = 16_384;
+
+/// The area of every triangle of `surface` with its vertices at `positions`.
+pub fn face_areas(surface: &Surface, positions: &[DVec3]) -> Vec<f64> {
+    surface
+        .triangles
+        .par_iter()
+        .map(|&triangle| face_area(corners(triangle, positions)))
+        .collect()
+}
+
+/// Each corner's share of a triangle's area, from edge lengths (entry `i` opposite corner `i`) [MDSB03,
+/// figure 4]. The shares sum to the area.
+///
+/// A triangle without an obtuse angle is shared by its circumcentre, one with an obtuse angle gives half of itself to
+/// that corner and a quarter to each other.
+pub fn mixed_corner_areas(lengths: [f64; 3]) -> [f64; 3] {
+    let area = area_of_lengths(lengths);
+    if area <= 0.0 {
+        return [0.0; 3];
+    }
+    let cot = cotangents(lengths);
+    if let Some(obtuse) = (0..3).find(|&i| cot[i] < 0.0) {
+        let mut shares = [0.25 * area; 3];
+        shares[obtuse] = 0.5 * area;
+        return shares;
+    }
+    // Equation 7: an edge's eighth of a square, weighted by the cotangent opposite, goes to both its ends.
+    let of_edge: [f64; 3] = std::array::from_fn(|i| 0.125 * lengths[i] * lengths[i] * cot[i]);
+    [
+        of_edge[1] + of_edge[2],
+        of_edge[2] + of_edge[0],
+        of_edge[0] + of_edge[1],
+    ]
+}
+
+/// The mixed Voronoi area of every vertex, all finite and not negative; they sum to the surface's area. A vertex whose
+/// triangles all lack area has none: who divides by it must bound it below.
+pub fn mixed_voronoi_areas(surface: &Surface) -> Vec<f64> {
+    let shares: Vec<[f64; 3]> = (0..surface.triangles.len())
+        .into_par_iter()
+        .map(|t| mixed_corner_areas(edge_lengths(surface.corners(t))))
+        .collect();
+    let mut areas = vec![0.0; surface.positions.len()];
+    for (triangle, shares) in surface.triangles.iter().zip(&shares) {
+        for (v, share) in triangle.iter().zip(shares) {
+            areas[v.index()] += share;
+        }
+    }
+    areas
+}
+
+/// The volume inside a closed surface, positive where normals point outward; meaningless for an open one.
+pub fn signed_volume(triangles: &[[SurfaceVertex; 3]], positions: &[DVec3]) -> f64 {
+    // Relative to a vertex of the surface: far from the origin the terms would cancel.
+    let Some(&[apex, ..]) = triangles.first() else {
+        return 0.0;
+    };
+    let apex = positions[apex.index()];
+    let pieces: Vec<f64> = triangles
+        .par_chunks(PIECE)
+        .map(|piece| {
+            piece
+                .iter()
+                .map(|&triangle| {
+                    let [a, b, c] = corners(triangle, positions).map(|p| p - apex);
+                    a.dot(b.cross(c))
+                })
+                .sum()
+        })
+        .collect();
+    pieces.iter().sum::<f64>() / 6.0
+}

@@ -1,0 +1,122 @@
+//! Lengths, areas, angles and normals of single triangles, and boxes.
+//!
+//! Angles and areas come from edge lengths [Kah14], so that the same functions serve mollified lengths, which belong to no
+//! positions.
+
+mod areas;
+mod distortion;
+mod gradient;
+mod normals;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+pub use areas::{face_areas, mixed_corner_areas, mixed_voronoi_areas, signed_volume};
+pub use distortion::Distortion;
+pub use gradient::face_gradient;
+pub use normals::vertex_normals;
+
+/// An axis-aligned box, `min <= max` in each coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// The least coordinates.
+    pub min: DVec3,
+    /// The greatest coordinates.
+    pub max: DVec3,
+}
+
+impl Bounds {
+    /// The length of the diagonal.
+    pub fn diagonal(&self) -> f64 {
+        self.extent().length()
+    }
+
+    /// The middle.
+    pub fn centre(&self) -> DVec3 {
+        0.5 * self.min + 0.5 * self.max
+    }
+
+    /// The side lengths.
+    pub fn extent(&self) -> DVec3 {
+        self.max - self.min
+    }
+
+    /// The least box that holds both.
+    pub fn union(&self, other: &Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
+    }
+}
+
+/// The least box that holds all `positions`; `None` of none. On the caller's thread alone: the window's asks for it, too,
+/// and would wait in line behind a job's loops for longer than this takes.
+pub fn bounding_box(positions: &[DVec3]) -> Option<Bounds> {
+    positions
+        .iter()
+        .map(|&p| Bounds { min: p, max: p })
+        .reduce(|a, b| a.union(&b))
+}
+
+/// The least box of a parallel iterator's positions. Least and greatest don't depend on the order.
+pub(crate) fn bounds_of(positions: impl ParallelIterator<Item = DVec3>) -> Option<Bounds> {
+    positions
+        .map(|p| Bounds { min: p, max: p })
+        .reduce_with(|a, b| a.union(&b))
+}
+
+/// The area of a triangle.
+pub fn face_area([a, b, c]: [DVec3; 3]) -> f64 {
+    0.5 * (b - a).cross(c - a).length()
+}
+
+/// The unit normal of a counter-clockwise triangle; zero for one without area.
+pub fn face_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a).normalize_or_zero()
+}
+
+/// Whether a triangle is a line or a point to within rounding: its height is below 1e-10 of its longest edge.
+pub(crate) fn is_without_area([a, b, c]: [DVec3; 3]) -> bool {
+    let longest_squared = a
+        .distance_squared(b)
+        .max(b.distance_squared(c))
+        .max(c.distance_squared(a));
+    (b - a).cross(c - a).length() <= 1e-10 * longest_squared
+}
+
+/// Edge lengths; entry `i` is the edge opposite corner `i`.
+pub fn edge_lengths([a, b, c]: [DVec3; 3]) -> [f64; 3] {
+    [b.distance(c), c.distance(a), a.distance(b)]
+}
+
+/// The area of a triangle with these edge lengths, in any order, by Kahan's form of Heron's formula, whose relative
+/// error stays a few roundings for needles too. Zero where the lengths fail the triangle inequality.
+pub fn area_of_lengths(lengths: [f64; 3]) -> f64 {
+    let [mut a, mut b, mut c] = lengths;
+    if a < b {
+        (a, b) = (b, a);
+    }
+    if b < c {
+        (b, c) = (c, b);
+    }
+    if a < b {
+        (a, b) = (b, a);
+    }
+    // a >= b >= c; the parentheses matter.
+    let squared = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
+    0.25 * squared.max(0.0).sqrt()
+}
+
+/// Cotangents of the three angles, entry `i` at corner `i`; `lengths[i]` is the edge opposite corner `i`.
+///
+/// cot αᵢ = (lⱼ² + lₖ² − lᵢ²) / 4A, from [-∞, ∞]: not finite for a triangle without area, so mollify lengths first.
+pub fn cotangents(lengths: [f64; 3]) -> [f64; 3] {
+    let four_areas = 4.0 * area_of_lengths(lengths);
+    let [a, b, c] = lengths;
+    [
+        ((b - a) * (b + a) + c * c) / four_areas,
+        ((c - b) * (c + b) + a * a) / four_areas,
+        ((a - c) * (a + c) + b * b) / four_areas,
+    ]
+}

@@ -1,0 +1,296 @@
+//! What a file shows, as the surface tells it: once welded, a drawn vertex stands where its surface vertex does, and
+//! what the surface says is not kept twice. The few that differ in a bit are kept apart.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::model::drawn_triangles::{Corners, DrawnTriangles};
+use crate::{Drawn, DrawnVertex, FileVertex, Model, Surface, SurfaceVertex};
+
+/// No surface vertex.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// Drawn vertices that a thread handles at a time.
+const CHUNK: usize = 8192;
+
+/// The drawn vertices and triangles of a file, in about a fifth of [`Drawn`]'s bytes. Positions and triangles need the
+/// surface to be told: [`Model`] gives them.
+#[derive(Clone, Debug, Default)]
+pub struct DrawnSet {
+    /// [`NONE`] where no kept triangle uses a drawn vertex.
+    surface_vertices: Vec<u32>,
+    strays: Strays,
+    file_vertices: FileVertices,
+    triangles: DrawnTriangles,
+    triangle_of_surface: Vec<u32>,
+}
+
+/// Drawn vertices whose position is not their surface vertex's, to the bit: joined within the tolerance, −0 for 0, or
+/// used by no kept triangle.
+#[derive(Clone, Debug, Default)]
+struct Strays {
+    /// Ascending.
+    vertices: Vec<u32>,
+    positions: Vec<DVec3>,
+}
+
+/// The file vertices behind the drawn ones.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FileVertices {
+    count: usize,
+    /// Empty where each drawn vertex is the file's of that number.
+    listed: Vec<FileVertex>,
+}
+
+impl FileVertices {
+    pub(crate) fn new(count: usize, of_drawn: Vec<FileVertex>) -> Self {
+        let are_own = of_drawn.iter().zip(0..).all(|(file_vertex, own)| file_vertex.0 == own);
+        Self {
+            count,
+            listed: if are_own { Vec::new() } else { of_drawn },
+        }
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    #[inline]
+    pub(crate) fn of(&self, vertex: usize) -> FileVertex {
+        self.listed.get(vertex).copied().unwrap_or(FileVertex(vertex as u32))
+    }
+}
+
+impl Strays {
+    fn of(positions: &[DVec3], surface_vertices: &[u32], surface_positions: &[DVec3]) -> Self {
+        let strays = |v: &usize| {
+            let surface_position = surface_positions.get(surface_vertices[*v] as usize);
+            surface_position.is_none_or(|there| bits(*there) != bits(positions[*v]))
+        };
+        let mut vertices: Vec<u32> = (0..positions.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .filter(strays)
+            .map(|v| v as u32)
+            .collect();
+        vertices.shrink_to_fit();
+        Self {
+            positions: vertices.iter().map(|&v| positions[v as usize]).collect(),
+            vertices,
+        }
+    }
+
+    fn get(&self, vertex: DrawnVertex) -> Option<DVec3> {
+        let place = self.vertices.binary_search(&vertex.0).ok()?;
+        Some(self.positions[place])
+    }
+
+    /// Those among a run of `count` drawn vertices, by their place in it.
+    fn within(&self, first: usize, count: usize) -> impl Iterator<Item = (usize, DVec3)> + '_ {
+        let place = |vertex: usize| self.vertices.partition_point(|&v| (v as usize) < vertex);
+        (place(first)..place(first + count)).map(move |k| (self.vertices[k] as usize - first, self.positions[k]))
+    }
+}
+
+fn bits(position: DVec3) -> [u64; 3] {
+    position.to_array().map(f64::to_bits)
+}
+
+impl DrawnSet {
+    /// What is left to keep of a drawn set whose vertices stand for those of a surface.
+    pub(crate) fn new(
+        positions: Vec<DVec3>,
+        surface_vertices: Vec<u32>,
+        surface_positions: &[DVec3],
+        file_vertices: FileVertices,
+    ) -> Self {
+        Self {
+            strays: Strays::of(&positions, &surface_vertices, surface_positions),
+            surface_vertices,
+            file_vertices,
+            ..Self::default()
+        }
+    }
+
+    /// The same with its triangles and, for each of the surface's, the number of the drawn one behind it.
+    pub(crate) fn with_triangles(self, corners: Corners, triangle_of_surface: Vec<u32>) -> Self {
+        Self {
+            triangles: DrawnTriangles::AsTheyCame(corners),
+            triangle_of_surface,
+            ..self
+        }
+    }
+
+    /// The same without what the surface tells of its triangles.
+    pub(crate) fn told_by(mut self, surface: &Surface) -> Self {
+        let triangles = self.triangles;
+        self.triangles = triangles.told_by(surface, &self.surface_vertices, &self.triangle_of_surface);
+        self
+    }
+
+    /// How many vertices are drawn.
+    pub fn vertex_count(&self) -> usize {
+        self.surface_vertices.len()
+    }
+
+    /// How many triangles are drawn.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// How many vertices the file has, drawn or not.
+    pub fn file_vertex_count(&self) -> usize {
+        self.file_vertices.count()
+    }
+
+    /// The surface vertex behind a drawn vertex; `None` where no kept triangle uses it.
+    #[inline]
+    pub fn surface_vertex(&self, vertex: DrawnVertex) -> Option<SurfaceVertex> {
+        known(self.surface_vertices[vertex.index()])
+    }
+
+    /// The surface vertex behind each drawn vertex.
+    pub fn surface_vertices(&self) -> impl ExactSizeIterator<Item = Option<SurfaceVertex>> + Clone + '_ {
+        self.surface_vertices.iter().map(|&v| known(v))
+    }
+
+    /// The file vertex behind a drawn vertex.
+    #[inline]
+    pub fn file_vertex(&self, vertex: DrawnVertex) -> FileVertex {
+        self.file_vertices.of(vertex.index())
+    }
+
+    /// The file vertex behind each drawn vertex.
+    pub fn file_vertices(&self) -> impl ExactSizeIterator<Item = FileVertex> + Clone + '_ {
+        (0..self.vertex_count()).map(|v| self.file_vertices.of(v))
+    }
+
+    /// The number of the drawn triangle behind each surface triangle, corner for corner.
+    pub fn triangle_of_surface(&self) -> &[u32] {
+        &self.triangle_of_surface
+    }
+
+    /// The lowest of the file's vertices behind each of some surface vertices, which ascend.
+    pub(crate) fn first_file_vertices(&self, of: &[SurfaceVertex]) -> Vec<FileVertex> {
+        let mut first = vec![FileVertex(u32::MAX); of.len()];
+        let (Some(lowest), Some(highest)) = (of.first(), of.last()) else {
+            return first;
+        };
+        let mut is_wanted = vec![false; highest.index() - lowest.index() + 1];
+        for v in of {
+            is_wanted[v.index() - lowest.index()] = true;
+        }
+        for (v, file_vertex) in self.surface_vertices().zip(self.file_vertices()) {
+            let Some(v) = v else { continue };
+            let place = v.index().checked_sub(lowest.index());
+            if place.and_then(|place| is_wanted.get(place)) == Some(&true) {
+                let first = &mut first[of.partition_point(|u| *u < v)];
+                *first = file_vertex.min(*first);
+            }
+        }
+        first
+    }
+
+    /// Where a drawn vertex stands at rest.
+    pub(crate) fn position(&self, vertex: DrawnVertex, surface: &Surface) -> DVec3 {
+        // One without a surface vertex strays.
+        let told = || surface.positions.get(self.surface_vertices[vertex.index()] as usize);
+        let stray = self.strays.get(vertex);
+        stray.or_else(|| told().copied()).unwrap_or(DVec3::NAN)
+    }
+
+    /// The corners of the drawn triangle of this number, found by a look at all.
+    pub(crate) fn triangle(&self, triangle: u32, surface: &Surface) -> Option<[DrawnVertex; 3]> {
+        self.triangles.get(triangle, surface, &self.triangle_of_surface)
+    }
+}
+
+#[inline]
+fn known(surface_vertex: u32) -> Option<SurfaceVertex> {
+    (surface_vertex != NONE).then_some(SurfaceVertex(surface_vertex))
+}
+
+impl Model {
+    /// What the file shows, as it was before it was welded: the same to the bit.
+    pub fn rest(&self) -> Drawn {
+        Drawn {
+            positions: self.rest_positions(),
+            triangles: self.drawn_triangles(),
+            file_vertex: self.drawn.file_vertices().collect(),
+            file_vertex_count: self.drawn.file_vertex_count(),
+        }
+    }
+
+    /// Where a drawn vertex stands at rest.
+    pub fn rest_position(&self, vertex: DrawnVertex) -> DVec3 {
+        self.drawn.position(vertex, &self.surface)
+    }
+
+    /// Where each drawn vertex stands at rest.
+    pub fn rest_positions(&self) -> Vec<DVec3> {
+        let mut out = Vec::new();
+        self.place(|_| DVec3::ZERO, &mut out);
+        out
+    }
+
+    /// The drawn triangles, in the file's order: see [`Drawn::triangles`].
+    pub fn drawn_triangles(&self) -> Vec<[DrawnVertex; 3]> {
+        let drawn = &self.drawn;
+        drawn.triangles.listed(&self.surface, &drawn.triangle_of_surface)
+    }
+
+    /// The corners of a drawn triangle; `None` beyond the last. Found by a look at all: of many, ask for
+    /// [`Self::drawn_triangles`].
+    pub fn drawn_triangle(&self, triangle: u32) -> Option<[DrawnVertex; 3]> {
+        self.drawn.triangle(triangle, &self.surface)
+    }
+
+    /// The corners of the drawn triangle behind one of the surface's, corner for corner.
+    #[inline]
+    pub fn drawn_corners(&self, surface_triangle: usize) -> [DrawnVertex; 3] {
+        let number = self.drawn.triangle_of_surface[surface_triangle];
+        let corners = self.surface.triangles[surface_triangle];
+        self.drawn.triangles.behind(corners, number)
+    }
+
+    /// Each drawn vertex's rest position plus the displacement of its surface vertex (`displacements`, one each),
+    /// into `out`. Where the displacement is zero, and where there is no surface vertex, the rest position's own bits.
+    pub fn drawn_positions(&self, displacements: &[DVec3], out: &mut Vec<DVec3>) {
+        let displacements = &displacements[..self.surface.positions.len()];
+        self.place(|v| displacements[v], out);
+    }
+
+    /// As [`Self::drawn_positions`].
+    #[inline]
+    fn place(&self, displacement: impl Fn(usize) -> DVec3 + Sync, out: &mut Vec<DVec3>) {
+        let DrawnSet {
+            surface_vertices,
+            strays,
+            ..
+        } = &self.drawn;
+        let rest = &self.surface.positions[..];
+        out.resize(surface_vertices.len(), DVec3::ZERO);
+        let chunks = out.par_chunks_mut(CHUNK).zip(surface_vertices.par_chunks(CHUNK));
+        chunks.enumerate().for_each(|(chunk, (out, surface_vertices))| {
+            for (moved, &v) in out.iter_mut().zip(surface_vertices) {
+                if let Some(&rest) = rest.get(v as usize) {
+                    *moved = displaced(rest, displacement(v as usize));
+                }
+            }
+            for (place, stray) in strays.within(chunk * CHUNK, out.len()) {
+                let v = known(surface_vertices[place]);
+                out[place] = v.map_or(stray, |v| displaced(stray, displacement(v.index())));
+            }
+        });
+    }
+}
+
+#[inline]
+fn displaced(rest: DVec3, displacement: DVec3) -> DVec3 {
+    // Adding zero would turn −0 into 0.
+    if displacement == DVec3::ZERO {
+        rest
+    } else {
+        rest + displacement
+    }
+}

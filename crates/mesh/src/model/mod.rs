@@ -1,0 +1,129 @@
+//! A file's geometry, welded: the drawn set, the surface, and the tables from one to the other.
+
+mod drawn;
+pub(crate) mod drawn_set;
+pub(crate) mod drawn_triangles;
+mod object;
+
+use rayon::prelude::*;
+
+use crate::findings::topological::Parts;
+use crate::weld::weld;
+use crate::{
+    Bounds, Cancel, Cancelled, FileVertex, Findings, Progress, Surface, SurfaceVertex, Topology, bounding_box,
+};
+
+pub use drawn::Drawn;
+pub use drawn_set::DrawnSet;
+pub use object::Object;
+
+/// How equal positions are joined.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct WeldOptions {
+    /// Positions closer than this share of the bounding box's diagonal are joined, from 0 (equal ones only) to 1e-4
+    /// (larger shares are taken as that); `None` joins nothing.
+    pub tolerance: Option<f64>,
+}
+
+impl Default for WeldOptions {
+    fn default() -> Self {
+        Self { tolerance: Some(1e-7) }
+    }
+}
+
+/// The drawn set, the welded surface and the tables between them.
+#[derive(Clone, Debug, Default)]
+pub struct Model {
+    /// What the file shows: see [`Self::rest`].
+    pub drawn: DrawnSet,
+    /// What is solved.
+    pub surface: Surface,
+    /// Who neighbours whom on the surface.
+    pub topology: Topology,
+    /// What is wrong with the mesh.
+    pub findings: Findings,
+    /// What the file itself tells apart; empty where nobody said.
+    pub objects: Vec<Object>,
+}
+
+impl Model {
+    /// Welds `drawn` into a surface. Anything that can't be solved is set aside and told in the findings; a file with
+    /// no usable triangle gives an empty surface.
+    pub fn weld(drawn: Drawn, options: &WeldOptions, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
+        let mut welded = weld(drawn, options, progress, cancel)?;
+        cancel.check()?;
+        let drawn = welded.drawn.told_by(&welded.surface);
+        let topology = Topology::with_components(&welded.surface, welded.components, cancel)?;
+        cancel.check()?;
+        progress.set(0.9);
+        let parts = Parts {
+            surface: &welded.surface,
+            drawn: &drawn,
+            components: topology.parts(),
+        };
+        parts.report(topology.findings(), &mut welded.findings);
+        progress.set(1.0);
+        Ok(Self {
+            drawn,
+            surface: welded.surface,
+            topology,
+            findings: welded.findings,
+            objects: Vec::new(),
+        })
+    }
+
+    /// The bounding box of the vertices that kept triangles use; `None` of an empty surface.
+    pub fn bounds(&self) -> Option<Bounds> {
+        bounding_box(&self.surface.positions)
+    }
+
+    /// The lowest of the file's vertices behind a surface vertex.
+    pub fn first_file_vertex(&self, vertex: SurfaceVertex) -> FileVertex {
+        self.drawn.first_file_vertices(&[vertex])[0]
+    }
+
+    /// The table from the file's vertices to the surface's.
+    pub fn surface_of_file(&self) -> SurfaceOfFile {
+        SurfaceOfFile::of_drawn(&self.drawn)
+    }
+}
+
+/// The surface vertices behind each file vertex.
+#[derive(Clone, Debug, Default)]
+pub struct SurfaceOfFile {
+    offsets: Vec<u32>,
+    list: Vec<SurfaceVertex>,
+}
+
+impl SurfaceOfFile {
+    fn of_drawn(drawn: &DrawnSet) -> Self {
+        let mut pairs: Vec<(FileVertex, SurfaceVertex)> = drawn
+            .file_vertices()
+            .zip(drawn.surface_vertices())
+            .filter_map(|(file_vertex, surface_vertex)| Some((file_vertex, surface_vertex?)))
+            .collect();
+        pairs.par_sort_unstable();
+        pairs.dedup();
+        let mut offsets = vec![0; drawn.file_vertex_count() + 1];
+        for (file_vertex, _) in &pairs {
+            offsets[file_vertex.index() + 1] += 1;
+        }
+        for v in 0..drawn.file_vertex_count() {
+            offsets[v + 1] += offsets[v];
+        }
+        Self {
+            offsets,
+            list: pairs.into_iter().map(|(_, surface_vertex)| surface_vertex).collect(),
+        }
+    }
+
+    /// The surface vertices of `vertex`, ascending: none where no kept triangle uses it (or the file has no such
+    /// vertex), two where two nodes show it in two places.
+    pub fn of(&self, vertex: FileVertex) -> &[SurfaceVertex] {
+        let row = self.offsets.get(vertex.index()..=vertex.index() + 1);
+        match row {
+            Some(&[start, end]) => &self.list[start as usize..end as usize],
+            _ => &[],
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! Who neighbours whom: one-rings, triangles around vertices, components and rims, as compressed rows.
+
+pub(crate) mod boundary;
+pub(crate) mod components;
+mod contours;
+mod faces;
+pub(crate) mod rings;
+
+pub use components::Component;
+pub use contours::{ContourLine, Crossing, contours};
+pub use faces::Faces;
+pub use rings::FanKind;
+
+use boundary::trace_loops;
+use components::Components;
+use faces::{are_in_order, runs};
+use rings::{TopologyFindings, rings};
+
+use crate::{Cancel, Cancelled, FileVertex, Surface, SurfaceVertex};
+
+/// The connectivity of a [`Surface`].
+///
+/// Rows are compressed: row `v` of a list is `list[offsets[v]..offsets[v + 1]]`. Offsets are `u32`, so a surface has
+/// at most 2³² / 3 triangles.
+#[derive(Clone, Debug, Default)]
+pub struct Topology {
+    neighbour_offsets: Vec<u32>,
+    neighbour_list: Vec<SurfaceVertex>,
+    /// Places in `neighbour_list`'s rows.
+    fans: Vec<u8>,
+    fan_kinds: Vec<FanKind>,
+    /// Where the triangles begin of which each vertex is the lowest, and the triangles' number.
+    runs: Vec<u32>,
+    findings: TopologyFindings,
+    components: Components,
+}
+
+impl Topology {
+    /// The connectivity of `surface`, whose triangles stand by their lowest, then their middle, then their highest
+    /// vertex; components of equal size stand by their lowest surface vertex.
+    pub fn of(surface: &Surface) -> Self {
+        let own: Vec<FileVertex> = (0..surface.positions.len() as u32).map(FileVertex).collect();
+        let components = Components::of(&surface.triangles, &own);
+        drop(own);
+        // Nobody else holds the flag that cancels, so the default is never taken.
+        Self::with_components(surface, components, &Cancel::new()).unwrap_or_default()
+    }
+
+    /// The connectivity of `surface`, whose components are known.
+    pub(crate) fn with_components(
+        surface: &Surface,
+        components: Components,
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
+        let vertex_count = surface.positions.len();
+        debug_assert!(are_in_order(&surface.triangles), "triangles stand by their vertices");
+        let (neighbour_offsets, rings) = rings(vertex_count, &surface.triangles, cancel)?;
+        Ok(Self {
+            neighbour_offsets,
+            neighbour_list: rings.neighbours,
+            fans: rings.fans,
+            fan_kinds: rings.fan_kinds,
+            runs: runs(vertex_count, &surface.triangles),
+            findings: rings.findings,
+            components,
+        })
+    }
+
+    /// How many vertices the surface has.
+    pub fn vertex_count(&self) -> usize {
+        self.fan_kinds.len()
+    }
+
+    /// The vertices that share an edge with `v`, ascending, without `v`.
+    #[inline]
+    pub fn neighbours(&self, v: SurfaceVertex) -> &[SurfaceVertex] {
+        &self.neighbour_list[row(&self.neighbour_offsets, v)]
+    }
+
+    /// The neighbours of `v` counter-clockwise seen from outside, and how they close; ascending where irregular. A
+    /// closed fan starts at the lowest neighbour, an open one at its rim.
+    #[inline]
+    pub fn fan(&self, v: SurfaceVertex) -> (FanKind, impl ExactSizeIterator<Item = SurfaceVertex> + '_) {
+        let (kind, ring, places) = self.ring_and_fan(v);
+        let place = move |k: usize| match kind {
+            FanKind::Irregular => k,
+            _ => usize::from(places[k]),
+        };
+        (kind, (0..ring.len()).map(move |k| ring[place(k)]))
+    }
+
+    /// The neighbours of `v`, and the places among them in the order of the fan unless it is irregular.
+    #[inline]
+    pub(crate) fn ring_and_fan(&self, v: SurfaceVertex) -> (FanKind, &[SurfaceVertex], &[u8]) {
+        let row = row(&self.neighbour_offsets, v);
+        (
+            self.fan_kinds[v.index()],
+            &self.neighbour_list[row.clone()],
+            &self.fans[row],
+        )
+    }
+
+    /// The triangles around `v`, ascending; `triangles` are the surface's.
+    #[inline]
+    pub fn faces<'a>(&'a self, v: SurfaceVertex, triangles: &'a [[SurfaceVertex; 3]]) -> Faces<'a> {
+        Faces::around(v, self.neighbours(v), triangles, &self.runs)
+    }
+
+    /// Row starts into [`Self::neighbour_list`]: one a vertex and the list's length (nothing for a default topology).
+    pub fn neighbour_offsets(&self) -> &[u32] {
+        &self.neighbour_offsets
+    }
+
+    /// Every vertex's one-ring, row after row: twice the edges.
+    pub fn neighbour_list(&self) -> &[SurfaceVertex] {
+        &self.neighbour_list
+    }
+
+    /// The component that `v` belongs to, as an index into [`Self::components`].
+    #[inline]
+    pub fn component(&self, v: SurfaceVertex) -> u32 {
+        self.components.of_vertex(v)
+    }
+
+    /// The vertices of a component, ascending.
+    pub fn vertices_of(&self, component: u32) -> impl ExactSizeIterator<Item = SurfaceVertex> + Clone + '_ {
+        self.components.vertices(component as usize)
+    }
+
+    /// The components by falling vertex count, equal ones by their first file vertex.
+    pub fn components(&self) -> &[Component] {
+        &self.components.all
+    }
+
+    /// The components, and who belongs to them.
+    pub(crate) fn parts(&self) -> &Components {
+        &self.components
+    }
+
+    /// Every edge once, as its lower and its higher vertex, in ascending order.
+    pub fn edges(&self) -> impl Iterator<Item = [SurfaceVertex; 2]> + '_ {
+        (0..self.vertex_count() as u32).map(SurfaceVertex).flat_map(move |v| {
+            let ring = self.neighbours(v);
+            let above = ring.partition_point(|&u| u < v);
+            ring[above..].iter().map(move |&u| [v, u])
+        })
+    }
+
+    /// How many edges there are.
+    pub fn edge_count(&self) -> usize {
+        self.neighbour_list.len() / 2
+    }
+
+    /// How many edges have one triangle.
+    pub fn boundary_edges(&self) -> usize {
+        self.findings.boundary.len()
+    }
+
+    /// The edges with one triangle, directed with the hole on the left, by their first vertex.
+    pub fn boundary_edge_list(&self) -> &[[SurfaceVertex; 2]] {
+        &self.findings.boundary
+    }
+
+    /// How many edges have more than two triangles.
+    pub fn non_manifold_edges(&self) -> usize {
+        self.findings.non_manifold_edges.len()
+    }
+
+    /// How many vertices' triangles form more than one fan (triangles that share an edge are in one fan).
+    pub fn non_manifold_vertices(&self) -> usize {
+        self.findings.non_manifold_vertices.len()
+    }
+
+    /// How many edges lie between two triangles that disagree about which side is outside.
+    pub fn misoriented_edges(&self) -> usize {
+        self.findings.misoriented_edges.len()
+    }
+
+    /// Whether no edge has one triangle only.
+    pub fn is_closed(&self) -> bool {
+        self.findings.boundary.is_empty()
+    }
+
+    /// Whether `v` lies on an edge with one triangle.
+    pub fn is_boundary_vertex(&self, v: SurfaceVertex) -> bool {
+        let boundary = &self.findings.boundary;
+        let has_rim_to = |[from, to]: [SurfaceVertex; 2]| {
+            let first = boundary.partition_point(|edge| edge[0] < from);
+            boundary[first..]
+                .iter()
+                .take_while(|edge| edge[0] == from)
+                .any(|edge| edge[1] == to)
+        };
+        match self.fan_kinds[v.index()] {
+            FanKind::Closed => false,
+            FanKind::Open => true,
+            FanKind::Irregular => {
+                let mut ring = self.neighbours(v).iter();
+                ring.any(|&u| has_rim_to([v, u]) || has_rim_to([u, v]))
+            }
+        }
+    }
+
+    /// The holes' rims, each vertex once in each loop, with the hole on the left; by rising first vertex found.
+    ///
+    /// A rim that passes a vertex twice is cut into loops there. Where more than two triangles share an edge a rim may
+    /// end at it: such a chain counts as a loop too.
+    pub fn boundary_loops(&self) -> Vec<Vec<SurfaceVertex>> {
+        trace_loops(&self.findings.boundary)
+    }
+
+    /// Rims, and where something is odd.
+    pub(crate) fn findings(&self) -> &TopologyFindings {
+        &self.findings
+    }
+}
+
+#[inline]
+fn row(offsets: &[u32], v: SurfaceVertex) -> std::ops::Range<usize> {
+    offsets[v.index()] as usize..offsets[v.index() + 1] as usize
+}

@@ -1,0 +1,272 @@
+//! From drawn vertices and triangles to a welded surface, with everything that was left out counted.
+
+mod joining;
+mod morton;
+
+use rayon::prelude::*;
+
+use crate::findings::finding::{collect, sort_out};
+use crate::geometry::{bounds_of, is_without_area};
+use crate::model::drawn_set::{DrawnSet, FileVertices, NONE};
+use crate::model::drawn_triangles::Corners;
+use crate::topology::components::Components;
+use crate::{
+    Cancel, Cancelled, Drawn, DrawnVertex, FileVertex, Finding, Findings, Progress, Surface, SurfaceVertex, WeldOptions,
+};
+use joining::Joined;
+
+/// Coordinates beyond this count as not finite: areas and volumes of such a mesh would overflow.
+const LARGEST_COORDINATE: f64 = 1e60;
+
+/// Larger tolerances than this share of the diagonal are taken as this one: they would eat the mesh.
+const LARGEST_TOLERANCE: f64 = 1e-4;
+
+/// What welding makes.
+pub(crate) struct Welded {
+    pub(crate) surface: Surface,
+    /// What was welded, its triangles as they came.
+    pub(crate) drawn: DrawnSet,
+    pub(crate) components: Components,
+    /// Those findings that are about file vertices and triangles; the topology's are still empty.
+    pub(crate) findings: Findings,
+}
+
+/// What uses a drawn vertex.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Use {
+    None,
+    LeftOutTriangle,
+    Triangle,
+}
+
+/// Welds `drawn`; progress goes from 0 to 0.6. What is no longer needed goes at once: a scan's positions alone are as
+/// much as its file.
+pub(crate) fn weld(
+    drawn: Drawn,
+    options: &WeldOptions,
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<Welded, Cancelled> {
+    let mut findings = Findings::default();
+    let drawn_positions = drawn.positions;
+    let file_vertices = FileVertices::new(drawn.file_vertex_count, drawn.file_vertex);
+    let corners = Corners::new(drawn.triangles);
+    let usable: Vec<bool> = drawn_positions
+        .par_iter()
+        .map(|p| p.is_finite() && p.abs().max_element() <= LARGEST_COORDINATE)
+        .collect();
+    let uses = uses_of_vertices(&corners, &usable);
+    report_vertices(&file_vertices, &usable, &uses, &mut findings);
+    drop(usable);
+    cancel.check()?;
+    progress.set(0.1);
+
+    let members: Vec<u32> = (0..uses.len() as u32)
+        .filter(|&v| uses[v as usize] == Use::Triangle)
+        .collect();
+    drop(uses);
+    let Some(bounds) = bounds_of(members.par_iter().map(|&v| drawn_positions[v as usize])) else {
+        findings.non_finite_triangles = collect(corners.len(), |_| true);
+        let nowhere = vec![NONE; drawn_positions.len()];
+        let drawn = DrawnSet::new(drawn_positions, nowhere, &[], file_vertices);
+        return Ok(Welded {
+            surface: Surface::default(),
+            drawn: drawn.with_triangles(corners, Vec::new()),
+            components: Components::default(),
+            findings,
+        });
+    };
+    let tolerance = options
+        .tolerance
+        .map(|share| share.clamp(0.0, LARGEST_TOLERANCE) * bounds.diagonal());
+    let joined = joining::join(&drawn_positions, members, &bounds, tolerance);
+    cancel.check()?;
+    progress.set(0.35);
+
+    let mut surface_vertices = groups_by_vertex(drawn_positions.len(), &joined);
+    let Joined { order, representative } = joined;
+    drop(representative);
+    let in_groups = |t: usize| corners.of(t).map(|v| surface_vertices[v.index()]);
+    [findings.non_finite_triangles, findings.collapsed_triangles] = sort_out(corners.len(), |t| {
+        let groups = in_groups(t);
+        if has_unusable_corner(groups) {
+            Some(0)
+        } else {
+            is_collapsed(groups).then_some(1)
+        }
+    });
+    let surface_of_group = number_used_groups((0..corners.len()).map(in_groups), order.len());
+    cancel.check()?;
+    progress.set(0.45);
+
+    let used = (0..order.len()).filter(|&group| surface_of_group[group] != NONE);
+    let mut positions = Vec::with_capacity(used.clone().count());
+    positions.extend(used.map(|group| drawn_positions[order[group] as usize]));
+    drop(order);
+    surface_vertices.par_iter_mut().for_each(|group| {
+        *group = surface_of_group.get(*group as usize).copied().unwrap_or(NONE);
+    });
+    drop(surface_of_group);
+    let drawn = DrawnSet::new(drawn_positions, surface_vertices, &positions, file_vertices);
+    let in_surface = |v: DrawnVertex| drawn.surface_vertex(v).map_or(NONE, |v| v.0);
+    let (triangles, triangle_of_surface) = sort_triangles(
+        corners.len(),
+        |t| corners.of(t).map(in_surface),
+        positions.len(),
+        &mut findings.duplicate_triangles,
+    );
+    let mut first_file_vertex = vec![FileVertex(u32::MAX); positions.len()];
+    for (surface_vertex, file_vertex) in drawn.surface_vertices().zip(drawn.file_vertices()) {
+        if let Some(surface_vertex) = surface_vertex {
+            let first = &mut first_file_vertex[surface_vertex.index()];
+            *first = file_vertex.min(*first);
+        }
+    }
+    let surface = Surface { positions, triangles };
+    findings.zero_area_triangles = collect(surface.triangles.len(), |t| is_without_area(surface.corners(t)))
+        .renamed(|t| triangle_of_surface[t as usize]);
+    progress.set(0.6);
+    Ok(Welded {
+        drawn: drawn.with_triangles(corners, triangle_of_surface),
+        components: Components::of(&surface.triangles, &first_file_vertex),
+        surface,
+        findings,
+    })
+}
+
+fn has_unusable_corner(corners: [u32; 3]) -> bool {
+    corners.contains(&NONE)
+}
+
+fn is_collapsed([a, b, c]: [u32; 3]) -> bool {
+    a == b || b == c || c == a
+}
+
+/// Triangles with an unusable corner don't count as users: their other corners would float.
+fn uses_of_vertices(corners: &Corners, usable: &[bool]) -> Vec<Use> {
+    let mut uses = vec![Use::None; usable.len()];
+    for triangle in corners.iter() {
+        let by = if triangle.iter().all(|v| usable[v.index()]) {
+            Use::Triangle
+        } else {
+            Use::LeftOutTriangle
+        };
+        for v in triangle {
+            uses[v.index()] = uses[v.index()].max(by);
+        }
+    }
+    uses
+}
+
+/// Finds the file's vertices that are not finite or that no triangle uses.
+fn report_vertices(file_vertices: &FileVertices, usable: &[bool], uses: &[Use], findings: &mut Findings) {
+    let count = file_vertices.count();
+    let mut is_used = vec![false; count];
+    let mut is_bad = vec![false; count];
+    for v in 0..uses.len() {
+        let file_vertex = file_vertices.of(v).index();
+        let Some(is_used) = is_used.get_mut(file_vertex) else {
+            continue;
+        };
+        *is_used |= uses[v] != Use::None;
+        is_bad[file_vertex] |= !usable[v];
+    }
+    findings.non_finite_vertices = collect(count, |v| is_bad[v]);
+    findings.unreferenced_vertices = collect(count, |v| !is_used[v]);
+}
+
+/// The place of each vertex's representative, [`NONE`] for vertices that took no part.
+fn groups_by_vertex(vertex_count: usize, joined: &Joined) -> Vec<u32> {
+    let mut groups = vec![NONE; vertex_count];
+    for (&vertex, &representative) in joined.order.iter().zip(&joined.representative) {
+        groups[vertex as usize] = representative;
+    }
+    groups
+}
+
+/// Numbers the groups that proper triangles use, in Morton order.
+fn number_used_groups(triangles: impl Iterator<Item = [u32; 3]>, group_count: usize) -> Vec<u32> {
+    let mut number = vec![NONE; group_count];
+    for corners in triangles {
+        if !has_unusable_corner(corners) && !is_collapsed(corners) {
+            for group in corners {
+                number[group as usize] = 0;
+            }
+        }
+    }
+    for (next, number) in (0..).zip(number.iter_mut().filter(|number| **number != NONE)) {
+        *number = next;
+    }
+    number
+}
+
+/// The proper triangles by lowest, middle and highest vertex, so that triangles near each other are near in memory,
+/// without those that repeat an earlier one; corners stay in drawn order. With each the drawn triangle behind it.
+///
+/// A triangle with a corner that no proper triangle uses is not proper, so the vertices alone say which are.
+fn sort_triangles(
+    count: usize,
+    in_surface: impl Fn(usize) -> [u32; 3] + Sync,
+    vertex_count: usize,
+    duplicates: &mut Finding,
+) -> (Vec<[SurfaceVertex; 3]>, Vec<u32>) {
+    let lowest: Vec<u32> = (0..count)
+        .into_par_iter()
+        .map(|t| {
+            let [a, b, c] = in_surface(t);
+            let is_proper = !has_unusable_corner([a, b, c]) && !is_collapsed([a, b, c]);
+            if is_proper { a.min(b).min(c) } else { NONE }
+        })
+        .collect();
+
+    // Counting sort by lowest vertex. Shifted by one, each start moves on to the next row's start while its row fills.
+    let mut starts = vec![0u32; vertex_count + 2];
+    for &v in lowest.iter().filter(|&&v| v != NONE) {
+        starts[v as usize + 2] += 1;
+    }
+    for v in 2..starts.len() {
+        starts[v] += starts[v - 1];
+    }
+    let mut sorted = vec![0u32; starts[vertex_count + 1] as usize];
+    for (t, &v) in (0..).zip(&lowest) {
+        if v != NONE {
+            let place = &mut starts[v as usize + 1];
+            sorted[*place as usize] = t;
+            *place += 1;
+        }
+    }
+    drop(lowest);
+
+    let mut repeated = Vec::new();
+    let mut row: Vec<(u32, u32, u32)> = Vec::new();
+    // Rows only shrink, so they are written over the ones that were read.
+    let mut end = 0;
+    for v in 0..vertex_count {
+        row.clear();
+        row.extend(sorted[starts[v] as usize..starts[v + 1] as usize].iter().map(|&t| {
+            let mut corners = in_surface(t as usize);
+            corners.sort_unstable();
+            (corners[1], corners[2], t)
+        }));
+        row.sort_unstable();
+        let mut previous = None;
+        for &(middle, highest, t) in &row {
+            if previous == Some((middle, highest)) {
+                repeated.push(t);
+            } else {
+                sorted[end] = t;
+                end += 1;
+            }
+            previous = Some((middle, highest));
+        }
+    }
+    drop(starts);
+    sorted.truncate(end);
+    repeated.sort_unstable();
+    *duplicates = Finding::of(&repeated);
+    let triangles = sorted
+        .par_iter()
+        .map(|&t| in_surface(t as usize).map(SurfaceVertex))
+        .collect();
+    (triangles, sorted)
+}
