@@ -183,6 +183,8 @@ fn every_gizmo() {
         return;
     };
     stage.command(Command::View(NamedView::ThreeQuarter));
+    // With a brush in hand it is faded.
+    stage.command(Command::SetTool(ToolMode::Select));
     for (mode, name) in [
         (GizmoMode::Move, "gizmo-move"),
         (GizmoMode::Turn, "gizmo-turn"),
