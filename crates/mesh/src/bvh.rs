@@ -18,6 +18,7 @@ use rayon::prelude::*;
 
 use crate::blocks::{BLOCK, Blocks};
 use crate::surface::corners;
+use crate::triangle_distance::distance_to_triangle;
 use crate::{SurfaceVertex, bounding_box};
 
 /// Where a ray met the surface.
@@ -264,6 +265,43 @@ impl Bvh {
             },
         );
         best.map(|(distance, v)| (v, distance))
+    }
+
+    /// The triangle nearest to `point` whose first corner `is_meant`, of those not farther than `limit`: its corner
+    /// nearest to the point, of several the lowest, and the distance to the triangle.
+    pub(crate) fn nearest_on_triangles(
+        &self,
+        point: DVec3,
+        limit: f64,
+        is_meant: impl Fn(SurfaceVertex) -> bool,
+    ) -> Option<(SurfaceVertex, f64)> {
+        let in_boxes = self.space.of_point(point);
+        let farthest = limit * self.space.scale;
+        let mut best: Option<(f64, f64, SurfaceVertex)> = None;
+        self.walk(
+            |span| {
+                Some(span.distance(in_boxes))
+                    .filter(|&d| d <= farthest)
+                    .unwrap_or(f64::INFINITY)
+            },
+            |place| {
+                let corners = self.leaves.corners[place];
+                if is_meant(corners[0]) {
+                    let positions = corners.map(|v| self.positions.get(v.index()));
+                    let distance = distance_to_triangle(point, positions);
+                    if distance <= limit {
+                        for (v, position) in corners.into_iter().zip(positions) {
+                            let candidate = (distance, position.distance(point), v);
+                            if best.is_none_or(|best| candidate < best) {
+                                best = Some(candidate);
+                            }
+                        }
+                    }
+                }
+                best.map_or(f64::INFINITY, |(distance, ..)| distance * self.space.scale)
+            },
+        );
+        best.map(|(distance, _, v)| (v, distance))
     }
 
     /// Visits the triangles' places in every leaf whose box has a `bound` (infinite: never) not above the limit, nearer
