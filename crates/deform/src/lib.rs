@@ -22,6 +22,7 @@ mod lanes;
 mod lbfgs;
 mod method;
 mod operators;
+mod owners;
 mod partition;
 mod prefetch;
 mod primo;

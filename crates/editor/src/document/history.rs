@@ -14,7 +14,7 @@ use glam::DVec3;
 use pliant_deform::{Loose, Method};
 
 use super::access::Access;
-use super::content::Paint;
+use super::content::{Paint, Tips};
 use super::handle::Handle;
 use super::sparse::Sparse;
 use super::state::Document;
@@ -38,6 +38,8 @@ pub(crate) enum Change {
     Options(Method, Loose, Arc<BTreeMap<u32, Loose>>),
     /// The rest shape, and whether there is another than the file's.
     Rest(Sparse<DVec3>, bool),
+    /// Whether tips come along.
+    Tips(Tips),
     /// What is hidden and locked.
     Access(Arc<Access>),
     /// Whether the shape is final for the handles' transforms.
@@ -67,7 +69,9 @@ impl Step {
                 Change::Access(access) => {
                     size_of::<Access>() + (access.hidden.len() + access.locked.len()) * size_of::<u32>()
                 }
-                Change::Continuity(None) | Change::Options(..) | Change::Settled(_) => size_of::<Change>(),
+                Change::Continuity(None) | Change::Options(..) | Change::Tips(_) | Change::Settled(_) => {
+                    size_of::<Change>()
+                }
             })
             .sum();
         size_of::<Self>() + self.name.len() + changes + self.shape.bytes()
@@ -235,6 +239,7 @@ fn swap(change: &mut Change, document: &mut Document) {
         Change::Stiffness(sparse, is_field) => document.swap_stiffness(sparse, is_field),
         Change::Continuity(continuity) => document.swap_continuity(continuity),
         Change::Options(method, loose, parts) => document.swap_options(method, loose, parts),
+        Change::Tips(tips) => document.swap_tips(tips),
         Change::Rest(sparse, applied) => document.swap_rest(sparse, applied),
         Change::Access(access) => document.swap_access(access),
         Change::Settled(settled) => document.swap_settled(settled),
