@@ -52,9 +52,9 @@ fn loose_components_move_rigidly_with_the_surface_beside_them() {
 
 #[test]
 fn a_part_on_a_loose_part_moves_with_it_as_one() {
-    // A strap that lies on a bar, and a rivet on the strap's near end.
-    let strap = at(shapes::bar(10, 2, 2), DVec3::new(2.0, 0.0, 2.01), 1.0);
-    let rivet = at(shapes::icosphere(1), DVec3::new(2.5, 1.0, 4.32), 0.3);
+    // A strap that lies on a bar, and a rivet on the strap's far end.
+    let strap = at(shapes::bar(40, 8, 8), DVec3::new(2.0, 0.0, 2.01), 0.25);
+    let rivet = at(shapes::icosphere(1), DVec3::new(9.0, 1.0, 4.32), 0.3);
     let mut scene = Scene::new(shapes::together(&[shapes::bar(12, 2, 2), strap, rivet]))
         .with(Role::Fixed, |p| p.x < 1.0 && p.z < 2.005)
         .with(Role::Handle(0), |p| p.x > 11.0 && p.z < 2.005);

@@ -95,7 +95,9 @@ fn islands(
             is_tied,
         });
     }
-    for corners in &surface.triangles {
+    // A single island is the largest, whatever its area is.
+    let triangles = if islands.len() > 1 { &surface.triangles[..] } else { &[] };
+    for corners in triangles {
         let share = face_area(corners.map(|corner| surface.positions[corner.index()])) / 3.0;
         for corner in corners {
             if let Some(island) = islands.get_mut(of_vertex[corner.index()] as usize) {
