@@ -120,7 +120,8 @@ impl Bound {
                 problem.topology,
                 &partition.following,
                 &partition.driven,
-            ),
+                cancel,
+            )?,
             warnings,
         })
     }

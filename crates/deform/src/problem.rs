@@ -20,7 +20,8 @@ pub enum Role {
 /// What a connected component does that holds no handle and no fixed vertex.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub enum Loose {
-    /// It moves rigidly with the nearest part of the surface that is being deformed: eyes, buttons, straps.
+    /// It moves rigidly with what it touches of the surface that is being deformed, or of a larger part that follows, or
+    /// else with the nearest part of the deformed surface: eyes, buttons, straps.
     #[default]
     Follow,
     /// It stays where it is.

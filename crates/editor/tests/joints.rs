@@ -48,6 +48,19 @@ fn each_loose_part_does_what_it_is_told_and_files_keep_it() {
         (way(&rig) - DVec3::new(0.3, 0.0, 0.0)).length() < 1e-9,
         "it bends along with what moves as one"
     );
+    let colours = |rig: &Rig| {
+        let mut colours = Vec::new();
+        rig.editor.region_colours(&mut colours);
+        colours
+    };
+    let before = colours(&rig);
+    rig.command(Command::LightPart(Some(small)));
+    for (vertex, (now, before)) in (0..).zip(colours(&rig).iter().zip(&before)) {
+        let is_lit = rig.model.topology.component(SurfaceVertex(vertex)) == small;
+        assert_eq!(now != before, is_lit, "the part is lit up, and nothing else");
+    }
+    rig.command(Command::LightPart(None));
+    assert!(colours(&rig) == before);
     let last = rig.fingerprint();
     let edit = rig.editor.edit_file().unwrap();
     assert_eq!((edit.loose, edit.loose_parts.len()), (Loose::Rest, 1));

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use pliant_deform::{Loose, Method};
 use pliant_editor::{
-    Beginning, Command, EditError, Editor, Event, GizmoPart, InlineExecutor, Key, MeshReference, Project, Reach,
+    Beginning, Command, EditError, Editor, Event, GizmoPart, InlineExecutor, Key, MeshReference, Project, Reach, Tips,
     ToolMode, geometry_hash,
 };
 use pliant_mesh::{Drawn, shapes};
@@ -95,7 +95,8 @@ fn what_was_saved_is_what_is_opened_to_the_bit() {
                         Command::NewHandle,
                         Command::SetMethod(Method::from_name("arap").unwrap()),
                         Command::SetLoose(Loose::Rest),
-                    ][random.below(4) as usize]
+                        Command::SetTips(Tips::Held),
+                    ][random.below(5) as usize]
                         .clone(),
                 ),
                 6 => {

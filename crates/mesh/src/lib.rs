@@ -31,4 +31,6 @@ pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};
 pub use model::{Drawn, DrawnSet, Model, Object, SurfaceOfFile, WeldOptions};
 pub use progress::{Cancel, Cancelled, Progress};
 pub use surface::Surface;
-pub use topology::{Component, ContourLine, Crossing, Faces, FanKind, Topology, contours};
+pub use topology::{
+    Component, Contact, ContourLine, Crossing, Faces, FanKind, Topology, component_areas, contacts, contours,
+};

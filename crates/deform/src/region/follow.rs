@@ -1,17 +1,21 @@
 //! Loose components travel rigidly with the nearest part of the surface that is being deformed.
 //!
 //! Real models are many pieces: a helmet has 55 components, and moving its shell alone would tear it apart. A loose
-//! component is tied to a *patch*, the surface around the point of the driven components that it comes nearest to,
-//! about as large as itself, and takes the rigid motion that fits the patch's displacements best. One that bends along
-//! has such a tie at several of its vertices, evenly spread, and between them the motions are blended as in an embedded
-//! deformation [SSP07]: each place by the four nearest, with weights (1 − d/d₅)², d₅ the fifth's distance.
+//! component is tied to a *patch*, the surface around the point of the driven components that it touches or else comes
+//! nearest to, about as large as itself, and takes the rigid motion that fits the patch's displacements best. One that
+//! touches a larger loose component more than any driven one (a rivet on a strap) goes where that goes.
+//!
+//! One that bends along has such a tie at several of its vertices, evenly spread, and between them the motions are
+//! blended as in an embedded deformation [SSP07]: each place by the four nearest, with weights (1 − d/d₅)²,
+//! d₅ the fifth's distance.
 
 use std::collections::{BTreeMap, HashSet};
 
 use glam::DVec3;
-use pliant_mesh::{Bvh, Surface, SurfaceVertex, Topology};
+use pliant_mesh::{Bvh, Cancel, Cancelled, Surface, SurfaceVertex, Topology};
 use rayon::prelude::*;
 
+use super::owners::{CRUMBS, Owner, end_of_chain, hierarchy, owners};
 use crate::Loose;
 use crate::numerical::rigid_fit::RigidMotion;
 
@@ -20,6 +24,8 @@ use crate::numerical::rigid_fit::RigidMotion;
 pub(crate) struct Followers {
     /// The places that something is tied to, each once.
     ties: Vec<Tie>,
+    /// From this one on they are on components that bend along.
+    first_on_bending: usize,
     rigid: Vec<Rigid>,
     bending: Vec<Bending>,
 }
@@ -47,7 +53,7 @@ struct Bending {
 /// The patch that a place of a component follows.
 #[derive(Clone, Debug)]
 struct Tie {
-    /// Vertices of a driven component.
+    /// Vertices of a driven component, or of one that bends along.
     patch: Vec<SurfaceVertex>,
     /// Their rest positions.
     world_rest: Vec<DVec3>,
@@ -72,28 +78,22 @@ const PATCH_SAMPLES: usize = 256;
 /// A patch reaches at least this many mean edge lengths at its middle.
 const PATCH_EDGES: f64 = 3.0;
 
-/// Where more components follow than this they are crumbs, and each is tied to the least patch, which those beside it
-/// share: patches as large as each of very many components would take much more room than the mesh.
-const CRUMBS: usize = 10_000;
-
-/// Ties each of the components `following` to the nearest of the components `driven`.
+/// Ties each of the components `following` to what it touches, or else to the nearest of the components `driven`.
+///
+/// # Errors
+/// It was cancelled.
 pub(crate) fn followers(
     surface: &Surface,
     topology: &Topology,
     following: &[(u32, Loose)],
     driven: &[u32],
-) -> Followers {
+    cancel: &Cancel,
+) -> Result<Followers, Cancelled> {
     if following.is_empty() || driven.is_empty() {
-        return Followers::default();
+        return Ok(Followers::default());
     }
-    let is_driven = |corner: SurfaceVertex| driven.binary_search(&topology.component(corner)).is_ok();
-    let triangles: Vec<_> = surface
-        .triangles
-        .iter()
-        .copied()
-        .filter(|corners| is_driven(corners[0]))
-        .collect();
-    let nearby = Bvh::build(&surface.positions, &triangles);
+    let nearby = hierarchy(surface, topology, |component| driven.binary_search(&component).is_ok());
+    let owners = owners(surface, topology, following, driven, cancel)?;
     let reach = if following.len() > CRUMBS { 0.0 } else { 1.0 };
     let place = |middle: SurfaceVertex, radius: f64| Place {
         middle,
@@ -102,23 +102,47 @@ pub(crate) fn followers(
     // All that is kept of a component that follows as a whole is its place.
     let rigid: Vec<Option<Place>> = following
         .par_iter()
-        .map(|&(component, how)| {
+        .zip(&owners)
+        .map(|(&(component, how), owner)| {
             let vertices = topology.vertices_of(component);
-            let (middle, radius) = (how == Loose::Follow).then(|| nearest(surface, vertices, &nearby))??;
+            let (middle, radius) = match owner {
+                _ if how != Loose::Follow => return None,
+                Some(Owner::Follower(_)) => return None,
+                Some(Owner::Surface(middle)) => (*middle, half_diagonal(surface, vertices)),
+                None => (
+                    nearest(surface, vertices.clone(), &nearby)?,
+                    half_diagonal(surface, vertices),
+                ),
+            };
             Some(place(middle, radius))
         })
         .collect();
-    // Components that are tied to the same patch share it.
-    let key = |place: &Place| (place.middle, place.radius.to_bits());
-    let mut numbers: BTreeMap<(SurfaceVertex, u64), u32> = BTreeMap::new();
-    let mut places = Vec::new();
+    // Ties on components that bend along come last: those have to be carried first.
+    let is_on_driven = |place: &Place| driven.binary_search(&topology.component(place.middle)).is_ok();
+    let mut places = Places::default();
+    let mut ties: Vec<Option<u32>> = vec![None; following.len()];
     let mut followers = Followers::default();
-    for (&(component, _), place) in following.iter().zip(&rigid) {
-        let Some(place) = place else { continue };
-        let tie = *numbers.entry(key(place)).or_insert_with(|| {
-            places.push(*place);
-            places.len() as u32 - 1
-        });
+    for (tie, place) in ties.iter_mut().zip(&rigid) {
+        *tie = place.filter(is_on_driven).map(|place| places.number(place));
+    }
+    for &(component, how) in following {
+        if how == Loose::Bend
+            && let Some((bending, knots)) = bending(surface, topology, component, &nearby, places.list.len())
+        {
+            places
+                .list
+                .extend(knots.into_iter().map(|(middle, radius)| place(middle, radius)));
+            followers.bending.push(bending);
+        }
+    }
+    followers.first_on_bending = places.list.len();
+    for (tie, place) in ties.iter_mut().zip(&rigid).filter(|(tie, _)| tie.is_none()) {
+        *tie = place.map(|place| places.number(place));
+    }
+    for (index, &(component, how)) in following.iter().enumerate() {
+        let Some(tie) = ties[end_of_chain(&owners, index)].filter(|_| how == Loose::Follow) else {
+            continue;
+        };
         followers
             .rigid
             .extend(topology.vertices_of(component).map(|vertex| Rigid {
@@ -127,16 +151,28 @@ pub(crate) fn followers(
                 world_rest: surface.positions[vertex.index()],
             }));
     }
-    for &(component, how) in following {
-        if how == Loose::Bend
-            && let Some((bending, knots)) = bending(surface, topology, component, &nearby, places.len())
-        {
-            places.extend(knots.into_iter().map(|(middle, radius)| place(middle, radius)));
-            followers.bending.push(bending);
-        }
+    cancel.check()?;
+    let tie = |place: &Place| tie(surface, topology, place);
+    followers.ties = places.list.par_iter().map(tie).collect();
+    Ok(followers)
+}
+
+/// The places of ties, those of components that follow as a whole each once.
+#[derive(Default)]
+struct Places {
+    list: Vec<Place>,
+    numbers: BTreeMap<(SurfaceVertex, u64), u32>,
+}
+
+impl Places {
+    /// The number of a place, which is added where it is new.
+    fn number(&mut self, place: Place) -> u32 {
+        let key = (place.middle, place.radius.to_bits());
+        *self.numbers.entry(key).or_insert_with(|| {
+            self.list.push(place);
+            self.list.len() as u32 - 1
+        })
     }
-    followers.ties = places.par_iter().map(|place| tie(surface, topology, place)).collect();
-    followers
 }
 
 fn positions_of(surface: &Surface, vertices: &[SurfaceVertex]) -> Vec<DVec3> {
@@ -146,24 +182,26 @@ fn positions_of(surface: &Surface, vertices: &[SurfaceVertex]) -> Vec<DVec3> {
         .collect()
 }
 
-/// The vertex of the driven surface that the component of these vertices comes nearest to, and half the diagonal of its
-/// bounding box.
-fn nearest(
-    surface: &Surface,
-    vertices: impl Iterator<Item = SurfaceVertex>,
-    nearby: &Bvh,
-) -> Option<(SurfaceVertex, f64)> {
+/// The vertex of the driven surface that the component of these vertices comes nearest to.
+fn nearest(surface: &Surface, vertices: impl Iterator<Item = SurfaceVertex>, nearby: &Bvh) -> Option<SurfaceVertex> {
     let mut nearest: Option<(SurfaceVertex, f64)> = None;
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for point in vertices.map(|vertex| surface.positions[vertex.index()]) {
         if let Some(found) = nearby.nearest_vertex(point)
             && nearest.is_none_or(|(_, distance)| found.1 < distance)
         {
             nearest = Some(found);
         }
+    }
+    nearest.map(|(middle, _)| middle)
+}
+
+/// Half the diagonal of these vertices' bounding box.
+fn half_diagonal(surface: &Surface, vertices: impl Iterator<Item = SurfaceVertex>) -> f64 {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for point in vertices.map(|vertex| surface.positions[vertex.index()]) {
         (low, high) = (low.min(point), high.max(point));
     }
-    nearest.map(|(middle, _)| (middle, 0.5 * low.distance(high)))
+    0.5 * low.distance(high)
 }
 
 /// A component that bends along, whose ties are the next from `first_tie` on: their middles and radii.
@@ -294,25 +332,29 @@ impl Followers {
 
     /// Writes the followers' displacements, given those of the driven components.
     pub fn carry(&self, displacements: &mut [DVec3]) {
-        let motion = |tie: &Tie| {
+        let motion = |tie: &Tie, displacements: &[DVec3]| {
             let moved: Vec<DVec3> = tie.patch.iter().map(|vertex| displacements[vertex.index()]).collect();
             RigidMotion::fit(&tie.world_rest, &moved)
         };
-        let motions: Vec<Option<RigidMotion>> = self.ties.par_iter().map(motion).collect();
-        let moved = |tie: usize, rest: DVec3| Some(motions.get(tie)?.as_ref()?.displace(rest));
-        for own in &self.rigid {
-            if let Some(displacement) = moved(own.tie as usize, own.world_rest) {
-                displacements[own.vertex.index()] = displacement;
-            }
-        }
+        let moved =
+            |motions: &[Option<RigidMotion>], tie: usize, rest: DVec3| Some(motions.get(tie)?.as_ref()?.displace(rest));
+        let (on_driven, on_bending) = self.ties.split_at(self.first_on_bending);
+        let mut motions: Vec<Option<RigidMotion>> =
+            on_driven.par_iter().map(|tie| motion(tie, displacements)).collect();
         for own in &self.bending {
             for ((vertex, &rest), shares) in own.vertices.iter().zip(&own.world_rest).zip(&own.shares) {
                 let shares = shares.iter();
-                let parts =
-                    shares.filter_map(|&(tie, share)| Some(moved(own.first_tie + usize::from(tie), rest)? * share));
+                let parts = shares
+                    .filter_map(|&(tie, share)| Some(moved(&motions, own.first_tie + usize::from(tie), rest)? * share));
                 if let Some(displacement) = parts.reduce(|sum, more| sum + more) {
                     displacements[vertex.index()] = displacement;
                 }
+            }
+        }
+        motions.par_extend(on_bending.par_iter().map(|tie| motion(tie, displacements)));
+        for own in &self.rigid {
+            if let Some(displacement) = moved(&motions, own.tie as usize, own.world_rest) {
+                displacements[own.vertex.index()] = displacement;
             }
         }
     }

@@ -2,4 +2,5 @@
 
 pub(crate) mod constraints;
 pub(crate) mod follow;
+mod owners;
 pub(crate) mod partition;

@@ -51,6 +51,47 @@ fn loose_components_move_rigidly_with_the_surface_beside_them() {
 }
 
 #[test]
+fn a_part_on_a_loose_part_moves_with_it_as_one() {
+    // A strap that lies on a bar, and a rivet on the strap's far end.
+    let strap = at(shapes::bar(40, 8, 8), DVec3::new(2.0, 0.0, 2.01), 0.25);
+    let rivet = at(shapes::icosphere(1), DVec3::new(9.0, 1.0, 4.32), 0.3);
+    let mut scene = Scene::new(shapes::together(&[shapes::bar(12, 2, 2), strap, rivet]))
+        .with(Role::Fixed, |p| p.x < 1.0 && p.z < 2.005)
+        .with(Role::Handle(0), |p| p.x > 11.0 && p.z < 2.005);
+    let target = turned(DVec3::new(12.0, 1.0, 1.0), 0.9, DVec3::new(1.0, 2.0, 0.5));
+    let parts: Vec<usize> = (0..scene.positions().len())
+        .filter(|&v| scene.positions()[v].z > 2.005)
+        .collect();
+    let displacements = step(&mut scene.bind(), &[target]);
+    for (&a, &b) in parts.iter().zip(parts.iter().rev()) {
+        let (p, q) = (scene.positions()[a], scene.positions()[b]);
+        let apart = (p + displacements[a]).distance(q + displacements[b]);
+        assert!(
+            (apart - p.distance(q)).abs() < 1e-9,
+            "strap and rivet are one rigid body"
+        );
+    }
+    assert!(displacements[parts[0]].length() > 0.1);
+    // On a strap that bends along, the rivet goes where the strap goes beside it.
+    scene.loose = Loose::Bend;
+    let rivet_of = |v: &usize| scene.positions()[*v].z > 4.015;
+    let rivet: Vec<usize> = parts.iter().copied().filter(rivet_of).collect();
+    let component = scene.model.topology.component(SurfaceVertex(rivet[0] as u32));
+    scene.parts = vec![(component, Loose::Follow)];
+    let displacements = step(&mut scene.bind(), &[target]);
+    let foot = *rivet
+        .iter()
+        .min_by(|&&a, &&b| scene.positions()[a].z.total_cmp(&scene.positions()[b].z))
+        .unwrap();
+    let beside = parts.iter().copied().filter(|v| !rivet.contains(v)).min_by(|&a, &b| {
+        let distance = |v: usize| scene.positions()[v].distance(scene.positions()[foot]);
+        distance(a).total_cmp(&distance(b))
+    });
+    let gap = displacements[beside.unwrap()].distance(displacements[foot]);
+    assert!(gap < 0.15 * displacements[foot].length(), "{gap}");
+}
+
+#[test]
 fn a_follower_keeps_its_shape_whatever_its_patch_does() {
     let scene = Scene::new(bar_with_balls())
         .with(Role::Fixed, |p| p.x < 1.0 && p.z < 2.1)

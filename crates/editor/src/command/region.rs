@@ -1,8 +1,8 @@
 //! What is done to the region in hand as a whole, and to stiffness.
 
 use super::entry::{Action, Entry, Scope, ctrl, item, unless, unlocked, when_open};
-use crate::document::Paint;
-use crate::workspace::{RegionAction, act_on_region, clear_stiffness, set_stiffness};
+use crate::document::{Paint, Tips};
+use crate::workspace::{RegionAction, act_on_region, clear_stiffness, set_stiffness, set_tips};
 
 const NO_HANDLE: &str = "No handle is selected: select one in the list, or paint one.";
 
@@ -109,6 +109,37 @@ pub(super) const REGION: Entry<RegionAction> = Entry {
             act_on_region(context.workspace, role, action);
         }
     }),
+};
+
+/// Chooses whether the parts that a reach cuts off from the body come along or are held still.
+pub(super) const SET_TIPS: Entry<Tips> = Entry {
+    listed: &[
+        item(
+            Tips::Held,
+            "Hold the tips",
+            "Holds still what a handle's reach cuts off from the body: fingertips, ears, the rest of a limb.",
+            "extremity extremities limb island region pin keep",
+            &[],
+        ),
+        item(
+            Tips::ComeAlong,
+            "Take the tips along",
+            "Lets what a handle's reach cuts off from the body come along: fingertips, ears, the rest of a limb.",
+            "extremity extremities limb island region topological",
+            &[],
+        ),
+    ],
+    scope: Scope::Document,
+    unavailable: |state, tips| {
+        state.unopened().or_else(|| {
+            let reason = match tips {
+                Tips::Held => "The tips are held already.",
+                Tips::ComeAlong => "The tips come along already.",
+            };
+            unless(state.workspace.document.tips() != *tips, reason)
+        })
+    },
+    action: Action::Do(|context, tips| set_tips(context.workspace, tips)),
 };
 
 /// Makes the whole surface equally stiff.

@@ -9,7 +9,7 @@ use pliant_deform::{Loose, Method};
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
 use super::{document, handle, look, object, paint, region, view};
-use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach};
+use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, Tips};
 use crate::tool::{BrushMetric, Context, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
 use crate::workspace::RegionAction;
@@ -178,6 +178,8 @@ commands! {
     SetContinuity(id: HandleId, continuity: Option<f64>) = handle::SET_CONTINUITY;
     /// Changes the region in hand as a whole.
     Region(action: RegionAction) = region::REGION;
+    /// Chooses whether the parts that a reach cuts off from the body come along.
+    SetTips(tips: Tips) = region::SET_TIPS;
     /// Makes the whole surface equally stiff.
     ClearStiffness = region::CLEAR_STIFFNESS;
     /// Sets the stiffness (0.001 to 1000; 1 is a vertex left alone) of every vertex.
@@ -196,6 +198,8 @@ commands! {
     FrameSelected = view::FRAME_SELECTED;
     /// Comes close to a connected part, by its component's number.
     FramePart(part: u32) = view::FRAME_PART;
+    /// Lights up a connected part, by its component's number, or none.
+    LightPart(part: Option<u32>) = view::LIGHT_PART;
     /// Comes close to a vertex, by the file's number.
     FrameFileVertex(vertex: u32) = view::FRAME_FILE_VERTEX;
     /// Looks from where one looked before.

@@ -6,7 +6,7 @@ use pliant_mesh::DrawnVertex;
 use super::entry::{Action, Entry, Scope, alt, always, character, ctrl_numpad, item, numpad, plain, unless, when_open};
 use crate::input::Key;
 use crate::view::{Camera, CameraStep, NamedView, Orbit, Projection, UpAxis, View};
-use crate::workspace::{Workspace, members};
+use crate::workspace::{Workspace, light_part, members};
 
 /// How far a key turns the view: 15 degrees.
 const VIEW_STEP_RAD: f64 = std::f64::consts::PI / 12.0;
@@ -45,6 +45,14 @@ pub(super) const FRAME_PART: Entry<u32> = Entry {
     scope: Scope::View,
     unavailable: when_open,
     action: Action::Do(|context, part| frame_part(context.workspace, context.view, part)),
+};
+
+/// Lights up a connected part, by its component's number, or none.
+pub(super) const LIGHT_PART: Entry<Option<u32>> = Entry {
+    listed: &[],
+    scope: Scope::View,
+    unavailable: when_open,
+    action: Action::Do(|context, part| light_part(context.workspace, part)),
 };
 
 /// Comes close to a vertex, by the file's number.

@@ -24,6 +24,16 @@ pub enum Paint {
     Handle(HandleId),
 }
 
+/// What happens to the parts of a surface that a handle's reach cuts off from the body.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Tips {
+    /// They are free, too.
+    #[default]
+    ComeAlong,
+    /// They are held still, as everything beyond the reach.
+    Held,
+}
+
 /// What a document holds. Every vector has one element per surface vertex.
 #[derive(Clone, Debug)]
 pub struct Content {
@@ -36,6 +46,7 @@ pub struct Content {
     /// With which continuity the surface joins what holds it; `None` is the highest everywhere.
     pub(crate) continuity: Option<Arc<Vec<f64>>>,
     pub(crate) method: Method,
+    pub(crate) tips: Tips,
     pub(crate) loose: Loose,
     /// What single parts do that nothing holds, by their component's number, in place of `loose`.
     pub(crate) loose_parts: Arc<BTreeMap<u32, Loose>>,
@@ -66,6 +77,7 @@ impl Content {
             stiffness: None,
             continuity: None,
             method: Arap::first_choice().into(),
+            tips: Tips::default(),
             loose: Loose::default(),
             loose_parts: Arc::default(),
             access: Arc::default(),

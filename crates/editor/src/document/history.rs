@@ -14,7 +14,7 @@ use glam::DVec3;
 use pliant_deform::{Loose, Method};
 
 use super::access::Access;
-use super::content::Paint;
+use super::content::{Paint, Tips};
 use super::handle::Handle;
 use super::kept_shape::KeptShape;
 use super::sparse::Sparse;
@@ -39,6 +39,8 @@ pub(crate) enum Change {
     Options(Method, Loose, Arc<BTreeMap<u32, Loose>>),
     /// The rest shape, and whether there is another than the file's.
     Rest(Sparse<DVec3>, bool),
+    /// Whether tips come along.
+    Tips(Tips),
     /// What is hidden and locked.
     Access(Arc<Access>),
     /// What was seen when what holds the surface changed last.
@@ -71,9 +73,11 @@ impl Step {
                     size_of::<Access>() + (access.hidden.len() + access.locked.len()) * size_of::<u32>()
                 }
                 Change::Kept(Some(kept)) => kept.shape.len() * size_of::<DVec3>(),
-                Change::Kept(None) | Change::Continuity(None) | Change::Options(..) | Change::Settled(_) => {
-                    size_of::<Change>()
-                }
+                Change::Kept(None)
+                | Change::Continuity(None)
+                | Change::Options(..)
+                | Change::Tips(_)
+                | Change::Settled(_) => size_of::<Change>(),
             })
             .sum();
         size_of::<Self>() + self.name.len() + changes + self.shape.bytes()
@@ -241,6 +245,7 @@ fn swap(change: &mut Change, document: &mut Document) {
         Change::Stiffness(sparse, is_field) => document.swap_stiffness(sparse, is_field),
         Change::Continuity(continuity) => document.swap_continuity(continuity),
         Change::Options(method, loose, parts) => document.swap_options(method, loose, parts),
+        Change::Tips(tips) => document.swap_tips(tips),
         Change::Rest(sparse, applied) => document.swap_rest(sparse, applied),
         Change::Access(access) => document.swap_access(access),
         Change::Kept(kept) => document.swap_kept(kept),

@@ -20,7 +20,7 @@ mod vertex_access;
 
 pub use access::{Access, ObjectAction, object_name};
 pub(crate) use content::sum_of_shapes;
-pub use content::{Content, Paint};
+pub use content::{Content, Paint, Tips};
 pub(crate) use fitted::fitted_motion;
 pub use handle::{Handle, HandleId, PivotPlace, Reach, Twin};
 pub use handle_colour::HANDLE_COLOURS;

@@ -91,6 +91,9 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
         let (loose, parts) = loose(before);
         changes.push(Change::Options(before.method.clone(), loose, parts));
     }
+    if before.tips != after.tips {
+        changes.push(Change::Tips(before.tips));
+    }
     if before.access != after.access {
         changes.push(Change::Access(Arc::clone(&before.access)));
     }

@@ -15,6 +15,8 @@ pub(crate) enum Aspect {
     Continuity,
     /// The method and its options.
     Method,
+    /// Whether tips come along.
+    Tips,
     /// What loose parts do.
     Loose,
     /// The rest shape.
@@ -38,11 +40,12 @@ pub(crate) enum Aspect {
 }
 
 impl Aspect {
-    pub(crate) const ALL: [Self; 14] = [
+    pub(crate) const ALL: [Self; 15] = [
         Self::Paint,
         Self::Stiffness,
         Self::Continuity,
         Self::Method,
+        Self::Tips,
         Self::Loose,
         Self::Rest,
         Self::Shape,
@@ -56,11 +59,12 @@ impl Aspect {
     ];
 
     /// What the region and the factorisation follow from.
-    const OF_PROBLEM: [Self; 8] = [
+    const OF_PROBLEM: [Self; 9] = [
         Self::Paint,
         Self::Stiffness,
         Self::Continuity,
         Self::Method,
+        Self::Tips,
         Self::Loose,
         Self::Rest,
         Self::Locks,

@@ -96,7 +96,12 @@ impl Editor {
         &self.workspace.computed().region.roles
     }
 
-    /// The connected parts that nothing holds within some handle's reach, and those that were told what to do, by
+    /// The connected part that is lit up, by its component's number.
+    pub fn lit_part(&self) -> Option<u32> {
+        self.workspace.colours().lit()
+    }
+
+    /// The connected parts without paint that go along with what they touch, and those that were told what to do, by
     /// their component's number, as of the last measured region.
     pub fn loose_components(&self) -> &[u32] {
         &self.workspace.computed().region.loose

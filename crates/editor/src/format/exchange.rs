@@ -7,8 +7,7 @@ use pliant_mesh::Model;
 
 use crate::document::followed;
 use crate::document::{Content, Document, Handle, HandleId, Paint, PivotPlace, Reach};
-use crate::jobs::Region;
-use crate::jobs::region_input;
+use crate::jobs::{FileContacts, Region, region_input};
 use crate::{EditError, EditFile, FieldEntry, HandleEntry, HandleTransform, Selector};
 
 /// Why a document can't be said as an edit.
@@ -39,8 +38,11 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
     if document.applied {
         return Err(ExportError::Applied);
     }
-    let region = Region::measure(&region_input(model, document), &pliant_mesh::Cancel::new())
-        .unwrap_or_else(|_| Region::still(document.paint.len()));
+    let region = Region::measure(
+        &region_input(model, document, &FileContacts::default()),
+        &pliant_mesh::Cancel::new(),
+    )
+    .unwrap_or_else(|_| Region::still(document.paint.len()));
     let ranges = |role: Role| {
         let mut selected = vec![false; model.drawn.file_vertex_count()];
         for (surface_vertex, file_vertex) in model.drawn.surface_vertices().zip(model.drawn.file_vertices()) {

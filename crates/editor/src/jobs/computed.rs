@@ -6,7 +6,7 @@ use pliant_deform::{Bound, Ordering, ReusableFactor};
 use pliant_mesh::Model;
 
 use super::job::{Carried, Pickable, ShownTriangles};
-use super::region::Region;
+use super::region::{FileContacts, Region};
 
 /// The last results.
 pub(crate) struct Computed {
@@ -17,6 +17,8 @@ pub(crate) struct Computed {
     /// One a power of the Laplacian that a method has asked for.
     pub(super) orderings: Vec<Arc<Ordering>>,
     pub(crate) region: Region,
+    /// What the model's components touch.
+    pub(super) contacts: FileContacts,
     pub(super) bound: Option<Arc<Mutex<Bound>>>,
     /// What a solve from a kept shape goes on from, with this factorisation.
     pub(super) carried: Option<Carried>,
@@ -34,6 +36,7 @@ impl Default for Computed {
             shown: ShownTriangles::default(),
             orderings: Vec::new(),
             region: Region::still(0),
+            contacts: FileContacts::default(),
             bound: None,
             carried: None,
             reusable_factor: None,

@@ -15,7 +15,7 @@ pub(crate) use job::Pickable;
 pub use job::{Descent, Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
 pub use job_queue::{JobQueue, Running};
 pub use region::{Counts, Region};
-pub(crate) use region::{centroid, reach_length, region_input};
+pub(crate) use region::{FileContacts, centroid, reach_length, region_input};
 pub use rim::Rim;
 pub(crate) use rim::bounded;
 pub(crate) use scheduler::{Activity, Arrival, Finality, Jobs};

@@ -13,8 +13,7 @@ use pliant_mesh::{Model, SurfaceVertex};
 use super::computed::Computed;
 use super::job::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, ShownTriangles, Solved, Work};
 use super::job_queue::{JobQueue, Running};
-use super::region::Region;
-use super::region::region_input;
+use super::region::{Region, region_input};
 use super::work::{bind_work, order_work, pick_work, region_work, solve_work};
 use crate::document::Document;
 
@@ -251,7 +250,9 @@ impl Jobs {
         }
         if activity != Activity::Painting {
             if !self.is_region_current() {
-                self.want(JobKind::Region, |_| region_work(region_input(&model, document)));
+                self.want(JobKind::Region, |computed| {
+                    region_work(region_input(&model, document, &computed.contacts))
+                });
             } else if missing.is_none() && !self.is_bound() && !self.computed.region.handles.is_empty() {
                 let revision = self.problem_revision.0;
                 self.want(JobKind::Bind, |computed| {

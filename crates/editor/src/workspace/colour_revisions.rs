@@ -38,6 +38,8 @@ pub(crate) struct Colours {
     rims_revision: u64,
     dirty: DirtyColours,
     sources: Sources,
+    /// The connected part that is lit up, by its component's number.
+    lit: Option<u32>,
 }
 
 impl Colours {
@@ -54,13 +56,25 @@ impl Colours {
         self.sources.by
     }
 
+    /// The connected part that is lit up.
+    pub(crate) fn lit(&self) -> Option<u32> {
+        self.lit
+    }
+
+    /// Lights up another part, or none; `vertices` are those of the one before and of this one.
+    pub(super) fn light(&mut self, part: Option<u32>, vertices: &[SurfaceVertex]) {
+        self.lit = part;
+        self.dirty.add(vertices);
+    }
+
     /// The vertices whose colour may have changed since a revision; `None`: all of them.
     pub(crate) fn since(&self, regions_revision: u64) -> Option<&[SurfaceVertex]> {
         self.dirty.since(regions_revision)
     }
 
-    /// Everything is another.
+    /// Everything is another, and nothing is lit up.
     pub(super) fn change_all(&mut self) {
+        self.lit = None;
         self.regions_revision += 1;
         self.dirty.whole(self.regions_revision);
         self.rims_revision += 1;

@@ -1,5 +1,7 @@
 //! The colours of regions and handles on the surface, and the lines between them.
 
+use std::sync::Arc;
+
 use pliant_deform::Role;
 use pliant_mesh::{ContourLine, SurfaceVertex};
 
@@ -27,7 +29,9 @@ pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> 
     // The clay or the material as it is: a share of any grey would wash it out.
     const STILL: [u8; 4] = [0; 4];
     const FIXED: [u8; 4] = [112, 112, 116, 255];
+    const LIT: [u8; 4] = [255, 214, 110, 255];
     let document = &workspace.document;
+    let lit = workspace.colours.lit().zip(workspace.model());
     let handles = document.handles();
     let largest = handles.iter().map(|handle| usize::from(handle.id.0) + 1).max();
     let mut of_handle = vec![STILL; largest.unwrap_or(0)];
@@ -36,6 +40,9 @@ pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> 
     }
     let by = workspace.colours.by();
     move |vertex| {
+        if lit.is_some_and(|(part, model)| model.topology.component(vertex) == part) {
+            return LIT;
+        }
         if by == ColouredBy::Stiffness {
             return stiffness_colour(document.stiffness().map_or(1.0, |field| field[vertex.index()]));
         }
@@ -48,6 +55,21 @@ pub(crate) fn region_colour(workspace: &Workspace) -> impl Fn(SurfaceVertex) -> 
                 _ => STILL,
             },
         }
+    }
+}
+
+/// Lights up a connected part, by its component's number, in place of the one before; `None` lights up none.
+pub(crate) fn light_part(workspace: &mut Workspace, part: Option<u32>) {
+    let Some(model) = workspace.model().map(Arc::clone) else {
+        return;
+    };
+    let topology = &model.topology;
+    let part = part.filter(|&part| (part as usize) < topology.components().len());
+    let before = workspace.colours.lit();
+    if part != before {
+        let changed = before.into_iter().chain(part);
+        let vertices: Vec<_> = changed.flat_map(|part| topology.vertices_of(part)).collect();
+        workspace.colours.light(part, &vertices);
     }
 }
 

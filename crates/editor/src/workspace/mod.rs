@@ -19,7 +19,7 @@ mod state;
 
 pub(crate) use colour_revisions::ColouredBy;
 pub use colours::stiffness_colour;
-pub(crate) use colours::{region_colour, rims};
+pub(crate) use colours::{light_part, region_colour, rims};
 pub(crate) use handle_values::{set_continuity, set_reach, set_soft, set_turn, transform_handle};
 pub(crate) use handles::{
     change_handle, count_turn, delete_selected, held_because, pin_or_unpin_selected, put_handle, reset_region,
@@ -30,6 +30,7 @@ pub(crate) use mirror_request::Purpose;
 pub(crate) use objects::{act_on_object_here, act_on_objects, isolate, show_everything};
 pub(crate) use options::{
     apply_shape, clear_regions, clear_stiffness, reset_shape, set_loose, set_loose_part, set_method, set_stiffness,
+    set_tips,
 };
 pub(crate) use painting::{members, tidy_handles};
 pub use regions::RegionAction;

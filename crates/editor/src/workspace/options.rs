@@ -7,7 +7,7 @@ use pliant_deform::{Loose, Method};
 use super::painting::members;
 use super::state::Workspace;
 use crate::STIFFNESS_RANGE;
-use crate::document::{Document, HandleTransform};
+use crate::document::{Document, HandleTransform, Tips};
 use crate::jobs::centroid;
 
 /// Makes the present shape the new rest shape.
@@ -54,6 +54,20 @@ pub(crate) fn set_method(workspace: &mut Workspace, method: Method) {
         if *document.method() != method {
             document.unsettle_if_displaced();
             document.set_method(method);
+        }
+    });
+}
+
+/// Chooses whether the parts that a reach cuts off from the body come along.
+pub(crate) fn set_tips(workspace: &mut Workspace, tips: Tips) {
+    let name = match tips {
+        Tips::ComeAlong => "Take the tips along",
+        Tips::Held => "Hold the tips",
+    };
+    workspace.change(name, |document| {
+        if document.tips() != tips {
+            document.unsettle_if_displaced();
+            document.set_tips(tips);
         }
     });
 }

@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec2, DVec3};
 use pliant_deform::{Bound, Constraints, Loose, Method, Problem, Role};
 use pliant_editor::{
     Access, Button, Command, Document, Editor, Event, GizmoPart, Handle, InlineExecutor, JobKind, Key, Modifiers,
-    Paint, Pointer, ToolMode,
+    Paint, Pointer, Tips, ToolMode,
 };
 use pliant_mesh::{Cancel, Drawn, Model, Object, Progress, WeldOptions};
 
@@ -62,6 +62,7 @@ pub struct Fingerprint {
     from_rest: Vec<[u64; 3]>,
     from_file: Vec<[u64; 3]>,
     access: Access,
+    tips: Tips,
     loose: (Loose, BTreeMap<u32, Loose>),
     settled: bool,
     applied: bool,
@@ -79,6 +80,7 @@ impl Fingerprint {
             from_rest: bits(document.from_rest()),
             from_file: bits(document.from_file()),
             access: document.access().clone(),
+            tips: document.tips(),
             loose: (document.loose(), document.loose_parts().clone()),
             settled: document.is_settled(),
             applied: document.is_applied(),

@@ -5,6 +5,7 @@ use glam::{DVec3, DVec4};
 use super::boxes::{BoxRay, RUN, Span};
 use super::{Bvh, Hit};
 use crate::SurfaceVertex;
+use crate::geometry::distance_to_triangle;
 
 /// Barycentric weights down to this count as inside, so that no ray slips between two triangles.
 const EDGE_SLACK: f64 = -1e-9;
@@ -56,6 +57,43 @@ impl Bvh {
                 visit(SurfaceVertex(vertex as u32), self.positions.get(vertex));
             }
         }
+    }
+
+    /// The triangle nearest to `point` whose first corner `is_meant`, of those not farther than `limit`: its corner
+    /// nearest to the point, of several the lowest, and the distance to the triangle.
+    pub(crate) fn nearest_on_triangles(
+        &self,
+        point: DVec3,
+        limit: f64,
+        is_meant: impl Fn(SurfaceVertex) -> bool,
+    ) -> Option<(SurfaceVertex, f64)> {
+        let in_boxes = self.space.of_point(point);
+        let farthest = limit * self.space.scale;
+        let mut best: Option<(f64, f64, SurfaceVertex)> = None;
+        self.walk(
+            |span| {
+                Some(span.distance(in_boxes))
+                    .filter(|&d| d <= farthest)
+                    .unwrap_or(f64::INFINITY)
+            },
+            |place| {
+                let corners = self.leaves.corners[place];
+                if is_meant(corners[0]) {
+                    let positions = corners.map(|v| self.positions.get(v.index()));
+                    let distance = distance_to_triangle(point, positions);
+                    if distance <= limit {
+                        for (v, position) in corners.into_iter().zip(positions) {
+                            let candidate = (distance, position.distance(point), v);
+                            if best.is_none_or(|best| candidate < best) {
+                                best = Some(candidate);
+                            }
+                        }
+                    }
+                }
+                best.map_or(f64::INFINITY, |(distance, ..)| distance * self.space.scale)
+            },
+        );
+        best.map(|(distance, _, v)| (v, distance))
     }
 
     /// The vertex nearest to `point` in a straight line, of several the lowest, and its distance; `None` of an empty

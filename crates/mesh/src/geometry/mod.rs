@@ -7,6 +7,7 @@ mod areas;
 mod distortion;
 mod gradient;
 mod normals;
+mod triangle_distance;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -15,6 +16,7 @@ pub use areas::{face_areas, mixed_corner_areas, mixed_voronoi_areas, signed_volu
 pub use distortion::Distortion;
 pub use gradient::face_gradient;
 pub use normals::vertex_normals;
+pub(crate) use triangle_distance::distance_to_triangle;
 
 /// An axis-aligned box, `min <= max` in each coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,11 +2,13 @@
 
 pub(crate) mod boundary;
 pub(crate) mod components;
+mod contacts;
 mod contours;
 mod faces;
 pub(crate) mod rings;
 
 pub use components::Component;
+pub use contacts::{Contact, component_areas, contacts};
 pub use contours::{ContourLine, Crossing, contours};
 pub use faces::Faces;
 pub use rings::FanKind;

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use eframe::egui::{self, Key, KeyboardShortcut, MenuBar, Modifiers, RichText};
-use pliant_editor::{Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, ToolMode, UpAxis};
+use pliant_editor::{
+    Clay, Command, Editor, NamedView, Orbit, Projection, RegionAction, Shading, Tips, ToolMode, UpAxis,
+};
 
 use crate::window::threads::message::{Ground, PictureKind};
 use crate::window::widgets::command_button::{command_button, command_choice};
@@ -275,16 +277,20 @@ fn region_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         ],
         &[RegionAction::ToHandle, RegionAction::ToFree, RegionAction::ToFixed],
     ];
-    for (number, group) in groups.into_iter().enumerate() {
-        if number > 0 {
-            ui.separator();
-        }
+    for group in groups {
         for action in group {
             let command = Command::Region(*action);
             if command_button(ui, editor, &command) {
                 commands.push(command);
                 ui.close();
             }
+        }
+        ui.separator();
+    }
+    for command in [Tips::Held, Tips::ComeAlong].map(Command::SetTips) {
+        if command_button(ui, editor, &command) {
+            commands.push(command);
+            ui.close();
         }
     }
 }

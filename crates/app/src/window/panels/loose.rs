@@ -5,6 +5,7 @@ use pliant_deform::Loose;
 use pliant_editor::{Command, Editor, thousands};
 use pliant_mesh::Model;
 
+use super::part_name::part_name;
 use crate::window::widgets::command_button::choices;
 use crate::window::widgets::outbox::Outbox;
 
@@ -36,6 +37,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         return;
     };
     if parts.is_empty() {
+        light(editor, None, commands);
         return;
     }
     let title = format!(
@@ -43,6 +45,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         parts.len(),
         if parts.len() == 1 { "part" } else { "parts" }
     );
+    let mut pointed = None;
     egui::CollapsingHeader::new(RichText::new(title).small())
         .id_salt("loose parts")
         .show(ui, |ui| {
@@ -53,20 +56,32 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                 .auto_shrink([false, true])
                 .show_rows(ui, height, parts.len(), |ui, seen| {
                     for number in seen {
-                        row(ui, editor, model, parts[number], commands);
+                        if row(ui, editor, model, parts[number], commands) {
+                            pointed = Some(parts[number]);
+                        }
                     }
                 });
         });
+    light(editor, pointed, commands);
 }
 
-fn row(ui: &mut egui::Ui, editor: &Editor, model: &Model, part: u32, commands: &mut Outbox) {
+/// Lights up the part whose row the pointer is on.
+fn light(editor: &Editor, part: Option<u32>, commands: &mut Outbox) {
+    if editor.lit_part() != part {
+        commands.push(Command::LightPart(part));
+    }
+}
+
+/// A part's row; whether the pointer is on it.
+fn row(ui: &mut egui::Ui, editor: &Editor, model: &Model, part: u32, commands: &mut Outbox) -> bool {
     let Some(component) = model.topology.components().get(part as usize) else {
-        return;
+        return false;
     };
     let own = editor.document().loose_parts().get(&part).copied();
-    ui.horizontal(|ui| {
-        let name = format!("Part {} · {} vertices", part + 1, thousands(component.vertex_count));
-        let label = ui.button(name).on_hover_text("Comes close to it.");
+    let row = ui.horizontal(|ui| {
+        let name = part_name(model, part, editor.view().camera.up);
+        let hover = format!("Comes close to it: {} vertices.", thousands(component.vertex_count));
+        let label = ui.button(name).on_hover_text(hover);
         if label.clicked() {
             commands.push(Command::FramePart(part));
         }
@@ -88,4 +103,5 @@ fn row(ui: &mut egui::Ui, editor: &Editor, model: &Model, part: u32, commands: &
             });
         list.response.labelled_by(label.id);
     });
+    row.response.contains_pointer()
 }

@@ -9,6 +9,7 @@ pub(in crate::window) mod loose;
 pub(in crate::window) mod method;
 pub(in crate::window) mod notes;
 pub(in crate::window) mod objects;
+mod part_name;
 
 use std::collections::BTreeSet;
 

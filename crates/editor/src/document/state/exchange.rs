@@ -9,7 +9,7 @@ use pliant_mesh::SurfaceVertex;
 
 use super::{Document, Repainted, note};
 use crate::document::access::Access;
-use crate::document::content::Paint;
+use crate::document::content::{Paint, Tips};
 use crate::document::handle::Handle;
 use crate::document::kept_shape::KeptShape;
 use crate::document::sparse::Sparse;
@@ -110,6 +110,11 @@ impl Document {
         let (former, former_parts) = (self.content.loose, Arc::clone(&self.content.loose_parts));
         self.set_loose(*loose, (**parts).clone());
         (*loose, *parts) = (former, former_parts);
+    }
+
+    pub(in crate::document) fn swap_tips(&mut self, tips: &mut Tips) {
+        std::mem::swap(tips, &mut self.content.tips);
+        self.marks.mark(&[Aspect::Tips]);
     }
 
     pub(in crate::document) fn swap_rest(&mut self, rest: &mut Sparse<DVec3>, applied: &mut bool) {

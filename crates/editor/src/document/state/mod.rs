@@ -19,7 +19,7 @@ use pliant_mesh::SurfaceVertex;
 use glam::DVec3;
 
 use super::access::Access;
-use super::content::{Content, Paint};
+use super::content::{Content, Paint, Tips};
 use super::handle::{Handle, HandleId};
 use super::kept_shape::KeptShape;
 use super::version::{Aspect, Marks, Versions};
@@ -101,6 +101,11 @@ impl Document {
     /// The method and its options.
     pub fn method(&self) -> &Method {
         &self.content.method
+    }
+
+    /// Whether the parts that a reach cuts off from the body come along.
+    pub fn tips(&self) -> Tips {
+        self.content.tips
     }
 
     /// What components that nothing holds do.
@@ -305,6 +310,13 @@ impl Document {
         if self.content.method != method {
             self.content.method = method;
             self.marks.mark(&[Aspect::Method]);
+        }
+    }
+
+    /// Chooses whether tips come along.
+    pub(crate) fn set_tips(&mut self, mut tips: Tips) {
+        if self.content.tips != tips {
+            self.swap_tips(&mut tips);
         }
     }
 

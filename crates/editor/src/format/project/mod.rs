@@ -34,8 +34,8 @@ use super::method::{method_to_value, read_method};
 use super::reader::{self, read};
 use super::setup::Setup;
 use crate::document::bits_equal;
-use crate::document::{Content, Document, Handle, HandleId, Paint};
-use crate::jobs::{Region, region_input};
+use crate::document::{Content, Document, Handle, HandleId, Paint, Tips};
+use crate::jobs::{FileContacts, Region, region_input};
 use crate::{Camera, STIFFNESS_RANGE};
 
 /// The version of the project format that is read and written.
@@ -52,6 +52,9 @@ pub struct Project {
     /// What single parts do in place of that, by their component's number.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     loose_parts: BTreeMap<u32, StoredLoose>,
+    /// Whether tips are held; without, they come along.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    tips: Option<StoredTips>,
     /// Painted free.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     region: Ranges,
@@ -87,6 +90,14 @@ pub struct Project {
     settled: bool,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     camera: Option<StoredCamera>,
+}
+
+/// [`Tips`] by its name.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", expecting = "\"come-along\" or \"held\"")]
+enum StoredTips {
+    ComeAlong,
+    Held,
 }
 
 /// Which mesh a project belongs to.
@@ -185,6 +196,7 @@ impl Project {
                 .iter()
                 .map(|(part, loose)| (*part, (*loose).into()))
                 .collect(),
+            tips: (document.tips == Tips::Held).then_some(StoredTips::Held),
             region: painted(Paint::Free),
             fixed: painted(Paint::Fixed),
             handles: document
@@ -260,6 +272,10 @@ impl Project {
         let mut document = Content::new(model.surface.positions.len());
         document.method = read_method(&self.method).map_err(|error| error.under("method"))?;
         document.loose = self.loose.into();
+        document.tips = match self.tips {
+            Some(StoredTips::Held) => Tips::Held,
+            None | Some(StoredTips::ComeAlong) => Tips::ComeAlong,
+        };
         document.loose_parts = Arc::new(
             self.loose_parts
                 .iter()
@@ -345,7 +361,7 @@ impl Project {
     /// What the solver needs: the document's regions, from its own rest shape.
     pub(crate) fn resolve(&self, model: &Model) -> Result<Setup, EditError> {
         let document = self.document(model)?;
-        let input = region_input(&Arc::new(model.clone()), &document);
+        let input = region_input(&Arc::new(model.clone()), &document, &FileContacts::default());
         let region = Region::measure(&input, &Cancel::new()).unwrap_or_else(|_| Region::still(document.paint.len()));
         Ok(Setup::of_document(&document, &region))
     }

@@ -1,0 +1,118 @@
+//! Which components that nothing holds go along with a handle.
+//!
+//! A part that touches larger ones belongs to them: it goes along where at least half of what touches lies on places
+//! that move, be it the free region, a handle or another part that goes along. So a rivet on a strap goes with the strap,
+//! and one that is near a moving hose but sits on the mask stays with the mask. A part never carries a larger one.
+//!
+//! A part that touches nothing larger goes along if it lies wholly within what some handle reaches through space.
+
+use std::sync::{Arc, OnceLock};
+
+use glam::DVec3;
+use pliant_deform::Role;
+use pliant_mesh::{
+    Bvh, Cancel, Cancelled, Contact, Model, Surface, SurfaceVertex, Topology, component_areas, contacts,
+};
+
+use super::centroid;
+
+/// What the components of a file touch. It depends on the file alone, so it is found once, when it is first needed.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FileContacts(Arc<OnceLock<Touching>>);
+
+/// What each component touches of those that are larger.
+#[derive(Debug)]
+pub(super) struct Touching {
+    /// The components, larger ones first.
+    order: Vec<u32>,
+    /// By component.
+    contacts: Vec<Vec<Contact>>,
+}
+
+impl FileContacts {
+    /// What the components of this file touch, in its own shape.
+    pub(super) fn of(&self, model: &Model, cancel: &Cancel) -> Result<&Touching, Cancelled> {
+        if let Some(found) = self.0.get() {
+            return Ok(found);
+        }
+        let found = touching(&model.surface, &model.topology, cancel)?;
+        Ok(self.0.get_or_init(|| found))
+    }
+}
+
+fn touching(surface: &Surface, topology: &Topology, cancel: &Cancel) -> Result<Touching, Cancelled> {
+    let areas = component_areas(surface, topology);
+    let all: Vec<u32> = (0..areas.len() as u32).collect();
+    let mut order = all.clone();
+    order.sort_by(|&a, &b| areas[b as usize].total_cmp(&areas[a as usize]).then(a.cmp(&b)));
+    let mut rank = vec![0; order.len()];
+    for (place, &component) in order.iter().enumerate() {
+        rank[component as usize] = place;
+    }
+    let is_larger = |part: u32, other: u32| rank[other as usize] < rank[part as usize];
+    let tree = Bvh::build(&surface.positions, &surface.triangles);
+    let contacts = contacts(surface, topology, &tree, &all, is_larger, cancel)?;
+    Ok(Touching { order, contacts })
+}
+
+impl Touching {
+    /// Whether each component goes along that is not `painted`, given the `roles` on those that are. What `told` says of
+    /// a component wins; one that touches nothing larger does as `within` says.
+    pub(super) fn going_along(
+        &self,
+        topology: &Topology,
+        roles: &[Role],
+        painted: &[bool],
+        within: &[bool],
+        told: impl Fn(usize) -> Option<bool>,
+    ) -> Vec<bool> {
+        let mut goes = vec![false; painted.len()];
+        for component in self.order.iter().map(|&component| component as usize) {
+            let moves = |place: SurfaceVertex| match topology.component(place) as usize {
+                other if painted[other] => roles[place.index()] != Role::Fixed,
+                other => goes[other],
+            };
+            let touched = &self.contacts[component];
+            let area: f64 = touched.iter().map(|contact| contact.area).sum();
+            let moving = touched.iter().filter(|contact| moves(contact.place));
+            let moving: f64 = moving.map(|contact| contact.area).sum();
+            goes[component] = match told(component) {
+                _ if painted[component] => false,
+                Some(goes) => goes,
+                None if touched.is_empty() => within[component],
+                None => 2.0 * moving >= area,
+            };
+        }
+        goes
+    }
+}
+
+/// What a handle reaches through space.
+pub(super) struct Ball {
+    centre: DVec3,
+    radius: f64,
+}
+
+impl Ball {
+    /// As far from the farthest of a handle's vertices as its reach.
+    pub(super) fn around(members: &[SurfaceVertex], reach: f64, surface: &Surface) -> Self {
+        let centre = centroid(&surface.positions, members.iter().copied());
+        let extent = members
+            .iter()
+            .map(|vertex| surface.positions[vertex.index()].distance(centre))
+            .fold(0.0, f64::max);
+        Self {
+            centre,
+            radius: extent + reach,
+        }
+    }
+
+    /// Clears the flag of each component with a vertex outside.
+    pub(super) fn clear_what_extends_beyond(&self, surface: &Surface, topology: &Topology, within: &mut [bool]) {
+        for (vertex, position) in surface.positions.iter().enumerate() {
+            if position.distance_squared(self.centre) > self.radius * self.radius {
+                within[topology.component(SurfaceVertex(vertex as u32)) as usize] = false;
+            }
+        }
+    }
+}

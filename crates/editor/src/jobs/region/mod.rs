@@ -1,0 +1,268 @@
+//! What each vertex does, as it follows from paint and handles: the region of influence around each handle.
+//!
+//! A handle sets free what lies within its reach along the rest surface and carries no paint, and with it the tips that
+//! the reach cuts off from the body ([`tips`]). Everything else is held still. A component that carries no paint at all
+//! (an eye, a button, a strap's buckle) is left to the method as a loose part if what it touches moves ([`loose`]), and
+//! held still otherwise: nobody who moves a visor means the whole helmet.
+
+mod loose;
+mod reach;
+mod tips;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::{Loose, Role};
+use pliant_mesh::{Cancel, Cancelled, ContourLine, DistanceSearch, Model, Surface, SurfaceVertex};
+
+use self::loose::Ball;
+pub(crate) use self::loose::FileContacts;
+pub(crate) use self::reach::reach_length;
+use self::tips::free_tips;
+use super::rim::rims;
+use crate::document::{Access, Document, HandleId, Paint, Reach, Tips};
+
+/// What the region follows from; shared with the job that measures it.
+#[derive(Clone, Debug)]
+pub(crate) struct RegionInput {
+    pub(crate) model: Arc<Model>,
+    pub(crate) paint: Arc<Vec<Paint>>,
+    pub(crate) handles: Vec<(HandleId, Reach)>,
+    /// The rest shape's displacements from the file's; `None` where it is the file's.
+    pub(crate) rest: Option<Arc<Vec<DVec3>>>,
+    pub(crate) tips: Tips,
+    pub(crate) loose: Loose,
+    pub(crate) loose_parts: Arc<BTreeMap<u32, Loose>>,
+    pub(crate) access: Arc<Access>,
+    pub(crate) contacts: FileContacts,
+}
+
+/// The vertices' roles, and the surface that they hold on.
+#[derive(Clone, Debug)]
+pub struct Region {
+    /// What each surface vertex does.
+    pub roles: Arc<Vec<Role>>,
+    /// The handles that have vertices: [`Role::Handle`]'s number is the index.
+    pub handles: Arc<Vec<HandleId>>,
+    /// Numbers of vertices by role.
+    pub counts: Counts,
+    /// The lines between roles.
+    pub(crate) rims: Arc<Vec<ContourLine>>,
+    /// The components without paint that go along with what they touch, and those that a person has told what to do.
+    pub loose: Arc<Vec<u32>>,
+    /// The rest shape, where it is another than the file's.
+    pub(crate) rest_surface: Option<Arc<Surface>>,
+}
+
+/// Numbers of surface vertices by role.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Counts {
+    /// Held still.
+    pub fixed: usize,
+    /// Free to bend.
+    pub free: usize,
+    /// In a handle.
+    pub handle: usize,
+}
+
+impl Counts {
+    fn of(roles: &[Role]) -> Self {
+        let mut counts = Self::default();
+        for role in roles {
+            match role {
+                Role::Fixed => counts.fixed += 1,
+                Role::Free => counts.free += 1,
+                Role::Handle(_) => counts.handle += 1,
+            }
+        }
+        counts
+    }
+}
+
+impl Region {
+    /// Everything held still.
+    pub(crate) fn still(vertex_count: usize) -> Self {
+        Self {
+            roles: Arc::new(vec![Role::Fixed; vertex_count]),
+            handles: Arc::new(Vec::new()),
+            counts: Counts {
+                fixed: vertex_count,
+                ..Counts::default()
+            },
+            rims: Arc::new(Vec::new()),
+            loose: Arc::default(),
+            rest_surface: None,
+        }
+    }
+
+    /// Measures the region.
+    pub(crate) fn measure(input: &RegionInput, cancel: &Cancel) -> Result<Self, Cancelled> {
+        let topology = &input.model.topology;
+        let rest_surface = input
+            .rest
+            .as_ref()
+            .map(|rest| Arc::new(displaced(&input.model.surface, rest)));
+        let surface = rest_surface.as_deref().unwrap_or(&input.model.surface);
+        let locked = input.access.locked_vertices(&input.model);
+        let is_locked = |vertex: usize| locked.as_ref().is_some_and(|locked| locked[vertex]);
+        let (members, painted) = painted(input, is_locked);
+        let mut roles = vec![Role::Fixed; input.paint.len()];
+        let mut handles = Vec::new();
+        let mut search = DistanceSearch::default();
+        let position = |v: SurfaceVertex| surface.positions[v.index()];
+        // Per component: whether some handle's ball holds all of it.
+        let (mut within, mut within_this) = (vec![false; painted.len()], vec![true; painted.len()]);
+        for ((id, reach), members) in input.handles.iter().zip(&members) {
+            if members.is_empty() {
+                continue;
+            }
+            cancel.check()?;
+            let limit = reach_length(*reach, surface, topology, members);
+            let seeds: Vec<(SurfaceVertex, f64)> = members.iter().map(|&vertex| (vertex, 0.0)).collect();
+            if limit > 0.0 {
+                for &(vertex, _) in search.within(&surface.triangles, topology, position, &seeds, limit) {
+                    roles[vertex.index()] = Role::Free;
+                }
+            }
+            let ball = Ball::around(members, limit, surface);
+            ball.clear_what_extends_beyond(surface, topology, &mut within_this);
+            within
+                .iter_mut()
+                .zip(&within_this)
+                .for_each(|(within, this)| *within |= this);
+            within_this.fill(true);
+            handles.push(*id);
+        }
+        for (vertex, paint) in input.paint.iter().enumerate() {
+            roles[vertex] = match *paint {
+                _ if is_locked(vertex) => Role::Fixed,
+                Paint::Fixed => Role::Fixed,
+                Paint::Free => Role::Free,
+                Paint::Bare => roles[vertex],
+                Paint::Handle(id) => match handles.iter().position(|&handle| handle == id) {
+                    Some(index) => Role::Handle(index as u16),
+                    None => Role::Fixed,
+                },
+            };
+        }
+        cancel.check()?;
+        if input.tips == Tips::ComeAlong && !handles.is_empty() {
+            let is_painted =
+                |vertex: SurfaceVertex| input.paint[vertex.index()] != Paint::Bare || is_locked(vertex.index());
+            free_tips(&mut roles, surface, topology, is_painted);
+            cancel.check()?;
+        }
+        let loose = if handles.is_empty() || painted.iter().all(|&painted| painted) {
+            Vec::new()
+        } else {
+            free_loose(&mut roles, input, &painted, &within, cancel)?
+        };
+        let rims = rims(surface, &roles);
+        Ok(Self {
+            handles: Arc::new(handles),
+            counts: Counts::of(&roles),
+            roles: Arc::new(roles),
+            rims: Arc::new(rims),
+            loose: Arc::new(loose),
+            rest_surface,
+        })
+    }
+}
+
+/// Sets free the components without paint that go along. The ones that do, and those that a person has told what to do.
+fn free_loose(
+    roles: &mut [Role],
+    input: &RegionInput,
+    painted: &[bool],
+    within: &[bool],
+    cancel: &Cancel,
+) -> Result<Vec<u32>, Cancelled> {
+    let topology = &input.model.topology;
+    let touching = input.contacts.of(&input.model, cancel)?;
+    let told = |component: usize| input.loose_parts.get(&(component as u32)).copied();
+    // Where all rest, the list still tells what would go along.
+    let goes = touching.going_along(topology, roles, painted, within, |component| {
+        told(component).map(|loose| loose != Loose::Rest)
+    });
+    let mut loose = Vec::new();
+    for (component, goes) in goes.into_iter().enumerate() {
+        if goes && told(component).unwrap_or(input.loose) != Loose::Rest {
+            for vertex in topology.vertices_of(component as u32) {
+                roles[vertex.index()] = Role::Free;
+            }
+        }
+        if goes || !painted[component] && told(component).is_some() {
+            loose.push(component as u32);
+        }
+    }
+    Ok(loose)
+}
+
+/// The vertices of each handle that are not locked, and which components carry paint or a lock.
+fn painted(input: &RegionInput, is_locked: impl Fn(usize) -> bool) -> (Vec<Vec<SurfaceVertex>>, Vec<bool>) {
+    let topology = &input.model.topology;
+    let mut members: Vec<Vec<SurfaceVertex>> = vec![Vec::new(); input.handles.len()];
+    let mut held = vec![false; topology.components().len()];
+    for (vertex, paint) in input.paint.iter().enumerate() {
+        let is_locked = is_locked(vertex);
+        let vertex = SurfaceVertex(vertex as u32);
+        if *paint != Paint::Bare || is_locked {
+            held[topology.component(vertex) as usize] = true;
+        }
+        if let Paint::Handle(id) = *paint
+            && !is_locked
+            && let Some(index) = input.handles.iter().position(|(handle, _)| *handle == id)
+        {
+            members[index].push(vertex);
+        }
+    }
+    (members, held)
+}
+
+/// The surface with every vertex moved by its displacement.
+pub(crate) fn displaced(surface: &Surface, displacements: &[DVec3]) -> Surface {
+    let positions = surface
+        .positions
+        .iter()
+        .zip(displacements)
+        .map(|(&p, &d)| p + d)
+        .collect();
+    Surface {
+        positions,
+        triangles: surface.triangles.clone(),
+    }
+}
+
+/// The mean position of some vertices; the origin for none.
+pub(crate) fn centroid(positions: &[DVec3], vertices: impl Iterator<Item = SurfaceVertex>) -> DVec3 {
+    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+    for vertex in vertices {
+        sum += positions[vertex.index()];
+        count += 1.0;
+    }
+    if count > 0.0 { sum / count } else { DVec3::ZERO }
+}
+
+/// Everything that the region follows from.
+pub(crate) fn region_input(model: &Arc<Model>, document: &Document, contacts: &FileContacts) -> RegionInput {
+    RegionInput {
+        model: Arc::clone(model),
+        paint: Arc::clone(&document.paint),
+        handles: document
+            .handles
+            .iter()
+            .map(|handle| (handle.id, handle.reach))
+            .collect(),
+        rest: document.applied.then(|| Arc::clone(&document.rest)),
+        tips: document.tips,
+        loose: document.loose,
+        loose_parts: Arc::clone(&document.loose_parts),
+        access: Arc::clone(&document.access),
+        contacts: contacts.clone(),
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
+mod tests;

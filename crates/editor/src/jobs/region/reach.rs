@@ -1,0 +1,28 @@
+//! How far a handle reaches along the surface, in world units.
+
+use std::f64::consts::PI;
+
+use pliant_mesh::{Surface, SurfaceVertex, Topology, face_area};
+
+use crate::document::Reach;
+
+/// A reach in world units.
+pub(crate) fn reach_length(reach: Reach, surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
+    match reach {
+        Reach::Length(length) => length,
+        Reach::Radii(radii) => radii * handle_radius(surface, topology, members),
+    }
+}
+
+/// A handle's radius: that of the disc with its area.
+///
+/// Farthest distances or moments would do as well for one round patch, but a handle of two patches far apart would
+/// then reach across everything between them.
+fn handle_radius(surface: &Surface, topology: &Topology, members: &[SurfaceVertex]) -> f64 {
+    let area_of = |face: u32| face_area(surface.triangles[face as usize].map(|v| surface.positions[v.index()]));
+    let area: f64 = members
+        .iter()
+        .map(|&vertex| topology.faces(vertex, &surface.triangles).map(area_of).sum::<f64>() / 3.0)
+        .sum();
+    (area / PI).sqrt()
+}
