@@ -6,12 +6,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use glam::DVec3;
 use serde_json::Value;
 
 use super::case::{Case, Entry, Kind};
-use super::laws::{self, AppDirectories, Law, Violation, shortened, violation};
-use super::tree::{Tree, lay, look, with_root};
+use super::laws::{self, Law, Places, Violation, shortened, violation};
+use super::shapes::{self, Shape, is_same, shape};
+use super::tree::{Tree, lay, look, place_of, with_root};
 use crate::trials::Chance;
 use crate::{Ended, run};
 
@@ -144,11 +144,11 @@ fn whole(case: &Case, scratch: &Path, runner: &mut Runner<'_>) {
 
     let at = |path: &Path| root.join("work").join(with_root(path, &root));
     let (output, report) = (at(&case.output), case.report.as_deref().map(at));
-    let places = AppDirectories::before(&at(&case.input), &at(&case.edit), &output, report.as_deref());
+    let places = Places::before(&at(&case.input), &at(&case.edit), &output, report.as_deref());
     let models: BTreeMap<PathBuf, Shape> = if case.kind == Kind::Mesh {
         BTreeMap::new()
     } else {
-        shapes(case, &root)
+        shapes::of_folder(case, &root)
     };
     let Some(ended) = runner.run(&apply_words(case, &case.output, &root, None)) else {
         return;
@@ -236,7 +236,8 @@ fn again(case: &Case, first: &Ended, after: Option<&Tree>, scratch: &Path, runne
     } else if let Some(after) = after {
         let tree = look(&root);
         // Reports tell times, and links of the whole path lead to either folder.
-        let report = case.report.as_ref().and_then(|report| report.file_name());
+        let report = case.report.as_ref();
+        let report = report.and_then(|report| place_of(&root.join("work").join(with_root(report, &root))));
         let differs = laws::changed(after, &tree).into_iter().find(|place| {
             let is_file = |tree: &Tree| {
                 matches!(
@@ -245,7 +246,7 @@ fn again(case: &Case, first: &Ended, after: Option<&Tree>, scratch: &Path, runne
                 )
             };
             let names_root = matches!(case.entries.get(place), Some(Entry::File(bytes)) if names_root(bytes));
-            place.file_name() != report && (is_file(after) || is_file(&tree)) && !names_root
+            report.as_ref() != Some(&root.join(place)) && (is_file(after) || is_file(&tree)) && !names_root
         });
         if let Some(place) = differs.filter(|_| {
             !case
@@ -305,33 +306,10 @@ fn reads_back(old: Option<&Value>, output: &Path, root: &Path, tree: &Tree, runn
     }
 }
 
-type Shape = Vec<[DVec3; 3]>;
-
-/// Whether two shapes are the same to the bit: no number equals one that is none.
-fn is_same(a: &Shape, b: &Shape) -> bool {
-    let bits = |p: &DVec3| p.to_array().map(f64::to_bits);
-    a.as_flattened().iter().map(bits).eq(b.as_flattened().iter().map(bits))
-}
-
-/// The corners of a model's triangles, or `None` where it can't be read.
-fn shape(path: &Path) -> Option<Shape> {
-    let opened = catch_unwind(|| pliant_app::engine::open(path, &Default::default()).ok()).ok()??;
-    let drawn = opened.drawn;
-    let corners = |triangle: &[pliant_mesh::DrawnVertex; 3]| triangle.map(|vertex| drawn.positions[vertex.index()]);
-    Some(drawn.triangles.iter().map(corners).collect())
-}
-
-/// Every model of a folder that shows something.
-fn shapes(case: &Case, root: &Path) -> BTreeMap<PathBuf, Shape> {
-    let is_model = |place: &&PathBuf| pliant_io::Format::of_name(&place.to_string_lossy()).is_ok();
-    let paths = case.entries.keys().filter(is_model).map(|place| root.join(place));
-    paths.filter_map(|path| Some((path.clone(), shape(&path)?))).collect()
-}
-
 /// Models that are not the result show what they did.
-fn strangers(models: &BTreeMap<PathBuf, Shape>, places: &AppDirectories, runner: &mut Runner<'_>) {
+fn strangers(models: &BTreeMap<PathBuf, Shape>, places: &Places, runner: &mut Runner<'_>) {
     for (path, old) in models {
-        let place = super::tree::place_of(path);
+        let place = place_of(path);
         if place.is_some() && (place == places.output || place == places.report) {
             continue;
         }
@@ -368,6 +346,7 @@ fn same_shape(case: &Case, output: &Path, scratch: &Path, runner: &mut Runner<'_
         return;
     }
     let is_finite = |shape: &Shape| shape.as_flattened().iter().all(|p| p.is_finite());
+    let input = root.join("work").join(with_root(&case.input, &root));
     let second = root.join("work").join(&other);
     let (Some(one), Some(two)) = (shape(output).filter(is_finite), shape(&second)) else {
         return;
@@ -381,25 +360,20 @@ fn same_shape(case: &Case, output: &Path, scratch: &Path, runner: &mut Runner<'_
     if one.len() != two.len() {
         let what = format!("{} and {} triangles, the latter in {other:?}", one.len(), two.len());
         runner.result.violations.push(violation(Law::SameShape, what));
-    } else if let Some((a, b)) = farthest(&one, &two, 1e-5 * size) {
+        return;
+    }
+    // A reader cuts a bent polygon by its bent shape, a triangle format holds what was drawn before the bend.
+    let is_cut_anew = shapes::may_hold_polygons(&input) && [output, &second].into_iter().any(shapes::may_hold_polygons);
+    let compare = if is_cut_anew {
+        shapes::stray_corner
+    } else {
+        shapes::farthest
+    };
+    if let Some((a, b)) = compare(&one, &two, 1e-5 * size) {
         let what = format!("{a} in the place of {b}, in {other:?}");
         runner
             .result
             .violations
             .push(violation(Law::SameShape, shortened(&what)));
     }
-}
-
-/// Two coordinates of triangles' middles that should be equal and are farther apart. Formats order triangles in their
-/// own ways, so the coordinates are compared sorted, axis by axis.
-fn farthest(one: &Shape, two: &Shape, tolerance: f64) -> Option<(f64, f64)> {
-    let sorted = |shape: &Shape, axis: usize| {
-        let mut middles: Vec<f64> = shape.iter().map(|t| (t[0] + t[1] + t[2])[axis] / 3.0).collect();
-        middles.sort_by(f64::total_cmp);
-        middles
-    };
-    (0..3).find_map(|axis| {
-        let mut pairs = sorted(one, axis).into_iter().zip(sorted(two, axis));
-        pairs.find(|(a, b)| (a - b).abs() > tolerance)
-    })
 }
