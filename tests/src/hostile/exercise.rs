@@ -10,6 +10,7 @@ use serde_json::Value;
 
 use super::case::{Case, Entry, Kind};
 use super::laws::{self, Law, Places, Violation, shortened, violation};
+use super::pictures;
 use super::shapes::{self, Shape, is_same, shape};
 use super::tree::{Tree, lay, look, place_of, with_root};
 use crate::trials::Chance;
@@ -66,14 +67,14 @@ pub fn listen_for_panics() {
     }));
 }
 
-struct Runner<'a> {
+pub(super) struct Runner<'a> {
     meter: &'a mut dyn Meter,
-    result: Exercised,
+    pub(super) result: Exercised,
 }
 
 impl Runner<'_> {
     /// Gives a command in the present folder. `None` where it panicked.
-    fn run(&mut self, words: &[OsString]) -> Option<Ended> {
+    pub(super) fn run(&mut self, words: &[OsString]) -> Option<Ended> {
         self.meter.begin(words);
         let ended = catch_unwind(AssertUnwindSafe(|| run(words.iter().cloned())));
         let used = self.meter.end();
@@ -83,7 +84,7 @@ impl Runner<'_> {
         if used.peak > MEMORY {
             found.push(violation(Law::InMemory, format!("{} MB by {words:?}", used.peak >> 20)));
         }
-        let binds = words.first().is_some_and(|word| word == "apply");
+        let binds = words.iter().any(|word| word.as_encoded_bytes().starts_with(b"--edit="));
         if used.cpu_ms > 1000 * if binds { BINDING_SECONDS } else { SECONDS } {
             found.push(violation(Law::InTime, format!("{} ms by {words:?}", used.cpu_ms)));
         }
@@ -107,7 +108,7 @@ impl Runner<'_> {
         Some(ended)
     }
 
-    fn untouched(&mut self, root: &Path, tree: &Tree, who: &str) {
+    pub(super) fn untouched(&mut self, root: &Path, tree: &Tree, who: &str) {
         let changed = laws::changed(tree, &look(root));
         if let Some(first) = changed.first() {
             self.result
@@ -134,6 +135,9 @@ fn whole(case: &Case, scratch: &Path, runner: &mut Runner<'_>) {
     let mut chance = Chance(case.seed ^ 0x00c0_ffee);
     let root = scratch.join("case");
     enter(case, &root);
+    if case.kind == Kind::Render {
+        return pictures::draw(case, &root, runner);
+    }
     let input = with_root(&case.input, &root);
     let mut before = look(&root);
     if chance.one_in(2) {

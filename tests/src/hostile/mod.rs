@@ -19,6 +19,7 @@ mod models;
 mod named;
 mod names;
 mod neighbours;
+mod pictures;
 mod projects;
 mod shapes;
 mod tree;

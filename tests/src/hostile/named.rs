@@ -1,7 +1,9 @@
 //! Where the files stand that a model names: a glTF's or GLB's buffers and images, an OBJ's libraries and textures.
 
 use std::collections::BTreeSet;
+use std::ffi::OsString;
 use std::fs;
+use std::os::unix::ffi::OsStringExt as _;
 use std::path::{Path, PathBuf};
 
 use super::json_text;
@@ -18,7 +20,8 @@ pub fn neighbours_of(path: &Path) -> BTreeSet<PathBuf> {
         return BTreeSet::new();
     };
     // What is behind a link may be called anything.
-    let names: BTreeSet<String> = of_gltf(&bytes).into_iter().chain(of_obj(&bytes, &folders)).collect();
+    let of_obj = of_obj(&bytes, &folders).into_iter().map(OsString::from);
+    let names: BTreeSet<OsString> = of_gltf(&bytes).into_iter().chain(of_obj).collect();
     let pairs = folders.iter().flat_map(|folder| {
         names
             .iter()
@@ -74,7 +77,7 @@ fn path_of(name: &str) -> String {
 }
 
 /// The URIs of a glTF or a GLB, with backslashes taken for slashes as well.
-fn of_gltf(bytes: &[u8]) -> BTreeSet<String> {
+fn of_gltf(bytes: &[u8]) -> BTreeSet<OsString> {
     let text = if bytes.starts_with(b"glTF") {
         let length = bytes
             .get(12..)
@@ -87,28 +90,33 @@ fn of_gltf(bytes: &[u8]) -> BTreeSet<String> {
     let uris = json_text::texts_of(text, "uri").into_iter();
     let paths = uris.filter(|uri| !uri.starts_with("data:")).map(|uri| decoded(&uri));
     paths
-        .flat_map(|path| [path.replace('\\', "/"), path])
-        .map(|path| without_dots(&path))
+        .flat_map(|path| [slashed(&path), path])
+        .map(|path| OsString::from_vec(without_dots(&path)))
         .collect()
+}
+
+fn slashed(path: &[u8]) -> Vec<u8> {
+    let slash = |byte: &u8| if *byte == b'\\' { b'/' } else { *byte };
+    path.iter().map(slash).collect()
 }
 
 /// A path without the steps `.` and `..`, as far as it can go without them: a URI's are taken out of its text
 /// (RFC 3986, 5.2.4), whatever stands on the disk.
-fn without_dots(path: &str) -> String {
-    let mut steps: Vec<&str> = Vec::new();
-    for step in path.split('/') {
+fn without_dots(path: &[u8]) -> Vec<u8> {
+    let mut steps: Vec<&[u8]> = Vec::new();
+    for step in path.split(|byte| *byte == b'/') {
         match step {
-            "." => {}
-            "" if !steps.is_empty() || !path.starts_with('/') => {}
-            ".." if steps.last().is_some_and(|last| !matches!(*last, "" | "..")) => drop(steps.pop()),
+            b"." => {}
+            b"" if !steps.is_empty() || !path.starts_with(b"/") => {}
+            b".." if steps.last().is_some_and(|last| !matches!(*last, b"" | b"..")) => drop(steps.pop()),
             step => steps.push(step),
         }
     }
-    steps.join("/")
+    steps.join(&b'/')
 }
 
-/// A URI without its percent signs.
-fn decoded(uri: &str) -> String {
+/// A URI without its percent signs. A name's bytes need not be UTF-8.
+fn decoded(uri: &str) -> Vec<u8> {
     let bytes = uri.as_bytes();
     let mut out = Vec::new();
     let mut at = 0;
@@ -125,5 +133,5 @@ fn decoded(uri: &str) -> String {
             }
         }
     }
-    String::from_utf8(out).unwrap_or_else(|_| uri.to_owned())
+    out
 }
