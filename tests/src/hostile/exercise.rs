@@ -223,9 +223,10 @@ fn apply_words(case: &Case, output: &Path, root: &Path, threads: Option<&str>) -
     words
 }
 
-/// The same command in another folder of the same content.
+/// The same command in another folder of the same content, whose path is as long: messages tell places in texts that
+/// hold it.
 fn again(case: &Case, first: &Ended, after: Option<&Tree>, scratch: &Path, runner: &mut Runner<'_>) {
-    let root = scratch.join("again");
+    let root = scratch.join("twin");
     enter(case, &root);
     let Some(ended) = runner.run(&apply_words(case, &case.output, &root, Some("5"))) else {
         return;
