@@ -16,6 +16,7 @@ use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_no
 use crate::AppError;
 use crate::files::{self, Destination, NewFile, Staging};
 pub use crate::loading::{Loaded, is_project, load, load_bytes, open};
+use crate::memory;
 use crate::report::{Distortion, Energy, FrameTimes, Report, finite_or, ms_since};
 use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
@@ -47,7 +48,9 @@ pub fn bind(
     progress: &Progress,
     cancel: &Cancel,
 ) -> Result<Bound, AppError> {
-    let bound = setup.problem(model).bind(ordering, progress, cancel);
+    let bound = setup
+        .problem(model)
+        .bind_within(ordering, memory::budget(), progress, cancel);
     bound.map_err(|error| AppError::Bind {
         file: file.to_owned(),
         source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),

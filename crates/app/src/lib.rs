@@ -7,6 +7,7 @@ mod error;
 pub mod files;
 pub mod legend;
 mod loading;
+mod memory;
 mod picture_file;
 pub mod report;
 pub mod saving;

@@ -114,14 +114,22 @@ impl Problem<'_> {
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Bound, BindError> {
+        self.rebind_within(ordering, reusable_factor, Budget::default(), progress, cancel)
+    }
+
+    /// As [`Problem::rebind`], with another budget of memory than the default one.
+    ///
+    /// # Errors
+    /// As [`Problem::bind_within`].
+    pub fn rebind_within<'o>(
+        &self,
+        ordering: impl Into<Option<&'o Ordering>>,
+        reusable_factor: Option<&ReusableFactor>,
+        budget: Budget,
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Bound, BindError> {
         let refactorisation = Refactorisation::From(reusable_factor.map(ReusableFactor::factored));
-        Bound::bind(
-            self,
-            ordering.into(),
-            refactorisation,
-            Budget::default(),
-            progress,
-            cancel,
-        )
+        Bound::bind(self, ordering.into(), refactorisation, budget, progress, cancel)
     }
 }

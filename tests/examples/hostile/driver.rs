@@ -8,7 +8,7 @@ use std::process::{Child, ChildStdin, Command, ExitCode, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-use pliant_tests::hostile::Kind;
+use pliant_tests::hostile::{Case, Kind, Size, lay};
 use serde_json::{Value, json};
 
 use crate::table::Table;
@@ -88,7 +88,7 @@ pub fn drive(seed: u64, count: u64, kind: Option<Kind>) -> ExitCode {
     }
 }
 
-/// Copies a case's folders to where they stay.
+/// Copies a case's folder to where it stays, as it was `before` the commands and as it is now.
 fn keep(scratch: &Path, kind: Kind, number: u64) -> PathBuf {
     let kept = std::env::temp_dir()
         .join("pliant-hostile")
@@ -100,6 +100,7 @@ fn keep(scratch: &Path, kind: Kind, number: u64) -> PathBuf {
         .arg(scratch.join("case"))
         .arg(&kept)
         .status();
+    lay(&Case::new(number, kind, Size::Full, &[]), &kept.join("before"));
     kept
 }
 

@@ -26,7 +26,7 @@ pub fn work(scratch: &Path) {
         LIMIT.store(usize::MAX, Relaxed);
         let case = Case::new(seed, kind, Size::Full, &without);
         let _ = std::env::set_current_dir(scratch);
-        for folder in ["case", "again", "shape"] {
+        for folder in ["case", "twin", "shape"] {
             let _ = std::fs::remove_dir_all(scratch.join(folder));
         }
         let result = exercise(&case, scratch, &mut Process::default());

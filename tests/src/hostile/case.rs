@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use pliant_deform::METHODS;
 
 use super::models::{self, Model};
-use super::{bytes, edits, json_text, links, neighbours, projects};
+use super::{bytes, edits, json_text, links, neighbours, pictures, projects};
 use crate::trials::Chance;
 
 /// What is hostile about a case.
@@ -20,16 +20,19 @@ pub enum Kind {
     Link,
     Mesh,
     File,
+    /// A broken file that is drawn.
+    Render,
 }
 
 impl Kind {
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Edit,
         Self::Project,
         Self::Neighbour,
         Self::Link,
         Self::Mesh,
         Self::File,
+        Self::Render,
     ];
 
     pub fn name(self) -> &'static str {
@@ -40,6 +43,7 @@ impl Kind {
             Self::Link => "link",
             Self::Mesh => "mesh",
             Self::File => "file",
+            Self::Render => "render",
         }
     }
 
@@ -83,7 +87,7 @@ pub struct Case {
     pub edit: PathBuf,
     pub output: PathBuf,
     pub report: Option<PathBuf>,
-    /// Further arguments of `pliant apply`.
+    /// Further arguments of `pliant apply`, or of `pliant render`.
     pub more: Vec<OsString>,
     /// How many changes by chance its base went through, those that are left out among them.
     pub mutation_count: usize,
@@ -95,7 +99,7 @@ impl Case {
         let chance = &mut Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ kind as u64);
         let model = match kind {
             Kind::Mesh => models::hard(size, chance),
-            Kind::File => models::any(chance),
+            Kind::File | Kind::Render => models::any(chance),
             Kind::Neighbour => models::with_neighbours(chance),
             Kind::Project => models::alone(chance),
             Kind::Edit | Kind::Link => models::sound(chance),
@@ -103,7 +107,7 @@ impl Case {
         let mut case = Self::of(seed, kind, model, chance);
         case.mutation_count = match kind {
             Kind::Mesh => 0,
-            Kind::Edit | Kind::Project | Kind::File => 1 + chance.below(3) * chance.below(2),
+            Kind::Edit | Kind::Project | Kind::File | Kind::Render => 1 + chance.below(3) * chance.below(2),
             Kind::Neighbour | Kind::Link => 1 + chance.below(3),
         };
         for mutation in 0..case.mutation_count {
@@ -138,10 +142,15 @@ impl Case {
                 edits::rich(model.vertices, chance).to_string().into_bytes(),
             ),
             Kind::Mesh => ("edit.json", edits::short(chance).to_string().into_bytes()),
-            Kind::Neighbour | Kind::Link | Kind::File => ("edit.json", edits::plain(chance).to_string().into_bytes()),
+            Kind::Neighbour | Kind::Link | Kind::File | Kind::Render => {
+                ("edit.json", edits::plain(chance).to_string().into_bytes())
+            }
         };
         entries.insert(PathBuf::from("work").join(edit), Entry::File(text));
-        let output = output(&model.input, &extension, chance);
+        let output = match kind {
+            Kind::Render => pictures::output(chance),
+            _ => output(&model.input, &extension, chance),
+        };
         let input = model.input.clone();
         entries.extend(model.entries);
         Self {
@@ -153,7 +162,10 @@ impl Case {
             edit: edit.into(),
             output,
             report: chance.one_in(3).then(|| "report.json".into()),
-            more: more(kind, chance),
+            more: match kind {
+                Kind::Render => pictures::more(chance),
+                _ => more(kind, chance),
+            },
             mutation_count: 0,
         }
     }
@@ -169,7 +181,7 @@ impl Case {
             Kind::Neighbour => neighbours::mutate(self, chance),
             Kind::Link => links::mutate(self, chance),
             Kind::Mesh => {}
-            Kind::File => {
+            Kind::File | Kind::Render => {
                 let names: Vec<PathBuf> = self
                     .entries
                     .keys()

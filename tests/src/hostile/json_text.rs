@@ -62,7 +62,7 @@ const VALUES: [&str; 20] = [
 
 /// Where things stand in a JSON text.
 #[derive(Default, Debug)]
-struct AppDirectories {
+struct Places {
     /// Every value but the outermost.
     values: Vec<Range<usize>>,
     /// Every member, from its key's quote to its value's end.
@@ -217,8 +217,8 @@ fn remove(text: &mut Vec<u8>, place: Range<usize>) {
 }
 
 /// Walks a text that is JSON or was; where it is broken beyond reading, the walk ends.
-fn places(text: &[u8]) -> AppDirectories {
-    let mut places = AppDirectories::default();
+fn places(text: &[u8]) -> Places {
+    let mut places = Places::default();
     // Open lists and objects: where they began, and the member or element that is under way.
     let mut open: Vec<(usize, Option<usize>)> = Vec::new();
     let mut at = 0;
@@ -267,7 +267,7 @@ fn places(text: &[u8]) -> AppDirectories {
 }
 
 /// Notes a value that ended.
-fn close(places: &mut AppDirectories, text: &[u8], open: &mut [(usize, Option<usize>)], value: Range<usize>) {
+fn close(places: &mut Places, text: &[u8], open: &mut [(usize, Option<usize>)], value: Range<usize>) {
     let Some((parent, under_way)) = open.last_mut() else {
         return;
     };

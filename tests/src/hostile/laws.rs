@@ -1,12 +1,11 @@
 //! What holds after every command, whatever the folder held.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::json_text;
+use super::named::neighbours_of;
 use super::tree::{Node, Tree, What, place_of};
 use crate::Ended;
 
@@ -108,16 +107,16 @@ pub fn changed(before: &Tree, after: &Tree) -> Vec<PathBuf> {
 
 /// The paths that a save speaks of, each where it leads to.
 #[derive(Clone, Default, Debug)]
-pub struct AppDirectories {
+pub struct Places {
     pub output: Option<PathBuf>,
     pub report: Option<PathBuf>,
     /// The input, the edit, and what the input names.
     pub inputs: BTreeSet<PathBuf>,
-    /// What stood in the result's place named these.
+    /// What stood in the result's place, through a link as well, named these.
     pub old_neighbours: BTreeSet<PathBuf>,
 }
 
-impl AppDirectories {
+impl Places {
     /// Looks before the save. All paths begin with the case's folder.
     pub fn before(input: &Path, edit: &Path, output: &Path, report: Option<&Path>) -> Self {
         let mut inputs = neighbours_of(input);
@@ -126,13 +125,13 @@ impl AppDirectories {
             output: place_of(output),
             report: report.and_then(place_of),
             inputs,
-            old_neighbours: neighbours_of(output),
+            old_neighbours: place_of(output).map(|place| neighbours_of(&place)).unwrap_or_default(),
         }
     }
 }
 
 /// Judges what a successful save changed. `root` is the case's folder, without links in its path.
-pub fn of_save(root: &Path, before: &Tree, after: &Tree, places: &AppDirectories, found: &mut Vec<Violation>) {
+pub fn of_save(root: &Path, before: &Tree, after: &Tree, places: &Places, found: &mut Vec<Violation>) {
     let within = |path: &PathBuf| path.strip_prefix(root).ok().map(Path::to_owned);
     let output = places.output.as_ref().and_then(within);
     let report = places.report.as_ref().and_then(within);
@@ -244,78 +243,4 @@ pub fn of_report(text: &str, found: &mut Vec<Violation>) {
     if report["converged"] == true && energy >= f64::MAX {
         found.push(violation(Law::Report, "an infinite energy is told as converged"));
     }
-}
-
-/// Where the files stand that a model names: a glTF's or GLB's buffers and images, an OBJ's libraries and theirs.
-pub fn neighbours_of(path: &Path) -> BTreeSet<PathBuf> {
-    let mut found = BTreeSet::new();
-    let kind = crate::extension(path);
-    let is_plain = fs::metadata(path).is_ok_and(|metadata| metadata.is_file());
-    let Some(bytes) = is_plain.then(|| fs::read(path).ok()).flatten() else {
-        return found;
-    };
-    if kind == "obj" || kind == "mtl" {
-        for line in String::from_utf8_lossy(&bytes).lines() {
-            let Some((word, rest)) = line.trim().split_once(' ') else {
-                continue;
-            };
-            if word == "mtllib" || word.starts_with("map_") {
-                // Options stand before a picture's name.
-                let names = [rest, rest.rsplit(' ').next().unwrap_or(rest)];
-                found.extend(
-                    names
-                        .iter()
-                        .filter_map(|name| place_of(&path.with_file_name("").join(name.trim()))),
-                );
-            }
-        }
-        if kind == "obj" {
-            let libraries: Vec<PathBuf> = found
-                .iter()
-                .filter(|place| crate::extension(place) == "mtl")
-                .cloned()
-                .collect();
-            found.extend(libraries.iter().flat_map(|library| neighbours_of(library)));
-        }
-        return found;
-    }
-    let text = if bytes.starts_with(b"glTF") {
-        let length = bytes
-            .get(12..)
-            .and_then(|rest| rest.first_chunk())
-            .map_or(0, |word| u32::from_le_bytes(*word));
-        bytes.get(20..20 + length as usize).unwrap_or_default()
-    } else {
-        &bytes[..]
-    };
-    // Anything called so counts: a file that is broken elsewhere may be read.
-    for uri in json_text::texts_of(text, "uri")
-        .iter()
-        .filter(|uri| !uri.starts_with("data:"))
-    {
-        found.extend(place_of(&path.with_file_name("").join(decoded(uri))));
-        found.extend(place_of(&path.with_file_name("").join(decoded(uri).replace('\\', "/"))));
-    }
-    found
-}
-
-/// A URI without its percent signs.
-fn decoded(uri: &str) -> String {
-    let bytes = uri.as_bytes();
-    let mut out = Vec::new();
-    let mut at = 0;
-    while at < bytes.len() {
-        let hex = (bytes[at] == b'%').then(|| uri.get(at + 1..at + 3)).flatten();
-        match hex.and_then(|digits| u8::from_str_radix(digits, 16).ok()) {
-            Some(byte) => {
-                out.push(byte);
-                at += 3;
-            }
-            None => {
-                out.push(bytes[at]);
-                at += 1;
-            }
-        }
-    }
-    String::from_utf8(out).unwrap_or_else(|_| uri.to_owned())
 }

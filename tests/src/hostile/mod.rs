@@ -16,11 +16,15 @@ mod laws;
 mod links;
 mod meshes;
 mod models;
+mod named;
 mod names;
 mod neighbours;
+mod pictures;
 mod projects;
+mod shapes;
 mod tree;
 
 pub use case::{Case, Kind, Size};
 pub use exercise::{Exercised, Meter, Unmetered, Used, exercise, listen_for_panics};
 pub use laws::{Law, Violation};
+pub use tree::lay;

@@ -9,16 +9,19 @@ use pliant_mesh::SurfaceVertex;
 use crate::BindError;
 use crate::operators::triangulation::{Graph, Triangulation};
 
-/// Where edges to what holds a surface, to the 2n-th power, exceed this, no digit is left. Strips at order 3 were solved
-/// to seven digits at 4·10¹⁸, to three at 2·10²⁰, and to none at 6·10²².
-const HOPELESS: f64 = 1e24;
+/// Where edges to what holds a surface, to the 2n-th power, exceed this, no digit is left. Strips at order 2 were solved
+/// to three digits at 1.5·10¹⁸ and to none at 2.4·10¹⁹; at order 3 to seven digits at 4·10¹⁸, to three at 2·10²⁰, and
+/// to none at 6·10²².
+fn hopeless(order: u32) -> f64 {
+    if order < 3 { 1e20 } else { 1e24 }
+}
 
 /// Refuses what is farther than `order` allows from every vertex that is not `solved` (ascending).
 ///
 /// # Errors
 /// [`BindError::Slender`] with the vertex that is farthest.
 pub(crate) fn check(triangulation: &Triangulation, solved: &[u32], order: u32) -> Result<(), BindError> {
-    let most = HOPELESS.powf(0.5 / f64::from(order));
+    let most = hopeless(order).powf(0.5 / f64::from(order));
     if (solved.len() as f64) < most {
         return Ok(());
     }

@@ -157,18 +157,23 @@ fn an_energy_beyond_all_numbers_is_refused_by_every_method() {
 
 #[test]
 fn a_strip_too_long_for_its_order_is_refused_at_once_and_a_lower_order_bends_it() {
-    // Held at both ends, 10,500 edges from its middle.
-    let long = |order| {
-        let mut scene = Scene::new(shapes::grid(21_000, 1))
+    // Held at both ends.
+    let long = |order, cells| {
+        let mut scene = Scene::new(shapes::grid(cells, 1))
             .with(Role::Fixed, |p| p.x < 1e-6)
             .with(Role::Handle(0), |p| p.x > 1.0 - 1e-6);
         scene.method = bilaplacian(order);
         scene
     };
-    let refused = long(BilaplacianOrder::CurvatureVariation).try_bind().err();
-    let Some(BindError::Slender { edges, order: 3, .. }) = refused else {
-        unreachable!("{refused:?}")
+    let of_three = long(BilaplacianOrder::CurvatureVariation, 21_000).try_bind().err();
+    let Some(BindError::Slender { edges, order: 3, .. }) = of_three else {
+        unreachable!("{of_three:?}")
     };
     assert!((10_000..10_600).contains(&edges), "{edges}");
-    assert!(long(BilaplacianOrder::Membrane).try_bind().is_ok());
+    assert!(long(BilaplacianOrder::Membrane, 21_000).try_bind().is_ok());
+    let of_two = long(BilaplacianOrder::ThinPlate, 210_000).try_bind().err();
+    let Some(BindError::Slender { edges, order: 2, .. }) = of_two else {
+        unreachable!("{of_two:?}")
+    };
+    assert!((100_000..106_000).contains(&edges), "{edges}");
 }

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{Bound, Ordering};
+use pliant_deform::{Bound, Budget, Ordering};
 use pliant_mesh::{Bvh, Cancel, Progress, SurfaceVertex};
 
 use super::region::Region;
@@ -107,6 +107,11 @@ pub trait Executor {
     /// [`Event::JobDone`](crate::Event::JobDone), never by calling the editor from here. A job that panics is to be
     /// answered with [`JobOutcome::Failed`].
     fn start(&mut self, job: Job);
+
+    /// Tells how much memory a binding may take; a job asks it when it begins, on the thread that it runs on.
+    fn budget(&self) -> fn() -> Budget {
+        Budget::default
+    }
 }
 
 /// What rays are answered from.

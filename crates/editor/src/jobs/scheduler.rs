@@ -254,9 +254,9 @@ impl Jobs {
                     region_work(region_input(&model, document, &computed.contacts))
                 });
             } else if missing.is_none() && !self.is_bound() && !self.computed.region.handles.is_empty() {
-                let revision = self.problem_revision.0;
+                let (revision, budget) = (self.problem_revision.0, self.executor.budget());
                 self.want(JobKind::Bind, |computed| {
-                    bind_work(computed, &model, document, revision)
+                    bind_work(computed, &model, document, revision, budget)
                 });
             }
             if self.is_bound() && !document.settled {

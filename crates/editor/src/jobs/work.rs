@@ -3,7 +3,7 @@
 use std::sync::{Arc, PoisonError};
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{BindError, Bound, Ordering, Problem, Solve, SolveError, Step};
+use pliant_deform::{BindError, Bound, Budget, Ordering, Problem, Solve, SolveError, Step};
 use pliant_mesh::{Bvh, Cancel, Model, SurfaceVertex};
 
 use super::computed::Computed;
@@ -73,7 +73,13 @@ pub(super) fn pick_work(computed: &Computed, model: &Arc<Model>, document: &Docu
 }
 
 /// Factorises; `None` while the ordering that the method needs is missing.
-pub(super) fn bind_work(computed: &Computed, model: &Arc<Model>, document: &Document, revision: u64) -> Option<Work> {
+pub(super) fn bind_work(
+    computed: &Computed,
+    model: &Arc<Model>,
+    document: &Document,
+    revision: u64,
+    budget: fn() -> Budget,
+) -> Option<Work> {
     let ordering = match document.method.ordering_power() {
         Some(power) => Some(computed.ordering(power)?),
         None => None,
@@ -86,7 +92,8 @@ pub(super) fn bind_work(computed: &Computed, model: &Arc<Model>, document: &Docu
             revision,
             ..setup.problem(&model)
         };
-        match problem.rebind(ordering.as_deref(), reusable_factor.as_ref(), progress, cancel) {
+        let (ordering, reusable_factor) = (ordering.as_deref(), reusable_factor.as_ref());
+        match problem.rebind_within(ordering, reusable_factor, budget(), progress, cancel) {
             Ok(bound) => JobOutcome::Bound(Box::new(bound)),
             Err(BindError::Cancelled(_)) => JobOutcome::Cancelled,
             Err(error) => JobOutcome::Failed(

@@ -10,11 +10,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui;
 use glam::DVec3;
+use pliant_deform::Budget;
 use pliant_editor::{Executor, Job, JobDone, JobOutcome};
 
 use super::message::{Message, Painted, Posed};
 use crate::drawing::{self, Drawing, Field, Scale};
 use crate::engine::Loaded;
+use crate::memory;
 
 /// Starts work off the window's thread and wakes the window when it ends. Cloning shares the channel.
 #[derive(Clone)]
@@ -123,6 +125,10 @@ impl Workers {
 }
 
 impl Executor for Workers {
+    fn budget(&self) -> fn() -> Budget {
+        memory::budget
+    }
+
     fn start(&mut self, job: Job) {
         let (kind, stamp) = (job.kind, job.stamp);
         let stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner).clone();

@@ -1,0 +1,95 @@
+//! How much memory the machine has left for solving.
+
+use std::fs;
+use std::path::Path;
+
+use pliant_deform::Budget;
+
+/// What binding may take: the solver's own budget, or what the system has left where that is less.
+///
+/// Linux grants more memory than there is and ends the program once it is used, so that a failed allocation would
+/// come too late. Where the system does not tell, the solver's own budget.
+pub fn budget() -> Budget {
+    let own = Budget::default().bytes;
+    let left = [left_in_machine(), left_in_group()].into_iter().flatten().min();
+    Budget {
+        bytes: left.map_or(own, |left| left.min(own)),
+    }
+}
+
+/// What the machine can give without pushing out what is in use, swap included.
+fn left_in_machine() -> Option<u64> {
+    let text = fs::read_to_string("/proc/meminfo").ok()?;
+    let kilobytes = |name| number(&text, name);
+    Some((kilobytes("MemAvailable:")? + kilobytes("SwapFree:").unwrap_or(0)) * 1024)
+}
+
+/// What the process's control groups (a container's limit, as a rule) leave: the least of all that hold it.
+fn left_in_group() -> Option<u64> {
+    let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
+    let limits = groups.lines().filter_map(|line| {
+        let mut parts = line.splitn(3, ':').skip(1);
+        let (controllers, path) = (parts.next()?, parts.next()?);
+        let (root, limit, used) = if controllers.is_empty() {
+            ("/sys/fs/cgroup", "memory.max", "anon ")
+        } else if controllers.split(',').any(|name| name == "memory") {
+            ("/sys/fs/cgroup/memory", "memory.limit_in_bytes", "total_rss ")
+        } else {
+            return None;
+        };
+        let groups = Path::new(path).ancestors();
+        let groups = groups.map(|group| Path::new(root).join(group.strip_prefix("/").unwrap_or(group)));
+        groups.filter_map(|group| left_of(&group, limit, used)).min()
+    });
+    limits.min()
+}
+
+/// A group's limit without what is in use there; files that the system keeps in memory go when they must.
+fn left_of(group: &Path, limit: &str, used: &str) -> Option<u64> {
+    let limit: u64 = fs::read_to_string(group.join(limit)).ok()?.trim().parse().ok()?;
+    let stat = fs::read_to_string(group.join("memory.stat")).ok()?;
+    Some(limit.saturating_sub(number(&stat, used)?))
+}
+
+/// The number behind a name at a line's beginning.
+fn number(text: &str, name: &str) -> Option<u64> {
+    let rest = text.lines().find_map(|line| line.strip_prefix(name))?;
+    rest.split_whitespace().next()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_is_found_by_its_whole_name() {
+        let text = "MemFree: 5 kB\nMemAvailable:   12345 kB\nanon_thp 7\nanon 8\n";
+        assert_eq!(number(text, "MemAvailable:"), Some(12345));
+        assert_eq!(number(text, "anon "), Some(8));
+        assert_eq!(number(text, "SwapFree:"), None);
+    }
+
+    #[test]
+    fn a_group_leaves_its_limit_without_what_is_in_use() {
+        let folder = tempfile::tempdir().unwrap_or_else(|error| panic!("{error}"));
+        let write = |name: &str, text: &str| {
+            fs::write(folder.path().join(name), text).unwrap_or_else(|error| panic!("{error}"));
+        };
+        write("memory.stat", "file 4000\nanon 300\n");
+        write("memory.max", "max\n");
+        assert_eq!(left_of(folder.path(), "memory.max", "anon "), None);
+        write("memory.max", "1000\n");
+        assert_eq!(left_of(folder.path(), "memory.max", "anon "), Some(700));
+        write("memory.max", "200\n");
+        assert_eq!(left_of(folder.path(), "memory.max", "anon "), Some(0));
+    }
+
+    #[test]
+    fn the_solver_never_gets_more_than_its_own_budget() {
+        let budget = budget();
+        assert!(
+            budget.bytes > 0 && budget.bytes <= Budget::default().bytes,
+            "{budget:?}"
+        );
+    }
+}
