@@ -79,7 +79,7 @@ mod tests {
             part_name(&model, nearest.map_or(0, |vertex| model.topology.component(vertex)), up)
         };
         let (left_top, before) = (DVec3::new(-8.0, 8.0, 0.0), DVec3::new(0.0, 0.0, 7.0));
-        assert_eq!(name_at(DVec3::ZERO, UpAxis::Y), "Medium, in the middle");
+        assert_eq!(name_at(DVec3::ZERO, UpAxis::Y), "Large, in the middle");
         assert_eq!(name_at(left_top, UpAxis::Y), "Small, top left");
         assert_eq!(name_at(before, UpAxis::Y), "Medium, front");
         assert_eq!(name_at(before, UpAxis::Z), "Medium, top");

@@ -14,7 +14,7 @@ use pliant_mesh::{
     Bvh, Cancel, Cancelled, Contact, Model, Surface, SurfaceVertex, Topology, component_areas, contacts,
 };
 
-use super::centroid;
+use super::reach::centroid;
 
 /// What the components of a file touch. It depends on the file alone, so it is found once, when it is first needed.
 #[derive(Clone, Debug, Default)]

@@ -18,7 +18,7 @@ use pliant_mesh::{Cancel, Cancelled, ContourLine, DistanceSearch, Model, Surface
 
 use self::loose::Ball;
 pub(crate) use self::loose::FileContacts;
-pub(crate) use self::reach::reach_length;
+pub(crate) use self::reach::{centroid, reach_length};
 use self::tips::free_tips;
 use super::rim::rims;
 use crate::document::{Access, Document, HandleId, Paint, Reach, Tips};
@@ -232,16 +232,6 @@ pub(crate) fn displaced(surface: &Surface, displacements: &[DVec3]) -> Surface {
         positions,
         triangles: surface.triangles.clone(),
     }
-}
-
-/// The mean position of some vertices; the origin for none.
-pub(crate) fn centroid(positions: &[DVec3], vertices: impl Iterator<Item = SurfaceVertex>) -> DVec3 {
-    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
-    for vertex in vertices {
-        sum += positions[vertex.index()];
-        count += 1.0;
-    }
-    if count > 0.0 { sum / count } else { DVec3::ZERO }
 }
 
 /// Everything that the region follows from.

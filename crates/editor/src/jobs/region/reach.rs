@@ -1,7 +1,8 @@
-//! How far a handle reaches along the surface, in world units.
+//! Where a handle is, and how far it reaches along the surface, in world units.
 
 use std::f64::consts::PI;
 
+use glam::DVec3;
 use pliant_mesh::{Surface, SurfaceVertex, Topology, face_area};
 
 use crate::document::Reach;
@@ -25,4 +26,14 @@ fn handle_radius(surface: &Surface, topology: &Topology, members: &[SurfaceVerte
         .map(|&vertex| topology.faces(vertex, &surface.triangles).map(area_of).sum::<f64>() / 3.0)
         .sum();
     (area / PI).sqrt()
+}
+
+/// The mean position of some vertices; the origin for none.
+pub(crate) fn centroid(positions: &[DVec3], vertices: impl Iterator<Item = SurfaceVertex>) -> DVec3 {
+    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+    for vertex in vertices {
+        sum += positions[vertex.index()];
+        count += 1.0;
+    }
+    if count > 0.0 { sum / count } else { DVec3::ZERO }
 }
