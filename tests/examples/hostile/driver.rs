@@ -11,8 +11,8 @@ use std::time::{Duration, Instant};
 use pliant_tests::hostile::{Case, Kind, Size, lay};
 use serde_json::{Value, json};
 
+use crate::counting::cpu_ms;
 use crate::table::Table;
-use crate::worker::cpu_ms;
 
 /// The processor time after which a command is ended.
 const MOST_CPU_MS: u64 = 25_000;

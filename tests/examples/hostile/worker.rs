@@ -8,7 +8,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use pliant_tests::hostile::{Case, Kind, Meter, Size, Used, exercise, listen_for_panics};
 use serde_json::json;
 
-use crate::counting::{HELD, LIMIT, PEAK};
+use crate::counting::{HELD, LIMIT, PEAK, cpu_ms};
 
 /// What the commands may hold, on top of what the process held before.
 const MEMORY: usize = 2 << 30;
@@ -75,13 +75,4 @@ impl Meter for Process {
 fn tell(line: &str) {
     let mut out = std::io::stdout().lock();
     let _ = writeln!(out, "{line}").and_then(|()| out.flush());
-}
-
-/// The processor time of a process and all of its threads. Linux counts it in hundredths of a second.
-pub fn cpu_ms(process: &str) -> Option<u64> {
-    let text = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
-    // The name in brackets may hold anything.
-    let fields: Vec<&str> = text.rsplit_once(')')?.1.split_whitespace().collect();
-    let ticks = |place: usize| fields.get(place)?.parse::<u64>().ok();
-    Some((ticks(11)? + ticks(12)?) * 10)
 }
