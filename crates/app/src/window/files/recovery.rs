@@ -372,9 +372,11 @@ mod tests {
         let file = mesh(folder.path());
         let loaded = loaded(&file);
         let mut recovered = 0;
+        let (_, module) = module_path!().split_once("::").unwrap();
+        let name = format!("{module}::child");
         for kill in 0..KILLS {
             let mut child = Command::new(std::env::current_exe().unwrap())
-                .args(["--exact", "window::recovery::tests::child", "--nocapture"])
+                .args(["--exact", &name, "--nocapture"])
                 .env(FOLDER, folder.path())
                 .stdout(Stdio::piped())
                 .stderr(Stdio::null())

@@ -40,6 +40,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                 Command::MakeTwin(1),
                 Command::MakeTwin(2),
                 Command::Untwin,
+                Command::PinOrUnpin,
                 Command::PickPivot,
                 Command::Widen,
                 Command::ResetRegion,
@@ -67,11 +68,11 @@ fn row(ui: &mut egui::Ui, handle: &Handle, is_selected: bool, commands: &mut Out
             if toggle(ui, Icon::Eye, handle.visible, &format!("Show {}", handle.name), hover) {
                 commands.push(Command::ToggleHandleVisible(handle.id));
             }
-            if handle.soft.is_some() {
-                ui.label(RichText::new("soft").weak().small());
-            }
-            if handle.twin.is_some() {
-                ui.label(RichText::new("twin").weak().small());
+            let badges = [("soft", handle.soft.is_some()), ("twin", handle.twin.is_some())];
+            let badges = badges.iter().filter(|(_, has)| *has).map(|(name, _)| *name);
+            let badges = badges.collect::<Vec<_>>().join(", ");
+            if !badges.is_empty() {
+                ui.label(RichText::new(badges).weak().small());
             }
         });
     });
@@ -193,6 +194,7 @@ fn triple(
             let mut changed = value;
             let field = number_field(ui, &mut changed[axis], |ui, value| {
                 let field = DragValue::new(value).speed(speed).max_decimals(3).suffix(suffix);
+                let field = field.custom_formatter(without_minus_zero);
                 ui.add(field.update_while_editing(false))
             });
             let field = field.labelled_by(name.id).on_hover_text(["x", "y", "z"][axis]);
@@ -200,6 +202,15 @@ fn triple(
         }
     });
     ui.end_row();
+}
+
+/// As egui writes it, but "0.0" for what rounds to nothing from below.
+fn without_minus_zero(value: f64, decimals: std::ops::RangeInclusive<usize>) -> String {
+    let text = egui::emath::format_with_decimals_in_range(value, decimals);
+    match text.strip_prefix('-') {
+        Some(digits) if digits.chars().all(|digit| matches!(digit, '0' | '.')) => digits.to_owned(),
+        _ => text,
+    }
 }
 
 fn pivot(ui: &mut egui::Ui, handle: &Handle, commands: &mut Outbox) {
