@@ -52,7 +52,7 @@ pub(crate) fn set_turn(workspace: &mut Workspace, id: HandleId, turn_deg: glam::
     });
 }
 
-/// Widening the region changes roles: the present shape becomes the rest shape first.
+/// Widening the region changes roles: the present shape is kept.
 pub(crate) fn set_reach(workspace: &mut Workspace, id: HandleId, reach: Reach) {
     let (Reach::Radii(size) | Reach::Length(size)) = reach;
     if !(size.is_finite() && size >= 0.0) {

@@ -19,7 +19,7 @@ pub fn show(ui: &egui::Ui, view_rect: egui::Rect, editor: &Editor) -> bool {
         (
             2,
             "Drag it",
-            "Pull an arrow or a ring, or press G, R or S; x, y, z and numbers work as you expect.",
+            "Rest on an arrow or a ring and pull it, or press G, R or S; x, y, z and numbers work as you expect.",
         )
     } else {
         (
