@@ -186,7 +186,7 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     session.key(Key::Enter, Modifiers::NONE);
     session.settle();
     let typed = session.shape();
-    assert!(session.status().contains("Converged"), "{}", session.status());
+    assert!(session.status().contains("Settled"), "{}", session.status());
     let handle = session.harness.state().editor().document().handles()[0].clone();
     assert_eq!(session.harness.state().editor().document().method().name(), "arap");
     assert!(
@@ -213,7 +213,7 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     session.settle();
     let dragged = session.shape();
     assert_ne!(dragged, typed);
-    assert!(session.status().contains("Converged"), "{}", session.status());
+    assert!(session.status().contains("Settled"), "{}", session.status());
 
     // The picture shows the editor's shape.
     let shown = session.harness.state().shown_displacements().unwrap().to_vec();

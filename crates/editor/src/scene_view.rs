@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::Model;
 
 use crate::document::{Handle, HandleId};
-use crate::jobs::{Counts, JobKind};
+use crate::jobs::{Counts, Descent, JobKind};
 use crate::tool::{BrushMetric, Depth, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Camera, GizmoOrientation, GizmoShape, Look, Orbit};
 
@@ -39,6 +39,8 @@ pub struct SceneView<'a> {
     pub brush_ring: &'a [DVec3],
     /// The selected handle's gizmo, in world space; empty where none is shown.
     pub gizmo: &'a [GizmoShape],
+    /// How far an iterative method's descent to the present shape is; `None` where nothing is bent, or in one step.
+    pub descent: Option<Descent>,
     /// How the surface is shown.
     pub look: Look,
     /// What dragging the view does.

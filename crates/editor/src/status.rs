@@ -29,14 +29,13 @@ pub(crate) fn status(
 fn descent(workspace: &Workspace) -> Option<String> {
     let document = &workspace.document;
     let descent = workspace.descent.filter(|_| document.is_displaced())?;
-    let energy = format!("energy {:.3e}", descent.energy);
-    Some(if descent.converged && document.is_settled() {
-        format!("Converged, {energy}")
-    } else if descent.finished && document.is_settled() {
-        format!("Stopped at its limit of steps, {energy}")
-    } else {
-        format!("Settling, {energy}")
-    })
+    let said = match document.is_settled() {
+        false => "Settling",
+        true if descent.converged => "Settled",
+        true if descent.finished => "Stopped at its limit of steps",
+        true => return None,
+    };
+    Some(said.to_owned())
 }
 
 /// What can be done while nothing is going on, and how many vertices do what.

@@ -96,7 +96,7 @@ fn a_descent_that_was_undone_on_its_way_goes_on_when_it_is_redone() {
     assert!(on_its_way == rig.drawn());
     rig.drain();
     assert!(
-        rig.editor.view().status.contains("Converged"),
+        rig.editor.view().status.contains("Settled"),
         "{}",
         rig.editor.view().status
     );

@@ -364,6 +364,18 @@ impl Application {
         }
     }
 
+    /// With which energy the shape has settled, for the log.
+    fn settled_with(&self) -> Option<String> {
+        let view = self.editor.view();
+        let descent = view.descent.filter(|_| view.settled)?;
+        let end = if descent.converged {
+            "Settled"
+        } else {
+            "Stopped at its limit of steps"
+        };
+        Some(format!("{end}, energy {:.3e}.", descent.energy))
+    }
+
     /// Notes how large the window is, once nobody pulls at it.
     fn remember_size(&mut self, context: &egui::Context) {
         let size = context.input(|input| {
@@ -472,6 +484,7 @@ impl eframe::App for Application {
         for sentence in [
             self.headline().map(str::to_owned),
             self.editor.view().problem.map(str::to_owned),
+            self.settled_with(),
         ] {
             self.log.say(sentence.as_deref().unwrap_or_default());
         }

@@ -39,6 +39,7 @@ impl Editor {
             camera_revision: view.revision(),
             brush_ring: &self.overlay.ring,
             gizmo: &self.overlay.gizmo,
+            descent: workspace.descent.filter(|_| document.is_displaced()),
             look: view.look,
             orbit: view.orbit(),
             readout: gesture.and_then(|gesture| gesture.readout(workspace, view)),

@@ -123,7 +123,11 @@ pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Wor
                     .renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0)
                     .to_string(),
             ),
-            Ok((from_rest, carried, step)) => {
+            Ok(Bent {
+                shown: from_rest,
+                carried,
+                step,
+            }) => {
                 let from_file = sum_of_shapes(rest.as_ref(), &from_rest);
                 JobOutcome::Solved(Solved {
                     from_rest,
@@ -139,6 +143,16 @@ pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Wor
             }
         }
     }))
+}
+
+/// What a solve has brought.
+struct Bent {
+    /// What is shown, as displacements from the rest shape.
+    shown: Arc<Vec<DVec3>>,
+    /// What the next solve goes on from, where a shape was kept.
+    carried: Option<Carried>,
+    /// How the descent stands.
+    step: Step,
 }
 
 /// From where a solve goes on.
@@ -165,8 +179,8 @@ impl Beginning {
             }
             return Some(Self::Carried(carried));
         }
-        let mut handles = computed.region.handles.iter();
-        let first: Option<Vec<DAffine3>> = handles.by_ref().map(|id| kept.targets.get(id).copied()).collect();
+        let handles = computed.region.handles.iter();
+        let first: Option<Vec<DAffine3>> = handles.map(|id| kept.targets.get(id).copied()).collect();
         first.map(|first| Self::Kept(Arc::clone(kept), first))
     }
 
@@ -177,12 +191,16 @@ impl Beginning {
         targets: &[DAffine3],
         from_rest: &Arc<Vec<DVec3>>,
         cancel: &Cancel,
-    ) -> Result<(Arc<Vec<DVec3>>, Option<Carried>, Step), SolveError> {
+    ) -> Result<Bent, SolveError> {
         let (kept, at_first, mut solution) = match self {
             Self::Shown => {
                 let mut solution = from_rest.to_vec();
                 let step = steps(bound, targets, &mut solution, cancel)?;
-                return Ok((Arc::new(solution), None, step));
+                return Ok(Bent {
+                    shown: Arc::new(solution),
+                    carried: None,
+                    step,
+                });
             }
             Self::Kept(kept, first) => {
                 let mut at_first = kept.shape.to_vec();
@@ -203,7 +221,11 @@ impl Beginning {
             solution: Arc::new(solution),
             shown: Arc::clone(&shown),
         };
-        Ok((shown, Some(carried), step))
+        Ok(Bent {
+            shown,
+            carried: Some(carried),
+            step,
+        })
     }
 }
 

@@ -10,7 +10,9 @@ use pliant_mesh::{Model, SurfaceVertex};
 use super::colour_revisions::Colours;
 use super::mirror_request::Mirroring;
 use super::selection::HandleSelection;
-use crate::document::{Aspect, Document, HISTORY_BYTES, Handle, History, Transaction, Version, Versions, VertexAccess};
+use crate::document::{
+    Aspect, Document, HISTORY_BYTES, Handle, HandleId, History, Transaction, Version, Versions, VertexAccess,
+};
 use crate::jobs::{Computed, Descent, Executor, Jobs, Revision};
 use crate::view::{Pick, Picking, View};
 
@@ -193,7 +195,13 @@ impl Workspace {
     /// Takes back the last step.
     pub(crate) fn undo(&mut self) {
         self.jobs.drop_solves();
+        let before: Vec<HandleId> = self.document.handles().iter().map(|handle| handle.id).collect();
         self.history.undo(&mut self.document);
+        // A handle whose deletion was taken back is selected, as it was.
+        let mut handles = self.document.handles().iter().map(|handle| handle.id);
+        if let Some(back) = handles.find(|id| !before.contains(id)) {
+            self.selection.put(Some(back));
+        }
     }
 
     /// Does the last taken-back step again.

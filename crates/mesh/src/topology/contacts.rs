@@ -95,6 +95,7 @@ fn contacts_of(
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
 mod tests {
     use glam::{DAffine3, DVec3};
 

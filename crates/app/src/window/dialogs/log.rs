@@ -7,6 +7,9 @@ use eframe::egui::{self, RichText, ScrollArea};
 /// Sentences that are kept.
 const MOST: usize = 500;
 
+/// So many sentences are told to the log again in every frame that they stand.
+const STANDING: usize = 3;
+
 /// What egui tells its window by.
 pub const ID: &str = "log window";
 
@@ -19,11 +22,12 @@ pub struct Log {
 }
 
 impl Log {
-    /// Adds a sentence, unless it is the one that was said last.
+    /// Adds a sentence, unless it is one of those that were said last: several may stand at a time.
     pub fn say(&mut self, sentence: &str) {
         let sentence: String = sentence.chars().filter(|letter| !pliant_io::steers(*letter)).collect();
         let sentence = &*sentence;
-        let is_again = self.lines.last().is_some_and(|line| line.ends_with(sentence));
+        let mut last = self.lines.iter().rev().take(STANDING);
+        let is_again = last.any(|line| line.ends_with(sentence));
         if is_again || sentence.is_empty() {
             return;
         }
