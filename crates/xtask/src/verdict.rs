@@ -148,17 +148,24 @@ impl Verdict {
     ///
     /// # Errors
     /// One sentence if anything failed.
-    pub fn conclude(mut self, started: Instant, skips: Skips) -> Result<(), String> {
+    pub fn conclude(self, started: Instant, skips: Skips) -> Result<(), String> {
+        let (summary, result) = self.judge(started.elapsed().as_secs_f64(), skips);
+        print!("\n{summary}");
+        result
+    }
+
+    /// The summary and the result, unprinted: a test that printed lines like those counted here would be counted.
+    fn judge(mut self, seconds: f64, skips: Skips) -> (String, Result<(), String>) {
         if skips == Skips::Failures {
             let needed = |line: &&String| NEEDS_GRAPHICS.iter().any(|start| line.starts_with(start));
             self.failures.extend(self.skipped.iter().filter(needed).cloned());
         }
-        print!("\n{}", self.summary(started.elapsed().as_secs_f64()));
-        match self.failures.len() {
-            0 => Ok(()),
-            1 => Err(format!("{} failed.", self.failures[0])),
-            n => Err(format!("{n} tests failed: they are named above.")),
-        }
+        let result = match self.failures.as_slice() {
+            [] => Ok(()),
+            [failure] => Err(format!("{failure} failed.")),
+            failures => Err(format!("{} tests failed: they are named above.", failures.len())),
+        };
+        (self.summary(seconds), result)
     }
 
     fn summary(&self, seconds: f64) -> String {
@@ -220,7 +227,7 @@ mod tests {
         ] {
             verdict.count(line);
         }
-        let summary = verdict.summary(2.0);
+        let (summary, result) = verdict.judge(2.0, Skips::Named);
         assert!(
             summary.starts_with("skipped: there is no moon\n\nfailures:\n    one::three\n"),
             "{summary}"
@@ -228,7 +235,7 @@ mod tests {
         let last =
             "test result: FAILED. 9 passed; 1 failed; 4 ignored; 0 measured; 5 filtered out; finished in 2.00s\n";
         assert!(summary.ends_with(last), "{summary}");
-        assert!(verdict.conclude(Instant::now(), Skips::Named).is_err());
+        assert!(result.is_err());
     }
 
     #[test]
@@ -241,7 +248,7 @@ mod tests {
         ] {
             let mut verdict = Verdict::default();
             verdict.count(line);
-            assert_eq!(verdict.conclude(Instant::now(), skips).is_err(), is_failure, "{line}");
+            assert_eq!(verdict.judge(0.0, skips).1.is_err(), is_failure, "{line}");
         }
     }
 
