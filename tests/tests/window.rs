@@ -8,134 +8,26 @@
     reason = "tests fail by panicking and say what they skip"
 )]
 
+mod window_rig;
+
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
+use egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
 use pliant_app::window::{Application, KeepOriginal, NumpadDigits, Shared, Shell, Source};
 use pliant_deform::{Loose, METHODS};
 use pliant_editor::{BrushMetric, Command, Reach, Shading, ToolMode};
 use pliant_tests::{Folder, assets, open, run};
+use window_rig::Session;
 
 /// How far two descents to one minimum may end from each other, in diagonals: the window's, which followed the hand,
 /// and the command line's from the rest shape.
 const DESCENDED: f64 = 1e-3;
-
-/// Drives the application as a person would.
-struct Session {
-    harness: Harness<'static, Application>,
-}
-
-impl Session {
-    /// The application with the sample open; `None` without a graphics device.
-    fn begin() -> Option<Self> {
-        if let Err(error) = pliant_render::Headless::new() {
-            eprintln!("skipped: the window's session ({error})");
-            return None;
-        }
-        let harness = Harness::builder()
-            .with_size(vec2(1000.0, 700.0))
-            .with_max_steps(64)
-            .wgpu()
-            .build_eframe(|context| Application::new(context, Source::Sample).expect("the device was just there"));
-        let mut session = Self { harness };
-        session.settle();
-        Some(session)
-    }
-
-    /// Lets frames pass until nothing is under way.
-    #[track_caller]
-    fn settle(&mut self) {
-        let start = Instant::now();
-        self.harness.step();
-        while !self.harness.state().is_settled() {
-            assert!(
-                start.elapsed() < Duration::from_secs(120),
-                "still busy: {}",
-                self.status()
-            );
-            std::thread::sleep(Duration::from_millis(5));
-            self.harness.step();
-        }
-        self.harness.step();
-    }
-
-    fn status(&self) -> String {
-        self.harness.state().editor().view().status
-    }
-
-    /// The point of the window where the view shows the middle of what `choose` picks among the vertices.
-    fn point_of(&self, choose: impl Fn(&[DVec3]) -> DVec3) -> Pos2 {
-        let application = self.harness.state();
-        let view = application.editor().view();
-        let positions: Vec<DVec3> = view
-            .model
-            .unwrap()
-            .surface
-            .positions
-            .iter()
-            .zip(view.displacements.iter())
-            .map(|(&p, &d)| p + d)
-            .collect();
-        let seen = view
-            .camera
-            .project(choose(&positions), view.viewport_px)
-            .expect("it is before the eye");
-        let corner = application.view_rect().min;
-        pos2(corner.x + seen.x as f32, corner.y + seen.y as f32)
-    }
-
-    fn pointer(&mut self, position: Pos2, pressed: Option<bool>) {
-        self.harness.event(Event::PointerMoved(position));
-        if let Some(pressed) = pressed {
-            let modifiers = Modifiers::NONE;
-            self.harness.event(Event::PointerButton {
-                pos: position,
-                button: PointerButton::Primary,
-                pressed,
-                modifiers,
-            });
-        }
-        self.harness.step();
-    }
-
-    fn stroke(&mut self, from: Pos2, to: Pos2) {
-        self.pointer(from, None);
-        self.pointer(from, Some(true));
-        for step in 1..=4 {
-            self.pointer(from + (to - from) * (step as f32 / 4.0), None);
-        }
-        self.pointer(to, Some(false));
-        self.settle();
-    }
-
-    fn key(&mut self, key: Key, modifiers: Modifiers) {
-        self.harness.key_press_modifiers(modifiers, key);
-        self.harness.step();
-        self.settle_if_idle();
-    }
-
-    /// A modal transform is under way after G, R, S: only a confirmed one settles.
-    fn settle_if_idle(&mut self) {
-        self.harness.step();
-    }
-
-    /// Opens the palette and types there.
-    fn palette(&mut self, text: &str) {
-        self.key(Key::F1, Modifiers::NONE);
-        self.harness.event(Event::Text(text.to_owned()));
-        self.harness.run_steps(2);
-    }
-
-    fn shape(&self) -> Vec<DVec3> {
-        self.harness.state().editor().view().displacements.to_vec()
-    }
-}
 
 fn moved(shape: &[DVec3]) -> usize {
     shape
@@ -742,126 +634,4 @@ fn nothing_at_the_panels_edge_lies_under_its_scroll_bar() {
     let width = session.harness.ctx.content_rect().width();
     let bar = session.harness.ctx.global_style().spacing.scroll.bar_width;
     assert!(right <= width - bar, "{right} of {width}, less the bar's {bar}");
-}
-
-impl Session {
-    /// Lets all of it happen within one frame, as it does where frames are slow, and then as many frames pass as it takes.
-    fn in_one_frame(&mut self, events: impl IntoIterator<Item = Event>) {
-        self.harness.input_mut().events.extend(events);
-        self.harness.run_steps(24);
-    }
-
-    /// The sample with one handle at its top, which stays selected.
-    fn with_handle() -> Option<Self> {
-        let mut session = Self::begin()?;
-        let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
-        session.stroke(top + vec2(0.0, 6.0), top + vec2(0.0, 16.0));
-        assert_eq!(session.harness.state().editor().document().handles().len(), 1);
-        Some(session)
-    }
-
-    fn translation(&self) -> DVec3 {
-        self.harness.state().editor().document().handles()[0]
-            .affine()
-            .translation
-    }
-
-    /// Clicks into the first of the fields behind a label, which then takes typed digits.
-    fn click_into(&mut self, label: &str) {
-        let field = self
-            .harness
-            .get_all_by_label(label)
-            .find(|node| node.accesskit_node().role() == egui::accesskit::Role::SpinButton);
-        let middle = field.expect("the panel has the field").rect().center();
-        for pressed in [true, false] {
-            self.pointer(middle, Some(pressed));
-        }
-        self.harness.run_steps(2);
-    }
-}
-
-/// A key that goes down and up, with what it types.
-fn typed(key: Key, text: &str) -> Vec<Event> {
-    let stroke = |pressed| Event::Key {
-        key,
-        physical_key: None,
-        pressed,
-        repeat: false,
-        modifiers: Modifiers::NONE,
-    };
-    let text = (!text.is_empty()).then(|| Event::Text(text.to_owned()));
-    [stroke(true)].into_iter().chain(text).chain([stroke(false)]).collect()
-}
-
-#[test]
-fn what_a_field_takes_is_no_shortcut_however_slow_the_frames_are() {
-    let Some(mut session) = Session::with_handle() else {
-        return;
-    };
-    let before = {
-        let view = session.harness.state().editor().view();
-        (view.tool, view.camera_revision)
-    };
-    session.click_into("Move");
-    let keys = [typed(Key::Period, "."), typed(Key::Num2, "2"), typed(Key::Enter, "")].concat();
-    session.in_one_frame(keys);
-    assert_eq!(session.translation().x, 0.2, "the field took what was typed");
-    let view = session.harness.state().editor().view();
-    assert_eq!((view.tool, view.camera_revision), before, "and nobody else did");
-
-    // What comes after Enter is a shortcut again, in the same slow frame too.
-    session.click_into("Move");
-    session.in_one_frame([typed(Key::Num0, "0"), typed(Key::Enter, ""), typed(Key::Num2, "2")].concat());
-    assert_eq!(session.translation().x, 0.0);
-    assert_eq!(session.harness.state().editor().view().tool, ToolMode::PaintFree);
-}
-
-#[test]
-fn escape_in_a_number_field_takes_the_typed_number_back() {
-    let Some(mut session) = Session::with_handle() else {
-        return;
-    };
-    for is_slow in [false, true] {
-        session.click_into("Move");
-        if is_slow {
-            session.in_one_frame([typed(Key::Num5, "5"), typed(Key::Escape, "")].concat());
-        } else {
-            for event in [typed(Key::Num5, "5"), typed(Key::Escape, "")].concat() {
-                session.in_one_frame([event]);
-            }
-        }
-        assert_eq!(session.translation(), DVec3::ZERO);
-        // Neither later: who looks into the field again and leaves it has typed nothing.
-        session.click_into("Move");
-        session.in_one_frame(typed(Key::Enter, ""));
-        assert_eq!(session.translation(), DVec3::ZERO);
-        assert_eq!(session.harness.state().editor().document().handles().len(), 1);
-    }
-}
-
-#[test]
-fn a_click_and_what_is_typed_into_the_palette_after_it_may_come_in_one_frame() {
-    let Some(mut session) = Session::with_handle() else {
-        return;
-    };
-    // Widening the region follows the pointer; the click keeps it, and only then the palette opens.
-    session.key(Key::E, Modifiers::NONE);
-    let at = session.harness.state().view_rect().center();
-    session.pointer(at, None);
-    assert!(session.harness.state().editor().is_acting());
-    let button = |pressed| Event::PointerButton {
-        pos: at,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::NONE,
-    };
-    let click = [button(true), button(false)];
-    let palette = [typed(Key::F1, ""), typed(Key::W, "w"), typed(Key::I, "i")].concat();
-    session.in_one_frame(click.into_iter().chain(palette));
-    assert!(
-        !session.harness.state().editor().is_acting(),
-        "the click was for the view"
-    );
-    let field = session.harness.get_by_label("Command");
-    assert_eq!(field.value().as_deref(), Some("wi"), "and the letters for the palette");
 }

@@ -77,9 +77,7 @@ fn a_whole_session_by_pointer_and_keys_comes_back_by_undo_redo_and_reopening() {
     });
     desktop.shoot("widened");
     desktop.keys(&["n"]);
-    desktop.shoot("n");
     desktop.drag((x - 60, y - 230), (x - 54, y - 226));
-    desktop.shoot("dragged");
     once("two-handles", &|project| handles(project).len() == 2);
     desktop.shoot("two-handles");
     desktop.keys(&["6"]);

@@ -36,6 +36,7 @@ pub use method::{
     ConstraintKind, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused,
     OptionValue, Solve,
 };
+pub use numerical::rigid_fit::RigidMotion;
 pub use operators::Laplacian;
 pub use primo::Primo;
 pub use problem::{Loose, Problem, Role};

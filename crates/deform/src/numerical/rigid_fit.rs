@@ -9,7 +9,7 @@ use crate::numerical::eigen::jacobi;
 
 /// A rigid motion about a point: `p ↦ centre + rotation * (p − centre) + shift`.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) struct RigidMotion {
+pub struct RigidMotion {
     centre: DVec3,
     /// The rotation less the identity, so that small motions keep their digits far from the origin.
     turn: DMat3,
@@ -17,7 +17,8 @@ pub(crate) struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// The least-squares fit to `displacements` of the points `rest`; `None` where none of them moves.
+    /// The least-squares fit to `displacements` of the points `rest`, as many of both; `None` where none of them moves.
+    /// Points on a line get the least turn that carries the line along.
     pub fn fit(rest: &[DVec3], displacements: &[DVec3]) -> Option<Self> {
         if displacements.iter().all(|&displacement| displacement == DVec3::ZERO) {
             return None;
@@ -38,6 +39,11 @@ impl RigidMotion {
         covariance += DMat3::from_diagonal(DVec3::splat(1e-12 * inertia + f64::MIN_POSITIVE));
         let turn = DMat3::from_quat(best_rotation(&covariance)) - DMat3::IDENTITY;
         Some(Self { centre, turn, shift })
+    }
+
+    /// The rotation, a unit quaternion.
+    pub fn rotation(&self) -> DQuat {
+        DQuat::from_mat3(&(self.turn + DMat3::IDENTITY)).normalize()
     }
 
     /// The displacement of a point.

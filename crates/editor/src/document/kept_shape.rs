@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
+use rayon::prelude::*;
 
 use super::handle::{Handle, HandleId};
 
@@ -49,7 +50,7 @@ impl KeptShape {
 
     /// x(T), given S(T₀) and S(T), all as displacements from the rest shape.
     pub fn carried(&self, at_first: &[DVec3], now: &[DVec3]) -> Vec<DVec3> {
-        let vertices = self.shape.iter().zip(at_first).zip(now);
+        let vertices = self.shape.par_iter().zip(at_first).zip(now);
         vertices
             .map(|((&seen, &first), &now)| {
                 let residual = seen - first;

@@ -2,7 +2,6 @@
 
 mod access;
 mod content;
-mod fitted;
 mod handle;
 mod handle_colour;
 mod handle_motion;
@@ -21,7 +20,6 @@ mod vertex_access;
 pub use access::{Access, ObjectAction, object_name};
 pub(crate) use content::sum_of_shapes;
 pub use content::{Content, Paint, Tips};
-pub(crate) use fitted::fitted_motion;
 pub use handle::{Handle, HandleId, PivotPlace, Reach, Twin};
 pub use handle_colour::HANDLE_COLOURS;
 pub use handle_transform::HandleTransform;

@@ -4,11 +4,11 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::Role;
+use pliant_deform::{RigidMotion, Role};
 use pliant_mesh::{Model, SurfaceVertex};
 
 use super::state::Workspace;
-use crate::document::{Aspect, Document, Handle, HandleId, HandleTransform, Paint, PivotPlace, fitted_motion};
+use crate::document::{Aspect, Document, Handle, HandleId, HandleTransform, Paint, PivotPlace};
 
 /// The vertices of a handle, ascending.
 pub(crate) fn members(document: &Document, id: HandleId) -> Vec<SurfaceVertex> {
@@ -182,24 +182,28 @@ fn put_new_handles_where_they_are_seen(document: &mut Document, before: &Documen
             }
             _ => None,
         };
-        let points = members.iter().map(|vertex| {
-            let rest = model.surface.positions[vertex.index()] + document.rest[vertex.index()];
-            (rest, rest + document.from_rest[vertex.index()])
-        });
-        let (rotation, translation) = fitted_motion(&points.collect::<Vec<_>>(), pivot);
-        document.change_handle(id, |handle| match parent {
-            Some(parent) => {
+        if let Some(parent) = parent {
+            document.change_handle(id, |handle| {
                 handle.pivot = parent.pivot;
                 handle.put(parent.transform);
                 handle.move_pivot(pivot);
-            }
-            None => handle.put(HandleTransform::Trs {
-                translation,
-                rotation,
+            });
+            continue;
+        }
+        let rest = members
+            .iter()
+            .map(|vertex| model.surface.positions[vertex.index()] + document.rest[vertex.index()]);
+        let moved = members.iter().map(|vertex| document.from_rest[vertex.index()]);
+        let fit = RigidMotion::fit(&rest.collect::<Vec<_>>(), &moved.collect::<Vec<_>>());
+        if let Some(motion) = fit {
+            let transform = HandleTransform::Trs {
+                translation: motion.displace(pivot),
+                rotation: motion.rotation(),
                 scale: DVec3::ONE,
                 pivot: None,
-            }),
-        });
+            };
+            document.change_handle(id, |handle| handle.put(transform));
+        }
     }
 }
 

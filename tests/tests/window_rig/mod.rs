@@ -1,0 +1,163 @@
+//! The whole application without a window, driven as a person would.
+#![allow(dead_code, reason = "each test file uses the verbs it needs")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::print_stderr,
+    reason = "tests fail by panicking and say what they skip"
+)]
+
+use std::time::{Duration, Instant};
+
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use glam::DVec3;
+use pliant_app::window::{Application, Source};
+
+/// Drives the application as a person would.
+pub struct Session {
+    pub harness: Harness<'static, Application>,
+}
+
+impl Session {
+    /// The application with the sample open; `None` without a graphics device.
+    pub fn begin() -> Option<Self> {
+        if let Err(error) = pliant_render::Headless::new() {
+            eprintln!("skipped: the window's session ({error})");
+            return None;
+        }
+        let harness = Harness::builder()
+            .with_size(vec2(1000.0, 700.0))
+            .with_max_steps(64)
+            .wgpu()
+            .build_eframe(|context| Application::new(context, Source::Sample).expect("the device was just there"));
+        let mut session = Self { harness };
+        session.settle();
+        Some(session)
+    }
+
+    /// Lets frames pass until nothing is under way.
+    #[track_caller]
+    pub fn settle(&mut self) {
+        let start = Instant::now();
+        self.harness.step();
+        while !self.harness.state().is_settled() {
+            assert!(
+                start.elapsed() < Duration::from_secs(120),
+                "still busy: {}",
+                self.status()
+            );
+            std::thread::sleep(Duration::from_millis(5));
+            self.harness.step();
+        }
+        self.harness.step();
+    }
+
+    pub fn status(&self) -> String {
+        self.harness.state().editor().view().status
+    }
+
+    /// The point of the window where the view shows the middle of what `choose` picks among the vertices.
+    pub fn point_of(&self, choose: impl Fn(&[DVec3]) -> DVec3) -> Pos2 {
+        let application = self.harness.state();
+        let view = application.editor().view();
+        let positions: Vec<DVec3> = view
+            .model
+            .unwrap()
+            .surface
+            .positions
+            .iter()
+            .zip(view.displacements.iter())
+            .map(|(&p, &d)| p + d)
+            .collect();
+        let seen = view
+            .camera
+            .project(choose(&positions), view.viewport_px)
+            .expect("it is before the eye");
+        let corner = application.view_rect().min;
+        pos2(corner.x + seen.x as f32, corner.y + seen.y as f32)
+    }
+
+    pub fn pointer(&mut self, position: Pos2, pressed: Option<bool>) {
+        self.harness.event(Event::PointerMoved(position));
+        if let Some(pressed) = pressed {
+            let modifiers = Modifiers::NONE;
+            self.harness.event(Event::PointerButton {
+                pos: position,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers,
+            });
+        }
+        self.harness.step();
+    }
+
+    pub fn stroke(&mut self, from: Pos2, to: Pos2) {
+        self.pointer(from, None);
+        self.pointer(from, Some(true));
+        for step in 1..=4 {
+            self.pointer(from + (to - from) * (step as f32 / 4.0), None);
+        }
+        self.pointer(to, Some(false));
+        self.settle();
+    }
+
+    pub fn key(&mut self, key: Key, modifiers: Modifiers) {
+        self.harness.key_press_modifiers(modifiers, key);
+        self.harness.step();
+        self.settle_if_idle();
+    }
+
+    /// A modal transform is under way after G, R, S: only a confirmed one settles.
+    pub fn settle_if_idle(&mut self) {
+        self.harness.step();
+    }
+
+    /// Opens the palette and types there.
+    pub fn palette(&mut self, text: &str) {
+        self.key(Key::F1, Modifiers::NONE);
+        self.harness.event(Event::Text(text.to_owned()));
+        self.harness.run_steps(2);
+    }
+
+    pub fn shape(&self) -> Vec<DVec3> {
+        self.harness.state().editor().view().displacements.to_vec()
+    }
+}
+
+impl Session {
+    /// Lets all of it happen within one frame, as it does where frames are slow, and then as many frames pass as it takes.
+    pub fn in_one_frame(&mut self, events: impl IntoIterator<Item = Event>) {
+        self.harness.input_mut().events.extend(events);
+        self.harness.run_steps(24);
+    }
+
+    /// The sample with one handle at its top, which stays selected.
+    pub fn with_handle() -> Option<Self> {
+        let mut session = Self::begin()?;
+        let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
+        session.stroke(top + vec2(0.0, 6.0), top + vec2(0.0, 16.0));
+        assert_eq!(session.harness.state().editor().document().handles().len(), 1);
+        Some(session)
+    }
+
+    pub fn translation(&self) -> DVec3 {
+        self.harness.state().editor().document().handles()[0]
+            .affine()
+            .translation
+    }
+
+    /// Clicks into the first of the fields behind a label, which then takes typed digits.
+    pub fn click_into(&mut self, label: &str) {
+        let field = self
+            .harness
+            .get_all_by_label(label)
+            .find(|node| node.accesskit_node().role() == egui::accesskit::Role::SpinButton);
+        let middle = field.expect("the panel has the field").rect().center();
+        for pressed in [true, false] {
+            self.pointer(middle, Some(pressed));
+        }
+        self.harness.run_steps(2);
+    }
+}
