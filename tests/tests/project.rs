@@ -74,6 +74,7 @@ fn a_project_bends_its_mesh_to_the_shape_that_was_on_the_screen_with_what_was_ap
     drain(&mut editor, &jobs);
     move_end(&mut editor, &jobs, DVec3::new(0.1, 0.0, 0.3));
     let mesh = MeshReference {
+        name: None,
         path: Some("bar.off".to_owned()),
         geometry: geometry_hash(&loaded.model),
     };
@@ -100,6 +101,7 @@ fn a_project_bends_its_mesh_to_the_shape_that_was_on_the_screen_with_what_was_ap
     // At rest, and nothing applied: the file's own bytes.
     let (fresh, _) = self::editor(&loaded);
     let mesh = MeshReference {
+        name: None,
         path: None,
         geometry: geometry_hash(&loaded.model),
     };
@@ -118,6 +120,7 @@ fn a_project_on_another_mesh_and_a_project_as_the_mesh_are_refused() {
     let loaded = open(&file);
     let (editor, _) = editor(&loaded);
     let mesh = MeshReference {
+        name: None,
         path: None,
         geometry: geometry_hash(&loaded.model),
     };

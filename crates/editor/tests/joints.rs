@@ -145,6 +145,7 @@ fn farthest(a: &[[u64; 3]], b: &[[u64; 3]]) -> f64 {
 /// The project of what is open, opened again.
 fn reopened(rig: &mut Rig) {
     let reference = MeshReference {
+        name: None,
         path: None,
         geometry: geometry_hash(&rig.model),
     };

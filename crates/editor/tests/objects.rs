@@ -180,6 +180,7 @@ fn a_part_is_isolated_under_the_pointer_and_a_project_keeps_what_is_hidden_and_l
     let access = rig.editor.document().access().clone();
     assert!(access.hidden.len() == 1 && access.locked.len() == 1);
     let reference = MeshReference {
+        name: None,
         path: None,
         geometry: geometry_hash(&rig.model),
     };

@@ -16,6 +16,7 @@ use rig::{CENTRE_PX, Random, Rig, VIEWPORT_PX, weld};
 
 fn saved(rig: &Rig) -> String {
     let mesh = MeshReference {
+        name: None,
         path: Some("scan.glb".to_owned()),
         geometry: geometry_hash(&rig.model),
     };

@@ -13,7 +13,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
-use pliant_app::window::{Application, Source};
+use pliant_app::window::{AppDirectories, Application, Source};
 
 /// Drives the application as a person would.
 pub struct Session {
@@ -23,6 +23,11 @@ pub struct Session {
 impl Session {
     /// The application with the sample open; `None` without a graphics device.
     pub fn begin() -> Option<Self> {
+        Self::begin_in(Source::Sample, AppDirectories::default())
+    }
+
+    /// The application of a person with these folders, with `source` open; `None` without a graphics device.
+    pub fn begin_in(source: Source, places: AppDirectories) -> Option<Self> {
         if let Err(error) = pliant_render::Headless::new() {
             eprintln!("skipped: the window's session ({error})");
             return None;
@@ -31,7 +36,9 @@ impl Session {
             .with_size(vec2(1000.0, 700.0))
             .with_max_steps(64)
             .wgpu()
-            .build_eframe(|context| Application::new(context, Source::Sample).expect("the device was just there"));
+            .build_eframe(move |context| {
+                Application::with_places(context, source, &places).expect("the device was just there")
+            });
         let mut session = Self { harness };
         session.settle();
         Some(session)

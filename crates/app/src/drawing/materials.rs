@@ -218,6 +218,37 @@ impl DecodedMaterials {
     }
 }
 
+/// The albedo of what says nothing of its colour, linear: as bright as clay. Under light, white leaves no form to see.
+const BARE_ALBEDO: [f32; 4] = [0.6, 0.6, 0.6, 1.0];
+
+/// Gives what has neither material nor colours of its own a grey one: `triangles` is how many are drawn.
+pub fn dim_bare(appearance: &mut Appearance, triangles: u32) {
+    if appearance.colours.is_some() {
+        return;
+    }
+    if appearance.materials.is_empty() {
+        appearance.materials.push(pliant_io::Material::default());
+        appearance.groups = vec![pliant_io::Group {
+            triangles: 0..triangles,
+            material: 0,
+            node_name: String::new(),
+        }];
+    }
+    for material in &mut appearance.materials {
+        let (metallic, roughness) = (material.metallic, material.roughness);
+        let is_bare = *material
+            == pliant_io::Material {
+                metallic,
+                roughness,
+                ..pliant_io::Material::default()
+            };
+        if is_bare {
+            material.base_colour = BARE_ALBEDO;
+            material.metallic = 0.0;
+        }
+    }
+}
+
 /// The material with `map` applied to each of its maps; `None` removes a map.
 fn with_maps(material: &Material, map: impl Fn(Map) -> Option<Map>) -> Material {
     Material {

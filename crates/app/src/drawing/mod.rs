@@ -50,6 +50,7 @@ pub struct Drawing {
 impl Drawing {
     /// Prepares a file for drawing. Its images are decoded separately: see [`EncodedMaterials::decode`].
     pub fn new(model: &Model, mut appearance: Appearance) -> Self {
+        materials::dim_bare(&mut appearance, model.drawn.triangle_count() as u32);
         let centre = bounding_box(&model.surface.positions).map_or(DVec3::ZERO, |bounds| bounds.centre());
         let materials = EncodedMaterials::new(&mut appearance);
         let groups: Vec<MaterialGroup> = appearance

@@ -9,9 +9,10 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, CentralPanel, Panel};
 use glam::DVec3;
-use pliant_editor::{Command, Editor, Event, KeyMap};
+use pliant_editor::{Command, Editor, Event, KeyMap, Shading};
 
 use super::bars::status;
+use super::bars::toast::Toast;
 use super::bars::top_bar;
 use super::dialogs::keys_window::{self, KeysWindow};
 use super::dialogs::log::{self, Log};
@@ -61,11 +62,14 @@ pub struct Application {
     /// What to do once the save that was asked for first has ended.
     pub(super) after_saving: Option<Then>,
     pub(super) notes: Notes,
+    pub(super) toast: Toast,
     pub(super) last_change: Instant,
     pub(super) closing: bool,
     /// The left session that is open now, until its work is kept or saved by this one.
     pub(super) recovered_from: Option<PathBuf>,
     longest_frame: Duration,
+    /// Where the window's content, its bars and its panel were in the last frame.
+    layout: [egui::Rect; 4],
     /// Whether the open file's images were asked for.
     pub(super) has_requested_materials: bool,
     pub(super) view_rect: egui::Rect,
@@ -135,10 +139,12 @@ impl Application {
             question: (!left.is_empty()).then_some(Question::Recover(left)),
             after_saving: None,
             notes,
+            toast: Toast::default(),
             last_change: Instant::now(),
             closing: false,
             recovered_from: None,
             longest_frame: Duration::ZERO,
+            layout: [egui::Rect::NOTHING; 4],
             has_requested_materials: false,
             view_rect: egui::Rect::ZERO,
             title: String::new(),
@@ -206,6 +212,11 @@ impl Application {
         self.session.open.as_ref()?.path.as_deref()
     }
 
+    /// Whether materials are asked for and their images are still being decoded.
+    pub fn is_loading_textures(&self) -> bool {
+        self.editor.view().look.shading == Shading::Material && self.viewport.awaits_images()
+    }
+
     /// Whether nothing is under way: no job, no file being read or written, and the picture shows the present shape.
     pub fn is_settled(&self) -> bool {
         let view = self.editor.view();
@@ -214,7 +225,7 @@ impl Application {
             .displacements()
             .is_some_and(|shown| Arc::ptr_eq(shown, view.displacements));
         let compared = self.compare.as_ref().is_none_or(Compare::is_settled);
-        view.settled && shown && compared && self.session.doing().is_none()
+        view.settled && shown && compared && self.session.doing().is_none() && !self.is_loading_textures()
     }
 
     /// The shape in the GPU's buffers, per surface vertex, from the file's.
@@ -376,18 +387,24 @@ impl Application {
         Some(format!("{end}, energy {:.3e}.", descent.energy))
     }
 
-    /// Notes how large the window is, once nobody pulls at it.
+    /// Notes how large the window is, and whether it fills the screen, once nobody pulls at it.
     fn remember_size(&mut self, context: &egui::Context) {
-        let size = context.input(|input| {
+        if self.last_change.elapsed() < REST {
+            return;
+        }
+        let (size, maximised) = context.input(|input| {
             let viewport = input.viewport();
-            let is_own = viewport.maximized != Some(true) && viewport.fullscreen != Some(true);
-            viewport.inner_rect.filter(|_| is_own).map(|rect| rect.size())
+            let fills_screen = viewport.maximized == Some(true) || viewport.fullscreen == Some(true);
+            let own = viewport.inner_rect.filter(|_| !fills_screen).map(|rect| rect.size());
+            (own, viewport.maximized)
         });
-        let Some(size) = size.filter(|_| self.last_change.elapsed() >= REST) else {
+        if let Some(maximised) = maximised.filter(|&maximised| maximised != self.settings.get().maximised) {
+            self.settings.change(|settings| settings.maximised = maximised);
+        }
+        // The size in points at the scale of the system, whatever the person's own is.
+        let Some(size) = size.map(|size| size * context.zoom_factor()) else {
             return;
         };
-        // The size in points at the scale of the system, whatever the person's own is.
-        let size = size * context.zoom_factor();
         let known = self.settings.get().window_size;
         if known.is_none_or(|known| (size - egui::Vec2::from(known)).length() > 1.0) {
             self.settings
@@ -418,7 +435,7 @@ impl eframe::App for Application {
         );
         let (start, drawn_before) = (Instant::now(), self.drawing_time());
         let context = ui.ctx().clone();
-        self.take_messages();
+        let has_heard = self.take_messages() || context.input(|input| input.events.iter().any(may_change_layout));
         if self.viewport.is_lost() {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
             return;
@@ -429,24 +446,22 @@ impl eframe::App for Application {
         let mut commands = Outbox::default();
         let mut file_command = None;
         let title = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
-        Panel::top("top").show(ui, |ui| {
+        let top = Panel::top("top").show(ui, |ui| {
             file_command = top_bar::show(ui, &self.editor, &title, &self.settings.get().recent, &mut commands);
         });
         let device = self.viewport.software_device().map(str::to_owned);
         let busy = self.session.doing();
-        let stop = Panel::bottom("status")
-            .show(ui, |ui| {
-                status::show(
-                    ui,
-                    &self.editor,
-                    busy,
-                    &mut self.notes.headline,
-                    device.as_deref(),
-                    &mut commands,
-                )
-            })
-            .inner;
-        if stop {
+        let status = Panel::bottom("status").show(ui, |ui| {
+            status::show(
+                ui,
+                &self.editor,
+                busy,
+                self.is_loading_textures(),
+                device.as_deref(),
+                &mut commands,
+            )
+        });
+        if status.inner {
             self.session.stop();
         }
         let panel = Panel::right("panel")
@@ -466,6 +481,16 @@ impl eframe::App for Application {
         let width = panel.response.rect.width();
         if (width - self.settings.get().panel_width).abs() > 1.0 && !context.input(|input| input.pointer.any_down()) {
             self.settings.change(|settings| settings.panel_width = width);
+        }
+        let layout = [
+            context.content_rect(),
+            top.response.rect,
+            status.response.rect,
+            panel.response.rect,
+        ];
+        if std::mem::replace(&mut self.layout, layout) != layout || has_heard {
+            // egui lays out by what it measured in the frame before.
+            context.request_repaint();
         }
         let painted = CentralPanel::no_frame().show(ui, |ui| self.view(ui)).inner;
         if let Err(error) = painted {
@@ -517,4 +542,13 @@ impl eframe::App for Application {
             .saturating_sub(self.drawing_time().saturating_sub(drawn_before));
         self.longest_frame = self.longest_frame.max(busy);
     }
+}
+
+/// Whether an event may change what is shown, so that one more frame has to lay it out.
+fn may_change_layout(event: &egui::Event) -> bool {
+    use egui::Event::{MouseMoved, MouseWheel, PointerGone, PointerMoved, Touch, Zoom};
+    !matches!(
+        event,
+        PointerMoved(_) | MouseMoved(_) | MouseWheel { .. } | PointerGone | Touch { .. } | Zoom(_)
+    )
 }

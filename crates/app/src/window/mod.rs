@@ -117,15 +117,14 @@ pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
 }
 
 fn options(places: &AppDirectories) -> eframe::NativeOptions {
-    let remembered = places
-        .settings
-        .as_deref()
-        .and_then(|path| Settings::read(path).0.window_size);
+    let read = |path| Settings::read(path).0;
+    let remembered = places.settings.as_deref().map(read).unwrap_or_default();
     eframe::NativeOptions {
         viewport: ViewportBuilder::default()
             .with_title("Pliant")
             .with_app_id("pliant")
-            .with_inner_size(remembered.unwrap_or([1280.0, 800.0]))
+            .with_inner_size(remembered.window_size.unwrap_or([1280.0, 800.0]))
+            .with_maximized(remembered.maximised)
             .with_min_inner_size(vec2(640.0, 400.0))
             .with_drag_and_drop(true),
         renderer: eframe::Renderer::Wgpu,

@@ -97,12 +97,15 @@ pub(super) const CAMERA_FORTH: Entry<()> = Entry {
     action: Action::Do(|context, ()| context.view.step(CameraStep::Forth)),
 };
 
-/// Which axis points up on the screen.
+/// Which axis points up on the screen. The model is framed anew, because another axis shows another side of it.
 pub(super) const SET_UP: Entry<UpAxis> = Entry {
     listed: &[],
     scope: Scope::View,
     unavailable: always,
-    action: Action::Do(|context, up| context.view.adjust(|camera| camera.up = up)),
+    action: Action::Do(|context, up| {
+        context.view.adjust(|camera| camera.up = up);
+        frame_all(context.workspace, context.view);
+    }),
 };
 
 /// Changes between perspective and orthographic.

@@ -169,7 +169,15 @@ impl Editor {
     pub fn document_hash(&self) -> Option<String> {
         let snapshot = self.snapshot()?;
         let geometry = geometry_hash(snapshot.model());
-        Some(snapshot.project(MeshReference { path: None, geometry }).document_hash())
+        Some(
+            snapshot
+                .project(MeshReference {
+                    path: None,
+                    name: None,
+                    geometry,
+                })
+                .document_hash(),
+        )
     }
 
     /// The document as an edit of the open file: `pliant apply` makes the same positions of it.

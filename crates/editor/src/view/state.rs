@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::camera::{Camera, Orbit};
+use super::camera::{Camera, Orbit, UpAxis};
 use super::camera_history::{CameraHistory, CameraStep};
 use super::look::Look;
 
@@ -121,11 +121,12 @@ impl View {
         });
     }
 
-    /// Begins a file of this size with no place to go back to.
+    /// Begins a file of this size with no place to go back to. Which axis is up belongs to the file: it begins with Y.
     pub(crate) fn open(&mut self, scale: Option<f64>) {
-        if let Some(scale) = scale {
-            self.adjust(|camera| camera.scale = scale);
-        }
+        self.adjust(|camera| {
+            camera.up = UpAxis::Y;
+            camera.scale = scale.unwrap_or(camera.scale);
+        });
         self.history = CameraHistory::default();
     }
 

@@ -3,8 +3,12 @@
 use eframe::egui::{self, Align2, Color32, RichText};
 use pliant_editor::Editor;
 
-/// Shows the step that comes next in the view's lower left corner; true when it is to be put away for good.
-pub fn show(ui: &egui::Ui, view_rect: egui::Rect, editor: &Editor) -> bool {
+/// How wide a hint is at most, in points.
+const WIDTH: f32 = 330.0;
+
+/// Shows the step that comes next in the view's lower left corner, above `toast`; true when it is to be put away for
+/// good.
+pub fn show(ui: &egui::Ui, view_rect: egui::Rect, toast: Option<egui::Rect>, editor: &Editor) -> bool {
     let view = editor.view();
     if view.model.is_none() {
         return false;
@@ -29,15 +33,19 @@ pub fn show(ui: &egui::Ui, view_rect: egui::Rect, editor: &Editor) -> bool {
         )
     };
     let mut put_away = false;
+    let corner = view_rect.left_bottom() + egui::vec2(16.0, -16.0);
+    let floor = toast
+        .filter(|toast| toast.left() < corner.x + WIDTH)
+        .map_or(corner.y, |toast| toast.top() - 8.0);
     egui::Area::new(egui::Id::unique("hint"))
-        .fixed_pos(view_rect.left_bottom() + egui::vec2(16.0, -16.0))
+        .fixed_pos(egui::pos2(corner.x, floor))
         .pivot(Align2::LEFT_BOTTOM)
         .show(ui.ctx(), |ui| {
             egui::Frame::popup(ui.style())
                 .fill(ui.visuals().window_fill.gamma_multiply(0.94))
                 .inner_margin(12.0)
                 .show(ui, |ui| {
-                    ui.set_max_width(300.0);
+                    ui.set_max_width(WIDTH - 24.0);
                     ui.horizontal(|ui| {
                         ui.label(RichText::new(format!("{number} of 3")).weak().small());
                         ui.label(RichText::new(title).strong().color(accent(ui)));

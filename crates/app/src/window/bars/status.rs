@@ -1,9 +1,8 @@
-//! The line below the view: what the program is doing, what one can do next, and what went wrong.
+//! The line below the view: what the program is doing, and what one can do next.
 
-use eframe::egui::{self, Color32, ProgressBar, RichText};
+use eframe::egui::{self, Color32, ProgressBar, RichText, Spinner};
 use pliant_editor::{Command, Editor};
 
-use crate::window::panels::notes::Note;
 use crate::window::widgets::outbox::Outbox;
 
 /// The colour of what went wrong, legible on a dim and on a bright ground.
@@ -16,7 +15,7 @@ pub fn failed(ui: &egui::Ui) -> Color32 {
 }
 
 /// The colour of what went well.
-fn done(ui: &egui::Ui) -> Color32 {
+pub fn done(ui: &egui::Ui) -> Color32 {
     if ui.visuals().dark_mode {
         Color32::from_rgb(150, 210, 140)
     } else {
@@ -29,27 +28,12 @@ pub fn show(
     ui: &mut egui::Ui,
     editor: &Editor,
     file_work: Option<(&'static str, f32)>,
-    headline: &mut Option<Note>,
+    is_loading_textures: bool,
     software_device: Option<&str>,
     commands: &mut Outbox,
 ) -> bool {
     let view = editor.view();
     let mut stop_file_work = false;
-    if let Some(problem) = view.problem {
-        ui.add(egui::Label::new(RichText::new(problem).color(failed(ui))).wrap());
-    }
-    if let Some(note) = headline.clone() {
-        ui.horizontal(|ui| {
-            if ui.small_button("×").on_hover_text("Dismiss").clicked() {
-                *headline = None;
-            }
-            let (sentence, colour) = match note {
-                Note::Done(sentence) => (sentence, done(ui)),
-                Note::Failed(sentence) => (sentence, failed(ui)),
-            };
-            ui.add(egui::Label::new(RichText::new(sentence).color(colour)).wrap());
-        });
-    }
     ui.horizontal(|ui| {
         if let Some((doing, share)) = file_work {
             progress(ui, doing, share);
@@ -60,6 +44,10 @@ pub fn show(
             if *share > 0.0 {
                 progress(ui, kind.doing(), *share);
             }
+        }
+        if is_loading_textures {
+            ui.add(Spinner::new().size(14.0));
+            ui.label(RichText::new("loading textures…").weak());
         }
         ui.label(&view.status);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

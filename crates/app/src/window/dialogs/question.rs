@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use eframe::egui::{self, Id, Modal, RichText};
+use pliant_io::quoted;
 
 use crate::window::files::names::{file_name, original_name};
 use crate::window::files::recovery::Left;
@@ -125,7 +126,7 @@ pub enum Answer {
     Discard(Then),
     /// Open what an earlier session has left.
     Recover(PathBuf),
-    /// Take away what earlier sessions have left.
+    /// Delete what earlier sessions have left.
     Forget(Vec<PathBuf>),
     /// Nothing after all.
     Cancel,
@@ -227,11 +228,14 @@ fn path(ui: &mut egui::Ui, purpose: Purpose, typed: &mut String, answer: &mut Op
 }
 
 fn recover(ui: &mut egui::Ui, left: &[Left], answer: &mut Option<Answer>) {
-    ui.heading("There is work that was not saved");
-    ui.label("Pliant ended before it could be saved. Open it and save it, or take it away.");
+    ui.heading("Recover unsaved work?");
+    ui.label("Pliant ended before this was saved. Recover it and save it, or delete it for good.");
     ui.add_space(8.0);
-    for (number, left) in left.iter().enumerate() {
-        ui.horizontal(|ui| {
+    egui::Grid::new("left").show(ui, |ui| {
+        for (number, left) in left.iter().enumerate() {
+            let name = left.name.as_deref().map_or_else(|| "a model".to_owned(), quoted);
+            ui.label(RichText::new(name).strong());
+            ui.label(RichText::new(ago(left.written)).weak());
             let is_chosen = match number {
                 0 => main_button(ui, "Recover"),
                 _ => ui.button("Recover").clicked(),
@@ -239,12 +243,13 @@ fn recover(ui: &mut egui::Ui, left: &[Left], answer: &mut Option<Answer>) {
             if is_chosen {
                 *answer = Some(Answer::Recover(left.project.clone()));
             }
-            ui.label(ago(left.written));
-        });
-    }
+            ui.end_row();
+        }
+    });
     ui.add_space(8.0);
     ui.horizontal(|ui| {
-        if ui.button("Take away").clicked() {
+        let name = if left.len() > 1 { "Delete all" } else { "Delete" };
+        if ui.button(name).clicked() {
             *answer = Some(Answer::Forget(left.iter().map(|left| left.project.clone()).collect()));
         }
         if ui.button("Later").clicked() {

@@ -195,6 +195,11 @@ impl Application {
                     self.editor.handle(Event::Saved);
                     self.settings.change(|settings| settings.remember(&written.path));
                 }
+                let is_bent = self.editor.document().is_displaced() || self.editor.document().is_applied();
+                if is_bent && matches!(written.what, WrittenKind::Model(_) | WrittenKind::Project) {
+                    // The last of the first steps.
+                    self.settings.change(|settings| settings.hints_seen = true);
+                }
                 let mut sentence = format!("Saved {}.", shown(&written.path));
                 for warning in &written.warnings {
                     sentence.push(' ');

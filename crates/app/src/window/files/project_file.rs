@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use pliant_editor::{Beginning, MeshReference, Project, Snapshot, geometry_hash};
 use pliant_mesh::{Cancel, Progress, WeldOptions};
 
-use super::names::{SAMPLE, SAMPLE_NAME, file_name, original_name};
+use super::names::{SAMPLE, SAMPLE_NAME, file_name, original_name, saved_name};
 use crate::AppError;
 use crate::engine::{self, Loaded};
 use crate::files::{self, Staging};
@@ -51,8 +51,10 @@ pub fn write(
             Some(file_name(&kept))
         }
     };
+    let is_copy = *source == MeshSource::Gone;
     let project = snapshot.project(MeshReference {
         path: mesh_path,
+        name: is_copy.then(|| file_name(&loaded.path)),
         geometry,
     });
     let staged = staging.stage([(path.to_owned(), project.to_json().as_bytes())])?;
@@ -62,6 +64,23 @@ pub fn write(
         None => staged.commit()?,
     }
     Ok(())
+}
+
+/// What people call the mesh that a project belongs to; `None` if the project can't be read.
+pub fn mesh_name(project: &Path) -> Option<String> {
+    /// A project, as far as it tells that.
+    #[derive(serde::Deserialize)]
+    struct Named {
+        mesh: MeshReference,
+    }
+    let text = files::read_text(project).ok()?;
+    let Named { mesh } = serde_json::from_str(&text).ok()?;
+    let of_path = |path: String| {
+        let path = files::folder_of(project).join(path);
+        file_name(&saved_name(&path).unwrap_or(path))
+    };
+    let name = mesh.name.or_else(|| mesh.path.map(of_path));
+    Some(name.unwrap_or_else(|| SAMPLE_NAME.to_owned()))
 }
 
 /// Where a project keeps a mesh that stands nowhere else; a `.gltf` is kept packed.

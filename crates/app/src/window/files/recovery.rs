@@ -52,6 +52,8 @@ static LATEST: Mutex<Option<Work>> = Mutex::new(None);
 pub struct Left {
     /// Its project.
     pub project: PathBuf,
+    /// What people call the model that was worked on, where that can be told.
+    pub name: Option<String>,
     /// When that was written.
     pub written: SystemTime,
 }
@@ -97,6 +99,7 @@ impl Recovery {
                 let written = fs::metadata(&project).and_then(|metadata| metadata.modified());
                 Left {
                     written: written.unwrap_or(SystemTime::UNIX_EPOCH),
+                    name: project_file::mesh_name(&project),
                     project,
                 }
             })

@@ -25,6 +25,8 @@ pub struct Settings {
     pub panel_width: f32,
     /// The window's size in points.
     pub window_size: Option<[f32; 2]>,
+    /// Whether the window fills the screen; its size is what it has otherwise.
+    pub maximised: bool,
     /// Sections of the panel that are folded away, by their titles.
     pub folded: std::collections::BTreeSet<String>,
     /// Whether the hints on the canvas were put away.
@@ -103,6 +105,7 @@ impl Default for Settings {
             ui_scale: 1.0,
             panel_width: 280.0,
             window_size: None,
+            maximised: false,
             folded: Default::default(),
             hints_seen: false,
             keys: Default::default(),

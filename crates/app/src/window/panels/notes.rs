@@ -10,7 +10,7 @@ pub struct Notes {
 }
 
 /// A sentence for the person.
-#[derive(Clone, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub enum Note {
     /// Something was done.
     Done(String),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_editor::{Event, Shading};
+use pliant_editor::{Event, JobKind, Shading};
 use pliant_mesh::Cancel;
 
 use super::message::{LoadedMaterials, Message, Opened, Posed};
@@ -14,8 +14,17 @@ use crate::window::files::session::OpenFile;
 use crate::window::panels::notes::Notes;
 
 impl Application {
-    pub(in crate::window) fn take_messages(&mut self) {
+    /// Takes what other threads have done. Whether there was anything but new shapes, which come at every frame of a
+    /// drag.
+    pub(in crate::window) fn take_messages(&mut self) -> bool {
+        let mut is_news = false;
         while let Ok(message) = self.messages.try_recv() {
+            let is_shape = match &message {
+                Message::Job(done, _) => done.kind == JobKind::Solve,
+                Message::Posed(..) => true,
+                _ => false,
+            };
+            is_news |= !is_shape;
             match message {
                 Message::Job(done, posed) => {
                     self.editor.handle(Event::JobDone(done));
@@ -58,6 +67,7 @@ impl Application {
                 Message::Chosen(purpose, path) => self.chosen(purpose, path),
             }
         }
+        is_news
     }
 
     fn belongs_to_open_file(&self, posed: &Posed) -> bool {
@@ -155,6 +165,7 @@ impl Application {
                 .map_err(|error| error.to_string())
         });
         if let Err(sentence) = result {
+            self.viewport.give_up_images(drawing);
             self.fail(format!("the materials are shown without their images: {sentence}"));
         }
     }

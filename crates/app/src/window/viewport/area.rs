@@ -137,7 +137,9 @@ impl Application {
             self.command(command);
             ui.ctx().request_repaint();
         }
-        if self.shows_hints && !self.settings.get().hints_seen && hints::show(ui, rect, &self.editor) {
+        let problem = self.editor.view().problem;
+        let toast = self.toast.show(ui.ctx(), whole, problem, &mut self.notes.headline);
+        if self.shows_hints && !self.settings.get().hints_seen && hints::show(ui, rect, toast, &self.editor) {
             self.settings.change(|settings| settings.hints_seen = true);
         }
         Ok(())

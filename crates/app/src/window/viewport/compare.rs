@@ -85,8 +85,15 @@ impl Compare {
 
     /// Shows the same images as the first view.
     fn set_materials(&mut self, first: &Viewport, stage: &Stage) {
-        let is_bare = self.viewport.shows(&stage.drawing) && self.viewport.materials().is_none();
-        let Some(materials) = first.materials().filter(|_| is_bare) else {
+        let lacks_what_is_there = self.viewport.shows(&stage.drawing)
+            && self.viewport.awaits_images()
+            && first.shows(&stage.drawing)
+            && !first.awaits_images();
+        if !lacks_what_is_there {
+            return;
+        }
+        let Some(materials) = first.materials() else {
+            self.viewport.give_up_images(&stage.drawing);
             return;
         };
         if let Err(error) = self.viewport.set_materials(&stage.drawing, materials.clone()) {

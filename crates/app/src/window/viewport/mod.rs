@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, TextureId};
 use eframe::egui_wgpu::RenderState;
 use glam::DVec3;
-use pliant_editor::{Editor, SceneView, Shading};
+use pliant_editor::{Editor, Look, SceneView, Shading};
 use pliant_render::{
     Background, Detail, Frame, Image, Materials, RenderError, Renderer, Samples, Style, Surface, Target,
 };
@@ -134,6 +134,7 @@ impl Viewport {
         self.drawn = None;
         self.coarseness = Coarseness::default();
         self.surface = Some(Shown {
+            awaits_images: drawing.materials.has_images(),
             surface,
             drawing,
             displacements,
@@ -156,11 +157,37 @@ impl Viewport {
         match &mut self.surface {
             Some(shown) if Arc::ptr_eq(&shown.drawing, drawing) => {
                 shown.materials_revision += 1;
+                shown.awaits_images = false;
                 shown.materials = Some(materials.clone());
                 shown.surface.set_materials(materials)
             }
             _ => Ok(()),
         }
+    }
+
+    /// Shows the materials of the file without their images, which will not come.
+    pub fn give_up_images(&mut self, drawing: &Arc<Drawing>) {
+        if let Some(shown) = &mut self.surface
+            && Arc::ptr_eq(&shown.drawing, drawing)
+        {
+            shown.materials_revision += 1;
+            shown.awaits_images = false;
+        }
+    }
+
+    /// Whether the file's images are still to come.
+    pub fn awaits_images(&self) -> bool {
+        self.surface.as_ref().is_some_and(|shown| shown.awaits_images)
+    }
+
+    /// The look that can be shown now: clay in place of materials whose images are still to come, because without
+    /// them they are nothing but white.
+    fn present_look(&self, look: Look) -> Look {
+        let shading = match look.shading {
+            Shading::Material if self.awaits_images() => Shading::Clay,
+            shading => shading,
+        };
+        Look { shading, ..look }
     }
 
     /// The materials with their images of the file that is shown, once it has them.
@@ -271,7 +298,9 @@ impl Viewport {
     fn may_be_reduced(&self, view: &SceneView<'_>) -> bool {
         let Some(shown) = &self.surface else { return false };
         let eye = drawing::view(view.camera, view.viewport_px, shown.drawing.centre);
-        view.look.shading != Shading::Material && !view.look.wireframe && shown.surface.has_reduced(&eye)
+        self.present_look(view.look).shading != Shading::Material
+            && !view.look.wireframe
+            && shown.surface.has_reduced(&eye)
     }
 
     /// How long the device worked on a drawing of late.
@@ -320,7 +349,7 @@ impl Viewport {
             view: &eye,
             style: &Style {
                 detail: key.detail,
-                ..drawing::style(&key.look, pixels_per_point)
+                ..drawing::style(&self.present_look(key.look), pixels_per_point)
             },
             surfaces: &surfaces,
             grid: ground.as_ref(),
@@ -346,7 +375,7 @@ impl Viewport {
         let size_px =
             pixels(egui::vec2(width, height) * key.pixels_per_point).map(|side| side.max(1) * kind.scale.max(1));
         let pixels_per_point = key.pixels_per_point * kind.scale.max(1) as f32;
-        let mut style = drawing::style(&view.look, pixels_per_point);
+        let mut style = drawing::style(&self.present_look(view.look), pixels_per_point);
         let mut ground = shown.ground(&view);
         if kind.ground == Ground::Transparent {
             (style.background, ground) = (Background::Transparent, None);

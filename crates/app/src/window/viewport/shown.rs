@@ -23,6 +23,8 @@ pub struct Shown {
     /// Which of the editor's rims it has.
     pub rims: Option<u64>,
     pub scale: Option<Arc<Scale>>,
+    /// Whether its images are still to come.
+    pub awaits_images: bool,
     /// Its materials with their images, once there are any.
     pub materials: Option<Materials>,
     /// How often its materials changed.

@@ -107,6 +107,9 @@ pub struct MeshReference {
     /// Its path, relative to the project's folder where it stands below that; `None` is the built-in sample.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
+    /// What people call it, where its path doesn't tell: of a copy that was kept because the file was saved over.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// What [`geometry_hash`] says of it.
     pub geometry: String,
 }

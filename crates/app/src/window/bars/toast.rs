@@ -1,0 +1,76 @@
+//! What became of what the person asked for, over the view's lower right corner: there it moves nothing else.
+
+use std::time::{Duration, Instant};
+
+use eframe::egui::{self, Align2, Id, Rect, RichText, vec2};
+
+use super::status::{done, failed};
+use crate::window::panels::notes::Note;
+
+/// How long good news stays. It can be read in the log afterwards.
+const GOOD_NEWS: Duration = Duration::from_secs(8);
+/// The distance to the view's edge, in points.
+const MARGIN: f32 = 16.0;
+/// As wide as a sentence can be read well, in points.
+const WIDTH: f32 = 460.0;
+
+/// The sentence that is shown, and since when.
+#[derive(Debug, Default)]
+pub struct Toast {
+    shown: Option<(Note, Instant)>,
+}
+
+impl Toast {
+    /// Shows what is wrong with the document (`problem`), and the newest thing that went well or wrong with a file
+    /// (`headline`), until the person puts that away. Returns where, if anything is shown.
+    pub fn show(
+        &mut self,
+        context: &egui::Context,
+        view_rect: Rect,
+        problem: Option<&str>,
+        headline: &mut Option<Note>,
+    ) -> Option<Rect> {
+        let since = match (&self.shown, &*headline) {
+            (Some((shown, since)), Some(note)) if shown == note => *since,
+            _ => Instant::now(),
+        };
+        self.shown = headline.clone().map(|note| (note, since));
+        let left = GOOD_NEWS.saturating_sub(since.elapsed());
+        let note = headline.clone().filter(|note| match note {
+            Note::Failed(_) => true,
+            Note::Done(_) => !left.is_zero(),
+        });
+        if let Some(Note::Done(_)) = note {
+            context.request_repaint_after(left);
+        }
+        if problem.is_none() && note.is_none() {
+            return None;
+        }
+        let width = WIDTH.min(view_rect.width() - 2.0 * MARGIN).max(120.0);
+        let area = egui::Area::new(Id::unique("toast"))
+            .order(egui::Order::Middle)
+            .fixed_pos(view_rect.right_bottom() - vec2(MARGIN, MARGIN))
+            .pivot(Align2::RIGHT_BOTTOM)
+            .constrain_to(view_rect)
+            .show(context, |ui| {
+                egui::Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
+                    ui.set_max_width(width);
+                    if let Some(problem) = problem {
+                        ui.add(egui::Label::new(RichText::new(problem).color(failed(ui))).wrap());
+                    }
+                    let Some(note) = note else { return };
+                    let (sentence, colour) = match note {
+                        Note::Done(sentence) => (sentence, done(ui)),
+                        Note::Failed(sentence) => (sentence, failed(ui)),
+                    };
+                    ui.horizontal_top(|ui| {
+                        if ui.small_button("×").on_hover_text("Dismiss").clicked() {
+                            *headline = None;
+                        }
+                        ui.add(egui::Label::new(RichText::new(sentence).color(colour)).wrap());
+                    });
+                });
+            });
+        Some(area.response.rect)
+    }
+}
