@@ -151,6 +151,14 @@ fn a_stroke_goes_through_the_gizmo_but_on_a_part_that_the_pointer_rests_on() {
         let others = rig.editor.document().paint() != painted;
         assert!(others || rig.editor.pick(place).is_none(), "{part:?}: it paints");
     }
+    let painted = rig.editor.document().paint().to_vec();
+    let place = rig.grip(GizmoPart::Centre).unwrap();
+    rig.swipe(&[place, place + DVec2::new(-9.0, 7.0)]);
+    rig.drain();
+    assert!(
+        seen == rig.drawn() && rig.editor.document().paint() != painted,
+        "the centre lies where a second stroke is painted"
+    );
     let colour = |rig: &Rig, part| {
         let shape = rig.editor.view().gizmo.iter().find(|shape| shape.part == part);
         shape.unwrap().colour

@@ -45,9 +45,11 @@ impl Overlay {
         part.filter(|part| settings.mode == ToolMode::Select || self.rested == Some(*part))
     }
 
-    /// The pointer rests at a point of the viewport.
+    /// The pointer rests at a point of the viewport. Squares and the centre lie over what the next stroke paints, so only
+    /// lines can be rested on.
     pub(crate) fn rest(&mut self, pointer_px: Option<DVec2>, view: &View) {
-        self.rested = pointer_px.and_then(|px| hit_gizmo(&self.gizmo, px, view.camera(), view.viewport_px()));
+        let part = pointer_px.and_then(|px| hit_gizmo(&self.gizmo, px, view.camera(), view.viewport_px()));
+        self.rested = part.filter(|part| !matches!(part, GizmoPart::Centre | GizmoPart::Square(_)));
     }
 
     /// Computes the overlay anew; its revision grows if it looks different.
