@@ -290,57 +290,57 @@ fn unmoved_but_in_numbers(rig: &mut Rig, action: impl FnOnce(&mut Rig)) {
 
 #[test]
 fn strokes_move_nothing_and_every_step_comes_back_to_the_bit() {
-    for (name, drawn) in meshes() {
-        for (seed, method) in [(0, "arap"), (1, "bilaplacian"), (2, "arap"), (3, "bilaplacian")] {
-            let mut random = Random(seed);
-            let mut rig = Rig::open_with_objects(drawn.clone(), halves(&drawn));
-            // The document at each position of the history.
-            let mut states = vec![rig.fingerprint()];
-            rig.choose(method);
-            if states[0] != rig.fingerprint() {
+    let meshes = meshes();
+    for seed in 0..10 {
+        let ((name, drawn), method) = (&meshes[seed as usize % 3], ["arap", "bilaplacian"][seed as usize % 2]);
+        let mut random = Random(seed);
+        let mut rig = Rig::open_with_objects(drawn.clone(), halves(drawn));
+        // The document at each position of the history.
+        let mut states = vec![rig.fingerprint()];
+        rig.choose(method);
+        if states[0] != rig.fingerprint() {
+            states.push(rig.fingerprint());
+        }
+        for step in 0..1000 {
+            act(&mut rig, &mut random);
+            rig.drain();
+            assert!(
+                rig.editor.is_settled() && rig.editor.document().is_settled(),
+                "{name} {seed} {step}: {:?}, {}",
+                rig.editor.view().problem,
+                rig.editor.view().status
+            );
+            let (names, done) = rig.editor.history().names();
+            let total = names.len();
+            if states.len() <= done {
+                assert_eq!(
+                    states.len(),
+                    done,
+                    "one act is at most one step: {name} {seed} {step} {names:?}"
+                );
+                states.push(rig.fingerprint());
+            } else if states[done] != rig.fingerprint() {
+                assert_eq!(total, done, "a new step ends what could be redone");
+                states.truncate(done);
                 states.push(rig.fingerprint());
             }
-            for step in 0..150 {
-                act(&mut rig, &mut random);
-                rig.drain();
-                assert!(
-                    rig.editor.is_settled() && rig.editor.document().is_settled(),
-                    "{name} {seed} {step}: {:?}, {}",
-                    rig.editor.view().problem,
-                    rig.editor.view().status
-                );
-                let (names, done) = rig.editor.history().names();
-                let total = names.len();
-                if states.len() <= done {
-                    assert_eq!(
-                        states.len(),
-                        done,
-                        "one act is at most one step: {name} {seed} {step} {names:?}"
-                    );
-                    states.push(rig.fingerprint());
-                } else if states[done] != rig.fingerprint() {
-                    assert_eq!(total, done, "a new step ends what could be redone");
-                    states.truncate(done);
-                    states.push(rig.fingerprint());
-                }
-                assert!(rig.editor.document().from_file().iter().all(|d| d.is_finite()));
-                if step % 10 == 9 {
-                    rig.assert_as_meant(&format!("{name} {seed} {step}"));
-                }
+            assert!(rig.editor.document().from_file().iter().all(|d| d.is_finite()));
+            if step % 10 == 9 {
+                rig.assert_as_meant(&format!("{name} {seed} {step}"));
             }
-            let (_, done) = rig.editor.history().names();
-            for state in states[..done].iter().rev() {
-                rig.undo();
-                assert!(*state == rig.fingerprint(), "undo on {name} {seed}");
-            }
-            assert!(rig.editor.view().undo.is_none());
-            for state in &states[1..] {
-                rig.redo();
-                assert!(*state == rig.fingerprint(), "redo on {name} {seed}");
-            }
-            rig.drain();
-            assert_eq!(states.last(), Some(&rig.fingerprint()), "nothing is owed after redo");
         }
+        let (_, done) = rig.editor.history().names();
+        for state in states[..done].iter().rev() {
+            rig.undo();
+            assert!(*state == rig.fingerprint(), "undo on {name} {seed}");
+        }
+        assert!(rig.editor.view().undo.is_none());
+        for state in &states[1..] {
+            rig.redo();
+            assert!(*state == rig.fingerprint(), "redo on {name} {seed}");
+        }
+        rig.drain();
+        assert_eq!(states.last(), Some(&rig.fingerprint()), "nothing is owed after redo");
     }
 }
 
