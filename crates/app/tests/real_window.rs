@@ -18,7 +18,7 @@ use std::process::Command;
 use std::thread::sleep;
 use std::time::Duration;
 
-use desktop::{Desktop, PAUSE, PLIANT, SIZE};
+use desktop::{Desktop, PATIENCE, PAUSE, PLIANT, SIZE};
 use pliant_app::engine::{self, Loaded};
 use pliant_app::watch::Watch;
 use pliant_deform::Method;
@@ -170,4 +170,31 @@ fn killed_in_the_middle_of_drags_the_window_recovers_each_time() {
         desktop.kill();
         desktop.start(&sample());
     }
+}
+
+/// A window that filled the screen does so when the program is started again; one that didn't has its size.
+#[test]
+fn a_maximised_window_comes_back_maximised() {
+    let Some(mut desktop) = Desktop::open(&sample()) else {
+        return;
+    };
+    desktop.wait_for_title("bar.glb");
+    desktop.wait_for_width(|width| width == SIZE.0);
+    if !desktop.maximise() {
+        return;
+    }
+    let fills_screen = |width| width > SIZE.0;
+    desktop.wait_for_width(fills_screen);
+    let start = std::time::Instant::now();
+    while desktop.settings()["maximised"] != true {
+        assert!(
+            start.elapsed() < PATIENCE,
+            "it is not remembered: {}",
+            desktop.settings()
+        );
+        sleep(PAUSE);
+    }
+    desktop.kill();
+    desktop.launch(&sample());
+    desktop.wait_for_width(fills_screen);
 }

@@ -68,6 +68,8 @@ pub struct Application {
     /// The left session that is open now, until its work is kept or saved by this one.
     pub(super) recovered_from: Option<PathBuf>,
     longest_frame: Duration,
+    /// Whether the window is still to fill the screen, as it did the last time.
+    is_to_fill_screen: bool,
     /// Where the window's content, its bars and its panel were in the last frame.
     layout: [egui::Rect; 4],
     /// Whether the open file's images were asked for.
@@ -144,11 +146,13 @@ impl Application {
             closing: false,
             recovered_from: None,
             longest_frame: Duration::ZERO,
+            is_to_fill_screen: false,
             layout: [egui::Rect::NOTHING; 4],
             has_requested_materials: false,
             view_rect: egui::Rect::ZERO,
             title: String::new(),
         };
+        application.is_to_fill_screen = application.settings.get().maximised;
         application.take_keys();
         Ok(application)
     }
@@ -387,6 +391,22 @@ impl Application {
         Some(format!("{end}, energy {:.3e}.", descent.energy))
     }
 
+    /// Fills the screen once the window is seen: X11's window managers pass over what is asked for before.
+    fn fill_screen(&mut self, context: &egui::Context) {
+        if !self.is_to_fill_screen {
+            return;
+        }
+        self.last_change = Instant::now();
+        if context.cumulative_pass_nr() < 3 {
+            context.request_repaint();
+            return;
+        }
+        self.is_to_fill_screen = false;
+        if context.input(|input| input.viewport().maximized) != Some(true) {
+            context.send_viewport_cmd(egui::ViewportCommand::Maximized(true));
+        }
+    }
+
     /// Notes how large the window is, and whether it fills the screen, once nobody pulls at it.
     fn remember_size(&mut self, context: &egui::Context) {
         if self.last_change.elapsed() < REST {
@@ -525,6 +545,7 @@ impl eframe::App for Application {
             self.answer(answer);
             context.request_repaint();
         }
+        self.fill_screen(&context);
         self.remember_size(&context);
         self.close_or_stay(&context);
         self.keep_for_recovery();

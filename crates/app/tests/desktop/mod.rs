@@ -77,8 +77,16 @@ impl Desktop {
         Some(desktop)
     }
 
-    /// Starts the program anew, with the settings and the work that the last one has left.
+    /// Starts the program anew, with the settings and the work that the last one has left, at a known place and size.
     pub fn start(&mut self, file: &Path) {
+        self.launch(file);
+        self.xdotool(&["windowmove", &self.window, "0", "0"]);
+        self.xdotool(&["windowsize", &self.window, &SIZE.0.to_string(), &SIZE.1.to_string()]);
+        self.xdotool(&["windowfocus", &self.window]);
+    }
+
+    /// The same, as large as the program makes its window.
+    pub fn launch(&mut self, file: &Path) {
         self.program = None;
         let program = Command::new(PLIANT)
             .arg(file)
@@ -93,9 +101,43 @@ impl Desktop {
             .expect("the program was just built");
         self.program = Some(Running(program));
         self.window = self.wait_for_window();
-        self.xdotool(&["windowmove", &self.window, "0", "0"]);
-        self.xdotool(&["windowsize", &self.window, &SIZE.0.to_string(), &SIZE.1.to_string()]);
-        self.xdotool(&["windowfocus", &self.window]);
+    }
+
+    /// Waits until the window's width in pixels is one that `fits`.
+    pub fn wait_for_width(&self, fits: impl Fn(i32) -> bool) {
+        let start = Instant::now();
+        loop {
+            let geometry = self.xdotool(&["getwindowgeometry", "--shell", &self.window]);
+            let width = geometry
+                .lines()
+                .find_map(|line| line.strip_prefix("WIDTH=")?.parse().ok());
+            if width.is_some_and(&fits) {
+                return;
+            }
+            assert!(start.elapsed() < PATIENCE, "the window stays as it is: {geometry}");
+            sleep(PAUSE);
+        }
+    }
+
+    /// Has the window manager let the window fill the screen; `false`, said by name, where there is none that could.
+    pub fn maximise(&self) -> bool {
+        let states = ["-i", "-r", &self.window, "-b", "add,maximized_vert,maximized_horz"];
+        let asked = Command::new("wmctrl")
+            .args(states)
+            .env("DISPLAY", &self.display)
+            .status();
+        let is_asked = asked.is_ok_and(|status| status.success());
+        if !is_asked || self._manager.is_none() {
+            eprintln!("skipped: the real window (no wmctrl or no openbox)");
+        }
+        is_asked && self._manager.is_some()
+    }
+
+    /// The settings as they are kept.
+    pub fn settings(&self) -> serde_json::Value {
+        let file = self.home.path().join("pliant").join("settings.json");
+        let text = std::fs::read_to_string(file).unwrap_or_default();
+        serde_json::from_str(&text).unwrap_or_default()
     }
 
     /// Ends the program as `kill -9` does.

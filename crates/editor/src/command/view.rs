@@ -99,7 +99,22 @@ pub(super) const CAMERA_FORTH: Entry<()> = Entry {
 
 /// Which axis points up on the screen. The model is framed anew, because another axis shows another side of it.
 pub(super) const SET_UP: Entry<UpAxis> = Entry {
-    listed: &[],
+    listed: &[
+        item(
+            UpAxis::Y,
+            "Y is up",
+            "Shows the model with its Y axis upwards, as glTF has it.",
+            "axis turn upright",
+            &[],
+        ),
+        item(
+            UpAxis::Z,
+            "Z is up",
+            "Shows the model with its Z axis upwards, as scanners and CAD have it.",
+            "axis turn upright",
+            &[],
+        ),
+    ],
     scope: Scope::View,
     unavailable: always,
     action: Action::Do(|context, up| {

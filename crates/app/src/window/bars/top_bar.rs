@@ -391,10 +391,8 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     choice(ui, Command::ToggleGrid, look.grid);
     ui.separator();
     let up = view.camera.up;
-    for (name, axis) in [("Y is up", UpAxis::Y), ("Z is up", UpAxis::Z)] {
-        if ui.radio(up == axis, name).clicked() {
-            commands.push(Command::SetUp(axis));
-        }
+    for axis in [UpAxis::Y, UpAxis::Z] {
+        choice(ui, Command::SetUp(axis), up == axis);
     }
 }
 
