@@ -1,5 +1,4 @@
-//! The application: what happens in one frame of the window, from messages and input to the editor, and back to the
-//! screen.
+//! The application: the window's state beside the editor's, and what can be asked of it from outside.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -7,25 +6,23 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-use eframe::egui::{self, CentralPanel, Panel};
+use eframe::egui;
 use glam::DVec3;
 use pliant_editor::{Command, Editor, Event, KeyMap, Shading};
 
-use super::bars::status;
 use super::bars::toast::Toast;
-use super::bars::top_bar;
-use super::dialogs::keys_window::{self, KeysWindow};
-use super::dialogs::log::{self, Log};
-use super::dialogs::palette::{Found, Outcome, Palette};
-use super::dialogs::question::{self, Question, Then};
+use super::dialogs::keys_window::KeysWindow;
+use super::dialogs::log::Log;
+use super::dialogs::palette::Palette;
+use super::dialogs::question::{Question, Then};
 use super::files::app_directories::AppDirectories;
-use super::files::recovery::{self, Recovery};
-use super::files::session::{KeepOriginal, OpenFile, Session, Source};
+use super::files::recovery::Recovery;
+use super::files::recovery::left::{left_in, remove};
+use super::files::session::{KeepOriginal, Session, Source};
 use super::files::settings::SettingsFile;
 use super::input::Input;
 use super::input::event_queue::EventQueue;
 use super::input::own_keys;
-use super::panels;
 use super::panels::notes::{Note, Notes};
 use super::threads::interface_pool;
 use super::threads::message::Message;
@@ -33,7 +30,6 @@ use super::threads::pose_queue::PoseQueue;
 use super::threads::workers::Workers;
 use super::viewport::Viewport;
 use super::viewport::compare::Compare;
-use super::widgets::outbox::Outbox;
 use super::widgets::theme;
 use crate::AppError;
 
@@ -67,15 +63,15 @@ pub struct Application {
     pub(super) closing: bool,
     /// The left session that is open now, until its work is kept or saved by this one.
     pub(super) recovered_from: Option<PathBuf>,
-    longest_frame: Duration,
+    pub(super) longest_frame: Duration,
     /// Whether the window is still to fill the screen, as it did the last time.
-    is_to_fill_screen: bool,
+    pub(super) is_to_fill_screen: bool,
     /// Where the window's content, its bars and its panel were in the last frame.
-    layout: [egui::Rect; 4],
+    pub(super) layout: [egui::Rect; 4],
     /// Whether the open file's images were asked for.
     pub(super) has_requested_materials: bool,
     pub(super) view_rect: egui::Rect,
-    title: String,
+    pub(super) title: String,
 }
 
 impl Application {
@@ -115,7 +111,7 @@ impl Application {
         let mut left = Vec::new();
         let mut recovery = None;
         if let Some(folder) = &places.recovery {
-            left = Recovery::left_in(folder);
+            left = left_in(folder);
             match Recovery::begin(folder) {
                 Ok(begun) => recovery = Some(begun),
                 Err(sentence) => notes.headline = Some(Note::Failed(sentence)),
@@ -306,10 +302,7 @@ impl Application {
         let Some(work) = recovery.note(key, unsaved, || self.editor.snapshot(), &open.loaded, &open.source) else {
             // What was recovered is kept by this session now, or saved.
             if recovery.has(key) || !unsaved {
-                self.recovered_from
-                    .take()
-                    .iter()
-                    .for_each(|left| recovery::remove(left));
+                self.recovered_from.take().iter().for_each(|left| remove(left));
             }
             return;
         };
@@ -325,7 +318,7 @@ impl Application {
     }
 
     /// Tells the editor which keys a person has chosen.
-    fn take_keys(&mut self) {
+    pub(super) fn take_keys(&mut self) {
         let mut chosen = self.settings.get().keys.clone();
         let mut problems = own_keys::refuse(&mut chosen);
         let (keys, misread) = KeyMap::of_names(&chosen);
@@ -335,241 +328,4 @@ impl Application {
             self.fail(problems.join(" "));
         }
     }
-
-    fn show_palette(&mut self, context: &egui::Context) {
-        let Some(palette) = &mut self.palette else { return };
-        if let Outcome::Chosen(found) = palette.show(context, &self.editor) {
-            self.palette = None;
-            match found {
-                Some(Found::Editor(command)) => self.command(command),
-                Some(Found::File(command)) => self.file_command(context, command),
-                None => {}
-            }
-            context.request_repaint();
-        }
-    }
-
-    /// Esc means the nearest thing: a question, the palette, an open menu, a field that is typed into and what a tool is
-    /// doing come first; then it closes the list of keys or the log, and only where neither is open does the editor
-    /// get it.
-    fn close_by_escape(&mut self, context: &egui::Context) {
-        let is_taken = self.question.is_some()
-            || self.palette.is_some()
-            || self.keys.takes_keys()
-            || egui::Popup::is_any_open(context)
-            || context.egui_wants_keyboard_input()
-            || EventQueue::is_typing(context)
-            || self.editor.is_acting();
-        let open = [
-            self.keys.open.then_some(keys_window::ID),
-            self.log.open.then_some(log::ID),
-        ];
-        if is_taken || open == [None, None] {
-            return;
-        }
-        if !context.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape)) {
-            return;
-        }
-        let top = context.memory(|memory| memory.areas().top_layer_id(egui::Order::Middle));
-        let is_top = |name: &str| top.is_some_and(|layer| layer.id == egui::Id::unique(name));
-        if self.keys.open && (!self.log.open || !is_top(log::ID)) {
-            self.keys.open = false;
-        } else {
-            self.log.open = false;
-        }
-    }
-
-    /// With which energy the shape has settled, for the log.
-    fn settled_with(&self) -> Option<String> {
-        let view = self.editor.view();
-        let descent = view.descent.filter(|_| view.settled)?;
-        let end = if descent.converged {
-            "Settled"
-        } else {
-            "Stopped at its limit of steps"
-        };
-        Some(format!("{end}, energy {:.3e}.", descent.energy))
-    }
-
-    /// Fills the screen once the window is seen: X11's window managers pass over what is asked for before.
-    fn fill_screen(&mut self, context: &egui::Context) {
-        if !self.is_to_fill_screen {
-            return;
-        }
-        self.last_change = Instant::now();
-        if context.cumulative_pass_nr() < 3 {
-            context.request_repaint();
-            return;
-        }
-        self.is_to_fill_screen = false;
-        if context.input(|input| input.viewport().maximized) != Some(true) {
-            context.send_viewport_cmd(egui::ViewportCommand::Maximized(true));
-        }
-    }
-
-    /// Notes how large the window is, and whether it fills the screen, once nobody pulls at it.
-    fn remember_size(&mut self, context: &egui::Context) {
-        if self.last_change.elapsed() < REST {
-            return;
-        }
-        let (size, maximised) = context.input(|input| {
-            let viewport = input.viewport();
-            let fills_screen = viewport.maximized == Some(true) || viewport.fullscreen == Some(true);
-            let own = viewport.inner_rect.filter(|_| !fills_screen).map(|rect| rect.size());
-            (own, viewport.maximized)
-        });
-        if let Some(maximised) = maximised.filter(|&maximised| maximised != self.settings.get().maximised) {
-            self.settings.change(|settings| settings.maximised = maximised);
-        }
-        // The size in points at the scale of the system, whatever the person's own is.
-        let Some(size) = size.map(|size| size * context.zoom_factor()) else {
-            return;
-        };
-        let known = self.settings.get().window_size;
-        if known.is_none_or(|known| (size - egui::Vec2::from(known)).length() > 1.0) {
-            self.settings
-                .change(|settings| settings.window_size = Some(size.into()));
-        }
-    }
-
-    /// Names the open file, or the question that waits, in the window's title.
-    fn entitle(&mut self, context: &egui::Context) {
-        let about = match (&self.question, &self.session.open) {
-            (Some(question), _) => question.title().to_owned(),
-            (None, Some(open)) => open.name(),
-            (None, None) => "opening".to_owned(),
-        };
-        let title = format!("Pliant — {about}");
-        if self.title != title {
-            context.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
-            self.title = title;
-        }
-    }
-}
-
-impl eframe::App for Application {
-    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        debug_assert!(
-            interface_pool::is_installed(),
-            "the window's loops would wait behind jobs' on this thread"
-        );
-        let (start, drawn_before) = (Instant::now(), self.drawing_time());
-        let context = ui.ctx().clone();
-        let has_heard = self.take_messages() || context.input(|input| input.events.iter().any(may_change_layout));
-        if self.viewport.is_lost() {
-            context.send_viewport_cmd(egui::ViewportCommand::Close);
-            return;
-        }
-        self.file_shortcuts(&context);
-        self.close_by_escape(&context);
-
-        let mut commands = Outbox::default();
-        let mut file_command = None;
-        let title = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
-        let top = Panel::top("top").show(ui, |ui| {
-            file_command = top_bar::show(ui, &self.editor, &title, &self.settings.get().recent, &mut commands);
-        });
-        let device = self.viewport.software_device().map(str::to_owned);
-        let busy = self.session.doing();
-        let status = Panel::bottom("status").show(ui, |ui| {
-            status::show(
-                ui,
-                &self.editor,
-                busy,
-                self.is_loading_textures(),
-                device.as_deref(),
-                &mut commands,
-            )
-        });
-        if status.inner {
-            self.session.stop();
-        }
-        let panel = Panel::right("panel")
-            .default_size(self.settings.get().panel_width)
-            .min_size(220.0)
-            .show(ui, |ui| {
-                let folded = &self.settings.get().folded;
-                panels::show(ui, &self.editor, &self.notes, folded, &mut commands)
-            });
-        if let Some(title) = panel.inner {
-            self.settings.change(|settings| {
-                if !settings.folded.remove(title) {
-                    settings.folded.insert(title.to_owned());
-                }
-            });
-        }
-        let width = panel.response.rect.width();
-        if (width - self.settings.get().panel_width).abs() > 1.0 && !context.input(|input| input.pointer.any_down()) {
-            self.settings.change(|settings| settings.panel_width = width);
-        }
-        let layout = [
-            context.content_rect(),
-            top.response.rect,
-            status.response.rect,
-            panel.response.rect,
-        ];
-        if std::mem::replace(&mut self.layout, layout) != layout || has_heard {
-            // egui lays out by what it measured in the frame before.
-            context.request_repaint();
-        }
-        let painted = CentralPanel::no_frame().show(ui, |ui| self.view(ui)).inner;
-        if let Err(error) = painted {
-            self.fail(error.to_string());
-        }
-
-        for event in commands.take() {
-            self.last_change = Instant::now();
-            self.editor.handle(event);
-            context.request_repaint();
-        }
-        if let Some(command) = file_command {
-            self.file_command(&context, command);
-        }
-        self.show_palette(&context);
-        for sentence in [
-            self.headline().map(str::to_owned),
-            self.editor.view().problem.map(str::to_owned),
-            self.settled_with(),
-        ] {
-            self.log.say(sentence.as_deref().unwrap_or_default());
-        }
-        self.log.show(&context);
-        if self.keys.show(&context, &self.editor, &mut self.settings) {
-            self.take_keys();
-        }
-        if let Some(answer) = self
-            .question
-            .as_mut()
-            .and_then(|question| question::ask(&context, question))
-        {
-            self.answer(answer);
-            context.request_repaint();
-        }
-        self.fill_screen(&context);
-        self.remember_size(&context);
-        self.close_or_stay(&context);
-        self.keep_for_recovery();
-        if let Some(recovery) = &self.recovery
-            && let Some(wait) = recovery.wait(self.editor.snapshot_key(), self.editor.view().unsaved)
-        {
-            context.request_repaint_after(wait);
-        }
-        self.entitle(&context);
-        if self.session.doing().is_some() || !self.editor.view().jobs.is_empty() {
-            context.request_repaint_after(Duration::from_millis(100));
-        }
-        let busy = start
-            .elapsed()
-            .saturating_sub(self.drawing_time().saturating_sub(drawn_before));
-        self.longest_frame = self.longest_frame.max(busy);
-    }
-}
-
-/// Whether an event may change what is shown, so that one more frame has to lay it out.
-fn may_change_layout(event: &egui::Event) -> bool {
-    use egui::Event::{MouseMoved, MouseWheel, PointerGone, PointerMoved, Touch, Zoom};
-    !matches!(
-        event,
-        PointerMoved(_) | MouseMoved(_) | MouseWheel { .. } | PointerGone | Touch { .. } | Zoom(_)
-    )
 }

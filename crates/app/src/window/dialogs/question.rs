@@ -7,7 +7,7 @@ use eframe::egui::{self, Id, Modal, RichText};
 use pliant_io::quoted;
 
 use crate::window::files::names::{file_name, original_name};
-use crate::window::files::recovery::Left;
+use crate::window::files::recovery::left::Left;
 use crate::window::threads::message::{Message, Purpose};
 use crate::window::threads::workers::Workers;
 

@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use eframe::egui;
 use pliant_editor::{Event, Revision};
 
-use super::recovery;
+use super::recovery::left;
 use super::session::{KeepOriginal, Source};
 use crate::engine::is_project;
 use crate::files::{is_same, shown};
 use crate::window::application::Application;
-use crate::window::bars::top_bar::FileCommand;
 use crate::window::dialogs::palette::Palette;
 use crate::window::dialogs::question::{self, Answer, Question, Then};
+use crate::window::files::file_command::FileCommand;
 use crate::window::panels::notes::Note;
 use crate::window::threads::message::{Purpose, Written, WrittenKind};
 use crate::window::widgets::theme;
@@ -182,7 +182,7 @@ impl Application {
                 self.session
                     .load(Source::Recovered(project), &self.viewport.gpu(), &self.workers);
             }
-            Answer::Forget(projects) => projects.iter().for_each(|project| recovery::remove(project)),
+            Answer::Forget(projects) => projects.iter().for_each(|project| left::remove(project)),
             Answer::Cancel => self.after_saving = None,
         }
     }

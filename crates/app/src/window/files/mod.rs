@@ -2,6 +2,7 @@
 
 pub(in crate::window) mod actions;
 pub(in crate::window) mod app_directories;
+pub(in crate::window) mod file_command;
 pub(in crate::window) mod names;
 pub(in crate::window) mod project_file;
 pub(in crate::window) mod recovery;

@@ -7,7 +7,7 @@ use eframe::egui;
 use pliant_editor::{Key, Modifiers, Shortcut};
 
 use super::{held_modifiers, key_of, pressed_key};
-use crate::window::bars::top_bar::FileCommand;
+use crate::window::files::file_command::FileCommand;
 
 /// The key that went down in this frame, also where the window system has made "copy", "cut" or "paste" of it; a
 /// sentence where it is none that a command can have.

@@ -1,0 +1,144 @@
+//! The window's own commands: what is done with files, and how the window itself looks.
+
+use std::path::PathBuf;
+
+use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+
+use crate::window::threads::message::{Ground, PictureKind};
+
+/// What is done with files; the window's own, since the editor knows no paths.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum FileCommand {
+    /// Open a file, by dialog.
+    Open,
+    /// Open this file.
+    OpenPath(PathBuf),
+    /// Save.
+    Save,
+    /// Save under another name.
+    SaveAs,
+    /// Save the project.
+    SaveProject,
+    /// Save the project under another name.
+    SaveProjectAs,
+    /// Write the regions, handles and transforms as an edit for the command line.
+    ExportEdit,
+    /// Find a command by its name.
+    Palette,
+    /// Show what was said.
+    Log,
+    /// Show the commands' keys, to be changed.
+    Keys,
+    /// Light, dark, or as the system is.
+    NextTheme,
+    /// Everything larger (above 0) or smaller, in tenths.
+    Scale(i8),
+    /// Show a second view bent by another method, or not.
+    Compare,
+    /// Show the first steps again.
+    Hints,
+    /// Save a picture of the view.
+    SavePicture(PictureKind),
+    /// Close the window.
+    Quit,
+}
+
+impl FileCommand {
+    /// The ones that have a key.
+    pub const WITH_SHORTCUTS: [Self; 9] = [
+        Self::SaveAs,
+        Self::SaveProject,
+        Self::Open,
+        Self::Save,
+        Self::ExportEdit,
+        Self::Palette,
+        Self::Scale(1),
+        Self::Scale(-1),
+        Self::Quit,
+    ];
+
+    /// The key.
+    pub fn shortcut(&self) -> Option<KeyboardShortcut> {
+        let command = |key| Some(KeyboardShortcut::new(Modifiers::COMMAND, key));
+        match self {
+            Self::Open => command(Key::O),
+            Self::Save => command(Key::S),
+            Self::SaveAs => Some(KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::S)),
+            Self::Quit => command(Key::Q),
+            Self::ExportEdit => command(Key::E),
+            Self::SaveProject => Some(KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::ALT, Key::S)),
+            Self::Palette => Some(KeyboardShortcut::new(Modifiers::NONE, Key::F1)),
+            Self::Scale(1..) => command(Key::Num9),
+            Self::Scale(_) => command(Key::Num0),
+            Self::SaveProjectAs
+            | Self::Log
+            | Self::Keys
+            | Self::NextTheme
+            | Self::Compare
+            | Self::Hints
+            | Self::OpenPath(_)
+            | Self::SavePicture(_) => None,
+        }
+    }
+
+    /// All that need no path, in the order of the menu.
+    pub const LISTED: [Self; 14] = [
+        Self::Open,
+        Self::Save,
+        Self::SaveAs,
+        Self::SaveProject,
+        Self::SaveProjectAs,
+        Self::ExportEdit,
+        Self::SavePicture(PictureKind {
+            scale: 1,
+            ground: Ground::AsShown,
+        }),
+        Self::Palette,
+        Self::Log,
+        Self::Keys,
+        Self::NextTheme,
+        Self::Compare,
+        Self::Hints,
+        Self::Quit,
+    ];
+
+    /// What a menu calls it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Open | Self::OpenPath(_) => "Open…",
+            Self::Save => "Save model",
+            Self::SaveAs => "Save model as…",
+            Self::SaveProject => "Save project",
+            Self::SaveProjectAs => "Save project as…",
+            Self::Palette => "Find a command…",
+            Self::Log => "Log…",
+            Self::Keys => "Keys…",
+            Self::NextTheme => "Light or dark",
+            Self::Scale(_) => "Size of everything",
+            Self::Compare => "Compare two methods",
+            Self::Hints => "Hints on the canvas",
+            Self::ExportEdit => "Export edit…",
+            Self::SavePicture(_) => "Save picture…",
+            Self::Quit => "Quit",
+        }
+    }
+
+    /// What else people call it, in lower case.
+    pub fn keywords(&self) -> &'static str {
+        match self {
+            Self::Open | Self::OpenPath(_) => "load import file",
+            Self::Save | Self::SaveAs => "write file",
+            Self::SaveProject | Self::SaveProjectAs => "pliant file document",
+            Self::Palette => "palette search",
+            Self::Log => "messages errors",
+            Self::Keys => "shortcuts bindings keyboard rebind",
+            Self::NextTheme => "theme dark mode",
+            Self::Scale(_) => "ui zoom",
+            Self::Compare => "split view side by side",
+            Self::Hints => "help first steps",
+            Self::ExportEdit => "json command line",
+            Self::SavePicture(_) => "screenshot render image png",
+            Self::Quit => "exit close",
+        }
+    }
+}

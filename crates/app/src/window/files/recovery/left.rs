@@ -1,0 +1,64 @@
+//! What sessions have left that ended without saving.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use crate::window::files::project_file;
+
+/// A session that ended without saving.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Left {
+    /// Its project.
+    pub project: PathBuf,
+    /// What people call the model that was worked on, where that can be told.
+    pub name: Option<String>,
+    /// When that was written.
+    pub written: SystemTime,
+}
+
+/// The sessions in `folder` that ended without saving, the newest first.
+pub fn left_in(folder: &Path) -> Vec<Left> {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return Vec::new();
+    };
+    let mut left: Vec<Left> = entries
+        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
+        .filter(|path| crate::engine::is_project(path) && is_gone(&path.with_extension("lock")))
+        .map(|project| {
+            let written = fs::metadata(&project).and_then(|metadata| metadata.modified());
+            Left {
+                written: written.unwrap_or(SystemTime::UNIX_EPOCH),
+                name: project_file::mesh_name(&project),
+                project,
+            }
+        })
+        .collect();
+    left.sort_by_key(|left| std::cmp::Reverse(left.written));
+    left
+}
+
+/// Deletes what a session has left.
+pub fn remove(project: &Path) {
+    // What is not there need not go.
+    let _ = fs::remove_file(project);
+    let Some(stem) = project.file_stem() else { return };
+    let prefix = format!("{}.source.", stem.to_string_lossy());
+    let folder = project.parent().and_then(|folder| fs::read_dir(folder).ok());
+    for entry in folder.into_iter().flatten().flatten() {
+        if entry.file_name().to_string_lossy().starts_with(&prefix) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+    if is_gone(&project.with_extension("lock")) {
+        let _ = fs::remove_file(project.with_extension("lock"));
+    }
+}
+
+/// Whether nobody holds the lock.
+fn is_gone(lock: &Path) -> bool {
+    match File::open(lock) {
+        Ok(file) => file.try_lock().is_ok(),
+        Err(_) => true,
+    }
+}

@@ -1,0 +1,219 @@
+//! What a session leaves for the next one should it end without saving: a project, written every few seconds while
+//! there is unsaved work, and taken away when the work is saved or the window is closed.
+//!
+//! Each session holds a lock on a file of its own. The system lets go of it however the process ends, so a project
+//! whose lock can be had belongs to a session that is gone.
+
+pub mod left;
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use pliant_editor::{Snapshot, SnapshotKey};
+use pliant_mesh::{Cancel, Progress};
+
+use self::left::remove;
+use super::project_file::{self, MeshSource};
+use crate::engine::Loaded;
+use crate::files::{Staging, shown};
+
+/// How often unsaved work is kept. A write takes less than a second even on a large mesh, so no more than twice this
+/// can be lost.
+const EVERY: Duration = Duration::from_secs(8);
+
+/// The keeper of one session's work.
+#[derive(Debug)]
+pub struct Recovery {
+    project: PathBuf,
+    lock_path: PathBuf,
+    _lock: File,
+    /// The state that was kept last, and the one that is being written.
+    kept: Option<SnapshotKey>,
+    writing: Option<SnapshotKey>,
+    last: Instant,
+    every: Duration,
+    /// Whether the last write failed: it is said once.
+    failed: bool,
+}
+
+/// What is to be kept.
+#[derive(Clone)]
+pub struct Work {
+    snapshot: Snapshot,
+    loaded: Arc<Loaded>,
+    source: MeshSource,
+    project: PathBuf,
+}
+
+/// The newest state of the window that runs in this process, for the moment of a panic.
+static LATEST: Mutex<Option<Work>> = Mutex::new(None);
+
+impl Recovery {
+    /// Begins to keep a session's work in `folder`.
+    ///
+    /// # Errors
+    /// Where the folder or the lock can't be made, in a sentence.
+    pub fn begin(folder: &Path) -> Result<Self, String> {
+        let refuse =
+            |error: std::io::Error| format!("unsaved work can't be kept in {} ({error}): save often", shown(folder));
+        make_private_folder(folder).map_err(refuse)?;
+        for number in 0..1000 {
+            let name = format!("session-{}-{number}", std::process::id());
+            let lock_path = folder.join(&name).with_extension("lock");
+            let lock = private_file(&lock_path).map_err(refuse)?;
+            if lock.try_lock().is_ok() && !folder.join(&name).with_extension("pliant").exists() {
+                return Ok(Self {
+                    project: folder.join(&name).with_extension("pliant"),
+                    lock_path,
+                    _lock: lock,
+                    kept: None,
+                    writing: None,
+                    last: Instant::now(),
+                    every: EVERY,
+                    failed: false,
+                });
+            }
+        }
+        Err(refuse(std::io::Error::other("a thousand sessions are there")))
+    }
+
+    /// Takes note of the present state: what is to be written now, if anything is, for [`Work::write`] elsewhere.
+    pub fn note(
+        &mut self,
+        key: SnapshotKey,
+        unsaved: bool,
+        snapshot: impl FnOnce() -> Option<Snapshot>,
+        loaded: &Arc<Loaded>,
+        source: &MeshSource,
+    ) -> Option<Work> {
+        if !unsaved {
+            self.forget(key);
+            return None;
+        }
+        if self.writing.is_some() || self.kept == Some(key) {
+            return None;
+        }
+        let work = Work {
+            snapshot: snapshot()?,
+            loaded: Arc::clone(loaded),
+            source: source.clone(),
+            project: self.project.clone(),
+        };
+        *LATEST.lock().unwrap_or_else(PoisonError::into_inner) = Some(work.clone());
+        if self.kept.is_some() && self.last.elapsed() < self.every {
+            return None;
+        }
+        self.writing = Some(key);
+        Some(work)
+    }
+
+    /// Whether this state was kept.
+    pub fn has(&self, key: SnapshotKey) -> bool {
+        self.kept == Some(key) && !self.failed
+    }
+
+    /// When the window should look again though nothing happens; `None` while nothing waits.
+    pub fn wait(&self, key: SnapshotKey, unsaved: bool) -> Option<Duration> {
+        (unsaved && self.kept != Some(key)).then(|| self.every.saturating_sub(self.last.elapsed()))
+    }
+
+    /// A write has ended. A sentence if it failed, once.
+    pub fn written(&mut self, key: SnapshotKey, result: Result<(), String>) -> Option<String> {
+        self.writing = None;
+        self.last = Instant::now();
+        // A failed one counts as well: the disk is asked again when something changes.
+        self.kept = Some(key);
+        match result {
+            Ok(()) => {
+                self.failed = false;
+                None
+            }
+            Err(sentence) => {
+                let is_new = !std::mem::replace(&mut self.failed, true);
+                is_new.then(|| format!("Unsaved work can't be kept for a recovery: {sentence}"))
+            }
+        }
+    }
+
+    /// There is nothing to recover.
+    fn forget(&mut self, key: SnapshotKey) {
+        if self.writing.is_none() && self.kept.is_some() {
+            self.kept = None;
+            remove(&self.project);
+        }
+        let mut latest = LATEST.lock().unwrap_or_else(PoisonError::into_inner);
+        if latest.is_some() && self.writing != Some(key) {
+            *latest = None;
+        }
+    }
+}
+
+impl Drop for Recovery {
+    /// The window closes in good order: whoever closed it was asked about unsaved work.
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            return;
+        }
+        *LATEST.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        remove(&self.project);
+        let _ = fs::remove_file(&self.lock_path);
+    }
+}
+
+impl Work {
+    /// Writes it.
+    ///
+    /// # Errors
+    /// What stands in the way, in a sentence.
+    pub fn write(&self) -> Result<(), String> {
+        project_file::write(
+            &self.snapshot,
+            &self.loaded,
+            &self.source,
+            &self.project,
+            &Staging::private(),
+            &Progress::new(),
+            &Cancel::new(),
+        )
+        .map_err(|error| error.to_string())
+    }
+}
+
+/// Writes the newest state at once, in the middle of a panic; where to, if there was one.
+pub fn write_latest() -> Option<PathBuf> {
+    // Whoever holds it may be the one that panics.
+    let work = LATEST.try_lock().ok()?.clone()?;
+    work.write().ok().map(|()| work.project)
+}
+
+/// Makes the folder of a user's unsaved work, which is nobody else's business.
+fn make_private_folder(folder: &Path) -> std::io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::{DirBuilderExt, PermissionsExt};
+        fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)?;
+        // One that an earlier version made may be open to all.
+        fs::set_permissions(folder, fs::Permissions::from_mode(0o700))
+    }
+    #[cfg(not(unix))]
+    fs::create_dir_all(folder)
+}
+
+/// Makes or opens a file that only its owner may read.
+fn private_file(path: &Path) -> std::io::Result<File> {
+    let mut options = fs::OpenOptions::new();
+    options.write(true).create(true).truncate(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    options.open(path)
+}
+
+#[cfg(test)]
+#[allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that can't go on fails, and the child says what it did"
+)]
+mod tests;

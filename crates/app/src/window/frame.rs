@@ -1,0 +1,200 @@
+//! One frame of the window: from messages and input to the editor, and back to the screen.
+
+use std::time::{Duration, Instant};
+
+use eframe::egui::{self, CentralPanel, Panel};
+
+use super::application::Application;
+use super::bars::status;
+use super::bars::top_bar;
+use super::dialogs::palette::{Found, Outcome};
+use super::dialogs::{keys_window, log, question};
+use super::files::file_command::FileCommand;
+use super::files::session::OpenFile;
+use super::input::event_queue::EventQueue;
+use super::panels;
+use super::threads::interface_pool;
+use super::widgets::outbox::Outbox;
+
+impl eframe::App for Application {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        debug_assert!(
+            interface_pool::is_installed(),
+            "the window's loops would wait behind jobs' on this thread"
+        );
+        let (start, drawn_before) = (Instant::now(), self.drawing_time());
+        let context = ui.ctx().clone();
+        let has_heard = self.take_messages() || context.input(|input| input.events.iter().any(may_change_layout));
+        if self.viewport.is_lost() {
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+            return;
+        }
+        self.file_shortcuts(&context);
+        self.close_by_escape(&context);
+
+        let mut commands = Outbox::default();
+        let (file_command, layout) = self.bars_and_panel(ui, &mut commands);
+        if std::mem::replace(&mut self.layout, layout) != layout || has_heard {
+            // egui lays out by what it measured in the frame before.
+            context.request_repaint();
+        }
+        let painted = CentralPanel::no_frame().show(ui, |ui| self.view(ui)).inner;
+        if let Err(error) = painted {
+            self.fail(error.to_string());
+        }
+
+        for event in commands.take() {
+            self.last_change = Instant::now();
+            self.editor.handle(event);
+            context.request_repaint();
+        }
+        if let Some(command) = file_command {
+            self.file_command(&context, command);
+        }
+        self.dialogs(&context);
+        self.fill_screen(&context);
+        self.remember_size(&context);
+        self.close_or_stay(&context);
+        self.keep_for_recovery();
+        self.entitle(&context);
+        if let Some(recovery) = &self.recovery
+            && let Some(wait) = recovery.wait(self.editor.snapshot_key(), self.editor.view().unsaved)
+        {
+            context.request_repaint_after(wait);
+        }
+        if self.session.doing().is_some() || !self.editor.view().jobs.is_empty() {
+            context.request_repaint_after(Duration::from_millis(100));
+        }
+        let drawing = self.drawing_time().saturating_sub(drawn_before);
+        self.longest_frame = self.longest_frame.max(start.elapsed().saturating_sub(drawing));
+    }
+}
+
+impl Application {
+    /// What surrounds the view. Returns what was chosen of files, and where the content, the bars and the panel are.
+    fn bars_and_panel(&mut self, ui: &mut egui::Ui, commands: &mut Outbox) -> (Option<FileCommand>, [egui::Rect; 4]) {
+        let context = ui.ctx().clone();
+        let title = self.session.open.as_ref().map(OpenFile::name).unwrap_or_default();
+        let top = Panel::top("top").show(ui, |ui| {
+            top_bar::show(ui, &self.editor, &title, &self.settings.get().recent, commands)
+        });
+        let device = self.viewport.software_device().map(str::to_owned);
+        let (busy, is_loading_textures) = (self.session.doing(), self.is_loading_textures());
+        let status = Panel::bottom("status").show(ui, |ui| {
+            status::show(ui, &self.editor, busy, is_loading_textures, device.as_deref(), commands)
+        });
+        if status.inner {
+            self.session.stop();
+        }
+        let panel = Panel::right("panel")
+            .default_size(self.settings.get().panel_width)
+            .min_size(220.0)
+            .show(ui, |ui| {
+                let folded = &self.settings.get().folded;
+                panels::show(ui, &self.editor, &self.notes, folded, commands)
+            });
+        if let Some(title) = panel.inner {
+            self.settings.change(|settings| {
+                if !settings.folded.remove(title) {
+                    settings.folded.insert(title.to_owned());
+                }
+            });
+        }
+        let width = panel.response.rect.width();
+        if (width - self.settings.get().panel_width).abs() > 1.0 && !context.input(|input| input.pointer.any_down()) {
+            self.settings.change(|settings| settings.panel_width = width);
+        }
+        let layout = [
+            context.content_rect(),
+            top.response.rect,
+            status.response.rect,
+            panel.response.rect,
+        ];
+        (top.inner, layout)
+    }
+
+    /// What lies over the view and the panel: the palette, the log, the keys and the question that waits.
+    fn dialogs(&mut self, context: &egui::Context) {
+        self.show_palette(context);
+        for sentence in [
+            self.headline().map(str::to_owned),
+            self.editor.view().problem.map(str::to_owned),
+            self.settled_with(),
+        ] {
+            self.log.say(sentence.as_deref().unwrap_or_default());
+        }
+        self.log.show(context);
+        if self.keys.show(context, &self.editor, &mut self.settings) {
+            self.take_keys();
+        }
+        let question = self.question.as_mut();
+        if let Some(answer) = question.and_then(|question| question::ask(context, question)) {
+            self.answer(answer);
+            context.request_repaint();
+        }
+    }
+
+    fn show_palette(&mut self, context: &egui::Context) {
+        let Some(palette) = &mut self.palette else { return };
+        if let Outcome::Chosen(found) = palette.show(context, &self.editor) {
+            self.palette = None;
+            match found {
+                Some(Found::Editor(command)) => self.command(command),
+                Some(Found::File(command)) => self.file_command(context, command),
+                None => {}
+            }
+            context.request_repaint();
+        }
+    }
+
+    /// Esc means the nearest thing: a question, the palette, an open menu, a field that is typed into and what a tool is
+    /// doing come first; then it closes the list of keys or the log, and only where neither is open does the editor
+    /// get it.
+    fn close_by_escape(&mut self, context: &egui::Context) {
+        let is_taken = self.question.is_some()
+            || self.palette.is_some()
+            || self.keys.takes_keys()
+            || egui::Popup::is_any_open(context)
+            || context.egui_wants_keyboard_input()
+            || EventQueue::is_typing(context)
+            || self.editor.is_acting();
+        let open = [
+            self.keys.open.then_some(keys_window::ID),
+            self.log.open.then_some(log::ID),
+        ];
+        if is_taken || open == [None, None] {
+            return;
+        }
+        if !context.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape)) {
+            return;
+        }
+        let top = context.memory(|memory| memory.areas().top_layer_id(egui::Order::Middle));
+        let is_top = |name: &str| top.is_some_and(|layer| layer.id == egui::Id::unique(name));
+        if self.keys.open && (!self.log.open || !is_top(log::ID)) {
+            self.keys.open = false;
+        } else {
+            self.log.open = false;
+        }
+    }
+
+    /// With which energy the shape has settled, for the log.
+    fn settled_with(&self) -> Option<String> {
+        let view = self.editor.view();
+        let descent = view.descent.filter(|_| view.settled)?;
+        let end = if descent.converged {
+            "Settled"
+        } else {
+            "Stopped at its limit of steps"
+        };
+        Some(format!("{end}, energy {:.3e}.", descent.energy))
+    }
+}
+
+/// Whether an event may change what is shown, so that one more frame has to lay it out.
+fn may_change_layout(event: &egui::Event) -> bool {
+    use egui::Event::{MouseMoved, MouseWheel, PointerGone, PointerMoved, Touch, Zoom};
+    !matches!(
+        event,
+        PointerMoved(_) | MouseMoved(_) | MouseWheel { .. } | PointerGone | Touch { .. } | Zoom(_)
+    )
+}
