@@ -1,18 +1,14 @@
-//! Making, choosing and moving handles.
-
-use glam::{DVec2, DVec3};
+//! Making and choosing handles, and how they hold.
 
 use super::entry::{
-    Action, Entry, Scope, alt, always, character, item, plain, shift, unless, when_open, with_selected, with_unlocked,
+    Action, Entry, Scope, alt, character, item, plain, shift, unless, when_open, with_selected, with_unlocked,
 };
-use crate::document::{HandleId, HandleTransform, PivotPlace, Reach};
-use crate::format::without_pivot;
+use crate::document::{HandleId, Reach};
 use crate::input::Key;
-use crate::tool::{Constraint, Context, Gesture, ToolMode, TransformDrag, TransformKind, Widen};
-use crate::view::{GizmoMode, GizmoOrientation};
+use crate::tool::{ToolMode, Widen};
 use crate::workspace::{
-    Purpose, change_handle, delete_selected, mirror, pin_or_unpin_selected, reset_region, set_continuity, set_pivot,
-    set_pivot_place, set_reach, set_soft, set_turn, split_selected, transform_handle, untwin,
+    Purpose, change_handle, delete_selected, mirror, pin_or_unpin_selected, reset_region, set_continuity, set_reach,
+    set_soft, split_selected, untwin,
 };
 
 /// Widens the selected handle's reach with the pointer.
@@ -30,74 +26,6 @@ pub(super) const WIDEN: Entry<()> = Entry {
         let widen = Widen::begin(context.workspace, context.view, context.pointer)?;
         Some(Box::new(widen))
     }),
-};
-
-/// What the gizmo offers.
-pub(super) const SET_GIZMO: Entry<GizmoMode> = Entry {
-    listed: &[],
-    scope: Scope::View,
-    unavailable: always,
-    action: Action::Do(|context, mode| context.settings.gizmo_mode = mode),
-};
-
-/// Along which axes the gizmo stands.
-pub(super) const SET_ORIENTATION: Entry<GizmoOrientation> = Entry {
-    listed: &[
-        item(
-            GizmoOrientation::World,
-            "World axes",
-            "The gizmo stands along the world's axes.",
-            "global orientation",
-            &[],
-        ),
-        item(
-            GizmoOrientation::Local,
-            "Own axes",
-            "The gizmo turns along with its handle.",
-            "local orientation",
-            &[],
-        ),
-        item(
-            GizmoOrientation::View,
-            "Screen axes",
-            "The gizmo stands along the screen.",
-            "view orientation",
-            &[],
-        ),
-    ],
-    scope: Scope::View,
-    unavailable: always,
-    action: Action::Do(|context, orientation| context.settings.orientation = orientation),
-};
-
-/// The next click on the surface puts the selected handle's pivot there.
-pub(super) const PICK_PIVOT: Entry<()> = Entry {
-    listed: &[item(
-        (),
-        "Pick pivot",
-        "The next click on the surface is the point that the handle turns about.",
-        "origin centre center",
-        &[shift('p')],
-    )],
-    scope: Scope::Document,
-    unavailable: with_unlocked,
-    action: Action::Do(|context, ()| context.settings.wants_pivot = true),
-};
-
-/// Puts a handle's pivot at a point of the present shape. The surface stays as it is.
-pub(super) const SET_PIVOT: Entry<(HandleId, DVec3)> = Entry {
-    listed: &[],
-    scope: Scope::Document,
-    unavailable: |state, (id, _)| state.gone(*id),
-    action: Action::Do(|context, (id, point)| set_pivot(context.workspace, id, point)),
-};
-
-/// Chooses where a handle's pivot stands. The surface stays as it is.
-pub(super) const SET_PIVOT_PLACE: Entry<(HandleId, PivotPlace)> = Entry {
-    listed: &[],
-    scope: Scope::Document,
-    unavailable: |state, (id, _)| state.gone(*id),
-    action: Action::Do(|context, (id, place)| set_pivot_place(context.workspace, id, place)),
 };
 
 /// Splits the selected handle in two across its longest side: a vertex can only be in one.
@@ -262,70 +190,6 @@ pub(super) const DELETE_HANDLE: Entry<()> = Entry {
     action: Action::Do(|context, ()| delete_selected(context.workspace)),
 };
 
-/// Starts moving the selected handle with the pointer.
-pub(super) const MOVE: Entry<()> = Entry {
-    listed: &[item(
-        (),
-        "Move",
-        "Moves the selected handle with the pointer.",
-        "translate grab drag",
-        &[character('g')],
-    )],
-    scope: Scope::Gesture,
-    unavailable: with_selected,
-    action: Action::Begin(|context, ()| transform(context, TransformKind::Move)),
-};
-
-/// Starts turning the selected handle with the pointer.
-pub(super) const TURN: Entry<()> = Entry {
-    listed: &[item(
-        (),
-        "Turn",
-        "Turns the selected handle with the pointer.",
-        "rotate spin",
-        &[character('r')],
-    )],
-    scope: Scope::Gesture,
-    unavailable: with_selected,
-    action: Action::Begin(|context, ()| transform(context, TransformKind::Turn)),
-};
-
-/// Starts scaling the selected handle with the pointer.
-pub(super) const SCALE: Entry<()> = Entry {
-    listed: &[item(
-        (),
-        "Scale",
-        "Scales the selected handle with the pointer.",
-        "size grow shrink",
-        &[character('s')],
-    )],
-    scope: Scope::Gesture,
-    unavailable: with_selected,
-    action: Action::Begin(|context, ()| transform(context, TransformKind::Scale)),
-};
-
-/// Takes the selected handle back to where it rests.
-pub(super) const RESET_HANDLE: Entry<()> = Entry {
-    listed: &[item(
-        (),
-        "Reset handle",
-        "Takes the selected handle back to where it rests.",
-        "clear transform",
-        &[alt('g')],
-    )],
-    scope: Scope::Document,
-    unavailable: |state, ()| match state.selected() {
-        Err(reason) => Some(reason),
-        Ok(handle) if !handle.is_displaced() => Some(format!("{} stands where it was painted.", handle.name).into()),
-        Ok(_) => None,
-    },
-    action: Action::Do(|context, ()| {
-        if let Some(id) = context.workspace.selection.selected() {
-            transform_handle(context.workspace, "Reset", id, HandleTransform::IDENTITY);
-        }
-    }),
-};
-
 /// Makes the selected handle a pin, which stays where it is, or a pin a handle again.
 pub(super) const PIN: Entry<()> = Entry {
     listed: &[item(
@@ -384,29 +248,6 @@ pub(super) const TOGGLE_HANDLE_LOCKED: Entry<HandleId> = Entry {
     }),
 };
 
-/// Puts a handle where the transform says, about the handle's own pivot.
-pub(super) const SET_HANDLE_TRANSFORM: Entry<(HandleId, HandleTransform)> = Entry {
-    listed: &[],
-    scope: Scope::Document,
-    unavailable: |state, (id, _)| state.gone(*id),
-    action: Action::Do(|context, (id, transform)| {
-        if transform.affine(DVec3::ZERO).is_finite() {
-            transform_handle(context.workspace, "Move", id, without_pivot(transform));
-        } else {
-            let why = "The handle's transform is not finite: enter other numbers.";
-            context.workspace.refuse(why);
-        }
-    }),
-};
-
-/// Turns a handle to these angles about x, y and z in degrees, full turns included.
-pub(super) const SET_TURN: Entry<(HandleId, DVec3)> = Entry {
-    listed: &[],
-    scope: Scope::Document,
-    unavailable: |state, (id, _)| state.gone(*id),
-    action: Action::Do(|context, (id, turn_deg)| set_turn(context.workspace, id, turn_deg)),
-};
-
 /// How far along the surface a handle takes the surface along.
 pub(super) const SET_REACH: Entry<(HandleId, Reach)> = Entry {
     listed: &[],
@@ -430,11 +271,3 @@ pub(super) const SET_CONTINUITY: Entry<(HandleId, Option<f64>)> = Entry {
     unavailable: |state, (id, _)| state.gone(*id),
     action: Action::Do(|context, (id, continuity)| set_continuity(context.workspace, id, continuity)),
 };
-
-/// Begins to move, turn or scale the selected handle with the pointer.
-fn transform(context: &mut Context<'_>, kind: TransformKind) -> Option<Box<dyn Gesture>> {
-    let middle_px: DVec2 = context.view.viewport_px() * 0.5;
-    let start_px = context.pointer.map_or(middle_px, |pointer| pointer.position_px);
-    let drag = TransformDrag::begin(context, kind, Constraint::Free, start_px)?;
-    Some(Box::new(drag))
-}

@@ -13,6 +13,7 @@ mod paint;
 mod region;
 mod shortcut;
 mod table;
+mod transform;
 mod view;
 
 pub(crate) use entry::{Scope, State};

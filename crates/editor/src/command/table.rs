@@ -8,7 +8,7 @@ use pliant_deform::{Loose, Method};
 
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
-use super::{document, handle, look, object, paint, region, view};
+use super::{document, handle, look, object, paint, region, transform, view};
 use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, Tips};
 use crate::tool::{BrushMetric, Context, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
@@ -119,15 +119,15 @@ commands! {
     /// Widens the selected handle's reach with the pointer.
     Widen = handle::WIDEN;
     /// What the gizmo offers.
-    SetGizmo(mode: GizmoMode) = handle::SET_GIZMO;
+    SetGizmo(mode: GizmoMode) = transform::SET_GIZMO;
     /// Along which axes the gizmo stands.
-    SetOrientation(orientation: GizmoOrientation) = handle::SET_ORIENTATION;
+    SetOrientation(orientation: GizmoOrientation) = transform::SET_ORIENTATION;
     /// The next click on the surface puts the selected handle's pivot there.
-    PickPivot = handle::PICK_PIVOT;
+    PickPivot = transform::PICK_PIVOT;
     /// Puts a handle's pivot at a point of the present shape. The surface stays as it is.
-    SetPivot(id: HandleId, point: DVec3) = handle::SET_PIVOT;
+    SetPivot(id: HandleId, point: DVec3) = transform::SET_PIVOT;
     /// Chooses where a handle's pivot stands. The surface stays as it is.
-    SetPivotPlace(id: HandleId, place: PivotPlace) = handle::SET_PIVOT_PLACE;
+    SetPivotPlace(id: HandleId, place: PivotPlace) = transform::SET_PIVOT_PLACE;
     /// Splits the selected handle in two across its longest side: a vertex can only be in one.
     DuplicateHandle = handle::DUPLICATE_HANDLE;
     /// Makes the selected handle's mirror image a handle that does the same, across axis 0, 1, 2 for x, y, z.
@@ -149,13 +149,13 @@ commands! {
     /// Deletes the selected handle; its vertices are held still.
     DeleteHandle = handle::DELETE_HANDLE;
     /// Starts moving the selected handle with the pointer.
-    Move = handle::MOVE;
+    Move = transform::MOVE;
     /// Starts turning the selected handle with the pointer.
-    Turn = handle::TURN;
+    Turn = transform::TURN;
     /// Starts scaling the selected handle with the pointer.
-    Scale = handle::SCALE;
+    Scale = transform::SCALE;
     /// Takes the selected handle back to where it rests.
-    ResetHandle = handle::RESET_HANDLE;
+    ResetHandle = transform::RESET_HANDLE;
     /// Makes the selected handle a pin, which stays where it is, or a pin a handle again.
     PinOrUnpin = handle::PIN;
     /// Names a handle.
@@ -167,9 +167,9 @@ commands! {
     /// Keeps a handle from being moved, painted and deleted, or lets it.
     ToggleHandleLocked(id: HandleId) = handle::TOGGLE_HANDLE_LOCKED;
     /// Puts a handle where the transform says, about the handle's own pivot.
-    SetHandleTransform(id: HandleId, transform: HandleTransform) = handle::SET_HANDLE_TRANSFORM;
+    SetHandleTransform(id: HandleId, transform: HandleTransform) = transform::SET_HANDLE_TRANSFORM;
     /// Turns a handle to these angles about x, y and z in degrees, full turns included.
-    SetTurn(id: HandleId, turn_deg: DVec3) = handle::SET_TURN;
+    SetTurn(id: HandleId, turn_deg: DVec3) = transform::SET_TURN;
     /// How far along the surface a handle takes the surface along.
     SetReach(id: HandleId, reach: Reach) = handle::SET_REACH;
     /// Gives a handle a weight ([`SOFT_RANGE`](crate::SOFT_RANGE)), so that it only pulls; `None` makes it hard.

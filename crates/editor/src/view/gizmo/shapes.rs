@@ -1,0 +1,184 @@
+//! The gizmo's lines and triangles.
+
+use std::f64::consts::TAU;
+
+use glam::{DQuat, DVec2, DVec3};
+
+use super::{GizmoAxes, GizmoMode, GizmoPart, GizmoShape, axis_vector};
+use crate::view::camera::Camera;
+
+const ARROW_PX: f64 = 96.0;
+const ARROW_HEAD_PX: f64 = 16.0;
+const ARROW_WIDTH_PX: f64 = 5.0;
+const BOX_PX: f64 = 118.0;
+const BOX_HALF_PX: f64 = 5.0;
+const RING_PX: f64 = 72.0;
+const SQUARE_FROM_PX: f64 = 26.0;
+const SQUARE_TO_PX: f64 = 42.0;
+const CENTRE_PX: f64 = 7.0;
+const RING_SEGMENTS: usize = 64;
+const HEAD_SEGMENTS: usize = 12;
+
+const AXIS_COLOURS: [[u8; 3]; 3] = [[226, 62, 72], [106, 176, 48], [58, 122, 228]];
+const AXIS_BRIGHT: [[u8; 3]; 3] = [[255, 136, 140], [172, 236, 112], [140, 188, 255]];
+
+/// The gizmo of a handle whose pivot is at `centre`, turned as `axes` says.
+///
+/// Lengths are those of the screen: `viewport_px` is its size, and the shapes keep theirs wherever the eye is.
+pub fn gizmo_shapes(
+    mode: GizmoMode,
+    centre: DVec3,
+    axes: GizmoAxes,
+    camera: &Camera,
+    viewport_px: DVec2,
+    highlighted: Option<GizmoPart>,
+) -> Vec<GizmoShape> {
+    let px = camera.world_per_px(centre, viewport_px);
+    let to_eye = camera.towards_eye(centre);
+    let mut shapes = Vec::new();
+    let mut add = |part: GizmoPart, lines: Vec<[DVec3; 2]>, triangles: Vec<[DVec3; 3]>| {
+        let highlighted = highlighted == Some(part);
+        shapes.push(GizmoShape {
+            part,
+            colour: colour(part, highlighted),
+            highlighted,
+            lines,
+            triangles,
+        });
+    };
+    let shows = |wanted: GizmoMode| mode == GizmoMode::All || mode == wanted;
+    if shows(GizmoMode::Turn) {
+        for axis in 0..3 {
+            add(
+                GizmoPart::Ring(axis),
+                ring(centre, axes.basis * axis_vector(axis), RING_PX * px, to_eye),
+                Vec::new(),
+            );
+        }
+    }
+    for axis in 0..3 {
+        if shows(GizmoMode::Move) {
+            let direction = axes.basis * axis_vector(axis);
+            let tip = centre + direction * (ARROW_PX * px);
+            let base = centre + direction * ((ARROW_PX - ARROW_HEAD_PX) * px);
+            let start = centre + direction * (2.0 * CENTRE_PX * px);
+            add(
+                GizmoPart::Arrow(axis),
+                vec![[start, base]],
+                cone(base, tip, ARROW_WIDTH_PX * px),
+            );
+            let (u, v) = (
+                axes.basis * axis_vector((axis + 1) % 3),
+                axes.basis * axis_vector((axis + 2) % 3),
+            );
+            add(GizmoPart::Square(axis), Vec::new(), square(centre, u, v, px));
+        }
+        if shows(GizmoMode::Scale) {
+            let direction = axes.own * axis_vector(axis);
+            let middle = centre + direction * (BOX_PX * px);
+            let start = if mode == GizmoMode::Scale {
+                2.0 * CENTRE_PX
+            } else {
+                ARROW_PX
+            };
+            add(
+                GizmoPart::Box(axis),
+                vec![[centre + direction * (start * px), middle]],
+                cube(middle, axes.own, BOX_HALF_PX * px),
+            );
+        }
+    }
+    if shows(GizmoMode::Move) {
+        add(GizmoPart::Centre, Vec::new(), disc(centre, to_eye, CENTRE_PX * px));
+    }
+    shapes
+}
+
+/// sRGB with alpha; squares let through what they lie on.
+fn colour(part: GizmoPart, highlighted: bool) -> [u8; 4] {
+    let [red, green, blue] = match (part, highlighted) {
+        (GizmoPart::Centre, false) => [222; 3],
+        (GizmoPart::Centre, true) => [255; 3],
+        (
+            GizmoPart::Arrow(axis) | GizmoPart::Square(axis) | GizmoPart::Ring(axis) | GizmoPart::Box(axis),
+            highlighted,
+        ) => match highlighted {
+            true => AXIS_BRIGHT[axis],
+            false => AXIS_COLOURS[axis],
+        },
+    };
+    let is_seen_through = matches!(part, GizmoPart::Square(_)) && !highlighted;
+    [red, green, blue, if is_seen_through { 150 } else { 255 }]
+}
+
+/// The half of a ring that faces the eye.
+fn ring(centre: DVec3, axis: DVec3, radius: f64, to_eye: DVec3) -> Vec<[DVec3; 2]> {
+    let (u, v) = axis.any_orthonormal_pair();
+    let edge_on = axis.dot(to_eye).abs();
+    let arm = |step: usize| {
+        let angle_rad = TAU * step as f64 / RING_SEGMENTS as f64;
+        u * angle_rad.cos() + v * angle_rad.sin()
+    };
+    (0..RING_SEGMENTS)
+        .map(|step| [arm(step), arm(step + 1)])
+        // A ring seen from its axis is shown whole; of one seen from the side the far half would only confuse.
+        .filter(|[a, b]| edge_on > 0.9 || (*a + *b).dot(to_eye) > -0.02)
+        .map(|arms| arms.map(|arm| centre + arm * radius))
+        .collect()
+}
+
+fn cone(base: DVec3, tip: DVec3, radius: f64) -> Vec<[DVec3; 3]> {
+    let (u, v) = (tip - base).normalize_or(DVec3::X).any_orthonormal_pair();
+    let rim = |step: usize| {
+        let angle_rad = TAU * step as f64 / HEAD_SEGMENTS as f64;
+        base + (u * angle_rad.cos() + v * angle_rad.sin()) * radius
+    };
+    (0..HEAD_SEGMENTS)
+        .flat_map(|step| [[rim(step), rim(step + 1), tip], [rim(step + 1), rim(step), base]])
+        .collect()
+}
+
+fn disc(centre: DVec3, normal: DVec3, radius: f64) -> Vec<[DVec3; 3]> {
+    let (u, v) = normal.any_orthonormal_pair();
+    let rim = |step: usize| {
+        let angle_rad = TAU * step as f64 / HEAD_SEGMENTS as f64;
+        centre + (u * angle_rad.cos() + v * angle_rad.sin()) * radius
+    };
+    (0..HEAD_SEGMENTS)
+        .map(|step| [centre, rim(step), rim(step + 1)])
+        .collect()
+}
+
+fn square(centre: DVec3, u: DVec3, v: DVec3, px: f64) -> Vec<[DVec3; 3]> {
+    let corner = |a: f64, b: f64| centre + u * (a * px) + v * (b * px);
+    let corners = [
+        corner(SQUARE_FROM_PX, SQUARE_FROM_PX),
+        corner(SQUARE_TO_PX, SQUARE_FROM_PX),
+        corner(SQUARE_TO_PX, SQUARE_TO_PX),
+        corner(SQUARE_FROM_PX, SQUARE_TO_PX),
+    ];
+    vec![
+        [corners[0], corners[1], corners[2]],
+        [corners[0], corners[2], corners[3]],
+    ]
+}
+
+fn cube(middle: DVec3, rotation: DQuat, half: f64) -> Vec<[DVec3; 3]> {
+    let mut triangles = Vec::with_capacity(12);
+    for axis in 0..3 {
+        for sign in [-1.0, 1.0] {
+            let normal = axis_vector(axis) * sign;
+            let (u, v) = (axis_vector((axis + 1) % 3) * sign, axis_vector((axis + 2) % 3));
+            let corner = |a: f64, b: f64| middle + rotation * ((normal + u * a + v * b) * half);
+            let corners = [
+                corner(-1.0, -1.0),
+                corner(1.0, -1.0),
+                corner(1.0, 1.0),
+                corner(-1.0, 1.0),
+            ];
+            triangles.push([corners[0], corners[1], corners[2]]);
+            triangles.push([corners[0], corners[2], corners[3]]);
+        }
+    }
+    triangles
+}
