@@ -27,7 +27,7 @@ impl Application {
         }
     }
 
-    /// The 3D view: input first, then the picture.
+    /// The 3D view: input first, then the picture, then what lies over it.
     pub(in crate::window) fn view(&mut self, ui: &mut egui::Ui) -> Result<(), pliant_render::RenderError> {
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let (rect, second) = match self.compare {
@@ -45,41 +45,7 @@ impl Application {
         if self.editor.view().viewport_px != size_px {
             self.editor.handle(Event::Viewport { size_px });
         }
-        if response.is_pointer_button_down_on() {
-            ui.memory_mut(|memory| {
-                if let Some(focused) = memory.focused() {
-                    memory.surrender_focus(focused);
-                }
-            });
-        }
-        let typing = EventQueue::is_typing(ui.ctx());
-        Self::keep_tab(ui, response.contains_pointer(), typing);
-        let over_ball = axis_ball::contains(rect, ui.input(|input| input.pointer.latest_pos()));
-        let attention = Attention {
-            rect,
-            pointer: ui.input(|input| input.pointer.latest_pos()).unwrap_or(rect.center()),
-            pointer_over: response.contains_pointer()
-                && ui
-                    .input(|input| input.pointer.latest_pos())
-                    .is_some_and(|at| rect.contains(at))
-                && self.question.is_none()
-                && self.palette.is_none()
-                && !over_ball,
-            follows_pointer: self.editor.view().cursor == Cursor::Move,
-            keys: self.question.is_none()
-                && self.palette.is_none()
-                && !self.keys.takes_keys()
-                && !typing
-                && !ui.ctx().egui_wants_keyboard_input(),
-            more_to_come: EventQueue::has_more(ui.ctx()),
-        };
-        let events = self.input.events(ui.ctx(), attention);
-        if !events.is_empty() {
-            self.last_change = Instant::now();
-        }
-        for event in events {
-            self.editor.handle(event);
-        }
+        self.hear(ui, rect, &response);
         self.request_pose();
         self.request_images();
         ui.ctx().set_cursor_icon(match self.editor.view().cursor {
@@ -90,6 +56,52 @@ impl Application {
             Cursor::Grabbing => egui::CursorIcon::Grabbing,
             Cursor::Move => egui::CursorIcon::Move,
         });
+        self.picture(ui, rect, second)?;
+        self.marks(ui, rect);
+        self.words(ui, rect, whole);
+        Ok(())
+    }
+
+    /// Gives the editor what the pointer and the keys did to the view.
+    fn hear(&mut self, ui: &egui::Ui, rect: egui::Rect, response: &egui::Response) {
+        if response.is_pointer_button_down_on() {
+            ui.memory_mut(|memory| {
+                if let Some(focused) = memory.focused() {
+                    memory.surrender_focus(focused);
+                }
+            });
+        }
+        let typing = EventQueue::is_typing(ui.ctx());
+        Self::keep_tab(ui, response.contains_pointer(), typing);
+        let pointer = ui.input(|input| input.pointer.latest_pos());
+        let is_asked = self.question.is_some() || self.palette.is_some();
+        let attention = Attention {
+            rect,
+            pointer: pointer.unwrap_or(rect.center()),
+            pointer_over: response.contains_pointer()
+                && pointer.is_some_and(|at| rect.contains(at))
+                && !is_asked
+                && !axis_ball::contains(rect, pointer),
+            follows_pointer: self.editor.view().cursor == Cursor::Move,
+            keys: !is_asked && !self.keys.takes_keys() && !typing && !ui.ctx().egui_wants_keyboard_input(),
+            more_to_come: EventQueue::has_more(ui.ctx()),
+        };
+        let events = self.input.events(ui.ctx(), attention);
+        if !events.is_empty() {
+            self.last_change = Instant::now();
+        }
+        for event in events {
+            self.editor.handle(event);
+        }
+    }
+
+    /// Draws the view, and beside it the `second` one where two methods are compared.
+    fn picture(
+        &mut self,
+        ui: &mut egui::Ui,
+        rect: egui::Rect,
+        second: Option<egui::Rect>,
+    ) -> Result<(), pliant_render::RenderError> {
         let resting = self.last_change.elapsed() >= REST && self.editor.view().settled;
         let smooth = if resting {
             Smoothness::Resting
@@ -112,17 +124,21 @@ impl Application {
             let name = self.editor.document().method().declaration().title;
             axis_ball::readout(ui.painter(), rect.center_top() + vec2(-60.0, 12.0), name);
         }
-        let outline_px = self.editor.view().outline_px;
-        if outline_px.len() > 1 {
+        Ok(())
+    }
+
+    /// Paints what lies over the picture: a lasso, the legend, a readout beside the pointer, the axes.
+    fn marks(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
+        let shown = self.editor.view();
+        if shown.outline_px.len() > 1 {
             let point = |px: &DVec2| rect.min + vec2(px.x as f32, px.y as f32);
-            let mut line: Vec<egui::Pos2> = outline_px.iter().map(point).collect();
+            let mut line: Vec<egui::Pos2> = shown.outline_px.iter().map(point).collect();
             line.push(line[0]);
             let shadow = egui::Stroke::new(3.0, egui::Color32::from_black_alpha(120));
             ui.painter().add(egui::Shape::line(line.clone(), shadow));
             ui.painter()
                 .add(egui::Shape::line(line, egui::Stroke::new(1.5, theme::ACCENT)));
         }
-        let shown = self.editor.view();
         if let Some(scale) = self.viewport.scale() {
             legend::paint(ui.painter(), rect.left_top() + vec2(14.0, 14.0), scale);
         }
@@ -137,12 +153,15 @@ impl Application {
             self.command(command);
             ui.ctx().request_repaint();
         }
+    }
+
+    /// Shows messages and the first steps over the corners of the views, which are `whole` together.
+    fn words(&mut self, ui: &egui::Ui, rect: egui::Rect, whole: egui::Rect) {
         let problem = self.editor.view().problem;
         let toast = self.toast.show(ui.ctx(), whole, problem, &mut self.notes.headline);
         if self.shows_hints && !self.settings.get().hints_seen && hints::show(ui, rect, toast, &self.editor) {
             self.settings.change(|settings| settings.hints_seen = true);
         }
-        Ok(())
     }
 }
 
