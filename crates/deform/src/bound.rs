@@ -10,7 +10,7 @@ use crate::handles::{FRAME_CHUNK, Handle, Motion, clear};
 use crate::method::{BindInput, BoundMethod, Finite, Solve};
 use crate::region::follow::{Followers, followers};
 use crate::region::partition::Partition;
-use crate::sparse::cholesky::{Refactorisation, RenewableFactor};
+use crate::sparse::refactorisation::{Refactorisation, RenewableFactor};
 use crate::{BindError, Budget, HandleBases, Ordering, Problem, SolveError};
 
 /// A bound problem: everything that does not depend on the handles' transforms is solved.

@@ -2,7 +2,7 @@
 
 use pliant_mesh::{Cancel, Progress, Surface, Topology};
 
-use crate::sparse::cholesky::Refactorisation;
+use crate::sparse::refactorisation::Refactorisation;
 use crate::{BindError, Bound, Budget, Constraints, Method, Ordering, ReusableFactor};
 
 /// What a surface vertex does.

@@ -11,7 +11,8 @@ use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::solve::substitution::{Real, Rhs, Room, Substitution};
+use crate::sparse::solve::rhs::{Real, Rhs};
+use crate::sparse::solve::substitution::{Room, Substitution};
 
 /// The inverse of the system on the solved vertices, or nearly so.
 ///

@@ -15,10 +15,10 @@ use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::budget::{Budget, bytes_of};
 use crate::operators::CHUNK;
 use crate::sparse::Elimination;
-use crate::sparse::cholesky::{Refactorisation, RenewableFactor};
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::low_rank::LowRank;
 use crate::sparse::matrix::CONSTRAINED;
+use crate::sparse::refactorisation::{Refactorisation, RenewableFactor};
 
 /// The factored system over the local vertices of its Laplacian.
 #[derive(Debug)]

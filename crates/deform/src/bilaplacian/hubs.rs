@@ -224,7 +224,7 @@ mod tests {
     use crate::bilaplacian::setup::operator;
     use crate::handles::Handle;
     use crate::region::partition::Partition;
-    use crate::sparse::cholesky::Refactorisation;
+    use crate::sparse::refactorisation::Refactorisation;
     use crate::{Bilaplacian, BilaplacianOrder, Budget, Constraints, Loose, Method, Ordering, Problem, Role};
 
     /// Rings of `count` vertices around one in the middle, on a bumpy dish.

@@ -3,6 +3,7 @@
 
 pub(crate) mod assembly;
 mod bases;
+mod columns;
 mod continuity;
 mod declaration;
 pub(crate) mod factored;

@@ -8,15 +8,15 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::bilaplacian::bases::Tables;
+use crate::bilaplacian::columns::{energy_blocks, solve_columns};
 use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
-use crate::bilaplacian::setup::{Prescribed, operator};
+use crate::bilaplacian::setup::operator;
 use crate::bilaplacian::slender;
-use crate::budget::filled;
 use crate::handles::{FRAME_CHUNK, Motion};
 use crate::method::{BindInput, Finite};
 use crate::operators::repairs;
 use crate::region::partition::Partition;
-use crate::sparse::cholesky::RenewableFactor;
+use crate::sparse::refactorisation::RenewableFactor;
 use crate::{Bilaplacian, BindError, HandleBases, Problem, SolveError};
 
 /// The bound bi-Laplacian.
@@ -58,39 +58,11 @@ impl BilaplacianSolver {
         let mut system =
             BilaplacianSystem::new(operator, elimination, refactorisation, partition.budget, cancel).map_err(refuse)?;
         progress.set(0.7);
-        let solved_locals = system.operator.laplacian.locals(solved);
-        // The constant is solved for beside the first handle: one pass over the factor for both.
-        let mut columns = Vec::with_capacity(handles.len());
-        match prescribed.split_first() {
-            None => {
-                let mut ones = vec![[1.0]; system.operator.field_len()];
-                system.check(&mut ones, cancel).map_err(refuse)?;
-            }
-            Some((first, others)) => {
-                let mut d = vec![[0.0, 0.0, 0.0, 0.0, 1.0]; system.operator.field_len()];
-                for &(place, [x, y, z, w]) in first {
-                    d[place as usize] = [x, y, z, w, 1.0];
-                }
-                let error = system.check(&mut d, cancel).map_err(refuse)?;
-                columns.push(Columns::of(&system, &d, first, &prescribed, &solved_locals, error));
-                progress.set(0.85);
-                let solve = |own: &Prescribed| {
-                    cancel.check()?;
-                    let mut d = vec![[0.0; 4]; system.operator.field_len()];
-                    for &(place, coordinates) in own {
-                        d[place as usize] = coordinates;
-                    }
-                    let error = system.solve(&mut d, cancel).error;
-                    cancel.check()?;
-                    Ok(Columns::of(&system, &d, own, &prescribed, &solved_locals, error))
-                };
-                columns.extend(others.par_iter().map(solve).collect::<Result<Vec<_>, BindError>>()?);
-            }
-        }
+        let columns = solve_columns(&mut system, &prescribed, solved, progress, cancel).map_err(refuse)?;
         for column in &columns {
-            if column.error.is_nan() || column.error > TOLERANCE {
-                let vertex = column.worst_vertex;
-                let (component, error) = (component_of(vertex), column.error);
+            let (vertex, error) = (column.vertex, column.error);
+            if error.is_nan() || error > TOLERANCE {
+                let component = component_of(vertex);
                 let refused = BindError::Inaccurate {
                     component,
                     vertex,
@@ -99,23 +71,14 @@ impl BilaplacianSolver {
                 return Err(of_order(options, refused));
             }
         }
-        let pairs = filled([[0.0; 4]; 4], handles.len() * handles.len());
-        let mut energy_blocks = pairs.map_err(|_| BindError::OutOfMemory {
-            free_count: solved.len(),
-        })?;
-        for (k, column) in columns.iter().enumerate() {
-            for (h, block) in column.energies.iter().enumerate() {
-                energy_blocks[h * handles.len() + k] = *block;
-            }
-        }
+        let free_count = solved.len();
+        let energy_blocks = energy_blocks(&columns).map_err(|_| BindError::OutOfMemory { free_count })?;
         let reference = reference_handles(problem, partition);
         let blocks: Vec<Vec<[f32; 4]>> = columns.into_iter().map(|column| column.rows).collect();
         let bases = HandleBases::new(solved.clone(), &blocks, |vertex| {
             reference[component_of(vertex) as usize]
         });
-        let bases = bases.map_err(|_| BindError::OutOfMemory {
-            free_count: solved.len(),
-        })?;
+        let bases = bases.map_err(|_| BindError::OutOfMemory { free_count })?;
         progress.set(1.0);
         Ok(Self {
             system,
@@ -264,57 +227,6 @@ fn of_order(options: &Bilaplacian, refused: BindError) -> BindError {
             refused: Box::new(refused),
         },
         _ => refused,
-    }
-}
-
-/// One handle's four columns.
-struct Columns {
-    /// On the solved vertices, ascending. **f32**.
-    rows: Vec<[f32; 4]>,
-    /// C_hᵀ F of this handle against each handle h, F the force that it takes at h: A B, or the springs' W (C − B).
-    energies: Vec<[[f64; 4]; 4]>,
-    error: f64,
-    worst_vertex: u32,
-}
-
-impl Columns {
-    /// Of a solution whose first four functions are the handle's.
-    fn of<const K: usize>(
-        system: &BilaplacianSystem,
-        d: &[[f64; K]],
-        own: &Prescribed,
-        prescribed: &[Prescribed],
-        solved_locals: &[u32],
-        error: f64,
-    ) -> Self {
-        let operator = &system.operator;
-        let first_spring = operator.laplacian.vertices().len();
-        let potential = operator.potential(d);
-        let energy = |handle: &Prescribed| {
-            let mut block = [[0.0; 4]; 4];
-            for &(place, coordinates) in handle {
-                let force = match (place as usize).checked_sub(first_spring) {
-                    Some(spring) => operator.pull(spring, d),
-                    None => operator.force(place as usize, &potential),
-                };
-                for i in 0..4 {
-                    for j in 0..4 {
-                        block[i][j] += coordinates[i] * force[j];
-                    }
-                }
-            }
-            block
-        };
-        let row = |&local: &u32| std::array::from_fn(|k| d[local as usize][k] as f32);
-        let worst_vertex = own.first().map_or(0, |&(place, _)| {
-            operator.laplacian.vertices()[operator.local_of(place as usize) as usize]
-        });
-        Self {
-            rows: solved_locals.iter().map(row).collect(),
-            energies: prescribed.iter().map(energy).collect(),
-            error,
-            worst_vertex,
-        }
     }
 }
 

@@ -10,7 +10,7 @@ use super::{MethodDeclaration, Needs, OptionRefused, OptionValue, Solve};
 use crate::handles::{Handle, Motion};
 use crate::operators::triangulation::Triangulation;
 use crate::region::partition::Partition;
-use crate::sparse::cholesky::Refactorisation;
+use crate::sparse::refactorisation::Refactorisation;
 use crate::{BindError, HandleBases, Ordering, Problem, ReusableFactor, SolveError};
 
 /// Options by name; [`super::option::options!`] implements it.

@@ -6,8 +6,10 @@
 //! and nothing is added up in an order that could vary. faer's own parallel solve was 3 to 40 times slower than its
 //! sequential one on such factors.
 
+mod blocks;
 mod kernels;
 mod passes;
+pub(crate) mod rhs;
 pub(crate) mod substitution;
 
 use std::sync::{Mutex, PoisonError};
