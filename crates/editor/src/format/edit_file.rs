@@ -9,7 +9,8 @@ use super::field::{FieldEntry, FieldKind};
 use super::json::parse;
 use super::loose::{OneOrList, StoredLoose};
 use super::method::{method_to_value, read_method};
-use super::reader::{read, shortened};
+use super::reader::read;
+use super::refusal::shortened;
 use super::selector::Selector;
 use crate::HandleTransform;
 

@@ -7,7 +7,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess,
 use serde_json::{Map, Value};
 
 use super::edit_error::EditError;
-use super::reader::shortened;
+use super::refusal::shortened;
 
 /// Reads a text, with or without a byte order mark in front, as some editors put it.
 ///

@@ -31,7 +31,8 @@ use super::edit_error::EditError;
 use super::json::parse;
 use super::loose::StoredLoose;
 use super::method::{method_to_value, read_method};
-use super::reader::{self, read};
+use super::reader::read;
+use super::refusal::shortened;
 use super::setup::Setup;
 use crate::document::bits_equal;
 use crate::document::{Content, Document, Handle, HandleId, Paint, Tips};
@@ -155,7 +156,7 @@ impl Project {
         // The version first: another one may have members that this one lacks.
         match value.get("version") {
             Some(version) if version.as_u64() == Some(PROJECT_VERSION) => {}
-            Some(version) => return Err(EditError::ProjectVersion(reader::shortened(&version.to_string()))),
+            Some(version) => return Err(EditError::ProjectVersion(shortened(&version.to_string()))),
             None => return Err(EditError::Project("it has no `version`: add it".to_owned())),
         }
         read(value).map_err(|error| error.at("the project"))
@@ -265,8 +266,8 @@ impl Project {
         if found != self.mesh.geometry {
             return Err(EditError::OtherMesh {
                 name: "the one at hand".to_owned(),
-                found: shortened(&found),
-                expected: shortened(&self.mesh.geometry),
+                found: hash_shown(&found),
+                expected: hash_shown(&self.mesh.geometry),
             });
         }
         let mut document = Content::new(model.surface.positions.len());
@@ -367,6 +368,7 @@ impl Project {
     }
 }
 
-fn shortened(hash: &str) -> String {
+/// As much of a hash as tells it from others.
+fn hash_shown(hash: &str) -> String {
     hash.chars().take(19).chain("…".chars()).collect()
 }
