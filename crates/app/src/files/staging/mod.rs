@@ -10,7 +10,9 @@
 //! stand for the while. It is renamed into place first, then the neighbours, then the file itself; at every moment what
 //! stands there is the old state or the new one, whole, and what is left over can be told by its name.
 
-use std::fs::{self, File};
+mod commit;
+
+use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
@@ -19,9 +21,9 @@ use pliant_mesh::{Cancel, Progress};
 use tempfile::{NamedTempFile, TempPath};
 
 use super::attributes::{self, OtherNames};
-use super::leftovers::{self, PREFIX, REPLACED, TEMPORARY};
+use super::leftovers::{self, PREFIX, TEMPORARY};
 use super::lock::{FolderLock, Share};
-use super::{Destination, FileError, folder_of, shown};
+use super::{Destination, FileError, shown};
 use crate::AppError;
 
 /// Bytes written between two looks at whether they are still wanted.
@@ -344,134 +346,6 @@ impl Staged {
         };
         with_more.map(note).collect()
     }
-
-    /// Renames every file into place, in order, and syncs the folders.
-    ///
-    /// # Errors
-    /// Where a rename fails. The files that were replaced before it are put back.
-    pub fn commit(self) -> Result<(), FileError> {
-        self.commit_watched(&mut || {})
-    }
-
-    /// As [`Self::commit`]; `before_each` is called before each change of what stands in the folders.
-    ///
-    /// # Errors
-    /// As [`Self::commit`].
-    pub fn commit_watched(mut self, before_each: &mut dyn FnMut()) -> Result<(), FileError> {
-        let staging = self.staging.clone();
-        let mut state = staging.lock();
-        let mut files = std::mem::take(&mut self.files);
-        let mut passing = Passing(Vec::new());
-        let mut first = Vec::new();
-        for bridge in self.bridges.drain(..) {
-            for (file, path) in bridge.passing {
-                before_each();
-                second_name(&files[file].temporary, &path).map_err(|error| FileError::writing(&path, error))?;
-                passing.0.push(path);
-            }
-            // The bridge must not last without what it names.
-            sync_folder(&bridge.file.to.home);
-            first.push(bridge.file);
-        }
-        files.splice(0..0, first);
-        let mut done = Done::default();
-        let last = files.len().saturating_sub(1);
-        for (i, file) in files.into_iter().enumerate() {
-            let StagedFile {
-                to,
-                temporary,
-                other_names,
-            } = file;
-            before_each();
-            // The last rename is the one that no other can fail after: it needs no way back.
-            let renamed = make_folders(folder_of(&to.target), &mut done.folders)
-                .and_then(|()| if i == last { Ok(None) } else { backup(&to) })
-                .and_then(|backup| {
-                    temporary.persist(&to.target).map_err(|error| error.error)?;
-                    Ok(backup)
-                });
-            match renamed {
-                Ok(backup) => {
-                    // The next rename must not last without this one.
-                    sync_folder(folder_of(&to.target));
-                    done.other_names
-                        .extend(other_names.here.into_iter().map(|name| (to.target.clone(), name)));
-                    done.replaced.push((to.target, backup));
-                }
-                Err(error) => {
-                    done.put_back();
-                    return Err(FileError::writing(&to.given, error));
-                }
-            }
-        }
-        before_each();
-        // Each other name is a step of its own: a name that can't be brought along keeps the old content.
-        for (target, name) in std::mem::take(&mut done.other_names) {
-            let _ = bring_along(&target, &name);
-        }
-        drop((passing, done));
-        // What a killed save left under passing names was named by what has just been replaced.
-        self.held
-            .0
-            .iter()
-            .filter(|lock| lock.share == Share::Alone)
-            .for_each(|lock| leftovers::clear(&lock.folder));
-        state.temporary.clear();
-        state.committed = true;
-        Ok(())
-    }
-}
-
-/// What a commit has changed so far.
-#[derive(Default)]
-struct Done {
-    /// Targets, and what stood there.
-    replaced: Vec<(PathBuf, Option<TempPath>)>,
-    /// Folders that were made, outer ones first.
-    folders: Vec<PathBuf>,
-    /// Targets and other names of what stood there.
-    other_names: Vec<(PathBuf, PathBuf)>,
-}
-
-impl Done {
-    fn put_back(self) {
-        for (target, backup) in self.replaced.into_iter().rev() {
-            // The error that led here is the one to tell; a second one has no better remedy.
-            let _ = match backup {
-                Some(backup) => backup.persist(&target).map_err(|error| error.error),
-                None => fs::remove_file(&target),
-            };
-        }
-        for folder in self.folders.into_iter().rev() {
-            // One that somebody has put something into stays.
-            let _ = fs::remove_dir(folder);
-        }
-    }
-}
-
-/// Makes a folder and those around it, as far as they are missing, and notes which.
-fn make_folders(folder: &Path, made: &mut Vec<PathBuf>) -> io::Result<()> {
-    if folder.is_dir() {
-        return Ok(());
-    }
-    if let Some(parent) = folder.parent() {
-        make_folders(parent, made)?;
-    }
-    fs::create_dir(folder)?;
-    made.push(folder.to_owned());
-    Ok(())
-}
-
-/// Files under passing names, which go when this does.
-struct Passing(Vec<PathBuf>);
-
-impl Drop for Passing {
-    fn drop(&mut self) {
-        for path in &self.0 {
-            // One that can't be removed is a file too many, and no harm.
-            let _ = fs::remove_file(path);
-        }
-    }
 }
 
 impl Drop for Staged {
@@ -479,52 +353,5 @@ impl Drop for Staged {
         // Before the folders are let go of: what lies there is ours as long as we hold them.
         self.files.clear();
         self.bridges.clear();
-    }
-}
-
-/// A second name for what stands at a destination, if anything does.
-fn backup(to: &Destination) -> io::Result<Option<TempPath>> {
-    if !to.target.exists() {
-        return Ok(None);
-    }
-    let name = tempfile::Builder::new()
-        .prefix(PREFIX)
-        .suffix(REPLACED)
-        .make_in(&to.home, |path| second_name(&to.target, path))?;
-    Ok(Some(name.into_temp_path()))
-}
-
-/// Lets another name of a file that was replaced lead to the new one.
-fn bring_along(target: &Path, name: &Path) -> io::Result<()> {
-    let temporary = tempfile::Builder::new()
-        .prefix(PREFIX)
-        .suffix(TEMPORARY)
-        .make_in(folder_of(name), |path| fs::hard_link(target, path))?;
-    temporary.into_temp_path().persist(name).map_err(|error| error.error)
-}
-
-/// Lets the bytes of `file` stand at `path` as well, where nothing may stand yet.
-fn second_name(file: &Path, path: &Path) -> io::Result<()> {
-    match fs::hard_link(file, path) {
-        Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-            // Not every file system has hard links.
-            let mut options = fs::OpenOptions::new();
-            options.write(true).create_new(true);
-            #[cfg(unix)]
-            std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-            let mut copy = options.open(path)?;
-            io::copy(&mut File::open(file)?, &mut copy)?;
-            copy.set_permissions(fs::metadata(file)?.permissions())?;
-            copy.sync_all()
-        }
-        done => done,
-    }
-}
-
-/// Makes a rename last through a power cut. Not every system can open a folder for that, and the files are whole
-/// either way.
-fn sync_folder(folder: &Path) {
-    if let Ok(folder) = File::open(folder) {
-        let _ = folder.sync_all();
     }
 }
