@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pliant_io::{Format, Opened, Scene};
+use pliant_io::{Format, Scene, SceneAndDrawn};
 use pliant_mesh::{Model, WeldOptions};
 
 use crate::AppError;
@@ -43,7 +43,7 @@ pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, Ap
 ///
 /// # Errors
 /// As [`load`].
-pub fn open(path: &Path, watch: &Watch) -> Result<Opened, AppError> {
+pub fn open(path: &Path, watch: &Watch) -> Result<SceneAndDrawn, AppError> {
     open_bytes(read_mesh(path, watch)?, path, &Neighbours::of(path), watch)
 }
 
@@ -71,7 +71,7 @@ pub fn load_bytes(bytes: Vec<u8>, path: &Path, weld: &WeldOptions, watch: &Watch
     })
 }
 
-fn open_bytes(bytes: Vec<u8>, path: &Path, neighbours: &Neighbours, watch: &Watch) -> Result<Opened, AppError> {
+fn open_bytes(bytes: Vec<u8>, path: &Path, neighbours: &Neighbours, watch: &Watch) -> Result<SceneAndDrawn, AppError> {
     let name = path.to_string_lossy();
     let format = Format::of_name(&name)?;
     let progress = watch.begin("reading");
@@ -79,7 +79,7 @@ fn open_bytes(bytes: Vec<u8>, path: &Path, neighbours: &Neighbours, watch: &Watc
     opened.map_err(AppError::Read)
 }
 
-fn welded(opened: Opened, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
+fn welded(opened: SceneAndDrawn, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
     let progress = watch.begin("welding");
     let model = Model::weld(opened.drawn, weld, &progress, &watch.cancel).map_err(|_| AppError::Interrupted)?;
     let model = model.with_objects(opened.scene.objects());

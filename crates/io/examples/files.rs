@@ -21,7 +21,7 @@ use std::time::Instant;
 use counting::{Counting, HELD, PEAK};
 
 use glam::DVec3;
-use pliant_io::{Bytes, Format, Opened, Placement, Resolver, Save, read};
+use pliant_io::{Bytes, Format, Placement, Resolver, Save, SceneAndDrawn, read};
 use pliant_mesh::{Cancel, Inspection, Model, Progress, WeldOptions};
 
 #[global_allocator]
@@ -154,7 +154,7 @@ fn memory<T, Kept>(work: impl FnOnce() -> (T, Kept)) -> (T, usize, usize) {
     (told, peak.saturating_sub(before), held.saturating_sub(before))
 }
 
-fn open(bytes: Vec<u8>, format: Format, name: &str) -> Opened {
+fn open(bytes: Vec<u8>, format: Format, name: &str) -> SceneAndDrawn {
     read(bytes, format, name, &Alone, &Progress::new(), &Cancel::new()).expect("a sound file")
 }
 

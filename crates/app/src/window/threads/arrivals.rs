@@ -6,7 +6,7 @@ use glam::DVec3;
 use pliant_editor::{Event, Shading};
 use pliant_mesh::Cancel;
 
-use super::message::{LoadedMaterials, Message, Opened, Posed};
+use super::message::{LoadedMaterials, Message, ModelToShow, Posed};
 use super::workers::Stage;
 use crate::drawing::{self, Drawing, Field};
 use crate::window::application::Application;
@@ -64,9 +64,9 @@ impl Application {
         posed.displacements.len() == self.editor.view().displacements.len()
     }
 
-    fn adopt(&mut self, opened: Opened) {
+    fn adopt(&mut self, opened: ModelToShow) {
         self.session.adopt(&opened);
-        let Opened {
+        let ModelToShow {
             loaded,
             drawing,
             surface,
