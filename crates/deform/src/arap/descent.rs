@@ -5,11 +5,9 @@ use rayon::prelude::*;
 use super::history::Field;
 use super::shape::{Guesses, Shape};
 use super::{ArapSolver, State};
+use crate::numerical::line_search::Trial;
 use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
-
-/// A step must lower the energy by this share of what its slope promises.
-const SUFFICIENT: f64 = 1e-4;
 
 /// Lengths that a line search tries.
 const TRIALS: u32 = 10;
@@ -94,19 +92,18 @@ impl ArapSolver {
             let guesses = Guesses::Given(&self.current.rotations);
             self.cells.measure(&mut self.trial, guesses, &mut self.scratch);
             self.springs.add_energy(&mut self.trial);
-            let after = self.trial.energy;
-            if after <= before + SUFFICIENT * length * slope && after < before {
+            let trial = Trial {
+                length,
+                before,
+                after: self.trial.energy,
+                slope,
+            };
+            if trial.is_sufficient() {
                 self.end = End::Stepped(length);
                 std::mem::swap(&mut self.current, &mut self.trial);
                 return true;
             }
-            // The least of the parabola through both energies and the slope.
-            let least = -0.5 * slope * length * length / (after - before - slope * length);
-            length = if least.is_finite() {
-                least.clamp(0.1 * length, 0.5 * length)
-            } else {
-                0.1 * length
-            };
+            length = trial.next_length();
         }
         false
     }

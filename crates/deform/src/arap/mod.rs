@@ -225,13 +225,7 @@ impl ArapSolver {
             springs,
             preconditioner,
             weights,
-            handles: handles
-                .iter()
-                .map(|handle| HandleFrame {
-                    centre: handle.world_centre - world_origin,
-                    radius: handle.radius,
-                })
-                .collect(),
+            handles: HandleFrame::of_all(handles, world_origin),
             prescribed,
             rest,
             current: at_rest.clone(),

@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::handles::Motion;
+use crate::handles::{Handle, Motion};
 use crate::numerical::rotation::fit;
 
 /// A map whose determinant is below this, in units of its largest entry's cube, is taken by its rotation alone.
@@ -150,6 +150,15 @@ pub(crate) struct HandleFrame {
 }
 
 impl HandleFrame {
+    /// Of each handle, relative to `world_origin`.
+    pub fn of_all(handles: &[Handle], world_origin: DVec3) -> Vec<Self> {
+        let frame = |handle: &Handle| Self {
+            centre: handle.world_centre - world_origin,
+            radius: handle.radius,
+        };
+        handles.iter().map(frame).collect()
+    }
+
     /// The linear part of the map.
     pub fn linear(&self, motion: &Motion) -> DMat3 {
         DMat3::IDENTITY + motion.linear * self.radius.recip()

@@ -4,11 +4,9 @@ use rayon::prelude::*;
 
 use super::hierarchy::Preconditioner;
 use super::{PrimoSolver, State};
+use crate::numerical::line_search::Trial;
 use crate::numerical::sums::{Field, dot};
 use crate::operators::CHUNK;
-
-/// A step must lower the energy by this share of what its slope promises.
-const SUFFICIENT: f64 = 1e-4;
 
 /// Lengths that a line search tries.
 const TRIALS: u32 = 12;
@@ -68,18 +66,17 @@ impl PrimoSolver {
             self.trial.moved(&self.current, uphill, -length);
             self.trial.settle(&self.joints, &self.springs);
             self.trial.evaluate(&self.joints);
-            let after = self.trial.energy;
-            if after <= before + SUFFICIENT * length * slope && after < before {
+            let trial = Trial {
+                length,
+                before,
+                after: self.trial.energy,
+                slope,
+            };
+            if trial.is_sufficient() {
                 self.accept(-length, uphill);
                 return true;
             }
-            // The least of the parabola through both energies and the slope.
-            let least = -0.5 * slope * length * length / (after - before - slope * length);
-            length = if least.is_finite() {
-                least.clamp(0.1 * length, 0.5 * length)
-            } else {
-                0.1 * length
-            };
+            length = trial.next_length();
         }
         false
     }

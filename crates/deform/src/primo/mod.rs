@@ -165,13 +165,7 @@ impl PrimoSolver {
             springs,
             preconditioner,
             weights,
-            handles: handles
-                .iter()
-                .map(|handle| HandleFrame {
-                    centre: handle.world_centre - world_origin,
-                    radius: handle.radius,
-                })
-                .collect(),
+            handles: HandleFrame::of_all(handles, world_origin),
             prescribed: handles
                 .iter()
                 .map(|handle| {

@@ -27,6 +27,21 @@ pub struct Appearance {
     pub images: Vec<Image>,
 }
 
+impl Appearance {
+    /// One plain material for all triangles: what a file without materials looks like.
+    pub(crate) fn plain(triangle_count: u32) -> Self {
+        Self {
+            groups: vec![Group {
+                triangles: 0..triangle_count,
+                material: 0,
+                node_name: String::new(),
+            }],
+            materials: vec![Material::plain("")],
+            ..Self::default()
+        }
+    }
+}
+
 /// A run of triangles that share node and material.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Group {
@@ -73,6 +88,18 @@ pub struct Material {
     pub alpha: AlphaMode,
     /// How texture coordinates beyond 0 to 1 are taken along u and v.
     pub wrap: [Wrap; 2],
+}
+
+impl Material {
+    /// A material of faces for which a scan format names nothing else. Such formats know no culling, so both sides are
+    /// drawn.
+    pub(crate) fn plain(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            double_sided: true,
+            ..Self::default()
+        }
+    }
 }
 
 impl Default for Material {

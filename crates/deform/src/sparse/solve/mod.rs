@@ -31,6 +31,19 @@ struct Room<const K: usize> {
     sums: Vec<Strip<K>>,
 }
 
+impl<const K: usize> Room<K> {
+    /// Lays the supernode's own rows out in strips; those below are zero.
+    fn begin(&mut self, shape: Shape, own: &[[f64; K]]) {
+        self.x.clear();
+        self.x.resize(shape.strips(), [Line::ZERO; K]);
+        for (i, row) in own.iter().enumerate() {
+            for k in 0..K {
+                self.x[i / LANES][k].0[i % LANES] = row[k];
+            }
+        }
+    }
+}
+
 /// Solves L Lᵀ x = b in place; `x` has one row a column of the factor.
 pub(crate) fn solve_in_place<const K: usize>(
     symbolic: &Symbolic,
@@ -105,13 +118,7 @@ fn forward<const K: usize>(
     if x[own.clone()].iter().all(|row| *row == [0.0; K]) {
         return;
     }
-    room.x.clear();
-    room.x.resize(shape.strips(), [Line::ZERO; K]);
-    for (i, row) in x[own.clone()].iter().enumerate() {
-        for k in 0..K {
-            room.x[i / LANES][k].0[i % LANES] = row[k];
-        }
-    }
+    room.begin(shape, &x[own.clone()]);
     Arch::new().dispatch(Forward {
         shape,
         panel,
@@ -139,13 +146,7 @@ fn backward<const K: usize>(
     room: &mut Room<K>,
 ) {
     let own = first..first + shape.width;
-    room.x.clear();
-    room.x.resize(shape.strips(), [Line::ZERO; K]);
-    for (i, row) in x[own.clone()].iter().enumerate() {
-        for k in 0..K {
-            room.x[i / LANES][k].0[i % LANES] = row[k];
-        }
-    }
+    room.begin(shape, &x[own.clone()]);
     for (places, strip) in places.chunks(LANES).zip(&mut room.x[shape.own()..]) {
         for (lane, &place) in places.iter().enumerate() {
             let row = &x[place as usize];

@@ -75,7 +75,7 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
     let mut image_of: HashMap<String, Option<usize>> = HashMap::new();
     let mut image_at: HashMap<(usize, Range<usize>), usize> = HashMap::new();
     for name in names {
-        let mut material = plain(name);
+        let mut material = Material::plain(name);
         if let Some((stored, folder)) = known.get(name) {
             set_base_colour(&mut material, stored);
             if let Some(texture) = &stored.diffuse_texture {
@@ -91,15 +91,6 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
         out.materials.push(material);
     }
     out
-}
-
-/// The material of faces for which none is named. Scan formats know no culling, so both sides are drawn.
-pub(super) fn plain(name: &str) -> Material {
-    Material {
-        name: name.to_owned(),
-        double_sided: true,
-        ..Material::default()
-    }
 }
 
 /// More libraries than any file has; beyond this many names, the file only asks for work.
@@ -192,7 +183,7 @@ mod tests {
         assert_eq!(materials[0].diffuse, Some([0.5, 0.25, 1.0]));
         let texture = materials[0].diffuse_texture.as_deref().unwrap_or_default();
         assert_eq!(texture_file(texture), ("my tex.png".to_owned(), Wrap::ClampToEdge));
-        let mut material = plain("c");
+        let mut material = Material::plain("c");
         set_base_colour(&mut material, &materials[1]);
         assert_eq!(material.base_colour[3], 0.75);
     }
