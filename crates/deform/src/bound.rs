@@ -58,8 +58,8 @@ pub struct Step {
     /// Whether further steps to the same targets do nothing: it converged, or met the method's limit.
     pub finished: bool,
     /// The deformation energy, 0 at rest, which has no unit and does not change with the model's scale: for the linear
-    /// bi-Laplacian ½ dᵀ A d (see [`crate::Bilaplacian`]) and what soft handles' springs hold, for ARAP its energy and its springs' over ½ Σ w |e|² of the rest shape. Components
-    /// without a handle are left out.
+    /// bi-Laplacian ½ dᵀ A d (see [`crate::Bilaplacian`]) and what soft handles' springs hold, for ARAP its energy and
+    /// its springs' over ½ Σ w |e|² of the rest shape. Components without a handle are left out.
     pub energy: f64,
     /// How many steps were taken towards these targets, this one included.
     pub iteration: u32,
@@ -224,9 +224,8 @@ impl Bound {
         Ok(step)
     }
 
-    /// The energy of any displacements, one a surface vertex, as in [`Step::energy`], with soft handles wanting what the
-    /// present targets say; `None` where the method has no
-    /// energy or the length is wrong.
+    /// The energy of any displacements, one a surface vertex, as in [`Step::energy`], with soft handles wanting what
+    /// the present targets say; `None` where the method has no energy or the length is wrong.
     pub fn energy_of(&self, displacements: &[DVec3]) -> Option<f64> {
         if displacements.len() != self.vertex_count {
             return None;
@@ -264,8 +263,8 @@ impl Bound {
         self.method.solved_count()
     }
 
-    /// About what a step costs, in vertices of a method whose steps are cheap: who shows shapes as they come takes fewer
-    /// steps between two of them where they are dear.
+    /// About what a step costs, in vertices of a method whose steps are cheap: who shows shapes as they come takes
+    /// fewer steps between two of them where they are dear.
     pub fn step_cost(&self) -> usize {
         self.method.step_cost()
     }

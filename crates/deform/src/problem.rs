@@ -20,8 +20,8 @@ pub enum Role {
 /// What a connected component does that holds no handle and no fixed vertex.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub enum Loose {
-    /// It moves rigidly with what it touches of the surface that is being deformed, or of a larger part that follows, or
-    /// else with the nearest part of the deformed surface: eyes, buttons, straps.
+    /// It moves rigidly with what it touches of the surface that is being deformed, or of a larger part that follows,
+    /// or else with the nearest part of the deformed surface: eyes, buttons, straps.
     #[default]
     Follow,
     /// It stays where it is.
@@ -71,8 +71,8 @@ impl Problem<'_> {
 
     /// Factors and solves whatever does not depend on the handles' transforms.
     ///
-    /// `ordering` must be what [`Method::ordering`] makes of the same topology. A method that needs none takes no notice of
-    /// one. Uses rayon's current pool; the result is the same bit for bit whatever its size.
+    /// `ordering` must be what [`Method::ordering`] makes of the same topology. A method that needs none takes no
+    /// notice of one. Uses rayon's current pool; the result is the same bit for bit whatever its size.
     ///
     /// # Errors
     /// [`BindError`] names what is wrong with the problem, or where the system could not be solved;
@@ -101,9 +101,9 @@ impl Problem<'_> {
         Bound::bind(self, ordering.into(), Refactorisation::Never, budget, progress, cancel)
     }
 
-    /// As [`Problem::bind`], and with the same result to the bit, for who binds again and again: what `reusable_factor` of an
-    /// earlier binding and is not touched by what changed since is not factored again. What is kept for that takes at
-    /// most as much memory as the factor, and is then what spares most operations a byte.
+    /// As [`Problem::bind`], and with the same result to the bit, for who binds again and again: what `reusable_factor`
+    /// of an earlier binding and is not touched by what changed since is not factored again. What is kept for that
+    /// takes at most as much memory as the factor, and is then what spares most operations a byte.
     ///
     /// # Errors
     /// As [`Problem::bind`].

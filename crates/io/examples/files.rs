@@ -1,6 +1,6 @@
 //! How fast files are read and saved: `files FILE [KIND..]` prints a JSON object a line for FILE and for the same mesh
-//! as each KIND (obj, ply, ..), which is written beside it: megabytes a second beside those of a plain read of the file,
-//! medians of several rounds. `cargo xtask bench files` makes a table of them.
+//! as each KIND (obj, ply, ..), which is written beside it: megabytes a second beside those of a plain read of the
+//! file, medians of several rounds. `cargo xtask bench files` makes a table of them.
 //!
 //! Saving is what it takes to make the bytes of the file as its own kind with every vertex moved; writing them to disk
 //! is the disk's. Memory is told in multiples of the file, which is in it: the most that was held while the file was

@@ -10,8 +10,8 @@ use crate::watch::Watch;
 /// How long a command has to stop by itself.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Raises the flag on Ctrl-C (SIGINT), SIGTERM and SIGHUP. A command that has not ended a little later (a factorisation can't be stopped half-way)
-/// is ended here, without its files.
+/// Raises the flag on Ctrl-C (SIGINT), SIGTERM and SIGHUP. A command that has not ended a little later (a factorisation
+/// can't be stopped half-way) is ended here, without its files.
 pub(super) fn listen(watch: &Watch, staging: &Staging) {
     #[cfg(unix)]
     {

@@ -127,8 +127,8 @@ pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result
     Ok(settled)
 }
 
-/// Takes along the neighbours that OUT names by passing names and leaves as they are: a save of it was cut off, and this
-/// one gives them their own names back.
+/// Takes along the neighbours that OUT names by passing names and leaves as they are: a save of it was cut off, and
+/// this one gives them their own names back.
 fn adopt_passing(saved: &mut Saved, output: &Destination) -> Result<(), FileError> {
     let Some(named) = neighbours_named(&saved.files[0].bytes) else {
         return Ok(());

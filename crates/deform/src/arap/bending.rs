@@ -1,15 +1,15 @@
 //! The bending term of the smooth energy, which makes point handles safe.
 //!
-//! The rims alone are a membrane: pulled at one vertex it draws out to a spike, however fine the mesh, since a point holds
-//! no function whose first derivatives alone are bounded. So each cell is tied to one affine map Φ_i as well, the best
-//! one, whose normals turn with the cell:
+//! The rims alone are a membrane: pulled at one vertex it draws out to a spike, however fine the mesh, since a point
+//! holds no function whose first derivatives alone are bounded. So each cell is tied to one affine map Φ_i as well, the
+//! best one, whose normals turn with the cell:
 //!
 //! E = E_rims + ½ Σ_i min over Φ_i of β_i Σ_f∋i ⅓ A_f |F_f − Φ_i P_f|² + ν Σ_f∋i ⅓ A_f |(Φ_i − R_i) n_f|²
 //!
 //! with F_f the gradient of p' on a triangle, P_f the projection into its plane, n_f its normal and A_f its area, times
 //! its stiffness. Triangles x apart differ in F by the second derivatives of p' times x, so with β_i like κ A over the
-//! cell's squared size (see `ties`), A being the area of all cells, the term is ½ κ A ∫ |Hess p'|²: a thin plate without
-//! Poisson's effect, with free borders, and κ a number without unit.
+//! cell's squared size (see `ties`), A being the area of all cells, the term is ½ κ A ∫ |Hess p'|²: a thin plate
+//! without Poisson's effect, with free borders, and κ a number without unit.
 //!
 //! An affine map costs nothing, so a bumpy region turns at no cost in the majorising quadratic as well, where
 //! |L p' − R L p|² (the second order of [LG15] and [OHS25]) with its rotations held makes it pay
@@ -17,8 +17,8 @@
 //! holds as firmly as the membrane holds the rest.
 //!
 //! With S⁰ = Σ_f ⅓ A_f P_f the cell's rest matrix (the cotangents' Σ w e eᵀ of a triangle is A P), N = Σ_f ⅓ A_f n nᵀ =
-//! ½ tr S⁰ − S⁰, μ = ν/β and K = (S⁰ + μ N)⁻¹, all of which commute, the best map is 1 + Φ with Φ = (B + μ (R − 1) N) K,
-//! and what is left is
+//! ½ tr S⁰ − S⁰, μ = ν/β and K = (S⁰ + μ N)⁻¹, all of which commute, the best map is 1 + Φ with Φ = (B + μ (R − 1) N)
+//! K, and what is left is
 //!
 //! ½ β Σ w |D|² − ½ ⟨B β K, B⟩ − ⟨R − 1, ν S⁰ N K + B ν K N⟩:
 //!
@@ -35,8 +35,9 @@ use super::domain::Domain;
 use crate::numerical::eigen::eigenvectors;
 use crate::operators::CHUNK;
 
-/// ν. Without it a bent cylinder flattens, its curvature hidden in affine maps; with 0.1 a little, and with 10 or 100 its
-/// shape is that of 1, but bumpy cells turn at a cost again: a scan of 43k vertices takes 26 and 42 steps instead of 15.
+/// ν. Without it a bent cylinder flattens, its curvature hidden in affine maps; with 0.1 a little, and with 10 or 100
+/// its shape is that of 1, but bumpy cells turn at a cost again: a scan of 43k vertices takes 26 and 42 steps instead
+/// of 15.
 const NORMAL: f64 = 1.0;
 
 /// κ A for cells on this domain.
@@ -49,8 +50,8 @@ pub(crate) fn stiffness(surface: &Surface, domain: &Domain, smoothness: f64) -> 
     smoothness * 0.5 * area
 }
 
-/// β of each cell, for κ A = `stiffness`: ½ κ A over what the triangles' gradients of a function with second derivatives
-/// of length 1 are squared, on average over the kinds of them and over the cell's area.
+/// β of each cell, for κ A = `stiffness`: ½ κ A over what the triangles' gradients of a function with second
+/// derivatives of length 1 are squared, on average over the kinds of them and over the cell's area.
 pub(crate) fn ties(surface: &Surface, topology: &Topology, domain: &Domain, stiffness: f64) -> Vec<f64> {
     domain.vertices[..domain.cell_count]
         .par_iter()

@@ -1,7 +1,7 @@
 //! The coarse level of a large surface, which finds in a fraction of the time where the surface will go.
 //!
-//! It has the same energy on a surface of clusters, and dead loads that make its gradient the one of the fine shape that
-//! it was last told of (the full approximation scheme of [Bra77], as optimisation [Nas00]): it stands still where
+//! It has the same energy on a surface of clusters, and dead loads that make its gradient the one of the fine shape
+//! that it was last told of (the full approximation scheme of [Bra77], as optimisation [Nas00]): it stands still where
 //! the fine shape does, and what it does otherwise corrects that. What goes back are turns alone. Each fine cell turns
 //! along with the coarse cells around it, and one global step (see `lead`) puts the vertices where the turned cells
 //! want them, so nothing of the clusters shows and what the fine shape has of its own stays.
@@ -178,7 +178,8 @@ impl Coarse {
         self.followed.copy_from_slice(&current.rotations);
     }
 
-    /// Starts for new motions and takes `steps` steps. Says where from: from rest, the fine shape is to turn from there too.
+    /// Starts for new motions and takes `steps` steps. Says where from: from rest, the fine shape is to turn from there
+    /// too.
     pub fn start(&mut self, motions: &[Motion], steps: u32) -> Origin {
         let origin = self.solver.start(motions);
         if origin == Origin::Rest {
@@ -201,8 +202,8 @@ impl Coarse {
         }
     }
 
-    /// Turns the fine cells along, `from` being how they were when it last learned of them; those that have no coarse cell
-    /// near stay as they are in `to`.
+    /// Turns the fine cells along, `from` being how they were when it last learned of them; those that have no coarse
+    /// cell near stay as they are in `to`.
     pub fn turn(&mut self, from: &[Rotation], to: &mut [Rotation]) {
         let rotations = &self.solver.current.rotations;
         let turn = |(now, before): (&Rotation, &Rotation)| (wide(*now) * wide(*before).conjugate()).as_quat();

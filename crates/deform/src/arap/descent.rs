@@ -22,8 +22,8 @@ pub(crate) enum End {
     /// The gradient.
     #[default]
     Known,
-    /// Not the gradient, but how far the step went against the direction; `trial` is then where it began, and `direction`
-    /// what it was.
+    /// Not the gradient, but how far the step went against the direction; `trial` is then where it began, and
+    /// `direction` what it was.
     Stepped(f64),
     /// Not even that.
     Unknown,

@@ -1,7 +1,8 @@
 //! The limited-memory quasi-Newton direction [NW06, algorithm 7.4] in inner products alone.
 //!
 //! The preconditioner P majorises the energy's Hessian, so the first inverse is its inverse, unscaled, and the last
-//! steps' curvature corrects it: with no memory the direction is exactly a global step of the plain local/global method.
+//! steps' curvature corrects it: with no memory the direction is exactly a global step of the plain local/global
+//! method.
 //!
 //! With mapped gradients z = P⁻¹ g known at both ends of a step, P⁻¹ y is their difference, and the direction is a sum
 //! of z, steps s and mapped changes P⁻¹ y whose factors follow from products s · g, y · z = P⁻¹ y · g, s · y and y ·
@@ -83,8 +84,8 @@ impl History {
         self.spare.extend(self.pending.replace(pair));
     }
 
-    /// Takes in the present point's `gradient`, which was `before` where the step that is remembered last began, and the
-    /// mapped one; gives the factors of its direction.
+    /// Takes in the present point's `gradient`, which was `before` where the step that is remembered last began, and
+    /// the mapped one; gives the factors of its direction.
     pub fn factors(&mut self, before: &Field, gradient: &Field) -> Factors {
         let mut pending = self.pending.take();
         let own = pending.as_mut().map(|pair| self.map_change(pair, before, gradient));

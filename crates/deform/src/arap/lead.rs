@@ -1,9 +1,9 @@
 //! Steps of a large surface's solver that a coarse level leads.
 //!
 //! For new targets the coarse level goes ahead and the fine cells turn along, in less time than the fine level's own
-//! start and step take. Towards targets that stay, corrections by the coarse level alternate with the fine level's steps
-//! as long as they are worth it. A correction that is taken is a step like any other: the energy falls, and the memory
-//! learns from it how soft the surface is along it, which the clusters, too stiff against bending, do not know.
+//! start and step take. Towards targets that stay, corrections by the coarse level alternate with the fine level's
+//! steps as long as they are worth it. A correction that is taken is a step like any other: the energy falls, and the
+//! memory learns from it how soft the surface is along it, which the clusters, too stiff against bending, do not know.
 
 use rayon::prelude::*;
 
@@ -15,7 +15,8 @@ use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screws};
 use crate::operators::CHUNK;
 
-/// Coarse steps for new targets: along a drag of 60 frames more than 4 did not get nearer to the minimum, 2 fell behind.
+/// Coarse steps for new targets: along a drag of 60 frames more than 4 did not get nearer to the minimum, 2 fell
+/// behind.
 const STEPS: u32 = 3;
 
 /// Coarse steps of a correction.
@@ -62,8 +63,8 @@ impl ArapSolver {
 
     /// Makes the shape for new motions that the coarse level leads to.
     ///
-    /// From the rest shape the blend is all: it is exact where everything moves rigidly, and the coarse level corrects it
-    /// next.
+    /// From the rest shape the blend is all: it is exact where everything moves rigidly, and the coarse level corrects
+    /// it next.
     fn start_led(&mut self, coarse: &mut Coarse, motions: &[Motion]) {
         self.corrections = Corrections::default();
         if self.motions.iter().all(Motion::is_rest) {
@@ -130,8 +131,8 @@ impl ArapSolver {
         }
     }
 
-    /// Turns the trial shape's cells as the coarse level has turned since the current shape, and takes one global step to
-    /// the least of the quadratic that those turns make of the energy.
+    /// Turns the trial shape's cells as the coarse level has turned since the current shape, and takes one global step
+    /// to the least of the quadratic that those turns make of the energy.
     fn prolongate(&mut self, coarse: &mut Coarse) {
         let Self {
             current,

@@ -25,8 +25,8 @@ pub(crate) struct System {
 }
 
 impl System {
-    /// −A_sc x for the values `x` of constrained local vertices, and W x for those that a soft handle wants of its solved
-    /// ones: the right-hand side whose solution extends them.
+    /// −A_sc x for the values `x` of constrained local vertices, and W x for those that a soft handle wants of its
+    /// solved ones: the right-hand side whose solution extends them.
     pub fn pull(&self, x: &impl Fn(u32) -> f64) -> Vec<f64> {
         let mut pull = vec![0.0; self.matrix.scale.len()];
         for &(vertex, other, weight) in &self.coupling {
@@ -45,11 +45,11 @@ struct MatrixRow {
     others: Vec<(u32, f64)>,
 }
 
-/// Assembles the bending matrix of cells that bend: their weights' Laplacian less Σ_i Z_i β_i K_i Z_iᵀ, Z_i's rows being G_iv for
-/// the ring's vertices and minus their sum for the cell's own.
+/// Assembles the bending matrix of cells that bend: their weights' Laplacian less Σ_i Z_i β_i K_i Z_iᵀ, Z_i's rows
+/// being G_iv for the ring's vertices and minus their sum for the cell's own.
 ///
-/// What a hub's cell subtracts couples all its neighbours with each other, and is left out: the quadratic is larger then
-/// and majorises the energy as before, so that the shape is the same, and steps differ at hubs alone.
+/// What a hub's cell subtracts couples all its neighbours with each other, and is left out: the quadratic is larger
+/// then and majorises the energy as before, so that the shape is the same, and steps differ at hubs alone.
 ///
 /// # Errors
 /// [`FactorError::Memory`].

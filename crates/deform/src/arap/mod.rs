@@ -5,11 +5,11 @@
 //! one iteration of the usual local/global method [SA07], which descends slowly: an iteration of ours
 //! costs a tenth more and needs an order of magnitude fewer.
 //!
-//! Parts: `domain` numbers the vertices, `rims` and `spokes` make the two energies' `cells` and `bending` adds the smooth
-//! one's term, `shape` evaluates them in a `fit_pass` and a `gradient_pass`, `matrix` and `precondition` make the global
-//! step and the handles' weights, `start` chooses where to begin, `springs` are the soft handles, `history` gives the
-//! direction and `descent` takes the step.
-//! Of a large surface `clusters` make a small one, whose solver is its `coarse` level and takes the `lead`.
+//! Parts: `domain` numbers the vertices, `rims` and `spokes` make the two energies' `cells` and `bending` adds the
+//! smooth one's term, `shape` evaluates them in a `fit_pass` and a `gradient_pass`, `matrix` and `precondition` make
+//! the global step and the handles' weights, `start` chooses where to begin, `springs` are the soft handles, `history`
+//! gives the direction and `descent` takes the step. Of a large surface `clusters` make a small one, whose solver is
+//! its `coarse` level and takes the `lead`.
 
 mod bend;
 mod bending;
@@ -290,7 +290,8 @@ impl ArapSolver {
         }
     }
 
-    /// One step towards `motions`: writes the solved vertices' displacements. Says whether it converged, and the energy.
+    /// One step towards `motions`: writes the solved vertices' displacements. Says whether it converged, and the
+    /// energy.
     pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> (bool, f64) {
         // One entry into the pool: each of the many short loops would wait for it otherwise.
         rayon::scope(|_| {

@@ -13,8 +13,9 @@ options! {
                    for folds and creases), or these and how it bends (\"smooth\", for even bends and twists and for \
                    handles of single points)",
         },
-        /// κ of the smooth energy (see [`ArapEnergy::Smooth`]), which bends like ½ κ A ∫ |Hess p'|², A being the area of
-        /// what can move: without unit and independent of the mesh's size and density. Other energies have no use for it.
+        /// κ of the smooth energy (see [`ArapEnergy::Smooth`]), which bends like ½ κ A ∫ |Hess p'|², A being the area
+        /// of what can move: without unit and independent of the mesh's size and density. Other energies have no use
+        /// for it.
         smoothness: f64 = Number {
             default: 0.003,
             // From hardly smoother than the rims alone to nearly a plate that keeps its curvature.
@@ -43,9 +44,9 @@ named_choices! {
         Spokes = "spokes",
         /// All edges of its vertex's triangles [CPSS10], with plain cotangents; never negative.
         SpokesAndRims = "spokes-and-rims",
-        /// Spokes and rims, and every cell held to an affine map of its own: a thin plate in which neither bumps nor free
-        /// borders tell, for what Levi & Gotsman (2015) and Oehri et al. (2025) smooth. No spikes at handles of a single
-        /// vertex; twists spread evenly.
+        /// Spokes and rims, and every cell held to an affine map of its own: a thin plate in which neither bumps nor
+        /// free borders tell, for what Levi & Gotsman (2015) and Oehri et al. (2025) smooth. No spikes at handles of a
+        /// single vertex; twists spread evenly.
         Smooth = "smooth",
     }
 }

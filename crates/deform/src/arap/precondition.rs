@@ -16,8 +16,8 @@ use crate::sparse::solve::substitution::{Room, Substitution};
 
 /// The inverse of the system on the solved vertices, or nearly so.
 ///
-/// It is kept in single precision where that is accurate enough to descend by: it is half the bytes to read, and what it
-/// rounds the next step corrects. Gradients and positions stay double.
+/// It is kept in single precision where that is accurate enough to descend by: it is half the bytes to read, and what
+/// it rounds the next step corrects. Gradients and positions stay double.
 #[derive(Debug)]
 pub(crate) struct Preconditioner {
     solver: Solver,
@@ -64,7 +64,8 @@ impl From<FactorError> for PreconditionError {
 const TOLERANCE: f64 = 1e-2;
 
 impl Preconditioner {
-    /// Factors and checks the system, whose columns stand in blocks that end at `ends`; gives each handle's weights besides (see [`Preconditioner::weights`]).
+    /// Factors and checks the system, whose columns stand in blocks that end at `ends`; gives each handle's weights
+    /// besides (see [`Preconditioner::weights`]).
     pub fn of(
         system: &System,
         ends: &[u32],
@@ -190,8 +191,8 @@ impl Preconditioner {
         }
     }
 
-    /// Each handle's weight on each cell, row-major: 1 on its own vertices, 0 on other constrained ones, harmonic in the
-    /// system's sense between. Where nothing is fixed around a vertex they sum to 1.
+    /// Each handle's weight on each cell, row-major: 1 on its own vertices, 0 on other constrained ones, harmonic in
+    /// the system's sense between. Where nothing is fixed around a vertex they sum to 1.
     fn weights(&self, system: &System, input: &WeightInput<'_>) -> Result<Vec<f64>, FactorError> {
         let WeightInput {
             domain,

@@ -32,10 +32,11 @@ pub(crate) struct Shape {
 /// Room for an evaluation, kept from one to the next.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
-    /// R − 1 of each cell, or Z of one that bends, column by column. **f32**: each is read by all its neighbours, and for
-    /// the gradient alone.
+    /// R − 1 of each cell, or Z of one that bends, column by column. **f32**: each is read by all its neighbours, and
+    /// for the gradient alone.
     turns: Vec<Turn>,
-    /// Σ_v w_iv D_v − (R_i − 1) Σ_v (G_iv − G_vi) of each solved cell: what is left of two large sums. **f32** likewise.
+    /// Σ_v w_iv D_v − (R_i − 1) Σ_v (G_iv − G_vi) of each solved cell: what is left of two large sums. **f32**
+    /// likewise.
     laplacians: Vec<[f32; 4]>,
 }
 

@@ -18,8 +18,8 @@ const PATIENCE: u32 = 8;
 impl ArapSolver {
     /// Makes the better of two starts the current shape for `motions`, and says which.
     ///
-    /// Loads belong to the shape that they were found at: one from the rest shape goes without, and without them the two
-    /// are compared.
+    /// Loads belong to the shape that they were found at: one from the rest shape goes without, and without them the
+    /// two are compared.
     pub(super) fn start(&mut self, motions: &[Motion]) -> Origin {
         let was_at_rest = self.motions.iter().all(Motion::is_rest);
         let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
@@ -56,8 +56,8 @@ impl ArapSolver {
         origin
     }
 
-    /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles where they go, and
-    /// evaluates it.
+    /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles where they go,
+    /// and evaluates it.
     fn carry(&mut self, screws: &[Screw], origin: Origin) {
         self.carry_unmeasured(screws, origin);
         self.cells.evaluate(&mut self.trial, Guesses::Own, &mut self.scratch);

@@ -1,7 +1,7 @@
 //! Handle bases: a frame as one small product a vertex, with no solve in it.
 //!
-//! A handle moves affinely and the bi-Laplacian is linear, so the solved vertices' displacement is Σ_h B_h (T_h − I) with
-//! B_h = −A_ff⁻¹ A_fh [q 1], four columns a handle solved once at bind [BK04].
+//! A handle moves affinely and the bi-Laplacian is linear, so the solved vertices' displacement is Σ_h B_h (T_h − I)
+//! with B_h = −A_ff⁻¹ A_fh [q 1], four columns a handle solved once at bind [BK04].
 //!
 //! Where nothing is fixed the weights of all handles sum to 1, and that must survive rounding to f32, or a plain
 //! translation would leave dents. So there the motion of one *reference* handle's centre is taken out first and added

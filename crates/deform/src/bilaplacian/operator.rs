@@ -4,9 +4,9 @@
 //! to the last bit at every order.
 //!
 //! Painted stiffness s scales the density of the energy, ½ ∫ k_s s |∇d|² + k_b s |Δd|²: the faces' cotangents in
-//! stretching and in the middle L of order 3, the cells of M⁻¹ at order 2. What is stiff keeps its curvature, turns with
-//! what holds it, and joins what is soft without a crease. (With the cotangents of both outer L scaled, which is
-//! ∫ |div(s ∇d)|², it is the slope in space that stiff parts keep: they don't turn, and crease at their rim.)
+//! stretching and in the middle L of order 3, the cells of M⁻¹ at order 2. What is stiff keeps its curvature, turns
+//! with what holds it, and joins what is soft without a crease. (With the cotangents of both outer L scaled, which is ∫
+//! |div(s ∇d)|², it is the slope in space that stiff parts keep: they don't turn, and crease at their rim.)
 
 use rayon::prelude::*;
 
@@ -82,7 +82,8 @@ impl BilaplacianOperator {
         }
     }
 
-    /// Hangs a handle's local vertices on springs of a weight (see [`crate::Constraints`]); returns their places in a field.
+    /// Hangs a handle's local vertices on springs of a weight (see [`crate::Constraints`]); returns their places in a
+    /// field.
     pub fn soften(&mut self, locals: &[u32], weight: f64) -> Vec<u32> {
         let area = |local: u32| self.laplacian.inverse_areas()[local as usize].recip();
         let square_wave_number = std::f64::consts::PI.powi(2) / locals.iter().map(|&local| area(local)).sum::<f64>();
@@ -152,8 +153,8 @@ impl BilaplacianOperator {
         force
     }
 
-    /// ½ dᵀ A d over K functions and the springs' ½ (c − d)ᵀ W (c − d), summed from squares of differences, so that large
-    /// common motions cost no digits.
+    /// ½ dᵀ A d over K functions and the springs' ½ (c − d)ᵀ W (c − d), summed from squares of differences, so that
+    /// large common motions cost no digits.
     pub fn energy<const K: usize>(&self, d: &[[f64; K]]) -> f64 {
         let hung: f64 = (0..self.springs.len())
             .map(|spring| {

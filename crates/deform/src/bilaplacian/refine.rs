@@ -45,8 +45,8 @@ impl BilaplacianSystem {
         solve(self, d, self.contraction, cancel)
     }
 
-    /// Solves as [`BilaplacianSystem::solve`] and keeps how fast refinement was. The last function of `d` is 1 at every constrained
-    /// place, so its solution is known: where that is missed, the factor is no good.
+    /// Solves as [`BilaplacianSystem::solve`] and keeps how fast refinement was. The last function of `d` is 1 at every
+    /// constrained place, so its solution is known: where that is missed, the factor is no good.
     pub fn check<const K: usize>(&mut self, d: &mut [[f64; K]], cancel: &Cancel) -> Result<f64, SystemError> {
         let outcome = solve(self, d, 0.0, cancel);
         self.contraction = outcome.contraction;

@@ -9,9 +9,9 @@ use pliant_mesh::SurfaceVertex;
 use crate::BindError;
 use crate::operators::triangulation::{Graph, Triangulation};
 
-/// Where edges to what holds a surface, to the 2n-th power, exceed this, no digit is left. Strips at order 2 were solved
-/// to three digits at 1.5·10¹⁸ and to none at 2.4·10¹⁹; at order 3 to seven digits at 4·10¹⁸, to three at 2·10²⁰, and
-/// to none at 6·10²².
+/// Where edges to what holds a surface, to the 2n-th power, exceed this, no digit is left. Strips at order 2 were
+/// solved to three digits at 1.5·10¹⁸ and to none at 2.4·10¹⁹; at order 3 to seven digits at 4·10¹⁸, to three at
+/// 2·10²⁰, and to none at 6·10²².
 fn hopeless(order: u32) -> f64 {
     if order < 3 { 1e20 } else { 1e24 }
 }

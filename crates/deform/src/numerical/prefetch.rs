@@ -1,8 +1,8 @@
 //! Asking for cache lines before they are needed.
 //!
 //! Processors fetch ahead of what is read in rising order alone. A solve reads the factor once up and once down, and on
-//! the way down, where each block was waited for, half of the time went by; what a ring's vertices have is read wherever
-//! they stand. A hint cannot fault, wherever it points.
+//! the way down, where each block was waited for, half of the time went by; what a ring's vertices have is read
+//! wherever they stand. A hint cannot fault, wherever it points.
 
 /// The machine's hint, where there is one.
 #[derive(Clone, Copy, Debug)]

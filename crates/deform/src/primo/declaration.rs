@@ -84,8 +84,8 @@ impl BoundMethod for PrimoSolver {
         PrimoSolver::factor_len(self)
     }
 
-    /// A step took 17 ms on the bar of [BS08] (5,122 solved vertices, two cores): one shape a step is what keeps a window
-    /// going.
+    /// A step took 17 ms on the bar of [BS08] (5,122 solved vertices, two cores): one shape a step is what keeps a
+    /// window going.
     fn step_cost(&self) -> usize {
         20 * self.vertices.vertices.len()
     }

@@ -11,10 +11,10 @@ use crate::operators::CHUNK;
 /// Lengths that a line search tries.
 const TRIALS: u32 = 12;
 
-/// Steps towards the same targets after which the matrix is factored anew, where the prisms are by then. A factorisation
-/// takes about as long as eight steps. On the bar of [BS08] at a thickness of 0.005 a step with each (plain Gauss–Newton)
-/// came within 1% of the least energy after 5, one with each tenth after 25 and the rest pose's alone after 133 steps,
-/// in 1.9, 1.5 and 6.2 s; at 0.05 after 1, 1 and 2 steps.
+/// Steps towards the same targets after which the matrix is factored anew, where the prisms are by then. A
+/// factorisation takes about as long as eight steps. On the bar of [BS08] at a thickness of 0.005 a step with each
+/// (plain Gauss–Newton) came within 1% of the least energy after 5, one with each tenth after 25 and the rest pose's
+/// alone after 133 steps, in 1.9, 1.5 and 6.2 s; at 0.05 after 1, 1 and 2 steps.
 const RENEWAL: u32 = 20;
 
 /// Energies below this share of the surface's area are rounding.

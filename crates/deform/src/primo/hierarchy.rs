@@ -245,8 +245,8 @@ fn inverse_block(joints: &Joints, body: usize) -> Block {
     inverse
 }
 
-/// The cell of each body: bodies found breadth-first from one, those with the lowest numbers of nothing left over first;
-/// what is left over between cells joins one of them.
+/// The cell of each body: bodies found breadth-first from one, those with the lowest numbers of nothing left over
+/// first; what is left over between cells joins one of them.
 fn cells(joints: &Joints) -> Vec<u32> {
     const NONE: u32 = u32::MAX;
     let count = joints.count();

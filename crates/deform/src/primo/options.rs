@@ -6,9 +6,9 @@ use crate::method::option::{Number, options};
 options! {
     /// Options of the coupled prisms.
     pub struct Primo {
-        /// The prisms' height, in diagonals of the surface's bounding box. What a thick surface resists most is being bent,
-        /// what a thin one resists most is being stretched. The same value means the same material whatever the mesh's
-        /// density.
+        /// The prisms' height, in diagonals of the surface's bounding box. What a thick surface resists most is being
+        /// bent, what a thin one resists most is being stretched. The same value means the same material whatever the
+        /// mesh's density.
         thickness: f64 = Number {
             default: 0.05,
             range: [0.001, 1.0],

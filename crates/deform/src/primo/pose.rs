@@ -2,8 +2,8 @@
 //!
 //! A body's motion takes its rest centre c to c + shift and what lies around by a linear map: a rotation for a prism,
 //! any map for a ground, since a handle moves affinely. Velocities are those of the body's own frame: (ω, v) takes a
-//! prism with the rotation R to R exp(ω), its shift further by R v. A joint's gradient is then a function of how its two
-//! prisms lie to each other, and the Gauss–Newton matrix is the same wherever a rigid motion carries both.
+//! prism with the rotation R to R exp(ω), its shift further by R v. A joint's gradient is then a function of how its
+//! two prisms lie to each other, and the Gauss–Newton matrix is the same wherever a rigid motion carries both.
 
 use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;

@@ -14,9 +14,9 @@ pub struct Constraints<'a> {
     ///
     /// W_i = w M_ii (k_s q + k_b qⁿ), q = π² / Σ M_ii,
     ///
-    /// n the bi-Laplacian's order and the sum over the handle: w times what the bi-Laplacian opposes to a half wave as long as the
-    /// handle is wide, so that at 1 both give way to each other. Neither the resolution of the mesh nor its unit shows
-    /// in it. The larger w, the nearer to a hard handle.
+    /// n the bi-Laplacian's order and the sum over the handle: w times what the bi-Laplacian opposes to a half wave as
+    /// long as the handle is wide, so that at 1 both give way to each other. Neither the resolution of the mesh nor its
+    /// unit shows in it. The larger w, the nearer to a hard handle.
     pub soft: &'a [Option<f64>],
     /// Of each surface vertex: with which continuity Cᵏ the free surface joins it, if it is constrained, and at most
     /// Cⁿ⁻¹, n the bi-Laplacian's order; from 0 to 2 [BK04]. 0 is a hinge, 1 keeps the tangents, 2 the

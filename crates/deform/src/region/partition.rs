@@ -1,10 +1,9 @@
 //! Who is solved for, who is prescribed, who follows: what the roles mean on this surface.
 //!
-//! Only vertices that a handle can reach are solved for. The system's graph is that of Lⁿ, n the bi-Laplacian's order, so
-//! influence travels n edges at a time, across constrained vertices too, and ends where a band of constrained vertices
-//! is n rings wide.
-//! Free vertices that it does not reach have the solution zero and stay out of the factor: binding costs what is
-//! deformed, not what is loaded.
+//! Only vertices that a handle can reach are solved for. The system's graph is that of Lⁿ, n the bi-Laplacian's order,
+//! so influence travels n edges at a time, across constrained vertices too, and ends where a band of constrained
+//! vertices is n rings wide. Free vertices that it does not reach have the solution zero and stay out of the factor:
+//! binding costs what is deformed, not what is loaded.
 
 use pliant_mesh::SurfaceVertex;
 

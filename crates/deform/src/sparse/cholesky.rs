@@ -31,7 +31,8 @@ pub(crate) struct Factor {
 const SHIFTS: [f64; 6] = [0.0, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5];
 
 impl Factor {
-    /// Factors the matrix, whose columns stand in supernodes that end at `ends`, with `shift` added to its unit diagonal.
+    /// Factors the matrix, whose columns stand in supernodes that end at `ends`, with `shift` added to its unit
+    /// diagonal.
     #[cfg(test)]
     pub fn of(matrix: &ScaledMatrix, ends: &[u32], shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
         let mut factor = Self::analysed(matrix, ends, Budget::default())?;

@@ -13,8 +13,8 @@ fn method(order: BilaplacianOrder, anisotropy: f64) -> Method {
     Method::from(options)
 }
 
-/// A sheet 4 long in x and `width` wide, turned away from the axes, its rim held and a patch inside lifted by 1; heights
-/// and the positions within the sheet.
+/// A sheet 4 long in x and `width` wide, turned away from the axes, its rim held and a patch inside lifted by 1;
+/// heights and the positions within the sheet.
 fn sheet(width: f64, turn: DQuat, order: BilaplacianOrder, anisotropy: f64) -> (Vec<DVec3>, Vec<f64>) {
     let flat = shapes::grid(40, 20);
     let positions = flat

@@ -41,8 +41,9 @@ fn each_order_converges_to_its_polynomial() {
     }
 }
 
-/// The order's error against its polynomial between the middles of the n rows that hold each end: n values in a row that
-/// lie on the clamped polynomial are n zeros of the strip's, and to second order one of n-th order in their middle.
+/// The order's error against its polynomial between the middles of the n rows that hold each end: n values in a row
+/// that lie on the clamped polynomial are n zeros of the strip's, and to second order one of n-th order in their
+/// middle.
 #[test]
 fn each_order_converges_with_second_order_between_the_middles_of_what_holds_it() {
     let exact: [fn(f64) -> f64; 2] = [

@@ -36,8 +36,8 @@ pub struct EditFile {
     pub handles: Vec<HandleEntry>,
     /// Painted stiffness; the later entry wins, and it is 1 where no entry speaks.
     pub stiffness: Vec<FieldEntry>,
-    /// With which continuity the free surface joins what is fixed and the handles (0 to 2); the later entry wins, and it
-    /// is 2 where no entry speaks.
+    /// With which continuity the free surface joins what is fixed and the handles (0 to 2); the later entry wins, and
+    /// it is 2 where no entry speaks.
     pub continuity: Vec<FieldEntry>,
     /// What components that nothing holds do.
     pub loose: Loose,

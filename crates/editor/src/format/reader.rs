@@ -1,8 +1,9 @@
-//! A deserializer over JSON values whose refusals name the place: `handles[0].transform.scale must be 3 numbers, not ..`.
+//! A deserializer over JSON values whose refusals name the place: `handles[0].transform.scale must be 3 numbers, not
+//! ..`.
 //!
-//! Code that serde derives calls the constructors in `refusal`, which keep names and values apart: a refusal can propose
-//! the nearest known name. (`serde_path_to_error` over `serde_json` gives the place too, but the rest only as text.)
-//! The place is put together only while a refusal travels outwards, so reading without one costs nothing.
+//! Code that serde derives calls the constructors in `refusal`, which keep names and values apart: a refusal can
+//! propose the nearest known name. (`serde_path_to_error` over `serde_json` gives the place too, but the rest only as
+//! text.) The place is put together only while a refusal travels outwards, so reading without one costs nothing.
 
 use serde::de::{self, DeserializeSeed, Deserializer, EnumAccess, Expected, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, forward_to_deserialize_any};

@@ -133,7 +133,8 @@ pub fn with_neighbours_renamed(file: &[u8], names: &[(&str, String)]) -> Option<
 ///
 /// A save changes numbers in buffers and what describes them (accessors, views, buffers), clones meshes, adds morph
 /// targets, writes compressed ones out plainly and gives neighbours other names. It never changes how many elements an
-/// accessor has, nor scenes, materials, textures, skins, cameras, extras, or what nodes are called and how many there are.
+/// accessor has, nor scenes, materials, textures, skins, cameras, extras, or what nodes are called and how many there
+/// are.
 pub fn is_same_document(a: &[u8], b: &[u8]) -> bool {
     let parsed = |file: &[u8]| Json::parse(text_of(file)?.to_vec()).ok();
     let (Some(a), Some(b)) = (parsed(a), parsed(b)) else {

@@ -1,9 +1,9 @@
 //! A file as stored, whatever its kind, and the one place where kinds are told apart.
 //!
-//! Each kind is one module with the same face: `read(&Source) -> Result<(Stored, Drawn), ReadError>`;
-//! `Stored::{notes, summary, appearance, write}`, where `write(&Moved, &Course)` gives the file back with only the moved
-//! vertices' numbers changed, and warnings (it is called only when something moved); and `write_new(&NewMesh, &Course)`,
-//! which makes a file of that kind from any other.
+//! Each kind is one module with the same face: `read(&Source) -> Result<(Stored, Drawn), ReadError>`; `Stored::{notes,
+//! summary, appearance, write}`, where `write(&Moved, &Course)` gives the file back with only the moved vertices'
+//! numbers changed, and warnings (it is called only when something moved); and `write_new(&NewMesh, &Course)`, which
+//! makes a file of that kind from any other.
 
 mod check;
 pub(crate) mod difference;

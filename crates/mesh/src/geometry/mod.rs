@@ -1,7 +1,7 @@
 //! Lengths, areas, angles and normals of single triangles, and boxes.
 //!
-//! Angles and areas come from edge lengths [Kah14], so that the same functions serve mollified lengths, which belong to no
-//! positions.
+//! Angles and areas come from edge lengths [Kah14], so that the same functions serve mollified lengths, which belong to
+//! no positions.
 
 mod areas;
 mod distortion;
@@ -52,8 +52,8 @@ impl Bounds {
     }
 }
 
-/// The least box that holds all `positions`; `None` of none. On the caller's thread alone: the window's asks for it, too,
-/// and would wait in line behind a job's loops for longer than this takes.
+/// The least box that holds all `positions`; `None` of none. On the caller's thread alone: the window's asks for it,
+/// too, and would wait in line behind a job's loops for longer than this takes.
 pub fn bounding_box(positions: &[DVec3]) -> Option<Bounds> {
     positions
         .iter()

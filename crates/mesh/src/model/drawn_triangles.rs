@@ -28,7 +28,8 @@ pub(crate) struct BySurface {
     count: usize,
     /// Of each surface vertex.
     first_drawn: Vec<DrawnVertex>,
-    /// The numbers, ascending, and the corners of those that the surface does not have or has over other drawn vertices.
+    /// The numbers, ascending, and the corners of those that the surface does not have or has over other drawn
+    /// vertices.
     others: Vec<u32>,
     corners_of_others: Vec<[DrawnVertex; 3]>,
 }

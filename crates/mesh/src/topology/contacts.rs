@@ -37,8 +37,9 @@ pub fn component_areas(surface: &Surface, topology: &Topology) -> Vec<f64> {
     areas
 }
 
-/// Where each of the components `of` touches others that `may_hold(component, other)` and whose triangles are in `tree`,
-/// a hierarchy over this surface; empty where it touches none. A vertex that lies beside several touches the nearest.
+/// Where each of the components `of` touches others that `may_hold(component, other)` and whose triangles are in
+/// `tree`, a hierarchy over this surface; empty where it touches none. A vertex that lies beside several touches the
+/// nearest.
 ///
 /// # Errors
 /// It was cancelled.

@@ -3,8 +3,8 @@
 use rayon::ThreadPoolBuilder;
 
 /// Gives the thread that calls it threads of its own: from now on its parallel loops run on those, whoever wrote them.
-/// On those that jobs share a loop waits in line until one of them comes to a pause, which has kept the window still for
-/// a third of a second.
+/// On those that jobs share a loop waits in line until one of them comes to a pause, which has kept the window still
+/// for a third of a second.
 pub fn install() {
     if is_installed() {
         return;

@@ -1,7 +1,7 @@
 //! What a Laplacian is made on: triangles with edge lengths, and who neighbours whom.
 //!
-//! Either the surface's own triangles, measured in space or along stretched axes, or intrinsic ones on the same vertices,
-//! whose edges run straight within the surface and need not be edges of it.
+//! Either the surface's own triangles, measured in space or along stretched axes, or intrinsic ones on the same
+//! vertices, whose edges run straight within the surface and need not be edges of it.
 
 mod flips;
 mod intrinsic;

@@ -2,8 +2,8 @@
 //! ([BK04]; [BS08, section 4]: "the model is anisotropically scaled along its principal axes to have
 //! uniform variation").
 //!
-//! A bi-Laplacian's deformation fades over a length like its width, so that a long bar whose end is turned twists near that end
-//! alone. The stretched bar is as wide as long, and its twist spreads evenly over all of it.
+//! A bi-Laplacian's deformation fades over a length like its width, so that a long bar whose end is turned twists near
+//! that end alone. The stretched bar is as wide as long, and its twist spreads evenly over all of it.
 
 use glam::{DMat3, DVec3};
 use pliant_mesh::{SurfaceVertex, face_area};

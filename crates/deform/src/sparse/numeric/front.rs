@@ -114,7 +114,8 @@ impl WithSimd for Rows<'_> {
     }
 }
 
-/// Writes the contribution (update) matrix of a factored panel into `square`: the lower triangle of L Lᵀ of the rows below.
+/// Writes the contribution (update) matrix of a factored panel into `square`: the lower triangle of L Lᵀ of the rows
+/// below.
 pub(crate) fn update_matrix(shape: Shape, panel: &[Line], square: &mut [Line], cancel: &Cancel) {
     let below = &panel[shape.start(shape.own())..];
     let strips = 0..shape.strips() - shape.own();

@@ -1,8 +1,9 @@
 //! The numeric factorisation, supernode by supernode from the leaves [DR83].
 //!
 //! A supernode assembles its columns of the matrix and the contributions of its children (extend-add), is factored
-//! densely (`front`), and passes its own contribution to its parent. The parts that `assembly_tree` cuts need nothing from
-//! each other but the children's contributions, so they run in parallel; large fronts are worked on by several threads.
+//! densely (`front`), and passes its own contribution to its parent. The parts that `assembly_tree` cuts need nothing
+//! from each other but the children's contributions, so they run in parallel; large fronts are worked on by several
+//! threads.
 
 mod front;
 pub(crate) mod line;

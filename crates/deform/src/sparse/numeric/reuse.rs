@@ -2,8 +2,8 @@
 //!
 //! A part's numbers follow from its columns of the matrix and from what its children leave, and from nothing else. So
 //! where all of these are the same to the bit, so are its numbers, and they are taken over: after a stroke that changes
-//! which vertices are free, what is factored again is the parts around the stroke and those on the way from there to the
-//! roots (after [HA18], "Factor Once", with supernodes in place of columns).
+//! which vertices are free, what is factored again is the parts around the stroke and those on the way from there to
+//! the roots (after [HA18], "Factor Once", with supernodes in place of columns).
 
 use std::collections::BTreeMap;
 

@@ -1,7 +1,8 @@
-//! Nested dissection of a graph that is drawn on a surface: cut it in two, eliminate both halves first and what parts them last [Geo73].
+//! Nested dissection of a graph that is drawn on a surface: cut it in two, eliminate both halves first and what parts
+//! them last [Geo73].
 //!
-//! `bisection` finds the cut, in the graph of L; its rim grows to a *separator* of the graph of Lᵏ: no walk of at most k
-//! edges leads from one half to the other but through it. So the graph of Lᵏ, several times larger, is never formed.
+//! `bisection` finds the cut, in the graph of L; its rim grows to a *separator* of the graph of Lᵏ: no walk of at most
+//! k edges leads from one half to the other but through it. So the graph of Lᵏ, several times larger, is never formed.
 //! Parts of some hundred vertices are left to `leaf`.
 //!
 //! A bad cut costs time and nothing else: what is eliminated with what is found out by `symbolic`, exactly.

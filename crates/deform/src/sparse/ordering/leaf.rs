@@ -2,8 +2,8 @@
 //!
 //! The graph is Lᵏ's on the part's vertices and on those around it that are eliminated later (its *halo*, Pellegrini et
 //! al. 2000): they count for the degrees, which spares the fill that a part ordered by itself has along its rim.
-//! Vertices with one pattern are eliminated at once, and supernodes that hardly differ are amalgamated, so what comes out is
-//! supernodes that are worth a dense factorisation.
+//! Vertices with one pattern are eliminated at once, and supernodes that hardly differ are amalgamated, so what comes
+//! out is supernodes that are worth a dense factorisation.
 
 use crate::operators::triangulation::Graph;
 use crate::sparse::ordering::elimination::Elimination;

@@ -33,7 +33,8 @@ pub struct Ordering {
 impl Ordering {
     /// Orders the graph of the `power`-th power of the Laplacian by nested dissection of the surface.
     ///
-    /// Which power, and whether any, [`crate::Method::ordering_power`] says. Uses rayon's current pool; the result doesn't depend on its size.
+    /// Which power, and whether any, [`crate::Method::ordering_power`] says. Uses rayon's current pool; the result
+    /// doesn't depend on its size.
     ///
     /// # Errors
     /// [`Cancelled`] soon after `cancel` is raised.

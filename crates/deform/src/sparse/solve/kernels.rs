@@ -17,8 +17,8 @@ const AHEAD: usize = 128;
 /// Columns whose sums are kept near: their lines lie one after the other.
 const COLUMNS: usize = 64;
 
-/// Solves with a supernode's lower triangle for the first strips of `x`, its own rows, and writes what the rows below take
-/// into the others.
+/// Solves with a supernode's lower triangle for the first strips of `x`, its own rows, and writes what the rows below
+/// take into the others.
 pub(crate) struct Forward<'a, const K: usize> {
     pub shape: Shape,
     pub panel: &'a [Line],

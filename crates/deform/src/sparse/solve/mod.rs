@@ -1,10 +1,10 @@
 //! Solving with a factor, several right-hand sides at once.
 //!
 //! The limit is memory: each solve reads the factor twice. So it is read in the order in which it lies, a line meeting
-//! all right-hand sides at once. The parts that `assembly_tree` cuts are solved beside each other: a part hands what its
-//! rows take to the part above in forward substitution, and gets what it needs from there in backward substitution, so nothing is shared
-//! and nothing is added up in an order that could vary. faer's own parallel solve was 3 to 40 times slower than its
-//! sequential one on such factors.
+//! all right-hand sides at once. The parts that `assembly_tree` cuts are solved beside each other: a part hands what
+//! its rows take to the part above in forward substitution, and gets what it needs from there in backward substitution,
+//! so nothing is shared and nothing is added up in an order that could vary. faer's own parallel solve was 3 to 40
+//! times slower than its sequential one on such factors.
 
 mod blocks;
 mod kernels;

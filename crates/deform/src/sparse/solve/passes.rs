@@ -1,5 +1,5 @@
-//! Forward substitution from the leaves of an assembly tree to its roots and backward substitution from the roots to the
-//! leaves, part by part, with rows of right-hand sides.
+//! Forward substitution from the leaves of an assembly tree to its roots and backward substitution from the roots to
+//! the leaves, part by part, with rows of right-hand sides.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -13,12 +13,12 @@ struct PartRows<'a, R> {
     rows: &'a mut Vec<R>,
 }
 
-/// Solves for `x`, one row a column, part by part. `forward` gets a part's rows, with what its children changed added, and
-/// for the rows of the part above zeros and those changes; it changes them. `backward` gets the solved rows of the part
-/// above.
+/// Solves for `x`, one row a column, part by part. `forward` gets a part's rows, with what its children changed added,
+/// and for the rows of the part above zeros and those changes; it changes them. `backward` gets the solved rows of the
+/// part above.
 ///
-/// A part hands what it changes to the part above and gets what it needs from there, so nothing is shared, and nothing is
-/// added up in an order that could vary. `part_rows` is room, kept from one time to the next.
+/// A part hands what it changes to the part above and gets what it needs from there, so nothing is shared, and nothing
+/// is added up in an order that could vary. `part_rows` is room, kept from one time to the next.
 pub(crate) fn forward_and_backward<R: Copy + Send + Sync>(
     assembly_tree: &AssemblyTree,
     x: &mut [R],

@@ -1,7 +1,7 @@
 //! The assembly tree of supernodes, cut into parts that are worked on one after the other or in parallel.
 //!
-//! Columns stand in postorder, so a subtree is a run of supernodes and its columns a run of columns. A subtree is one part
-//! while it is little work; the supernodes above, the *top*, are parts of their own. The cut depends on the work
+//! Columns stand in postorder, so a subtree is a run of supernodes and its columns a run of columns. A subtree is one
+//! part while it is little work; the supernodes above, the *top*, are parts of their own. The cut depends on the work
 //! below alone: neither on the number of threads nor on what the rest of the surface is.
 
 use std::ops::Range;

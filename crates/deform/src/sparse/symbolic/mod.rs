@@ -1,7 +1,7 @@
 //! Symbolic factorisation: the supernodes of a factor and the rows of each, before there are numbers.
 //!
-//! The order of elimination comes with its supernodes (`dissection`, `leaf`), so none have to be detected. A supernode's
-//! rows are exactly those of its columns in the matrix and those of its children's contributions.
+//! The order of elimination comes with its supernodes (`dissection`, `leaf`), so none have to be detected. A
+//! supernode's rows are exactly those of its columns in the matrix and those of its children's contributions.
 
 pub(crate) mod assembly_tree;
 
@@ -67,7 +67,8 @@ impl Symbolic {
     /// The factor of `matrix`, whose columns are grouped in supernodes that end at `ends`.
     ///
     /// # Errors
-    /// As soon as what was found of it exceeds the budget: its numbers, its rows, and the contributions that wait at once.
+    /// As soon as what was found of it exceeds the budget: its numbers, its rows, and the contributions that wait at
+    /// once.
     pub fn of(matrix: &ScaledMatrix, ends: &[u32], budget: Budget) -> Result<Self, FactorError> {
         let column_count = matrix.scale.len();
         let mut symbolic = Self {

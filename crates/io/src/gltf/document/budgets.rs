@@ -25,8 +25,8 @@ impl Document {
 
     /// How many bytes of memory the drawn set may take: what the bytes justify, and small files with many instances.
     ///
-    /// No accessor seen through one node takes more than sixteen times its bytes (a strip of byte indices takes twelve).
-    /// Welding takes eight times the drawn set again.
+    /// No accessor seen through one node takes more than sixteen times its bytes (a strip of byte indices takes
+    /// twelve). Welding takes eight times the drawn set again.
     pub fn drawing_budget(&self) -> usize {
         let decoded = self.buffers.iter().map(|buffer| match buffer {
             Buffer::Decoded(bytes) => bytes.len(),

@@ -1,5 +1,5 @@
-//! The copy-on-write plan of a save: which meshes are cloned and which accessors are copied, so that what did not change
-//! keeps what it shares.
+//! The copy-on-write plan of a save: which meshes are cloned and which accessors are copied, so that what did not
+//! change keeps what it shares.
 //!
 //! A mesh that several nodes show is cloned where the nodes come to differ; the nodes that did not move, or else the
 //! first ones, keep the original. An accessor that several primitives name is copied where they come to differ;
@@ -28,8 +28,8 @@ pub(crate) struct MeshCopy {
 }
 
 impl MeshCopy {
-    /// The instance that says what becomes of each primitive. One that is not drawn (the lines along a surface's edges, say)
-    /// follows a drawn one of its mesh that names the same positions.
+    /// The instance that says what becomes of each primitive. One that is not drawn (the lines along a surface's edges,
+    /// say) follows a drawn one of its mesh that names the same positions.
     pub fn followed_instances(&self, primitives: &[Primitive]) -> Vec<Option<usize>> {
         let mut leader: HashMap<Option<usize>, usize> = HashMap::new();
         for (instance, primitive) in self.instances.iter().zip(primitives) {

@@ -1,8 +1,8 @@
 //! A new glTF from the other kinds: a node and a mesh for each named part, a primitive for each material in it.
 //!
 //! A file of one part keeps the order and number of the drawn vertices; of several, each takes the vertices that it
-//! uses, in their order, so that those on a rim between two come twice. Where the shape stands so far out that f32 would round it,
-//! the vertices are taken relative to its centre and the node carries the way there.
+//! uses, in their order, so that those on a rim between two come twice. Where the shape stands so far out that f32
+//! would round it, the vertices are taken relative to its centre and the node carries the way there.
 
 mod attributes;
 mod buffer;
