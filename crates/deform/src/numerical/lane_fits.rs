@@ -22,7 +22,7 @@ pub(crate) struct Fits {
 }
 
 impl Fits {
-    /// Makes of unit quaternions that were rounded such whose length is 1 to second order.
+    /// Corrects rounded unit quaternions, so that their length is 1 to second order.
     #[inline(always)]
     pub fn normalise<S: Simd>(&mut self, simd: S) {
         for place in 0..LANES / S::F64_LANES {

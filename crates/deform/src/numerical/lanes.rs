@@ -18,7 +18,7 @@ pub(crate) const LANES: usize = 8;
 #[repr(align(64))]
 pub(crate) struct Lanes(pub [f64; LANES]);
 
-/// A machine's vector of numbers, a cell each.
+/// A machine's vector of numbers, one per cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Vector<S: Simd> {
     pub(super) simd: S,
@@ -117,7 +117,7 @@ impl<S: Simd> Vector<S> {
         }
     }
 
-    /// Where it is less; not where either is not a number.
+    /// Where it is less; false where either is not a number.
     #[inline(always)]
     pub(super) fn less(self, other: Self) -> Mask<S> {
         Mask {
