@@ -14,10 +14,10 @@ use crate::sparse::factor_error::FactorError;
 use crate::sparse::solve::rhs::{Real, Rhs};
 use crate::sparse::solve::substitution::{Room, Substitution};
 
-/// The inverse of the system on the solved vertices, or nearly so.
+/// An approximate inverse of the system on the solved vertices.
 ///
-/// It is kept in single precision where that is accurate enough to descend by: it is half the bytes to read, and what
-/// it rounds the next step corrects. Gradients and positions stay double.
+/// It is kept in single precision if that is accurate enough for a descent direction: that halves the bytes to read,
+/// and the next step corrects its rounding. Gradients and positions stay double.
 #[derive(Debug)]
 pub(crate) struct Preconditioner {
     solver: Solver,
@@ -42,7 +42,7 @@ pub(crate) struct MapRoom {
 pub(crate) enum PreconditionError {
     /// The pivot of this solved vertex is not above zero.
     Pivot(usize),
-    /// A constant is missed by this much at this solved vertex.
+    /// The solution of a constant is off by this much at this solved vertex.
     Inaccurate(usize, f64),
     Memory,
     Budget,
@@ -60,12 +60,12 @@ impl From<FactorError> for PreconditionError {
     }
 }
 
-/// By how much a constant may be missed: enough to descend by.
+/// How far off the solution of a constant may be: accurate enough for a descent direction.
 const TOLERANCE: f64 = 1e-2;
 
 impl Preconditioner {
-    /// Factors and checks the system, whose columns stand in blocks that end at `ends`; gives each handle's weights
-    /// besides (see [`Preconditioner::weights`]).
+    /// Factors and checks the system, whose supernodes end at `ends`; also returns each handle's weights (see
+    /// [`Preconditioner::weights`]).
     pub fn of(
         system: &System,
         ends: &[u32],
@@ -203,7 +203,7 @@ impl Preconditioner {
         let mut weights = filled(0.0, domain.cell_count * handle_count)?;
         let handles: Vec<usize> = (0..handle_count).collect();
         for group in handles.chunks(4) {
-            // Four right-hand sides a solve, the last group's spare ones empty.
+            // Four right-hand sides per solve; unused ones of the last group are empty.
             let of = |k: usize| {
                 let handle = group.get(k).copied();
                 move |other: u32| f64::from(u8::from(handle.is_some() && handle_of(other) == handle))

@@ -132,7 +132,7 @@ fn add(face: &Face, cell: u32, entries: &mut [Entry], rest: &mut [f64; 6], place
     }
 }
 
-/// What the cells' quarter sums leave out or count twice: the truth is half of each triangle's edges, a third of it for
+/// What the cells' quarter sums leave out or count twice: each triangle's edges should count half, a third of it for
 /// each corner that has a cell.
 fn constant(faces: &[Face], domain: &Domain) -> Vec<(u32, u32, f64)> {
     let mut pairs = Vec::new();

@@ -1,4 +1,4 @@
-//! Options of the bi-Laplacian [BS08, section 2]: what the surface is made of, and on which operator.
+//! Options of the bi-Laplacian [BS08, section 2]: the material, and the operator's discretisation.
 
 use crate::method::option::{Choice, Choices, Number, OptionType, named_choices, options};
 use crate::{OptionKind, OptionValue};
@@ -13,7 +13,7 @@ options! {
     ///
     /// which at order n = 2 is (−k_s L + k_b L M⁻¹ L) d = 0 [BS08, equation 8]. A is symmetric and positive definite on
     /// what is solved for. Lengths are measured in diagonals of the surface's bounding box, so neither coefficient
-    /// depends on the model's unit, and only their ratio shows in the shape; the energy ½ dᵀ A d has no unit.
+    /// depends on the model's unit. The shape depends only on their ratio; the energy ½ dᵀ A d has no unit.
     ///
     /// Painted stiffness s scales the energy's density, ½ ∫ k_s s |∇d|² + k_b s |Δd|² at order 2 and s |∇Δd|² at order
     /// 3: a part of stiffness 10 resists bending ten times as much, and turns with what holds it.

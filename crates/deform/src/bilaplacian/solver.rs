@@ -1,4 +1,4 @@
-//! The bi-Laplacian's method: what binding it computes, and its two ways to a frame.
+//! The bound bi-Laplacian: its binding, and its frames, from the bases or by back substitution.
 
 use std::sync::Arc;
 
@@ -125,7 +125,7 @@ impl BilaplacianSolver {
             .collect();
         if self.system.shift() > 0.0 {
             sentences.push(format!(
-                "the shell was barely stable on this mesh: it was stiffened by {:.0e} of its diagonal and refined",
+                "the bi-Laplacian was hardly positive definite on this mesh: {:.0e} of its diagonal was added, and the solution refined",
                 self.system.shift()
             ));
         }
@@ -162,7 +162,7 @@ impl BilaplacianSolver {
         if sum > 0.0 || sum.is_nan() { 0.5 * sum } else { 0.0 }
     }
 
-    /// The energy of any displacements, one a surface vertex, with soft handles wanting what `motions` say; components
+    /// The energy of any displacements, one per surface vertex, with soft handles pulling towards `motions`; components
     /// without a handle are left out.
     pub fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
         let mut d = self.field(displacements);
@@ -175,7 +175,7 @@ impl BilaplacianSolver {
         self.system.operator.energy(&d)
     }
 
-    /// Displacements, one a surface vertex, as a field.
+    /// Displacements, one per surface vertex, as a field.
     fn field(&self, displacements: &[DVec3]) -> Vec<[f64; 3]> {
         let operator = &self.system.operator;
         let vertices = operator.laplacian.vertices();
@@ -184,11 +184,11 @@ impl BilaplacianSolver {
             .collect()
     }
 
-    /// Solves for the solved vertices' displacements from whatever the other vertices' are, and those of soft handles'
-    /// vertices, which are taken as what the handles want.
+    /// Solves for the solved vertices' displacements, given all others. The displacements of soft handles' vertices are
+    /// taken as the handles' targets.
     ///
     /// # Errors
-    /// Where the solution stays too far from the operator's.
+    /// If the solution stays too inaccurate.
     pub fn back_substitute(&self, displacements: &mut [DVec3]) -> Result<(), SolveError> {
         let vertices = self.system.operator.laplacian.vertices();
         let mut d = self.field(displacements);
@@ -196,7 +196,7 @@ impl BilaplacianSolver {
         for &local in self.system.columns() {
             displacements[vertices[local as usize] as usize] = DVec3::from_array(d[local as usize]);
         }
-        // What is not finite is the gate's to say.
+        // An error that is not finite is reported by the check of all displacements.
         if error.is_finite() && error > TOLERANCE {
             Err(SolveError::Inaccurate { error })
         } else {
@@ -218,7 +218,7 @@ impl BilaplacianSolver {
     }
 }
 
-/// The refusal with a lower order as a further remedy, where there is one.
+/// The refusal with a lower order as a further remedy, if there is one.
 fn of_order(options: &Bilaplacian, refused: BindError) -> BindError {
     let order = options.operator_power();
     match refused {
@@ -232,7 +232,7 @@ fn of_order(options: &Bilaplacian, refused: BindError) -> BindError {
 
 /// A chunk of a frame: the displacements of the vertices from `first` on, and whether all are finite.
 ///
-/// A closure would be compiled apart from the vectors that it is called for.
+/// A closure would be compiled without the vector instructions that its caller is compiled for.
 struct Frame<'a> {
     solver: &'a BilaplacianSolver,
     motions: &'a [Motion],

@@ -1,4 +1,4 @@
-//! The supernodal sparse Cholesky factor L Lᵀ, in the order that the matrix already has [Dav06].
+//! The supernodal sparse Cholesky factor L Lᵀ of a matrix that is already permuted [Dav06].
 //!
 //! The ordering brings its supernodes (`ordering`). `symbolic` finds their rows, `numeric` factors over the parts that
 //! `symbolic::assembly_tree` cuts, and `solve` substitutes over the same parts.
@@ -27,12 +27,11 @@ pub(crate) struct Factor {
     pub(super) numbers: Vec<Numbers>,
 }
 
-/// What is added to the unit diagonal, one after the other, of a matrix that is descended by.
+/// Shifts of the unit diagonal that are tried one after the other for a preconditioner.
 const SHIFTS: [f64; 6] = [0.0, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5];
 
 impl Factor {
-    /// Factors the matrix, whose columns stand in supernodes that end at `ends`, with `shift` added to its unit
-    /// diagonal.
+    /// Factors the matrix, whose supernodes end at `ends`, with `shift` added to its unit diagonal.
     #[cfg(test)]
     pub fn of(matrix: &ScaledMatrix, ends: &[u32], shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
         let mut factor = Self::analysed(matrix, ends, Budget::default())?;
@@ -40,8 +39,8 @@ impl Factor {
         Ok(factor)
     }
 
-    /// As [`Factor::of`] for a method that only descends by it: something is added to the unit diagonal until that can
-    /// be factored. Steps get shorter by it; results stay the same. The refusal is that of the matrix as it is.
+    /// As [`Factor::of`], for a preconditioner: the unit diagonal is raised until the matrix can be factored. Steps get
+    /// shorter by that; the minimum stays the same. The refusal is that of the unshifted matrix.
     pub fn to_descend_by(
         matrix: &ScaledMatrix,
         ends: &[u32],
@@ -62,10 +61,10 @@ impl Factor {
         Err(refused.unwrap_or(FactorError::Memory))
     }
 
-    /// What the factor is to hold, without numbers.
+    /// The symbolic factorisation: everything but the numbers.
     ///
     /// # Errors
-    /// Where its factorisation takes more than the budget.
+    /// If the factorisation takes more than the budget.
     pub fn analysed(matrix: &ScaledMatrix, ends: &[u32], budget: Budget) -> Result<Self, FactorError> {
         let symbolic = Symbolic::of(matrix, ends, budget)?;
         let assembly_tree = AssemblyTree::of(&symbolic);
@@ -83,7 +82,7 @@ impl Factor {
         Ok(())
     }
 
-    /// Its values laid out for solving again and again.
+    /// A copy of its values, laid out for many solves.
     ///
     /// # Errors
     /// [`FactorError::Memory`].
@@ -131,7 +130,7 @@ pub(crate) mod tests {
     use crate::{Bilaplacian, Budget, Laplacian, Ordering};
     use pliant_mesh::{Cancel, Drawn, Progress, shapes};
 
-    /// The matrix's factor with every ninth vertex held, in the order that binding takes.
+    /// The factor with every ninth vertex constrained, in the order that binding uses.
     pub(crate) fn factor_of(drawn: Drawn) -> Factor {
         let (matrix, ends) = bilaplacian_of(drawn);
         Factor::of(&matrix, &ends, 0.0, &Cancel::new()).unwrap()

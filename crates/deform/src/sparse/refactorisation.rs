@@ -1,4 +1,4 @@
-//! A factor that the next one, of nearly the same matrix, takes equal parts from [HA18].
+//! Partial refactorisation [HA18]: the factor of a nearly equal matrix reuses the parts that are the same.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -14,29 +14,29 @@ use crate::sparse::numeric::Numbers;
 use crate::sparse::numeric::reuse::{Named, equal_parts, worth_keeping};
 use crate::sparse::ordering::elimination::Elimination;
 
-/// What of a factor is for the next one, of nearly the same matrix.
+/// What a factorisation keeps for the next one, and what it reuses.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Refactorisation<'a> {
-    /// Nothing: there will be none. Half the memory.
+    /// Nothing is kept or reused. That takes half the memory.
     Never,
-    /// What parts left is kept, as far as it is [worth it](worth_keeping); what the former factor, if there is one, has
-    /// to the bit is taken from there.
+    /// Contribution matrices are kept where that is [worth it](worth_keeping), and parts that the previous factor, if
+    /// there is one, has to the bit are reused.
     From(Option<&'a RenewableFactor>),
 }
 
-/// A factor that remembers what it was made from, so that one of nearly the same matrix can take over what is equal.
+/// A factor with its matrix, so that the factor of a nearly equal one can reuse what is the same.
 #[derive(Debug)]
 pub(crate) struct RenewableFactor {
     pub factor: Factor,
     matrix: ScaledMatrix,
     elimination: Elimination,
-    /// What was added to the matrix' unit diagonal.
+    /// The shift of the matrix' unit diagonal.
     pub shift: f64,
 }
 
 impl RenewableFactor {
-    /// Factors the matrix whose columns are those of `elimination`, with the first of `shifts` with which that goes.
-    /// The refusal is that of the first.
+    /// Factors the matrix, whose columns are those of `elimination`, with the first of `shifts` that works. The refusal
+    /// is that of the first shift.
     pub fn of(
         matrix: ScaledMatrix,
         elimination: Elimination,
@@ -82,7 +82,7 @@ impl RenewableFactor {
         Err(refused.unwrap_or(FactorError::Memory))
     }
 
-    /// The numbers of the parts that another matrix has to the bit.
+    /// The numbers of the parts that are equal to the bit.
     fn known_to(&self, new: Named) -> Vec<Option<Numbers>> {
         let old = Named {
             matrix: &self.matrix,
@@ -97,7 +97,7 @@ impl RenewableFactor {
             .collect()
     }
 
-    /// The share of the numbers that are `other`'s.
+    /// The share of the numbers that were reused from `other`.
     pub fn share_of(&self, other: &Self) -> f64 {
         let theirs: BTreeSet<_> = other
             .factor
@@ -137,7 +137,7 @@ mod tests {
     use crate::{Bilaplacian, Budget, Laplacian};
     use pliant_mesh::{Cancel, shapes};
 
-    /// Columns in an order that fits the matrix badly, so that parts leave much more than they have.
+    /// A matrix in a bad order, so that contributions are much larger than the parts themselves.
     fn badly_ordered() -> (ScaledMatrix, Elimination) {
         let model = shapes::model(shapes::grid(60, 60));
         let count = model.surface.positions.len();
@@ -154,7 +154,7 @@ mod tests {
         let operator = BilaplacianOperator::new(laplacian, &Bilaplacian::default(), 1.0);
         let mut matrix =
             assemble_bilaplacian(&operator, &order, &column_of, &Hubs::default(), Budget::default()).unwrap();
-        // Nothing is held: let every vertex be held a little.
+        // No vertex is constrained, so the matrix is singular: shift its diagonal.
         for column in 0..count {
             matrix.lower_values[matrix.lower_offsets[column] as usize] += 0.1;
         }
@@ -183,7 +183,7 @@ mod tests {
         assert!(all > 2 * first.factor.stored(), "all of it is {all}");
         assert!(first.kept() <= first.factor.stored());
         assert!(2 * first.kept() > first.factor.stored());
-        // Nothing changed: all is taken over, whatever was kept of it.
+        // Nothing changed: everything is reused, whatever was kept.
         assert_eq!(bind(Refactorisation::From(Some(&first))).share_of(&first), 1.0);
         assert_eq!(bind(Refactorisation::Never).kept(), 0);
     }

@@ -1,4 +1,4 @@
-//! Stiffer along what is long: the shell as if it were stretched along its principal axes.
+//! Stiffer along what is long: the bi-Laplacian of the surface stretched along its principal axes.
 
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{Bilaplacian, BilaplacianOrder, Method, Role};
@@ -60,7 +60,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[test]
-fn it_is_the_shell_of_the_stretched_sheet() {
+fn it_is_the_bilaplacian_of_the_stretched_sheet() {
     // What may move of this sheet varies in x and y as 4 · 0.84 to 1 · 0.68.
     let turn = DQuat::from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 0.7);
     for order in BilaplacianOrder::ALL {

@@ -1,4 +1,4 @@
-//! With which continuity the shell joins what holds it, boundary by boundary.
+//! The continuity with which the bi-Laplacian joins constrained vertices, boundary by boundary.
 
 use glam::DVec3;
 use pliant_deform::{BilaplacianOrder, BindError};

@@ -11,11 +11,11 @@ use pliant_mesh::{SurfaceVertex, face_area};
 use crate::numerical::eigen::eigenvectors;
 use crate::{Problem, Role};
 
-/// Axes along which the surface is thinner than this share of its longest are stretched as if they were that wide: the
-/// bumps of a flat sheet are no width.
+/// Axes along which the surface is thinner than this share of its longest are stretched as if it were that wide: a flat
+/// sheet's bumps don't count as width.
 const THINNEST: f64 = 0.1;
 
-/// Stretches nearer to none than this are none.
+/// Stretches closer to 1 than this count as 1.
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// The map of each component's edges for an anisotropy from 0, none, to 1, equal variation along all axes; empty where

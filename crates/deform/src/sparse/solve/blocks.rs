@@ -7,7 +7,7 @@ use crate::numerical::prefetch::Prefetch;
 use crate::sparse::numeric::line::{Line, Shape};
 use crate::sparse::solve::rhs::{Real, Rhs, minus, plus, times};
 
-/// Numbers between those that are read on the way down and those that are asked for: some blocks of the usual size.
+/// How far ahead the backward substitution prefetches, in numbers: some blocks of the usual size.
 const AHEAD: usize = 1024;
 
 /// The width of the next block of so many columns.

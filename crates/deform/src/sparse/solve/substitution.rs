@@ -1,8 +1,8 @@
-//! A factor laid out for solving again and again with three right-hand sides, in single or double precision.
+//! A factor laid out for many solves with three right-hand sides, in single or double precision.
 //!
-//! An iterative method solves once a step and only needs a direction, so half the bytes are enough. The right-hand
-//! sides are rows of four, x, y, z and nothing, which is one vector in single precision. The parts of the assembly tree
-//! run beside each other (`passes`).
+//! An iterative method solves once per step and only needs a direction, so single precision is enough. A row of
+//! right-hand sides has four numbers, x, y, z and a zero, which is one vector in single precision. The parts of the
+//! assembly tree run beside each other (`passes`).
 
 use std::sync::{Mutex, PoisonError};
 
@@ -80,7 +80,7 @@ impl<T: Real> Substitution<T> {
         self.values.len()
     }
 
-    /// Solves L Lᵀ x = b in place, one row a column of the factor.
+    /// Solves L Lᵀ x = b in place, with one row per column of the factor.
     pub fn solve(&self, x: &mut [Rhs<T>], room: &mut Room<T>) {
         let arch = Arch::new();
         let Room { part_rows, below } = room;
@@ -150,7 +150,7 @@ impl<T: Real> Substitution<T> {
         let mut left = own.len();
         let mut behind = 0;
         while left > 0 {
-            // The blocks of the way forward, from the last to the first.
+            // The same blocks as in forward substitution, from the last to the first.
             let width = last_block(left);
             let rows = behind + below.len();
             let (tail, numbers) = values.split_at(values.len() - width * (width + rows));
@@ -173,7 +173,7 @@ impl<T: Real> Substitution<T> {
     }
 }
 
-/// One way through some supernodes; what is in here is compiled for the machine's vectors.
+/// Forward or backward substitution through some supernodes, compiled for the machine's vectors.
 struct Pass<'a, T> {
     factor: &'a Substitution<T>,
     nodes: &'a [Node],
