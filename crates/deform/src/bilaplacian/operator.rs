@@ -5,8 +5,8 @@
 //!
 //! Painted stiffness s scales the density of the energy, ½ ∫ k_s s |∇d|² + k_b s |Δd|²: the faces' cotangents in
 //! stretching and in the middle L of order 3, the cells of M⁻¹ at order 2. A stiff part keeps its curvature, turns with
-//! its surroundings, and joins soft parts without a crease. (With the cotangents of both outer L scaled, which is ∫
-//! |div(s ∇d)|², it is the slope in space that stiff parts keep: they don't turn, and crease at their rim.)
+//! its surroundings, and joins soft parts without a crease. (If the cotangents of both outer L were scaled,
+//! which is ∫ |div(s ∇d)|², stiff parts would keep their slope in space: they would not turn, and crease at their rim.)
 
 use rayon::prelude::*;
 

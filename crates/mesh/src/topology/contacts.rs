@@ -23,8 +23,8 @@ pub struct Contact {
 /// A component touches what is within this share of the half diagonal of its own bounding box.
 const TOUCH: f64 = 0.1;
 
-/// So many vertices of a component are asked at most, evenly spread over their order in the file. With the distance
-/// above, asking every vertex of a large component would look at most of its own triangles each time.
+/// At most this many vertices of a component are tested, evenly spread over their order in the file. With the distance
+/// above, testing every vertex of a large component would visit most of its own triangles each time.
 const SAMPLES: usize = 512;
 
 /// The area of each component, in square world units.

@@ -20,7 +20,8 @@ pub(crate) enum Buffer {
     Neighbour { path: String, bytes: Bytes },
     /// None at all: a placeholder that an extension fills.
     Absent,
-    /// What a compressed buffer view or accessor holds: no buffer of the file. These stand behind the file's own.
+    /// The decoded bytes of a compressed buffer view or accessor: not a buffer of the file. These come after the file's
+    /// own.
     Decoded(Bytes),
 }
 
@@ -79,7 +80,7 @@ impl Document {
         Some((view.buffer.value(), start..start.checked_add(length)?))
     }
 
-    /// Lets a buffer view of the file point at bytes that were decoded from it.
+    /// Makes a buffer view of the file refer to the bytes that were decoded from it.
     pub fn redirect_view(&mut self, view: usize, bytes: Vec<u8>, stride: Option<usize>) {
         let (buffer, length) = (self.buffers.len() as u32, bytes.len() as u64);
         let Some(view) = self.views.get_mut(view) else { return };

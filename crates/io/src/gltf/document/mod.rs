@@ -66,7 +66,7 @@ pub(crate) struct Document {
     pub loaded_bytes: usize,
     /// Which texture coordinates each material's images take.
     pub material_maps: Vec<MaterialMaps>,
-    /// Each accessor's layout once it was asked for: checking it looks at all its sparse elements.
+    /// Each accessor's layout, cached because checking it visits all its sparse elements.
     pub layouts: Vec<OnceLock<Result<Layout, String>>>,
 }
 
@@ -132,7 +132,7 @@ impl Document {
         Ok(document)
     }
 
-    /// An object's member that is an index below `count`, by name; `what` names the object in an error.
+    /// An object's member that is an index below `count`; `what` names the object in an error.
     pub fn index(
         &self,
         object: At,
@@ -170,7 +170,7 @@ impl Document {
     }
 }
 
-/// Where a section's objects stand; in words what is wrong where it is no list of objects.
+/// The places of a section's objects; an error if it is not a list of objects.
 fn objects(json: &Json, section: &str) -> Result<Vec<At>, String> {
     let Some(list) = json.member(json.root(), section) else {
         return Ok(Vec::new());
