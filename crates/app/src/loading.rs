@@ -24,7 +24,7 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// Every file that it was read from, each with what it is, for refusals of outputs that would overwrite one.
+    /// Every file that it was read from, with a description of each, to refuse outputs that would overwrite one.
     pub fn sources(&self) -> impl Iterator<Item = (&'static str, &Path)> {
         let neighbours = self.neighbours.iter().map(|path| ("a file that FILE needs", &**path));
         std::iter::once(("FILE", &*self.path)).chain(neighbours)
@@ -57,7 +57,7 @@ fn read_mesh(path: &Path, watch: &Watch) -> Result<Vec<u8>, AppError> {
     Ok(files::read(path)?)
 }
 
-/// Reads and welds a file's bytes; `path` is where its neighbours stand and what it is called.
+/// Reads and welds a file's bytes; `path` gives its name and the folder of its neighbours.
 ///
 /// # Errors
 /// As [`load`].

@@ -1,4 +1,4 @@
-//! Renaming what is staged into place, and putting back what was replaced where a rename fails.
+//! Renames staged files into place, and restores the replaced files if a rename fails.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
@@ -15,7 +15,7 @@ impl Staged {
     /// Renames every file into place, in order, and syncs the folders.
     ///
     /// # Errors
-    /// Where a rename fails. The files that were replaced before it are put back.
+    /// If a rename fails. The files that were replaced before it are restored.
     pub fn commit(self) -> Result<(), FileError> {
         self.commit_watched(&mut || {})
     }
@@ -50,7 +50,7 @@ impl Staged {
                 other_names,
             } = file;
             before_each();
-            // The last rename is the one that no other can fail after: it needs no way back.
+            // No other rename can fail after the last one, so it needs no backup.
             let renamed = make_folders(folder_of(&to.target), &mut done.folders)
                 .and_then(|()| if i == last { Ok(None) } else { backup(&to) })
                 .and_then(|backup| {
@@ -72,12 +72,12 @@ impl Staged {
             }
         }
         before_each();
-        // Each other name is a step of its own: a name that can't be brought along keeps the old content.
+        // Each other name is a separate step: a name that can't be replaced keeps the old content.
         for (target, name) in std::mem::take(&mut done.other_names) {
             let _ = bring_along(&target, &name);
         }
         drop((passing, done));
-        // What a killed save left under passing names was named by what has just been replaced.
+        // Files that a killed save left under passing names were named by the files that have just been replaced.
         self.held
             .0
             .iter()
@@ -103,7 +103,7 @@ struct Done {
 impl Done {
     fn put_back(self) {
         for (target, backup) in self.replaced.into_iter().rev() {
-            // The error that led here is the one to tell; a second one has no better remedy.
+            // The first error is the one to report; a second one has no better remedy.
             let _ = match backup {
                 Some(backup) => backup.persist(&target).map_err(|error| error.error),
                 None => fs::remove_file(&target),
@@ -116,7 +116,7 @@ impl Done {
     }
 }
 
-/// Makes a folder and those around it, as far as they are missing, and notes which.
+/// Makes a folder and its missing parents, and adds them to `made`.
 fn make_folders(folder: &Path, made: &mut Vec<PathBuf>) -> io::Result<()> {
     if folder.is_dir() {
         return Ok(());
@@ -135,13 +135,13 @@ struct Passing(Vec<PathBuf>);
 impl Drop for Passing {
     fn drop(&mut self) {
         for path in &self.0 {
-            // One that can't be removed is a file too many, and no harm.
+            // One that can't be removed does no harm.
             let _ = fs::remove_file(path);
         }
     }
 }
 
-/// A second name for what stands at a destination, if anything does.
+/// A second name for the existing file at a destination, if there is one.
 fn backup(to: &Destination) -> io::Result<Option<TempPath>> {
     if !to.target.exists() {
         return Ok(None);
@@ -153,7 +153,7 @@ fn backup(to: &Destination) -> io::Result<Option<TempPath>> {
     Ok(Some(name.into_temp_path()))
 }
 
-/// Lets another name of a file that was replaced lead to the new one.
+/// Makes another name of a replaced file lead to the new one.
 fn bring_along(target: &Path, name: &Path) -> io::Result<()> {
     let temporary = tempfile::Builder::new()
         .prefix(PREFIX)
@@ -162,7 +162,7 @@ fn bring_along(target: &Path, name: &Path) -> io::Result<()> {
     temporary.into_temp_path().persist(name).map_err(|error| error.error)
 }
 
-/// Lets the bytes of `file` stand at `path` as well, where nothing may stand yet.
+/// Makes the bytes of `file` available at `path` as well, where no file may exist yet.
 fn second_name(file: &Path, path: &Path) -> io::Result<()> {
     match fs::hard_link(file, path) {
         Err(error) if error.kind() != ErrorKind::AlreadyExists => {
@@ -180,8 +180,7 @@ fn second_name(file: &Path, path: &Path) -> io::Result<()> {
     }
 }
 
-/// Makes a rename last through a power cut. Not every system can open a folder for that, and the files are whole
-/// either way.
+/// Makes a rename survive a power cut. Not every system can open a folder for that, and the files are whole either way.
 fn sync_folder(folder: &Path) {
     if let Ok(folder) = File::open(folder) {
         let _ = folder.sync_all();

@@ -1,14 +1,14 @@
-//! Saving several files at once, so that either all of them are there in the end or none was touched.
+//! Saves several files at once, so that in the end either all of them are there or none was touched.
 //!
-//! It goes in two steps. [`Staging::stage`] writes every file's bytes under a temporary name beside its target, with
-//! the attributes of what it replaces, and syncs them: whatever can fail for want of space or rights fails here.
-//! [`Staged::commit`] then renames them into place, one after the other, and puts back what it replaced should a rename
-//! fail after all.
+//! There are two steps. [`Staging::stage`] writes every file's bytes under a temporary name beside its target, with the
+//! attributes of the file that it replaces, and syncs them: a lack of space or rights shows here. [`Staged::commit`]
+//! then renames them into place, one after the other, and restores what it replaced if a rename fails after all.
 //!
-//! Between two renames the power may fail. A file that names others must not then stand beside others than it was
-//! written with: a [`Bridge`] is such a file that names its neighbours by names of their own, under which their bytes
-//! stand for the while. It is renamed into place first, then the neighbours, then the file itself; at every moment what
-//! stands there is the old state or the new one, whole, and what is left over can be told by its name.
+//! The power may fail between two renames. A file that names others must not then be left with other neighbours than it
+//! was written with. So a [`Bridge`] is a version of the file that names its neighbours by passing names, under which
+//! their bytes are available for the time of the commit. It is renamed into place first, then the neighbours, then the
+//! file itself. At every moment the folder has the old state or the new one, whole, and leftovers can be recognised by
+//! their names.
 
 mod commit;
 
@@ -26,14 +26,14 @@ use super::lock::{FolderLock, Share};
 use super::{Destination, FileError, shown};
 use crate::AppError;
 
-/// Bytes written between two looks at whether they are still wanted.
+/// Bytes written between two checks whether the save was cancelled.
 const BLOCK: usize = 1 << 22;
 
-/// Bytes after which they are made to last: what the system only remembers is not written yet, and the bar would stand
-/// at its end for as long as the disk takes.
+/// Bytes between two syncs. Without them the progress bar would stay at its end until the system has written its cache
+/// to the disk.
 const LASTING: usize = 1 << 26;
 
-/// The temporary files and locks of a save that is under way, so that an interrupt can take them away. Cloning shares
+/// The temporary files and locks of a save that is under way, so that an interrupt can remove them. Cloning shares
 /// them.
 #[derive(Clone, Debug, Default)]
 pub struct Staging(Arc<Mutex<State>>);
@@ -49,7 +49,7 @@ struct State {
 /// Who may read the files that are made.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 enum Readers {
-    /// Whoever could read what is replaced, and of new files whom the system lets by default.
+    /// The readers of the file that is replaced; for new files the system's default.
     #[default]
     AsUsual,
     /// Their owner alone.
@@ -69,7 +69,7 @@ pub struct NewFile<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct Held(Vec<Arc<FolderLock>>);
 
-/// Files that are written and synced under temporary names; dropping them takes them away again.
+/// Files that are written and synced under temporary names; dropping this removes them.
 #[derive(Debug)]
 pub struct Staged {
     files: Vec<StagedFile>,
@@ -86,7 +86,7 @@ struct StagedFile {
     other_names: OtherNames,
 }
 
-/// What stands in a file's place while its neighbours are replaced.
+/// The version of a file that takes its place while its neighbours are replaced.
 #[derive(Clone, Debug)]
 pub struct Bridge<'a> {
     /// The file, by its place among those that are staged.
@@ -106,15 +106,15 @@ struct StagedBridge {
 }
 
 impl Staging {
-    /// One whose files only their owner may read, whatever stood there before.
+    /// Files that are staged here may be read only by their owner, whatever file they replace.
     pub fn private() -> Self {
         let staging = Self::default();
         staging.lock().readers = Readers::Owner;
         staging
     }
 
-    /// Locks folders that are to be written to, after waiting for others who write there, and clears away what killed
-    /// saves have left in them. All folders of a save are to be asked for at once, lest two saves wait for each other.
+    /// Locks folders that are to be written to, after waiting for other saves there, and removes what killed saves have
+    /// left in them. All folders of a save must be locked in one call, so that two saves can't wait for each other.
     ///
     /// # Errors
     /// Where a folder can't be written; [`AppError::Interrupted`] when `cancel` is raised.
@@ -124,7 +124,7 @@ impl Staging {
         cancel: &Cancel,
     ) -> Result<Held, AppError> {
         let mut wanted: Vec<(&Destination, Share)> = folders.into_iter().collect();
-        // One order for everybody, and for each folder the stricter wish.
+        // One order for all saves, and for each folder the stricter request.
         wanted.sort_by(|(a, of_a), (b, of_b)| a.home.cmp(&b.home).then(of_b.cmp(of_a)));
         wanted.dedup_by(|(a, _), (b, _)| a.home == b.home);
         let mut held = Held::default();
@@ -215,8 +215,8 @@ impl Staging {
         Ok(staged)
     }
 
-    /// Takes away what is staged and not committed, and keeps anything from being staged or committed for as long as
-    /// the guard lives. `None` when a commit is done already and its files are to stay.
+    /// Removes what is staged and not committed, and prevents further staging and commits as long as the guard lives.
+    /// `None` if a commit is done already and its files are to stay.
     pub fn discard(&self) -> Option<Discarded<'_>> {
         let mut state = self.lock();
         if state.committed {
@@ -234,7 +234,7 @@ impl Staging {
         Some(Discarded { _state: state })
     }
 
-    /// Writes and syncs one file. `go_on` is told of the bytes that are written, and may end it.
+    /// Writes and syncs one file. `go_on` gets the number of bytes that were written, and may end it.
     fn stage_one(
         &self,
         file: &NewFile<'_>,

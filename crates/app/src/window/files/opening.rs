@@ -1,4 +1,4 @@
-//! Opening a mesh or a project, off the window's thread: from a file to what is solved and what is drawn.
+//! Opens a mesh or a project, off the window's thread: from a file to a model with its drawing on the device.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -24,7 +24,7 @@ pub enum Source {
     Sample,
     /// A mesh or a project.
     File(PathBuf),
-    /// A project that a session has left which ended without saving.
+    /// A project that was left by a session that ended without saving.
     Recovered(PathBuf),
 }
 
@@ -55,7 +55,7 @@ pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<Mode
                 MeshSource::File(mesh) => Some(saved_name(mesh).unwrap_or_else(|| mesh.clone())),
                 MeshSource::Sample | MeshSource::Gone => None,
             };
-            // What a recovered session kept for itself goes with it: it stands nowhere that lasts.
+            // A recovered session's own mesh file is removed with the recovery, so it counts as gone.
             let source = match opened.source {
                 MeshSource::File(_) if recovered.is_some() && is_in_folder_of(&opened.source, path) => MeshSource::Gone,
                 source => source,

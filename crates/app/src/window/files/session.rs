@@ -44,7 +44,7 @@ pub struct OpenFile {
     pub source: MeshSource,
     /// The project that it was opened from or saved to.
     pub project: Option<PathBuf>,
-    /// Whether a person agreed to write over `path`, or it was written by us under a name of its own.
+    /// Whether a person agreed to write over `path`, or it was saved here under a new name.
     pub may_write_over: bool,
 }
 
@@ -56,7 +56,7 @@ impl OpenFile {
 }
 
 impl Session {
-    /// Opens a file, off the window's thread. A load that is under way is given up.
+    /// Opens a file, off the window's thread. A load that is under way is cancelled.
     pub fn load(&mut self, source: Source, gpu: &Gpu, workers: &Workers) {
         self.loading.cancel();
         let stamp = self.stamp();
@@ -64,13 +64,13 @@ impl Session {
         self.start_loading(workers);
     }
 
-    /// Gives up what is under way: a load, or a save before it has changed anything on the disk.
+    /// Cancels what is under way: a load, or a save before it has changed anything on the disk.
     pub fn stop(&mut self) {
         self.loading.cancel();
         self.saving.cancel();
     }
 
-    /// Takes a load's result. `None` if nobody wants it any more.
+    /// Takes a load's result. `None` if it is no longer wanted.
     pub fn loaded(
         &mut self,
         stamp: Revision,

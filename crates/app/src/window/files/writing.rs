@@ -21,7 +21,7 @@ use crate::window::threads::message::{Written, WrittenKind};
 pub(super) struct SaveRequest {
     pub path: PathBuf,
     pub content: Content,
-    /// The open file's own files, which nothing else may be saved over.
+    /// The files of the open model, which nothing else may be saved over.
     pub sources: Vec<PathBuf>,
 }
 
@@ -54,7 +54,7 @@ pub enum KeepOriginal {
     No,
 }
 
-/// Writes, or says why not; what was stopped in time has changed nothing.
+/// Writes the content. A save that was stopped in time has changed nothing.
 pub(super) fn write(request: SaveRequest, progress: &Progress, cancel: &Cancel) -> Result<Written, String> {
     let name = file_name(&request.path);
     write_unless_stopped(request, progress, cancel).map_err(|error| match error {
@@ -104,7 +104,7 @@ fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Canc
     }
 }
 
-/// Writes the model. Gives where the mesh as it was read stands now, if that changed, and warnings.
+/// Writes the model. Returns where the mesh as it was read is now, if that changed, and warnings.
 fn write_model(
     model: &Model,
     path: &Path,
@@ -132,7 +132,7 @@ fn write_model(
     let is_source = matches!(&model.source, MeshSource::File(mesh) if files::is_same(mesh, path));
     let mut moved = is_source.then_some(MeshSource::Gone);
     if keeps {
-        // The original first: what replaces it must not stand there without it.
+        // The original first: the file that replaces it must not be there without it.
         staged = stage_original(loaded, path, &original, staging, &of_original, cancel)?.and(staged);
         moved = moved.map(|_| MeshSource::File(original));
     }
@@ -141,7 +141,7 @@ fn write_model(
     Ok((moved, warnings))
 }
 
-/// What stands at `path`, to be kept under the name `original`.
+/// Stages the file at `path` under the name `original`.
 fn stage_original(
     loaded: &Loaded,
     path: &Path,

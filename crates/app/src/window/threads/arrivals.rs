@@ -1,4 +1,4 @@
-//! What helpers on other threads bring: files, shapes in buffers, images; and how the view asks for them.
+//! Results of other threads: files, shapes in buffers, images; and the view's requests for them.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ impl Application {
             match message {
                 Message::Job(done, posed) => {
                     self.editor.handle(Event::JobDone(done));
-                    // A stale result's pose is not shown: the editor kept another shape.
+                    // A stale result's pose is not shown: the editor has another shape.
                     if let Some(posed) =
                         posed.filter(|posed| Arc::ptr_eq(&posed.displacements, self.editor.view().displacements))
                     {
@@ -114,7 +114,7 @@ impl Application {
         }
     }
 
-    /// The numbers of the shape that are to be shown as colours. Stiffness is none of the shape's.
+    /// The field of the shape that is shown as colours. Stiffness is not a field of the shape.
     pub(in crate::window) fn wanted_field(&self) -> Option<Field> {
         drawing::field(self.editor.view().look.shading).filter(|&field| field != Field::Stiffness)
     }
@@ -134,7 +134,7 @@ impl Application {
         self.workers.spawn(
             "images",
             move || {
-                // Nobody stops it: the file that it is for may be gone, but its images are decoded in rounds.
+                // It is never cancelled, even if its file was closed; images are decoded in rounds.
                 let decoded = match drawing.materials.decode(&Cancel::new()) {
                     Ok(decoded) => decoded,
                     Err(cancelled) => return Message::LoadedMaterials(drawing, Err(cancelled.to_string())),

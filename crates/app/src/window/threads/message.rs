@@ -1,4 +1,4 @@
-//! What the window's helpers on other threads tell it.
+//! Messages from other threads to the window.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use crate::drawing::{Drawing, Field, Pose, Scale};
 use crate::engine::Loaded;
 use crate::window::files::project_file::MeshSource;
 
-/// Something that ended elsewhere; the window takes all that wait at the start of each frame.
+/// A result of another thread; the window takes all waiting ones at the start of each frame.
 pub enum Message {
     /// One of the editor's jobs ended; a solved shape comes with its pose.
     Job(JobDone, Option<Posed>),
@@ -124,7 +124,7 @@ pub enum Purpose {
 /// How a picture of the view is saved.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct PictureKind {
-    /// How many of its pixels a side one of the view's becomes, at least 1.
+    /// How many of its pixels along a side one pixel of the view becomes, at least 1.
     pub scale: u32,
     /// What is behind the surface.
     pub ground: Ground,

@@ -1,4 +1,4 @@
-//! A `.pliant` project: the document as it stands, which mesh it belongs to, and where the eye was.
+//! A `.pliant` project: the document, which mesh it belongs to, and the camera.
 //!
 //! JSON, with a version. The mesh is named by its path (for finding it) and by a hash of its geometry (for knowing it):
 //! the hash takes what vertex numbers mean (positions, triangles and the file's order), so the kept original of a file
@@ -84,7 +84,7 @@ pub struct Project {
     /// The present shape's displacements from the rest shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shape: Option<Field>,
-    /// What was seen when what holds the surface changed last, from which the next drag begins.
+    /// The shape when the constraints last changed, from which the next drag begins.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     kept: Option<StoredKept>,
     /// Whether that is what the handles' transforms mean; else it is computed on opening.
@@ -164,7 +164,7 @@ impl Project {
 
     /// The project as JSON text with a newline at its end.
     pub fn to_json(&self) -> String {
-        // Plain data with text keys: there is nothing that could fail.
+        // Plain data with text keys always serialises.
         let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
         text.push('\n');
         text
@@ -227,7 +227,7 @@ impl Project {
         &self.mesh
     }
 
-    /// A digest of the document in it, whichever path its mesh has and wherever the eye was.
+    /// A digest of the document in it, independent of the mesh's path and the camera.
     pub fn document_hash(&self) -> String {
         let document = Self {
             camera: None,
