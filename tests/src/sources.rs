@@ -1,7 +1,7 @@
 //! The crates' sources as tokens: which paths a file names, wherever they stand, tests apart.
 //!
-//! Tokens rather than lines: a path in a grouped `use`, behind a unit test's module or inside of a macro's call is found
-//! like any other, and comments and strings are none.
+//! Tokens rather than lines: a path in a grouped `use`, behind a unit test's module or inside of a macro's call is
+//! found like any other, and comments and strings are none.
 
 use std::fs;
 use std::path::{Path, PathBuf};

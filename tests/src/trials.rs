@@ -1,4 +1,5 @@
-//! Seeded trials of everything that a problem can ask for, on any mesh: options, roles, stiffness, transforms by chance.
+//! Seeded trials of everything that a problem can ask for, on any mesh: options, roles, stiffness, transforms by
+//! chance.
 //!
 //! A trial ends in one of two ways: a shape that is finite and meets its constraints, or a refusal that names a vertex.
 

@@ -1,5 +1,5 @@
-//! What a new method must bring is its folder and its line in `METHODS`: `identity`, which is compiled for tests, brings
-//! no more, and is in the help, the edit format, the panel and the palette, and works.
+//! What a new method must bring is its folder and its line in `METHODS`: `identity`, which is compiled for tests,
+//! brings no more, and is in the help, the edit format, the panel and the palette, and works.
 
 #![allow(
     clippy::unwrap_used,

@@ -321,3 +321,44 @@ fn a_stopped_command_says_so_and_writes_nothing() {
     assert!(String::from_utf8(err).unwrap().contains("stopped"));
     assert!(!out.exists());
 }
+
+#[test]
+fn foreign_text_neither_steers_the_terminal_nor_fills_it() {
+    let folder = Folder::new();
+    let evil = format!("\u{1b}]0;x\u{7}\u{202e}{}.off", "y".repeat(150));
+    let long = "z".repeat(1_000_000) + ".off";
+    for name in [evil, long] {
+        let ended = folder
+            .apply(&folder.at(&name), &bare_edit(), &folder.at("out.off"), &[])
+            .refused(1, &["can't be read"]);
+        assert!(
+            !ended
+                .err
+                .trim_end()
+                .chars()
+                .any(|letter| letter.is_control() || letter == '\u{202e}')
+        );
+        assert!(
+            ended.err.chars().count() < 500,
+            "{} characters",
+            ended.err.chars().count()
+        );
+    }
+    let endless = "--".to_owned() + &"x".repeat(1_000_000);
+    let ended = run(["apply", &endless]).refused(2, &["--help"]);
+    assert!(ended.err.chars().count() < 1200);
+}
+
+#[test]
+fn more_threads_than_make_sense_are_refused() {
+    let folder = Folder::new();
+    let mesh = folder.write_mesh("mesh.off", &shapes::torus(12, 8));
+    let most = 4 * std::thread::available_parallelism().unwrap().get();
+    let (out, more) = (folder.at("out.off"), (most + 1).to_string());
+    folder
+        .apply(&mesh, &bare_edit(), &out, &["--threads", &more])
+        .refused(2, &["--threads", "cores"]);
+    folder
+        .apply(&mesh, &bare_edit(), &out, &["--threads", &most.to_string()])
+        .done();
+}

@@ -8,7 +8,8 @@ use pliant_mesh::{Cancel, Model, Progress, Surface};
 use pliant_tests::largest_distance;
 use pliant_tests::trials::scans;
 
-/// What is solved on a scan: its ends along the longest axis the handles, with or without a band around its middle fixed.
+/// What is solved on a scan: its ends along the longest axis the handles, with or without a band around its middle
+/// fixed.
 struct Setting<'a> {
     model: &'a Model,
     surface: Surface,

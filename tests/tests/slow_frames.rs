@@ -1,5 +1,5 @@
-//! What happens within one slow frame goes to whoever had the pointer and the keys when it happened; a field's Escape takes
-//! back what was typed. Skipped by name where no graphics device exists at all.
+//! What happens within one slow frame goes to whoever had the pointer and the keys when it happened; a field's Escape
+//! takes back what was typed. Skipped by name where no graphics device exists at all.
 
 #![allow(
     clippy::unwrap_used,

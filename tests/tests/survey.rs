@@ -1,5 +1,5 @@
-//! The survey's scenes against another implementation: weights from dot and cross products, a triplet matrix, faer's own
-//! ordering and Cholesky factor.
+//! The survey's scenes against another implementation: weights from dot and cross products, a triplet matrix, faer's
+//! own ordering and Cholesky factor.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -1,9 +1,9 @@
 //! How long the editor takes for an event on a mesh of 400k triangles, and what a hundred strokes leave in memory: one
 //! JSON object a line.
 //!
-//! `cargo run --release -p pliant-app --example editor_times`: every stroke and command is done [`ROUNDS`] times. Jobs run
-//! in between and are not counted, as in the window, where they run on threads of their own; drawing and uploading are
-//! not in it.
+//! `cargo run --release -p pliant-app --example editor_times`: every stroke and command is done [`ROUNDS`] times. Jobs
+//! run in between and are not counted, as in the window, where they run on threads of their own; drawing and uploading
+//! are not in it.
 
 #![allow(
     clippy::expect_used,

@@ -1,9 +1,9 @@
 //! How long the window's thread is kept busy, and how long a drag takes from the pointer to the GPU's buffers: one JSON
 //! object a line.
 //!
-//! `cargo run --release -p pliant-app --example window_times -- FILE [REACH]`: opens FILE in the whole application without a
-//! display, paints a handle on its highest part, drags it for 60 pointer moves and does what menus offer. Drawing itself
-//! is left out: on a software device it is the processor that draws.
+//! `cargo run --release -p pliant-app --example window_times -- FILE [REACH]`: opens FILE in the whole application
+//! without a display, paints a handle on its highest part, drags it for 60 pointer moves and does what menus offer.
+//! Drawing itself is left out: on a software device it is the processor that draws.
 
 #![allow(
     clippy::expect_used,

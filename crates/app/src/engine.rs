@@ -1,8 +1,8 @@
-//! The one way from a file on disk to an edited file on disk, which the command line and the window both go:
-//! read → weld → resolve the edit → order → bind → frames → distortion → save.
+//! The steps from a file on disk to an edited file on disk, for both the command line and the window: read → weld →
+//! resolve the edit → order → bind → frames → distortion → save.
 //!
-//! Each part is a function of its own, so that the window can keep what has not changed; [`apply`] is all of them in a
-//! row with a clock beside them.
+//! Each step is a function of its own, so that the window can keep the results that have not changed; [`apply`] runs
+//! all of them and measures their time.
 
 use std::path::Path;
 use std::time::Instant;
@@ -70,7 +70,7 @@ pub struct Apply<'a> {
     pub output: &'a Path,
     /// Where the report goes, if anywhere.
     pub report: Option<&'a Path>,
-    /// Replays the edit as a drag of so many frames; `None` is one solve to the target.
+    /// Replays the edit as a drag of this many frames; `None` is one solve to the target.
     pub frames: Option<usize>,
     /// Saves the edit as a morph target beside the shape as it was.
     pub morph: Option<MorphTarget<'a>>,
@@ -79,7 +79,7 @@ pub struct Apply<'a> {
 /// Applies an edit to a file and writes the result and the report, or nothing at all.
 ///
 /// # Errors
-/// Whatever refuses the file, the edit or the result. OUT is as it was then.
+/// Any refusal of the file, the edit or the result. OUT is then unchanged.
 pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Report, AppError> {
     // What is no file is refused before anything is read.
     Destination::of(apply.output)?;

@@ -71,7 +71,7 @@ pub enum AppError {
         /// What stands in the way.
         source: pliant_io::SaveError,
     },
-    /// What was written can't be read back as it was to be; nothing was replaced.
+    /// What was written does not read back as it should; nothing was replaced.
     #[error(
         "{}: what was written does not read back as it was to be saved ({what}), so nothing was replaced: this is a \
          fault of the program or the disk; save as another kind, and report it with the file", shown(.file)

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pliant_io::{Format, Opened, Scene};
+use pliant_io::{Format, Scene, SceneAndDrawn};
 use pliant_mesh::{Model, WeldOptions};
 
 use crate::AppError;
@@ -24,7 +24,7 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// Every file that it was read from, each with what it is, for refusals of outputs that would overwrite one.
+    /// Every file that it was read from, with a description of each, to refuse outputs that would overwrite one.
     pub fn sources(&self) -> impl Iterator<Item = (&'static str, &Path)> {
         let neighbours = self.neighbours.iter().map(|path| ("a file that FILE needs", &**path));
         std::iter::once(("FILE", &*self.path)).chain(neighbours)
@@ -43,7 +43,7 @@ pub fn load(path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, Ap
 ///
 /// # Errors
 /// As [`load`].
-pub fn open(path: &Path, watch: &Watch) -> Result<Opened, AppError> {
+pub fn open(path: &Path, watch: &Watch) -> Result<SceneAndDrawn, AppError> {
     open_bytes(read_mesh(path, watch)?, path, &Neighbours::of(path), watch)
 }
 
@@ -57,7 +57,7 @@ fn read_mesh(path: &Path, watch: &Watch) -> Result<Vec<u8>, AppError> {
     Ok(files::read(path)?)
 }
 
-/// Reads and welds a file's bytes; `path` is where its neighbours stand and what it is called.
+/// Reads and welds a file's bytes; `path` gives its name and the folder of its neighbours.
 ///
 /// # Errors
 /// As [`load`].
@@ -71,7 +71,7 @@ pub fn load_bytes(bytes: Vec<u8>, path: &Path, weld: &WeldOptions, watch: &Watch
     })
 }
 
-fn open_bytes(bytes: Vec<u8>, path: &Path, neighbours: &Neighbours, watch: &Watch) -> Result<Opened, AppError> {
+fn open_bytes(bytes: Vec<u8>, path: &Path, neighbours: &Neighbours, watch: &Watch) -> Result<SceneAndDrawn, AppError> {
     let name = path.to_string_lossy();
     let format = Format::of_name(&name)?;
     let progress = watch.begin("reading");
@@ -79,7 +79,7 @@ fn open_bytes(bytes: Vec<u8>, path: &Path, neighbours: &Neighbours, watch: &Watc
     opened.map_err(AppError::Read)
 }
 
-fn welded(opened: Opened, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
+fn welded(opened: SceneAndDrawn, path: &Path, weld: &WeldOptions, watch: &Watch) -> Result<Loaded, AppError> {
     let progress = watch.begin("welding");
     let model = Model::weld(opened.drawn, weld, &progress, &watch.cancel).map_err(|_| AppError::Interrupted)?;
     let model = model.with_objects(opened.scene.objects());

@@ -5,10 +5,10 @@ use std::path::Path;
 
 use pliant_deform::Budget;
 
-/// What binding may take: the solver's own budget, or what the system has left where that is less.
+/// The memory that binding may take: the solver's own budget, or what the system has left if that is less.
 ///
-/// Linux grants more memory than there is and ends the program once it is used, so that a failed allocation would
-/// come too late. Where the system does not tell, the solver's own budget.
+/// Linux grants more memory than there is and kills the program once it is used, so waiting for a failed allocation
+/// would be too late. If the system does not tell, it is the solver's own budget.
 pub fn budget() -> Budget {
     let own = Budget::default().bytes;
     let left = [left_in_machine(), left_in_group()].into_iter().flatten().min();
@@ -17,14 +17,14 @@ pub fn budget() -> Budget {
     }
 }
 
-/// What the machine can give without pushing out what is in use, swap included.
+/// The memory that the machine has available, swap included.
 fn left_in_machine() -> Option<u64> {
     let text = fs::read_to_string("/proc/meminfo").ok()?;
     let kilobytes = |name| number(&text, name);
     Some((kilobytes("MemAvailable:")? + kilobytes("SwapFree:").unwrap_or(0)) * 1024)
 }
 
-/// What the process's control groups (a container's limit, as a rule) leave: the least of all that hold it.
+/// What the limits of the process's control groups (usually a container's) leave: the least of all its groups.
 fn left_in_group() -> Option<u64> {
     let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
     let limits = groups.lines().filter_map(|line| {
@@ -44,7 +44,7 @@ fn left_in_group() -> Option<u64> {
     limits.min()
 }
 
-/// A group's limit without what is in use there; files that the system keeps in memory go when they must.
+/// A group's limit less its memory in use; the system's file cache does not count as used.
 fn left_of(group: &Path, limit: &str, used: &str) -> Option<u64> {
     let limit: u64 = fs::read_to_string(group.join(limit)).ok()?.trim().parse().ok()?;
     let stat = fs::read_to_string(group.join("memory.stat")).ok()?;

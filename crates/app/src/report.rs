@@ -19,9 +19,9 @@ pub struct Report {
     pub load_ms: f64,
     /// The mesh's fill-reducing ordering.
     pub order_ms: f64,
-    /// From there and the chosen regions to the first solve being possible.
+    /// Binding: from the ordering and the regions until the first solve is possible.
     pub bind_ms: f64,
-    /// From the new positions to synced files that were read back.
+    /// Saving: from the new positions to synced files that were read back.
     pub save_ms: f64,
     /// Of that, reading back what was written.
     pub check_ms: f64,

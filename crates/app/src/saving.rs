@@ -1,4 +1,4 @@
-//! A model into files: encoded, put under names where nothing is lost, written beside their places and read back.
+//! Saving a model: its files are encoded, named so that nothing is lost, written beside their places and read back.
 
 use std::path::Path;
 use std::time::Instant;
@@ -23,7 +23,7 @@ pub struct SaveAs<'a> {
     pub morph: Option<&'a MorphTarget<'a>>,
     /// The file to be written.
     pub output: &'a Path,
-    /// A file that is written along with it, and what it is: no neighbour may be the same.
+    /// A further output with a description: no neighbour may be the same file.
     pub beside: Option<(&'a str, &'a Destination)>,
 }
 
@@ -53,7 +53,7 @@ pub struct StagedSave {
 /// Prepares a model's files: encoded, written beside their targets, synced and read back, to be committed.
 ///
 /// # Errors
-/// What the format can't hold, or the disk can't take; [`AppError::ReadBack`] where what was written shows another
+/// If the format can't hold it or the disk can't take it; [`AppError::ReadBack`] if what was written shows another
 /// shape; [`AppError::Interrupted`] soon after `cancel` is raised. Nothing is left behind then.
 pub fn stage(
     loaded: &Loaded,
@@ -70,7 +70,7 @@ pub fn stage(
             source,
         },
     };
-    // Making the bytes takes about as long as a disk takes to keep them; reading them back takes less.
+    // Encoding takes about as long as writing to the disk; reading back takes less.
     let (of_making, of_writing) = (progress.part(0.0, 0.4), progress.part(0.4, 0.8));
     let of_check = progress.part(0.8, 1.0);
     let format = Format::of_name(&what.output.to_string_lossy())?;
@@ -93,7 +93,7 @@ pub fn stage(
     };
     let mut saved = saved.map_err(refuse)?;
 
-    // Files that name each other must be written while nobody else writes there.
+    // While files that name each other are written, no other save may write there.
     let is_alone = saved.files.len() > 1 || save.format == Format::Gltf;
     let share = if is_alone { Share::Alone } else { Share::Together };
     let beside = what.beside.map(|(_, beside)| (beside, Share::Together));
@@ -112,7 +112,7 @@ pub fn stage(
         mut warnings,
         triangles,
     } = saved;
-    // The bytes are on the disk; there they are read from now.
+    // The bytes are on the disk now and are read from there.
     drop(files);
     warnings.extend(staged.notes());
 
@@ -142,7 +142,7 @@ fn write(
     progress: &Progress,
     cancel: &Cancel,
 ) -> Result<(Staged, Vec<String>), AppError> {
-    // Neighbours first: the file that names them must not stand there without them.
+    // Neighbours first: the file that names them must not be there without them.
     let neighbours: Vec<&Settled> = settled
         .iter()
         .filter(|settled| settled.action == Action::Write)
@@ -162,7 +162,7 @@ fn write(
         to: to.clone(),
         bytes: &saved.files[0].bytes,
     });
-    // Only what a glTF names can be edited or be this document's own, and so be replaced.
+    // Only a glTF's neighbours can be edited or belong to this document alone, and so be replaced.
     let is_bridged = neighbours
         .iter()
         .all(|settled| saved.files[settled.file].role != Role::Library);

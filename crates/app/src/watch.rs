@@ -1,10 +1,10 @@
-//! What a long piece of work is doing, how far it is, and whether it is still wanted.
+//! The stage and progress of long work, and its cancel flag.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use pliant_mesh::{Cancel, Progress};
 
-/// Shared between the work and who watches it. Cloning shares it.
+/// Shared between the work and its watcher. Cloning shares it.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
     /// Raised when the result is no longer wanted.
@@ -21,7 +21,7 @@ impl Watch {
         }
     }
 
-    /// Says that `doing` ("reading", "binding") begins; the work tells its progress through what comes back.
+    /// Begins the stage `doing` ("reading", "binding"); the work reports its progress to the result.
     pub fn begin(&self, doing: &'static str) -> Progress {
         let progress = Progress::new();
         *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = Some((doing, progress.clone()));

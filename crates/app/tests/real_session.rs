@@ -1,5 +1,5 @@
-//! A whole session in the real window, by pointer and keys: open, region by distance, two handles, stiffness, a drag with
-//! each method, comparing two, apply, undo all, redo all, save, reopen.
+//! A whole session in the real window, by pointer and keys: open, region by distance, two handles, stiffness, a drag
+//! with each method, comparing two, apply, undo all, redo all, save, reopen.
 //!
 //! Skipped by name where Xvfb, xdotool or a graphics device is missing.
 

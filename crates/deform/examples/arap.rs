@@ -86,7 +86,8 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
         }
     });
     let first_ms = steps[0];
-    // An iteration is a local and a global step at full resolution: a coarse level that leads would be beside the point.
+    // An iteration is a local and a global step at full resolution: a coarse level that leads would be beside the
+    // point.
     let mut alone = options(energy, 1e-10);
     alone.coarse_above = usize::MAX;
     let mut iterations_ms = self::steps(&mut bind(&Method::from(alone)), target, |_, _| {});

@@ -1,4 +1,4 @@
-//! Times the linear shell step by step: `linear MESH.off THREADS [cpu]`.
+//! Times the bi-Laplacian step by step: `linear MESH.off THREADS [cpu]`.
 //!
 //! The edit is the one that peers are timed on: the lowest 5% along the longest axis are fixed, the highest 5% are the
 //! handle. One JSON object a line; times are medians in milliseconds, sizes in megabytes. With

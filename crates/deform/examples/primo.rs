@@ -1,9 +1,9 @@
 //! Times coupled prisms on a scene of the survey: `primo SCENE THREADS [THICKNESS]`, where SCENE.off, SCENE.sel and
 //! SCENE.def are its mesh, its roles and its handle's matrix.
 //!
-//! One JSON object a line: binding; how many steps and how long until the energy is within 1% of the best known minimum,
-//! and until the method says it converged; the longest step; milliseconds. The best known minimum is the lower of two
-//! solves to a tolerance of 1e-9, one at once and one as a drag of 20 frames.
+//! One JSON object a line: binding; how many steps and how long until the energy is within 1% of the best known
+//! minimum, and until the method says it converged; the longest step; milliseconds. The best known minimum is the lower
+//! of two solves to a tolerance of 1e-9, one at once and one as a drag of 20 frames.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
 mod common;

@@ -10,7 +10,7 @@ use crate::handles::{FRAME_CHUNK, Handle, Motion, clear};
 use crate::method::{BindInput, BoundMethod, Finite, Solve};
 use crate::region::follow::{Followers, followers};
 use crate::region::partition::Partition;
-use crate::sparse::cholesky::{Refactorisation, RenewableFactor};
+use crate::sparse::refactorisation::{Refactorisation, RenewableFactor};
 use crate::{BindError, Budget, HandleBases, Ordering, Problem, SolveError};
 
 /// A bound problem: everything that does not depend on the handles' transforms is solved.
@@ -28,7 +28,7 @@ pub struct Bound {
     warnings: Vec<String>,
 }
 
-/// The factor of a bound bi-Laplacian, of which [`Problem::rebind`] takes over what is the same. Cheap to clone.
+/// The factor of a bound bi-Laplacian. [`Problem::rebind`] reuses the parts of it that are unchanged. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct ReusableFactor(pub(crate) Arc<RenewableFactor>);
 
@@ -43,7 +43,7 @@ impl ReusableFactor {
     }
 }
 
-/// Whether a method may take the short cut that it has.
+/// Whether a method may take its short cut, if it has one.
 #[derive(Clone, Copy, Debug)]
 enum Way {
     Shortest,
@@ -57,9 +57,9 @@ pub struct Step {
     pub converged: bool,
     /// Whether further steps to the same targets do nothing: it converged, or met the method's limit.
     pub finished: bool,
-    /// The deformation energy, 0 at rest, which has no unit and does not change with the model's scale: for the linear
-    /// bi-Laplacian ½ dᵀ A d (see [`crate::Bilaplacian`]) and what soft handles' springs hold, for ARAP its energy and its springs' over ½ Σ w |e|² of the rest shape. Components
-    /// without a handle are left out.
+    /// The deformation energy, 0 at rest, without unit and independent of the model's scale. For the bi-Laplacian it is
+    /// ½ dᵀ A d (see [`crate::Bilaplacian`]) and the energy of the soft handles' springs; for ARAP its own energy and
+    /// its springs', divided by ½ Σ w |e|² of the rest shape. Components without a handle are left out.
     pub energy: f64,
     /// How many steps were taken towards these targets, this one included.
     pub iteration: u32,
@@ -126,16 +126,16 @@ impl Bound {
         })
     }
 
-    /// What binding a problem that differs in a few vertices' roles can take over, where the method has a factor that
-    /// can be renewed: the bi-Laplacian. There is much only where [`Problem::rebind`] bound it.
+    /// What the next binding can reuse if only a few vertices' roles change. Only the bi-Laplacian has such a factor,
+    /// and it holds little unless [`Problem::rebind`] bound it.
     pub fn reusable_factor(&self) -> Option<ReusableFactor> {
         self.method.reusable_factor()
     }
 
-    /// Sets where the handles are to go: one affine map of world positions a handle, from rest.
+    /// Sets where the handles are to go: for each handle, one affine map of world positions, from rest.
     ///
     /// # Errors
-    /// A wrong count, or a transform that is not finite; the former targets stay then.
+    /// A wrong count, or a transform that is not finite; the previous targets stay.
     pub fn set_targets(&mut self, world_targets: &[DAffine3]) -> Result<(), SolveError> {
         if world_targets.len() != self.handles.len() {
             return Err(SolveError::TargetCount {
@@ -160,18 +160,19 @@ impl Bound {
         Ok(())
     }
 
-    /// One step towards the targets: fills `displacements`, one a surface vertex, in world units.
+    /// One step towards the targets: fills `displacements`, one per surface vertex, in world units.
     ///
-    /// Hard handles' vertices get what their transform says; what nothing moves gets zero to the last bit.
+    /// A hard handle's vertices get exactly what its transform says; vertices that nothing moves get zero to the last
+    /// bit.
     ///
     /// # Errors
-    /// A wrong length, or a result that is not finite; `displacements` is all zero then.
+    /// A wrong length, or a result that is not finite; `displacements` are then all zero.
     pub fn step(&mut self, displacements: &mut [DVec3]) -> Result<Step, SolveError> {
         self.frame(displacements, Way::Shortest)
     }
 
-    /// As [`Bound::step`], but by solving with the factor in f64 instead of using the handles' bases. What has no bases
-    /// takes a step.
+    /// As [`Bound::step`], but solves with the factor in f64 instead of using the handle bases. A method without bases
+    /// takes an ordinary step.
     ///
     /// # Errors
     /// As [`Bound::step`].
@@ -179,7 +180,7 @@ impl Bound {
         self.frame(displacements, Way::BackSubstitution)
     }
 
-    /// The handles' vertices, what the method makes of them and zeros elsewhere, then the followers and the gate.
+    /// The method's displacements and zeros elsewhere, then those of followers; then checks that all are finite.
     fn frame(&mut self, displacements: &mut [DVec3], way: Way) -> Result<Step, SolveError> {
         if displacements.len() != self.vertex_count {
             displacements.fill(DVec3::ZERO);
@@ -224,9 +225,8 @@ impl Bound {
         Ok(step)
     }
 
-    /// The energy of any displacements, one a surface vertex, as in [`Step::energy`], with soft handles wanting what the
-    /// present targets say; `None` where the method has no
-    /// energy or the length is wrong.
+    /// The energy of any displacements, one per surface vertex, as in [`Step::energy`], with soft handles pulling
+    /// towards the present targets; `None` if the method has no energy or the length is wrong.
     pub fn energy_of(&self, displacements: &[DVec3]) -> Option<f64> {
         if displacements.len() != self.vertex_count {
             return None;
@@ -234,7 +234,7 @@ impl Bound {
         self.method.energy_of(&self.motions, displacements)
     }
 
-    /// The handles' bases, where a step is a product with them.
+    /// The handle bases, if a step is a product with them.
     pub fn handle_bases(&self) -> Option<&HandleBases> {
         self.method.handle_bases()
     }
@@ -244,7 +244,7 @@ impl Bound {
         self.solve
     }
 
-    /// Sentences for a person: what components do that lack a handle or a hold, what was repaired.
+    /// Sentences for a person: what components without a handle or a fixed vertex do, and what was repaired.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
@@ -259,13 +259,13 @@ impl Bound {
         self.free_count
     }
 
-    /// How many of them the system is solved for: those that a handle can reach.
+    /// How many of them are solved for: those that a handle can reach.
     pub fn solved_count(&self) -> usize {
         self.method.solved_count()
     }
 
-    /// About what a step costs, in vertices of a method whose steps are cheap: who shows shapes as they come takes fewer
-    /// steps between two of them where they are dear.
+    /// About what a step costs, in vertices of a method with cheap steps. Callers that show intermediate shapes take
+    /// fewer steps between two of them if steps are expensive.
     pub fn step_cost(&self) -> usize {
         self.method.step_cost()
     }
@@ -281,13 +281,13 @@ impl Bound {
     }
 }
 
-/// The one way out: no displacement that is not finite passes.
+/// Every result passes through here, so that none with a displacement that is not finite gets out.
 fn gate(displacements: &mut [DVec3]) -> Result<(), SolveError> {
     let finite = displacements
         .par_chunks(FRAME_CHUNK)
         .all(|chunk| chunk.iter().all(|displacement| displacement.is_finite()));
     if finite {
-        // Beyond the root of the largest number no energy can be told.
+        // Beyond the root of the largest number the energy overflows.
         let is_measurable = displacements.par_chunks(FRAME_CHUNK).all(|chunk| {
             chunk
                 .iter()

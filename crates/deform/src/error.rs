@@ -8,7 +8,7 @@ use crate::Budget;
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BindError {
-    /// Somebody raised the flag.
+    /// The flag was raised.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// A table has another length than the surface.
@@ -39,7 +39,7 @@ pub enum BindError {
         /// The handle.
         handle: usize,
     },
-    /// A stiffness that is no stiffness.
+    /// A stiffness that is not a number above 0.
     #[error("the stiffness {value} of vertex {vertex} is not a number above 0: paint it again")]
     Stiffness {
         /// The vertex.
@@ -47,7 +47,7 @@ pub enum BindError {
         /// What it has.
         value: f64,
     },
-    /// A soft handle's weight that is no weight.
+    /// A soft handle's weight that is not allowed.
     #[error("the weight {value} of soft handle {handle} is not a number above 0: give it one, or make it hard")]
     SoftWeight {
         /// The handle.
@@ -55,7 +55,7 @@ pub enum BindError {
         /// What it has.
         value: f64,
     },
-    /// A continuity that is none.
+    /// A continuity that is not from 0 to 2.
     #[error("the continuity {value} of vertex {vertex} is not a number from 0 to 2: paint it again")]
     Continuity {
         /// The vertex.
@@ -63,7 +63,7 @@ pub enum BindError {
         /// What it has.
         value: f64,
     },
-    /// The ordering is another mesh's or power's.
+    /// The ordering was made for another mesh or another power.
     #[error(
         "the ordering is for {found} vertices and power {found_power}, not for {expected} and {expected_power}: make one from this surface"
     )]
@@ -111,15 +111,15 @@ pub enum BindError {
         /// By how much a constant is missed.
         error: f64,
     },
-    /// A bi-Laplacian of an order above 1 was refused, which one of a lower order need not be.
+    /// A bi-Laplacian of an order above 1 was refused; a lower order may work.
     #[error("{refused}, or lower the method's `order` from {order}")]
     Order {
         /// The bi-Laplacian's order.
         order: u32,
-        /// What stands in its way.
+        /// Why it was refused.
         refused: Box<BindError>,
     },
-    /// What is solved for is too long and thin to be computed with.
+    /// The region that is solved for is too long and thin to compute with.
     #[error(
         "vertex {vertex} lies {edges} edges from all that holds it, too far to be solved for: fix vertices on the way, make the mesh coarser, or lower the method's `order` from {order}"
     )]
@@ -141,7 +141,7 @@ pub enum BindError {
         /// The vertex with the most neighbours, where these are many.
         crowded: Option<Crowded>,
     },
-    /// What is kept for each of many handles would take more than the [`crate::Budget`].
+    /// What is kept for each handle would together take more than the [`crate::Budget`].
     #[error(
         "{handle_count} handles over {free_count} free vertices take more memory than allowed: join handles or make the region smaller"
     )]
@@ -159,12 +159,12 @@ pub enum BindError {
     },
 }
 
-/// A vertex that very many others neighbour.
+/// A vertex with very many neighbours.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Crowded {
     /// The vertex.
     pub vertex: u32,
-    /// How many others neighbour it.
+    /// How many neighbours it has.
     pub neighbours: usize,
 }
 
@@ -183,7 +183,7 @@ fn over_budget(free_count: usize, allowed_bytes: u64, crowded: Option<&Crowded>)
 }
 
 impl BindError {
-    /// That so many free vertices exceed the budget; the binding fills in the rest.
+    /// The refusal for this many free vertices; the binding fills in the rest.
     pub(crate) fn budget(free_count: usize) -> Self {
         Self::Budget {
             free_count,
@@ -192,7 +192,7 @@ impl BindError {
         }
     }
 
-    /// The refusal with the budget and the mesh's most crowded vertex, where it is for memory.
+    /// Adds the budget and the vertex with the most neighbours, if the refusal is for memory.
     pub(crate) fn with_culprit(mut self, topology: &Topology, budget: Budget) -> Self {
         if let Self::Budget {
             allowed_bytes, crowded, ..
@@ -209,7 +209,7 @@ impl BindError {
         self
     }
 
-    /// The vertex that stands in the way.
+    /// The vertex that the refusal is about.
     pub fn vertex(&self) -> Option<u32> {
         match self {
             Self::UnknownHandle { vertex, .. }
@@ -225,7 +225,7 @@ impl BindError {
         }
     }
 
-    /// The error with the vertex that a person knows in place of the surface's.
+    /// The error with the file's vertex in place of the surface's.
     #[must_use]
     pub fn renumbered(mut self, known: impl Fn(u32) -> u32) -> Self {
         match &mut self {
@@ -257,11 +257,11 @@ impl SolveError {
     }
 }
 
-/// A step could not be done; the displacements are all zero then.
+/// A step failed; the displacements are then all zero.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolveError {
-    /// There is not one transform for each handle.
+    /// The number of transforms is not the number of handles.
     #[error("{found} transforms came for {expected} handles: give one for each")]
     TargetCount {
         /// How many came.
@@ -292,7 +292,7 @@ pub enum SolveError {
     /// The energy is beyond what can be computed with.
     #[error("the energy of the bent surface is not finite: move the handles less far or scale the model down")]
     EnergyNotFinite,
-    /// A displacement came out as no number.
+    /// A displacement is not finite.
     #[error("the displacement of vertex {vertex} is not finite: move the handles less far")]
     NotFinite {
         /// The first such vertex.

@@ -4,10 +4,10 @@
 //! [`Bound::step`] with the handles' transforms. There is no clock here, no file, no thread of its own: rayon's
 //! current pool is the caller's, and every result is the same bit for bit whatever its size.
 //!
-//! Binding goes from the [`Problem`] through `region` (who is solved for) to the [`Laplacian`] (`operators`), to a matrix
-//! in the restricted [`Ordering`], which is factored (`sparse`), and to the method: `bilaplacian` gives [`HandleBases`], so
-//! that a frame is a product with them; `arap` shares everything up to the factor and takes as many steps as it needs;
-//! `primo` steps with rigid prisms.
+//! Binding goes from the [`Problem`] through `region` (who is solved for) to the [`Laplacian`] (`operators`), to a
+//! matrix in the restricted [`Ordering`], which is factored (`sparse`), and to the method: `bilaplacian` gives
+//! [`HandleBases`], so that a frame is a product with them; `arap` shares everything up to the factor and takes as many
+//! steps as it needs; `primo` steps with rigid prisms.
 
 mod arap;
 mod bilaplacian;

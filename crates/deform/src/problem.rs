@@ -2,7 +2,7 @@
 
 use pliant_mesh::{Cancel, Progress, Surface, Topology};
 
-use crate::sparse::cholesky::Refactorisation;
+use crate::sparse::refactorisation::Refactorisation;
 use crate::{BindError, Bound, Budget, Constraints, Method, Ordering, ReusableFactor};
 
 /// What a surface vertex does.
@@ -17,23 +17,22 @@ pub enum Role {
     Handle(u16),
 }
 
-/// What a connected component does that holds no handle and no fixed vertex.
+/// What a connected component without a handle and without a fixed vertex does.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub enum Loose {
-    /// It moves rigidly with what it touches of the surface that is being deformed, or of a larger part that follows, or
-    /// else with the nearest part of the deformed surface: eyes, buttons, straps.
+    /// It moves rigidly with what it touches: the deformed surface, or a larger part that follows. If it touches
+    /// neither, it moves with the nearest part of the deformed surface. Eyes, buttons and straps do so.
     #[default]
     Follow,
     /// It stays where it is.
     Rest,
-    /// Each place of it moves with the part of the deformed surface that is nearest to that place: a strap bends along
-    /// with what it lies on.
+    /// Each place on it moves with the nearest part of the deformed surface: a strap bends along with what it lies on.
     Bend,
 }
 
-/// Everything that a deformation depends on but the handles' transforms.
+/// Everything that a deformation depends on, except the handles' transforms.
 ///
-/// All slices have one entry a surface vertex. Nothing is kept of them after [`Problem::bind`].
+/// All slices have one entry per surface vertex. [`Problem::bind`] keeps none of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a> {
     /// The rest shape, in world units.
@@ -49,7 +48,7 @@ pub struct Problem<'a> {
     pub stiffness: &'a [f64],
     /// How firmly handles pull and how smoothly the surface joins what holds it.
     pub constraints: Constraints<'a>,
-    /// What components do that nothing holds; [`Constraints::parts`] tells of single ones.
+    /// What components that nothing holds do; [`Constraints::parts`] overrides it for single ones.
     pub loose: Loose,
     /// The method and its options.
     pub method: &'a Method,
@@ -69,14 +68,14 @@ impl Problem<'_> {
         loose
     }
 
-    /// Factors and solves whatever does not depend on the handles' transforms.
+    /// Factors and solves everything that does not depend on the handles' transforms.
     ///
-    /// `ordering` must be what [`Method::ordering`] makes of the same topology. A method that needs none takes no notice of
-    /// one. Uses rayon's current pool; the result is the same bit for bit whatever its size.
+    /// `ordering` must come from [`Method::ordering`] for the same topology. A method that needs none ignores it. Uses
+    /// rayon's current pool; the result is the same bit for bit whatever its size.
     ///
     /// # Errors
     /// [`BindError`] names what is wrong with the problem, or where the system could not be solved;
-    /// [`BindError::Cancelled`] once `cancel` is raised, which is looked at between the steps and many times within a
+    /// [`BindError::Cancelled`] once `cancel` is raised, which is checked between the steps and many times within a
     /// factorisation.
     pub fn bind<'o>(
         &self,
@@ -90,7 +89,7 @@ impl Problem<'_> {
     /// As [`Problem::bind`], with another budget of memory than the default one.
     ///
     /// # Errors
-    /// As [`Problem::bind`]; [`BindError::Budget`] where more would be taken.
+    /// As [`Problem::bind`]; [`BindError::Budget`] if the binding would take more.
     pub fn bind_within<'o>(
         &self,
         ordering: impl Into<Option<&'o Ordering>>,
@@ -101,9 +100,9 @@ impl Problem<'_> {
         Bound::bind(self, ordering.into(), Refactorisation::Never, budget, progress, cancel)
     }
 
-    /// As [`Problem::bind`], and with the same result to the bit, for who binds again and again: what `reusable_factor` of an
-    /// earlier binding and is not touched by what changed since is not factored again. What is kept for that takes at
-    /// most as much memory as the factor, and is then what spares most operations a byte.
+    /// As [`Problem::bind`], with the same result to the bit, for callers that bind repeatedly: whatever an earlier
+    /// binding's `reusable_factor` holds and no change has touched is not factored again. What is kept for the next
+    /// binding takes at most as much memory as the factor.
     ///
     /// # Errors
     /// As [`Problem::bind`].

@@ -1,4 +1,4 @@
-//! Binding cut into its stages, for those who measure them: nothing else needs them apart.
+//! The stages of a binding, for measurements: nothing else needs them separately.
 
 use pliant_mesh::Cancel;
 
@@ -59,7 +59,7 @@ impl Operator {
         matrix.ok().map(Matrix)
     }
 
-    /// What the matrix' factor holds, without its numbers.
+    /// The symbolic factorisation of the matrix.
     pub fn analyse(&self, matrix: &Matrix) -> Option<Factored> {
         let factor = Factor::analysed(&matrix.0, &self.elimination.ends, Budget::default());
         factor.ok().map(Factored)
@@ -72,7 +72,8 @@ impl Matrix {
         self.0.scale.len()
     }
 
-    /// Column starts, rows and values on and below the diagonal, in the order of elimination; rows are ascending.
+    /// Column starts, rows and values on and below the diagonal, in the order of elimination. The diagonal comes first in
+    /// its column; the other rows are in no order.
     pub fn lower_columns(&self) -> (&[u32], &[u32], &[f64]) {
         (&self.0.lower_offsets, &self.0.lower_rows, &self.0.lower_values)
     }
@@ -84,7 +85,7 @@ impl Factored {
         self.0.fill(&matrix.0, 0.0, &Cancel::new()).ok()
     }
 
-    /// Solves for K right-hand sides in place, one row a column of the matrix.
+    /// Solves for K right-hand sides in place, with one row per column of the matrix.
     pub fn solve<const K: usize>(&self, x: &mut [[f64; K]]) {
         self.0.solve(x);
     }

@@ -134,9 +134,9 @@ impl Scene {
 fn methods() -> Vec<Method> {
     let mut methods = vec![Method::from(Primo::default())];
     for order in BilaplacianOrder::ALL {
-        let mut shell = Bilaplacian::default();
-        shell.order = order;
-        methods.push(shell.into());
+        let mut options = Bilaplacian::default();
+        options.order = order;
+        methods.push(options.into());
     }
     for energy in ArapEnergy::ALL {
         let mut arap = Arap::default();

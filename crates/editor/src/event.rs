@@ -1,6 +1,6 @@
-//! What reaches the editor from outside: pointer, keys, commands, results of jobs and opened files.
+//! Events: pointer, keys, commands, results of jobs and opened files.
 //!
-//! Events are data, so that a test, a script and the window drive the program through the same door,
+//! Events are data, so that tests, scripts and the window drive the program through the same function,
 //! [`Editor::handle`](crate::Editor::handle).
 
 use std::sync::Arc;
@@ -47,7 +47,7 @@ pub enum Event {
         /// The ratio of the fingers' distances since the last event.
         factor: f64,
     },
-    /// How hard the pen presses, 0 to 1; `None` for what reports no force.
+    /// How hard the pen presses, 0 to 1; `None` for a device that reports no force.
     Pressure(Option<f64>),
     /// A key went down (repeats of a held key included). Characters come in lower case, one event a key.
     Key(Key, Modifiers),
@@ -55,8 +55,8 @@ pub enum Event {
     Command(Command),
     /// A person's choice of keys.
     Keys(KeyMap),
-    /// A widget is being dragged: what the command changes is shown, and becomes one step with all that follow it until
-    /// [`Event::Adjusted`].
+    /// A widget is being dragged: the command's change is shown, and becomes one step of the history with all that
+    /// follow until [`Event::Adjusted`].
     Adjust(Command),
     /// The widget was let go.
     Adjusted,
@@ -71,15 +71,15 @@ pub enum Event {
         /// Regions, handles and transforms to begin with; `None` begins afresh.
         beginning: Option<Beginning>,
     },
-    /// What another editor has is taken over, but for the method: the same handles, bent by `method`. What this one's
-    /// own jobs make of them comes by [`Event::JobDone`].
+    /// Takes over another editor's document, except the method: the same handles, bent by `method`. The results of this
+    /// editor's own jobs come by [`Event::JobDone`].
     Follow {
         /// What the other editor has.
         leader: Box<Snapshot>,
         /// By which method this one bends.
         method: Method,
     },
-    /// What was opened was never saved: it comes from a session that ended without.
+    /// The document was recovered from a session that ended without saving, so it counts as unsaved.
     Recovered,
     /// The document as it stands was written to a file: there is no unsaved work now.
     Saved,

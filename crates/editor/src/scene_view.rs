@@ -23,7 +23,8 @@ pub struct SceneView<'a> {
     pub viewport_px: DVec2,
     /// Grows when [`SceneView::displacements`] changed.
     pub shape_revision: u64,
-    /// Per surface vertex, from the file's shape: hand it to [`Model::drawn_positions`]. Shared, never changed in place.
+    /// Per surface vertex, from the file's shape: hand it to [`Model::drawn_positions`]. Shared, never changed in
+    /// place.
     pub displacements: &'a Arc<Vec<DVec3>>,
     /// Grows when the colours of regions and handles changed: fetch them by
     /// [`Editor::region_colours`](crate::Editor::region_colours).

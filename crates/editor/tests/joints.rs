@@ -1,5 +1,5 @@
-//! What parts do that nothing holds, one by one, and how the surface joins each handle: in the document, its history and
-//! what is written of it.
+//! What parts do that nothing holds, one by one, and how the surface joins each handle: in the document, its history
+//! and what is written of it.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
 
 mod rig;

@@ -1,6 +1,6 @@
 //! How fast files are read and saved: `files FILE [KIND..]` prints a JSON object a line for FILE and for the same mesh
-//! as each KIND (obj, ply, ..), which is written beside it: megabytes a second beside those of a plain read of the file,
-//! medians of several rounds. `cargo xtask bench files` makes a table of them.
+//! as each KIND (obj, ply, ..), which is written beside it: megabytes a second beside those of a plain read of the
+//! file, medians of several rounds. `cargo xtask bench files` makes a table of them.
 //!
 //! Saving is what it takes to make the bytes of the file as its own kind with every vertex moved; writing them to disk
 //! is the disk's. Memory is told in multiples of the file, which is in it: the most that was held while the file was
@@ -21,7 +21,7 @@ use std::time::Instant;
 use counting::{Counting, HELD, PEAK};
 
 use glam::DVec3;
-use pliant_io::{Bytes, Format, Opened, Placement, Resolver, Save, read};
+use pliant_io::{Bytes, Format, Placement, Resolver, Save, SceneAndDrawn, read};
 use pliant_mesh::{Cancel, Inspection, Model, Progress, WeldOptions};
 
 #[global_allocator]
@@ -154,7 +154,7 @@ fn memory<T, Kept>(work: impl FnOnce() -> (T, Kept)) -> (T, usize, usize) {
     (told, peak.saturating_sub(before), held.saturating_sub(before))
 }
 
-fn open(bytes: Vec<u8>, format: Format, name: &str) -> Opened {
+fn open(bytes: Vec<u8>, format: Format, name: &str) -> SceneAndDrawn {
     read(bytes, format, name, &Alone, &Progress::new(), &Cancel::new()).expect("a sound file")
 }
 

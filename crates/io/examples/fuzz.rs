@@ -158,7 +158,8 @@ fn fuzz(seed: u64, runs: Range<u64>, sound: &[Sound]) -> BTreeMap<String, Tally>
         tally.runs += 1;
         tally.longest = tally.longest.max(took);
         tally.slow += u64::from(took > SLOW);
-        // The neighbour counts as part of the file. What an image unpacks to is no measure: a plain one packs to nothing.
+        // The neighbour counts as part of the file. What an image unpacks to is no measure: a plain one packs to
+        // nothing.
         let size = (bytes.len() + beside.0.len()).max(1);
         if file.kind != Kind::Image {
             tally.growth = tally.growth.max(largest as f64 / size as f64);

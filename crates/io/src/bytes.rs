@@ -1,4 +1,4 @@
-//! Bytes that several hold without a copy: a neighbour that a file names twice, an image within a buffer.
+//! Bytes that are shared without a copy: a neighbour that a file names twice, an image within a buffer.
 
 use std::fmt;
 use std::ops::{Deref, Range};
@@ -22,7 +22,7 @@ impl Bytes {
         })
     }
 
-    /// Where the bytes are held: equal for two that share them, and for no others as long as both live.
+    /// Where the bytes are in memory: equal only for two that share them, as long as both live.
     pub fn place(&self) -> (usize, Range<usize>) {
         (Arc::as_ptr(&self.whole).addr(), self.range.clone())
     }

@@ -64,7 +64,7 @@ pub enum ReadError {
 /// Why a scene could not be saved; nothing was written.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 pub enum SaveError {
-    /// A position is beyond what single precision holds, as nearly every reader keeps it.
+    /// A position is beyond single precision, which nearly every reader uses.
     #[error(
         "vertex {file_vertex} would be saved at a position that single precision can't hold, beyond 3.4e38 or no number: undo the last edit, or scale the file down before it is edited"
     )]

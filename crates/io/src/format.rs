@@ -1,4 +1,4 @@
-//! The kinds of file that are read and written.
+//! The file formats that are read and written.
 
 use std::fmt;
 
@@ -22,10 +22,10 @@ pub enum Format {
 }
 
 impl Format {
-    /// Every kind, in the order in which they are listed for a person.
+    /// Every format, in the order in which they are listed for a person.
     pub const ALL: [Self; 6] = [Self::Glb, Self::Gltf, Self::Obj, Self::Ply, Self::Stl, Self::Off];
 
-    /// The kind that a file's name or path tells by its extension, whatever its case.
+    /// The format by the extension of a file's name or path, whatever its case.
     pub fn of_name(name: &str) -> Result<Self, UnknownFormat> {
         let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
         let extension = file.rsplit_once('.').map_or("", |(_, extension)| extension);

@@ -35,5 +35,5 @@ pub use quote::{quoted, steers};
 pub use save::{MorphTarget, OutputFile, Placement, Role, Save, Saved, numbered};
 pub use scene::difference::{Difference, What};
 pub use scene::summary::Summary;
-pub use scene::{Opened, Scene, read};
+pub use scene::{Scene, SceneAndDrawn, read};
 pub use source::Resolver;

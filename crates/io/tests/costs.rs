@@ -12,7 +12,7 @@ use std::sync::atomic::Ordering;
 use counting::{ALLOCATED, Counting, HELD, PEAK};
 use glam::DVec3;
 use hostile::{Hostile, MAKERS};
-use pliant_io::{Bytes, Format, MorphTarget, Opened, Placement, ReadError, Resolver, Save, read};
+use pliant_io::{Bytes, Format, MorphTarget, Placement, ReadError, Resolver, Save, SceneAndDrawn, read};
 use pliant_mesh::{Cancel, Inspection, Progress, WeldOptions};
 
 #[global_allocator]
@@ -26,7 +26,7 @@ impl Resolver for Beside {
     }
 }
 
-fn opened(file: &Hostile, cancel: &Cancel) -> Result<Opened, ReadError> {
+fn opened(file: &Hostile, cancel: &Cancel) -> Result<SceneAndDrawn, ReadError> {
     let beside = Beside(file.beside.clone().into());
     read(file.bytes.clone(), file.format, "in", &beside, &Progress::new(), cancel)
 }

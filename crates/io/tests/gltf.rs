@@ -9,7 +9,7 @@ use pliant_io::Format;
 use pliant_mesh::geometry::face_normal;
 use serde_json::{Value, json};
 
-fn corners(opened: &pliant_io::Opened) -> Vec<[DVec3; 3]> {
+fn corners(opened: &pliant_io::SceneAndDrawn) -> Vec<[DVec3; 3]> {
     let drawn = &opened.drawn;
     drawn
         .triangles

@@ -68,7 +68,7 @@ fn with_meshopt(shape: &Shape, extension: &str, version: u8) -> Maker {
 }
 
 /// Corners as positions, each triangle turned so that its least corner comes first.
-fn triangles(opened: &pliant_io::Opened) -> Vec<[[u64; 3]; 3]> {
+fn triangles(opened: &pliant_io::SceneAndDrawn) -> Vec<[[u64; 3]; 3]> {
     let drawn = &opened.drawn;
     let of_triangle = |corners: &[pliant_mesh::DrawnVertex; 3]| {
         let mut corners = corners.map(|v| drawn.positions[v.index()].to_array().map(f64::to_bits));

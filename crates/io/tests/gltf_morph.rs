@@ -6,11 +6,11 @@ mod gltf_maker;
 
 use glam::DVec3;
 use gltf_maker::{Folder, Maker, assert_near, bent, grid, moved, open, saved_glb, shapes, split, try_open};
-use pliant_io::{Format, MorphTarget, Opened, Placement, Save, SaveError, Saved};
+use pliant_io::{Format, MorphTarget, Placement, Save, SaveError, Saved, SceneAndDrawn};
 use pliant_mesh::{Cancel, Progress};
 use serde_json::{Value, json};
 
-fn try_morph(opened: &Opened, positions: &[DVec3], name: &str, weight: f64) -> Result<Saved, SaveError> {
+fn try_morph(opened: &SceneAndDrawn, positions: &[DVec3], name: &str, weight: f64) -> Result<Saved, SaveError> {
     opened.scene.save_as_morph(
         &Save {
             drawn: &opened.drawn,
@@ -25,7 +25,7 @@ fn try_morph(opened: &Opened, positions: &[DVec3], name: &str, weight: f64) -> R
     )
 }
 
-fn morphed(opened: &Opened, positions: &[DVec3], weight: f64) -> Vec<u8> {
+fn morphed(opened: &SceneAndDrawn, positions: &[DVec3], weight: f64) -> Vec<u8> {
     let mut saved = try_morph(opened, positions, "out.glb", weight).unwrap();
     assert_eq!(saved.warnings, Vec::<String>::new());
     saved.files.remove(0).bytes

@@ -5,7 +5,7 @@ mod gltf_maker;
 
 use glam::{DVec3, Vec3};
 use gltf_maker::{Folder, assert_near, bent, moved, open, split, try_open, try_save};
-use pliant_io::{Format, Opened, Placement, SaveError, Saved};
+use pliant_io::{Format, Placement, SaveError, Saved, SceneAndDrawn};
 use serde_json::Value;
 
 /// A quad and a triangle in two materials, one with a texture, with normals, texture coordinates and colours.
@@ -22,11 +22,11 @@ fn folder() -> Folder {
     folder
 }
 
-fn save(opened: &Opened, positions: &[DVec3], name: &str) -> Saved {
+fn save(opened: &SceneAndDrawn, positions: &[DVec3], name: &str) -> Saved {
     try_save(opened, positions, name, Placement::SameFolder).unwrap()
 }
 
-fn colours_as_floats(opened: &Opened) -> Vec<[u8; 4]> {
+fn colours_as_floats(opened: &SceneAndDrawn) -> Vec<[u8; 4]> {
     opened.scene.appearance().colours.unwrap()
 }
 
@@ -125,7 +125,7 @@ fn named_parts_become_nodes_that_keep_their_names_and_triangles() {
     let positions = moved(&opened, |_| true, bent);
     let saved = save(&opened, &positions, "out.glb");
     let again = open(&saved.files[0].bytes);
-    let triangles_of = |opened: &Opened, positions: &[DVec3], name: &str| -> Vec<[DVec3; 3]> {
+    let triangles_of = |opened: &SceneAndDrawn, positions: &[DVec3], name: &str| -> Vec<[DVec3; 3]> {
         let looks = opened.scene.appearance();
         let groups = looks.groups.iter().filter(|group| group.node_name == name);
         groups

@@ -82,7 +82,7 @@ fn a_rigid_motion_turns_normals_and_tangents_rigidly_whatever_the_node() {
 }
 
 /// Vertices that some triangle with an area uses.
-fn used_with_area(opened: &pliant_io::Opened) -> Vec<usize> {
+fn used_with_area(opened: &pliant_io::SceneAndDrawn) -> Vec<usize> {
     let drawn = &opened.drawn;
     let has_area = |t: &&[pliant_mesh::DrawnVertex; 3]| {
         face_normal(t.map(|corner| drawn.positions[corner.index()])).length() > 0.5

@@ -9,7 +9,9 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use gltf_maker::{assert_near, bent, moved};
-use pliant_io::{Bytes, Difference, Format, Material, Opened, Placement, ReadError, Resolver, Save, Saved, What, read};
+use pliant_io::{
+    Bytes, Difference, Format, Material, Placement, ReadError, Resolver, Save, Saved, SceneAndDrawn, What, read,
+};
 use pliant_mesh::{Cancel, Drawn, Progress};
 use serde_json::Value;
 
@@ -56,13 +58,13 @@ fn files() -> Vec<PathBuf> {
     files
 }
 
-fn open_file(path: &Path) -> Result<(Opened, Vec<u8>), ReadError> {
+fn open_file(path: &Path) -> Result<(SceneAndDrawn, Vec<u8>), ReadError> {
     let bytes = std::fs::read(path).unwrap();
     let disk = Disk(path.parent().unwrap().to_path_buf());
     open_bytes(&bytes, path, &disk).map(|opened| (opened, bytes))
 }
 
-fn open_bytes(bytes: &[u8], path: &Path, resolver: &dyn Resolver) -> Result<Opened, ReadError> {
+fn open_bytes(bytes: &[u8], path: &Path, resolver: &dyn Resolver) -> Result<SceneAndDrawn, ReadError> {
     let name = path.file_name().unwrap().to_string_lossy();
     read(
         bytes.to_vec(),
@@ -74,7 +76,7 @@ fn open_bytes(bytes: &[u8], path: &Path, resolver: &dyn Resolver) -> Result<Open
     )
 }
 
-fn save(opened: &Opened, positions: &[DVec3], path: &Path) -> Saved {
+fn save(opened: &SceneAndDrawn, positions: &[DVec3], path: &Path) -> Saved {
     let name = path.file_name().unwrap().to_string_lossy();
     let format = Format::of_name(&name).unwrap();
     let placement = Placement::OtherFolder;

@@ -314,7 +314,7 @@ fn a_new_file_carries_materials_and_looks_that_read_back() {
     let again = open_in(&saved.files[0].bytes, Format::Obj, &again).unwrap();
     let after = again.scene.appearance();
     assert!(again.scene.notes().is_empty(), "{:?}", again.scene.notes());
-    let corners = |opened: &pliant_io::Opened| -> Vec<DVec3> {
+    let corners = |opened: &pliant_io::SceneAndDrawn| -> Vec<DVec3> {
         opened
             .drawn
             .triangles
@@ -324,7 +324,7 @@ fn a_new_file_carries_materials_and_looks_that_read_back() {
             .collect()
     };
     assert_eq!(corners(&again), corners(&opened));
-    let uvs = |opened: &pliant_io::Opened, look: &pliant_io::Appearance| -> Vec<[f32; 2]> {
+    let uvs = |opened: &pliant_io::SceneAndDrawn, look: &pliant_io::Appearance| -> Vec<[f32; 2]> {
         opened
             .drawn
             .triangles

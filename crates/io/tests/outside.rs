@@ -8,7 +8,7 @@ use std::io::Cursor;
 
 use glam::DVec3;
 use gltf_maker::{Folder, Maker, grid, moved, open, try_open, try_save};
-use pliant_io::{Format, Opened, Placement, Saved};
+use pliant_io::{Format, Placement, Saved, SceneAndDrawn};
 use serde_json::json;
 
 const SECRET: &[u8] = b"-----BEGIN OPENSSH PRIVATE KEY-----";
@@ -26,7 +26,7 @@ fn holds(saved: &Saved, needle: &[u8]) -> bool {
 }
 
 /// A square whose buffer is `buffer`, dressed in `image`.
-fn gltf(buffer: &str, image: &str, files: &[(&str, &[u8])]) -> Opened {
+fn gltf(buffer: &str, image: &str, files: &[(&str, &[u8])]) -> SceneAndDrawn {
     let mut maker = Maker::of(&grid(2));
     maker.root["images"] = json!([{ "uri": image }]);
     maker.root["textures"] = json!([{ "source": 0 }]);

@@ -244,7 +244,7 @@ fn a_new_file_holds_colours_and_polygons_and_as_many_digits_as_the_place_needs()
     assert_eq!(again.drawn.positions, opened.drawn.positions);
     assert_eq!(again.drawn.triangles, opened.drawn.triangles);
     // Dark colours have few steps in linear bytes, so each is kept to within a few.
-    let colours = |opened: &pliant_io::Opened| opened.scene.appearance().colours.unwrap().concat();
+    let colours = |opened: &pliant_io::SceneAndDrawn| opened.scene.appearance().colours.unwrap().concat();
     let apart = colours(&opened)
         .into_iter()
         .zip(colours(&again))

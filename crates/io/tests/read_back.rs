@@ -4,16 +4,16 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use glam::DVec3;
-use pliant_io::{Format, MorphTarget, Opened, Placement, Save, Saved, read};
+use pliant_io::{Format, MorphTarget, Placement, Save, Saved, SceneAndDrawn, read};
 use pliant_mesh::{Cancel, DrawnVertex, Progress, shapes};
 
-fn back(saved: &Saved, format: Format) -> Opened {
+fn back(saved: &Saved, format: Format) -> SceneAndDrawn {
     let bytes = saved.files[0].bytes.clone();
     read(bytes, format, "back", saved, &Progress::new(), &Cancel::new()).unwrap()
 }
 
 /// A mesh as OFF, with quads among its faces, far from the origin and hardly larger than there are digits for in f32.
-fn source(at: DVec3) -> Opened {
+fn source(at: DVec3) -> SceneAndDrawn {
     let grid = shapes::grid(6, 5);
     let mut text = format!("OFF\n{} {} 0\n", grid.positions.len(), grid.triangles.len() - 1);
     for p in &grid.positions {
@@ -71,7 +71,7 @@ fn what_was_saved_passes_and_anything_else_is_found_out() {
     for at in [DVec3::ZERO, DVec3::new(4.5e6, 5.1e6, 300.0)] {
         let off = source(at);
         for first in Format::ALL {
-            let save = |of: &Opened, positions: &[DVec3], format: Format| {
+            let save = |of: &SceneAndDrawn, positions: &[DVec3], format: Format| {
                 let save = Save {
                     drawn: &of.drawn,
                     positions,
@@ -88,7 +88,7 @@ fn what_was_saved_passes_and_anything_else_is_found_out() {
             for second in Format::ALL {
                 let saved = save(&opened, &new, second);
                 let found = back(&saved, second);
-                let check = |positions: &[DVec3], found: &Opened| {
+                let check = |positions: &[DVec3], found: &SceneAndDrawn| {
                     let save = Save {
                         drawn: &opened.drawn,
                         positions,

@@ -12,7 +12,7 @@ mod text;
 use std::time::Instant;
 
 use glam::DVec3;
-use pliant_io::{Format, Opened};
+use pliant_io::{Format, SceneAndDrawn};
 use text::{changed_bytes, changed_lines, data, moved, save, try_open};
 
 /// Calls `check` with every file of a folder that one of these formats reads.
@@ -37,7 +37,7 @@ fn is_moved(file: u32) -> bool {
 }
 
 /// Checks that only moved vertices' numbers (and normals) differ.
-fn check_edit(name: &str, opened: &Opened, before: &[u8]) {
+fn check_edit(name: &str, opened: &SceneAndDrawn, before: &[u8]) {
     let drawn = &opened.drawn;
     let used = |file: u32| is_moved(file) && drawn.positions[file as usize].is_finite();
     let positions = moved(opened, used, |p| p + DVec3::new(0.125, -0.5, 0.25));
@@ -77,7 +77,7 @@ fn check_edit(name: &str, opened: &Opened, before: &[u8]) {
 }
 
 /// Where the records of a binary file begin and how far apart they are.
-fn layout(opened: &Opened, bytes: &[u8]) -> (usize, usize) {
+fn layout(opened: &SceneAndDrawn, bytes: &[u8]) -> (usize, usize) {
     if opened.scene.format() == Format::Stl {
         return (84, 50);
     }
@@ -88,7 +88,7 @@ fn layout(opened: &Opened, bytes: &[u8]) -> (usize, usize) {
 }
 
 /// The line of each file vertex in a text file.
-fn vertex_lines(opened: &Opened, bytes: &[u8]) -> Vec<usize> {
+fn vertex_lines(opened: &SceneAndDrawn, bytes: &[u8]) -> Vec<usize> {
     let text = String::from_utf8_lossy(bytes);
     let lines = text.lines().enumerate();
     let numbered: Vec<usize> = match opened.scene.format() {

@@ -4,14 +4,14 @@
 mod text;
 
 use glam::DVec3;
-use pliant_io::{Format, MorphTarget, Opened, Placement, Save, SaveError};
+use pliant_io::{Format, MorphTarget, Placement, Save, SaveError, SceneAndDrawn};
 use pliant_mesh::{Cancel, Progress};
 use text::open;
 
 const OFF: &[u8] = b"OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n";
 
 /// The same square as each kind of file.
-fn sources() -> Vec<Opened> {
+fn sources() -> Vec<SceneAndDrawn> {
     let square = open(OFF, Format::Off);
     let other = |format| open(&saved(&square, &square.drawn.positions, format).unwrap(), format);
     let doubles = "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n\
@@ -26,7 +26,7 @@ fn sources() -> Vec<Opened> {
     ]
 }
 
-fn saved(opened: &Opened, positions: &[DVec3], format: Format) -> Result<Vec<u8>, SaveError> {
+fn saved(opened: &SceneAndDrawn, positions: &[DVec3], format: Format) -> Result<Vec<u8>, SaveError> {
     let save = Save {
         drawn: &opened.drawn,
         positions,

@@ -5,7 +5,7 @@
 mod text;
 
 use glam::DVec3;
-use pliant_io::{Format, MorphTarget, Opened, Placement, Save, SaveError, Saved};
+use pliant_io::{Format, MorphTarget, Placement, Save, SaveError, Saved, SceneAndDrawn};
 use pliant_mesh::{Cancel, Progress, shapes};
 use text::{open, save_as};
 
@@ -25,7 +25,7 @@ enum Normals {
 }
 
 /// A sheet of so many vertices that every loop over them looks several times, with or without normals.
-fn sheet(normals: Normals) -> Opened {
+fn sheet(normals: Normals) -> SceneAndDrawn {
     let sheet = shapes::grid(200, 200);
     let mut off = format!("OFF\n{} {} 0\n", sheet.positions.len(), sheet.triangles.len());
     for p in &sheet.positions {

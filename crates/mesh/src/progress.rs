@@ -1,4 +1,4 @@
-//! How a long job tells how far it is and learns that nobody wants its result any more.
+//! How a long job reports its progress and learns that its result is no longer wanted.
 //!
 //! Both are cheap handles to shared atomics: the caller keeps a clone, the job gets a reference.
 
@@ -53,7 +53,7 @@ impl Progress {
     }
 }
 
-/// A request to stop, which a job looks at between its steps. Cloning shares the flag.
+/// A request to stop, which a job checks between its steps. Cloning shares the flag.
 #[derive(Clone, Debug, Default)]
 pub struct Cancel(Arc<Flag>);
 
@@ -75,8 +75,8 @@ impl Cancel {
         Self::default()
     }
 
-    /// A flag that raises itself when it has been looked at `looks` times: so a test stops a job at every place where
-    /// it can be stopped, whatever the time.
+    /// A flag that raises itself after it was checked `looks` times, so that a test can stop a job at every place where
+    /// it can be stopped, independent of time.
     pub fn after_looks(looks: usize) -> Self {
         Self(Arc::new(Flag {
             is_raised: AtomicBool::new(false),

@@ -180,7 +180,7 @@ pub fn bowtie() -> Drawn {
     drawn(positions, triangles)
 }
 
-/// `shape` and one of everything that welding must take out or live with: a vertex that is not a number with a triangle
+/// `shape` with one of everything that welding must remove or tolerate: a vertex that is not a number with a triangle
 /// at it, a vertex without a triangle, a triangle with two corners in one place, a repeated triangle, and a triangle
 /// without area that hangs on the shape by one edge. The shape must have a triangle.
 pub fn broken(shape: &Drawn) -> Drawn {
@@ -263,7 +263,7 @@ pub fn classes() -> Vec<(&'static str, Drawn)> {
 
 /// `drawn` welded as the program does by default.
 pub fn model(drawn: Drawn) -> Model {
-    // Nobody else holds the flag that cancels, so the default is never taken.
+    // No one else has the cancel flag, so the default is never used.
     Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap_or_default()
 }
 

@@ -9,8 +9,8 @@ fn bits(positions: &[DVec3]) -> Vec<[u64; 3]> {
     positions.iter().map(|p| p.to_array().map(f64::to_bits)).collect()
 }
 
-/// Variants of a shape: as it is; cut along seams (some triangles have a corner of their own); cut throughout; shaken by
-/// less than the tolerance, which joins its corners but not to the bit; with minus zeros; each triangle turned; with
+/// Variants of a shape: as it is; cut along seams (some triangles have a corner of their own); cut throughout; shaken
+/// by less than the tolerance, which joins its corners but not to the bit; with minus zeros; each triangle turned; with
 /// triangles and vertices in reverse, and with file vertices that are not the drawn ones.
 fn variants(shape: &Drawn) -> Vec<Drawn> {
     let mut seams = shape.clone();

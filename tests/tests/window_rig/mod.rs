@@ -134,7 +134,8 @@ impl Session {
 }
 
 impl Session {
-    /// Lets all of it happen within one frame, as it does where frames are slow, and then as many frames pass as it takes.
+    /// Lets all of it happen within one frame, as it does where frames are slow, and then as many frames pass as it
+    /// takes.
     pub fn in_one_frame(&mut self, events: impl IntoIterator<Item = Event>) {
         self.harness.input_mut().events.extend(events);
         self.harness.run_steps(24);

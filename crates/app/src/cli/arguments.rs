@@ -84,7 +84,8 @@ pub(crate) struct ApplyArguments {
     /// Use this method with its defaults instead of the edit's
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
-    /// How many threads to use (at most four a core); without it, all cores. The result is the same whatever their number
+    /// How many threads to use (at most four a core); without it, all cores. The result is the same whatever their
+    /// number
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=65_536))]
     pub threads: Option<usize>,
 }

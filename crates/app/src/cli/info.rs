@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use pliant_io::{Opened, Scene};
+use pliant_io::{Scene, SceneAndDrawn};
 use pliant_mesh::{FindingKind, Inspection, WeldOptions};
 use serde_json::{Value, json};
 
@@ -35,7 +35,7 @@ struct LookedAt<'a> {
 }
 
 fn look_at<'a>(path: &'a Path, watch: &Watch) -> Result<LookedAt<'a>, AppError> {
-    let Opened { scene, drawn } = engine::open(path, watch)?;
+    let SceneAndDrawn { scene, drawn } = engine::open(path, watch)?;
     let progress = watch.begin("welding");
     let inspection = Inspection::of(drawn, &WeldOptions::default(), &progress, &watch.cancel);
     let inspection = inspection.map_err(|_| AppError::Interrupted)?;

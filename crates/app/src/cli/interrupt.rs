@@ -1,4 +1,4 @@
-//! Ctrl-C, the end of a session and the like: a command stops within a second and leaves no file behind.
+//! Ctrl-C, SIGTERM and SIGHUP: a command stops within a second and leaves no file behind.
 
 use std::io::Write;
 use std::time::Duration;
@@ -10,13 +10,13 @@ use crate::watch::Watch;
 /// How long a command has to stop by itself.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Raises the flag on Ctrl-C (SIGINT), SIGTERM and SIGHUP. A command that has not ended a little later (a factorisation can't be stopped half-way)
-/// is ended here, without its files.
+/// Raises the flag on Ctrl-C (SIGINT), SIGTERM and SIGHUP. A command that has not ended a little later is ended here,
+/// without its files.
 pub(super) fn listen(watch: &Watch, staging: &Staging) {
     #[cfg(unix)]
     {
-        // A file beyond the limit on their size is an error of the write then, which can be told, and no end. Nobody
-        // asks whether it came.
+        // With this a write beyond the limit on file sizes returns an error that can be reported, and does not end the
+        // program. The flag itself is not read.
         let has_come = std::sync::Arc::default();
         let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, has_come);
     }
@@ -25,7 +25,7 @@ pub(super) fn listen(watch: &Watch, staging: &Staging) {
     let _ = ctrlc::set_handler(move || {
         cancel.cancel();
         std::thread::sleep(PATIENCE);
-        // Held until the process is gone, so that nothing is renamed into place meanwhile.
+        // Held until the process has ended, so that nothing is renamed into place meanwhile.
         if let Some(_guard) = staging.discard() {
             let interrupted = AppError::Interrupted;
             let _ = writeln!(std::io::stderr(), "\r\x1b[Kpliant: {interrupted}");

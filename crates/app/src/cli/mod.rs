@@ -21,13 +21,13 @@ use crate::files::Staging;
 use crate::watch::Watch;
 use arguments::Command;
 
-/// Where a command speaks and how it is watched and stopped.
+/// A command's output streams, and how it is watched and stopped.
 pub struct Console<'a> {
     /// Standard output, or what stands in for it.
     pub out: &'a mut dyn Write,
     /// Standard error, or what stands in for it: refusals, each one line.
     pub err: &'a mut dyn Write,
-    /// What the command is doing, and whether it is still wanted.
+    /// The command's progress, and its cancel flag.
     pub watch: Watch,
     /// The files that it is writing.
     pub staging: Staging,
@@ -65,30 +65,30 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
     };
     let error = match result {
         Ok(()) => return 0,
-        // Whatever a cancelled job gave as its error, the person stopped it.
+        // Whatever error a cancelled job returned: the person stopped it.
         Err(_) if console.watch.cancel.is_cancelled() => AppError::Interrupted,
         Err(error) => error,
     };
     let line = plain(&error.to_string().replace(['\n', '\r'], " "));
-    // Where not even an error can be told, the status tells it.
+    // If not even the error can be written, the exit status still tells of it.
     let _ = writeln!(console.err, "pliant: {line}");
     error.status()
 }
 
-/// A line without characters that would steer the terminal. Foreign text in it was cut where it was quoted.
+/// A line without control characters. Foreign text in it was shortened where it was quoted.
 fn plain(line: &str) -> String {
     line.chars()
         .map(|letter| if steers(letter) { '\u{fffd}' } else { letter })
         .collect()
 }
 
-/// Prints a text. What its lines quote of files steers no terminal.
+/// Prints a text without the control characters that it may quote from files.
 fn print(out: &mut dyn Write, text: &str) -> Result<(), AppError> {
     let lines = text.lines().map(|line| plain(line) + "\n");
     write_out(out, &lines.collect::<String>())
 }
 
-/// Prints JSON. What would steer a terminal is escaped, which changes nothing of what it says.
+/// Prints JSON. Control characters are escaped, which does not change its meaning.
 fn print_json(out: &mut dyn Write, value: &serde_json::Value) -> Result<(), AppError> {
     let mut text = String::new();
     for letter in format!("{value:#}\n").chars() {
@@ -101,7 +101,7 @@ fn print_json(out: &mut dyn Write, value: &serde_json::Value) -> Result<(), AppE
     write_out(out, &text)
 }
 
-/// Writes to standard output. Whoever closed the pipe has read enough.
+/// Writes to standard output. A closed pipe is no error: its reader has read enough.
 fn write_out(out: &mut dyn Write, text: &str) -> Result<(), AppError> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(AppError::System(format!(
@@ -111,10 +111,10 @@ fn write_out(out: &mut dyn Write, text: &str) -> Result<(), AppError> {
     }
 }
 
-/// How many threads a core may be asked to run: more cost memory and win nothing.
+/// The most threads per core: more cost memory and gain nothing.
 const MOST_THREADS_A_CORE: usize = 4;
 
-/// Runs `work` on a pool of its own: `threads` of them, or one a core.
+/// Runs `work` on a pool of its own with `threads` threads, or one per core.
 fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T, AppError> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let most = MOST_THREADS_A_CORE * cores;

@@ -17,7 +17,7 @@ pub(super) struct ProgressLine {
     shown: Arc<Mutex<bool>>,
 }
 
-/// Shows what `watch` says ten times a second, from a quarter of a second on: shorter work needs no line.
+/// Shows the stage and progress of `watch` ten times a second, after a quarter of a second: shorter work needs no line.
 pub(super) fn show(watch: Watch) -> ProgressLine {
     let (done, shown) = (Arc::new(AtomicBool::new(false)), Arc::new(Mutex::new(false)));
     let line = ProgressLine {
@@ -53,7 +53,7 @@ impl Drop for ProgressLine {
     }
 }
 
-/// Standard error that takes the progress line away before anything is said.
+/// Standard error that erases the progress line before anything is written.
 pub(super) struct ErasingWriter {
     line: Option<ProgressLine>,
 }

@@ -187,7 +187,7 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
     Ok(pngs)
 }
 
-/// How much farther the eye stands than the rest shape alone wants, since the bent one is to be seen whole, too.
+/// How much farther away the eye is than for the rest shape alone, so that the bent shape is seen whole, too.
 const ROOM_FOR_THE_EDIT: f64 = 1.2;
 
 /// What is drawn.
@@ -202,7 +202,7 @@ struct Shape {
 fn shape(arguments: &RenderArguments, loaded: &Loaded, watch: &Watch) -> Result<Shape, AppError> {
     let edit = arguments.edit.as_deref().map(read_edit).transpose()?;
     if let (Some(edit), Some(path)) = (&edit, &arguments.edit) {
-        // The same refusals as `apply`, before the editor makes the best of it.
+        // The same refusals as `apply`; the editor itself would accept such an edit.
         edit.resolve(&loaded.model).map_err(|source| AppError::Edit {
             edit: path.clone(),
             source,
@@ -222,7 +222,7 @@ fn shape(arguments: &RenderArguments, loaded: &Loaded, watch: &Watch) -> Result<
             return Err(AppError::Interrupted);
         }
         let Some(job) = executor.take(kind) else { break };
-        // Nobody points at a picture, and what nobody bends needs no solver.
+        // A picture needs no hierarchy for rays, and a shape at rest no solver.
         let is_needed = match kind {
             JobKind::Pick => false,
             JobKind::Order => is_bent,

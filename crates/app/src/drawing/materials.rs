@@ -114,14 +114,14 @@ impl EncodedMaterials {
         !self.wanted.is_empty()
     }
 
-    /// The same with images that together take at most so many bytes while they are decoded.
+    /// The same with images that together take at most this many bytes while they are decoded.
     #[must_use]
     pub fn within(self, budget: u64) -> Self {
         Self { budget, ..self }
     }
 
-    /// Decodes the images, in parallel as far as the budget allows. What is shown smaller than it is stored, or
-    /// can't be decoded and is left out, is told in a sentence.
+    /// Decodes the images, in parallel as far as the budget allows. Returns a sentence for each image that is shown
+    /// smaller than stored, or left out because it can't be decoded.
     ///
     /// # Errors
     /// [`Cancelled`] soon after `cancel` is raised.

@@ -1,11 +1,11 @@
-//! What a file that is replaced hands on beside its bytes: rights, owner, extended attributes, and its other names.
+//! What the new file takes over from the one it replaces: rights, owner, extended attributes, and its other names.
 //!
-//! A rename puts a new file in the old one's place, so all of it has to be given to the new one first. Rights to run as
-//! somebody else (setuid, setgid, file capabilities) belonged to the old bytes and are not handed on.
+//! A rename puts a new file in the old one's place, so all of these have to be copied to the new one first. The rights
+//! to run as another user (setuid, setgid, file capabilities) belonged to the old bytes and are not copied.
 //!
 //! A file with several names (hard links) can't be replaced under all of them in one step, and writing over its bytes
-//! instead would leave a torn file after a kill. So the names in its own folder are brought along one after the other,
-//! each of them old or new and whole at every moment; names in other folders, which nothing tells, keep the old bytes,
+//! would leave a torn file if the program is killed. So the names in its own folder are replaced one after the other,
+//! each of them old or new and whole at every moment. Names in other folders, which can't be found, keep the old bytes,
 //! and the person is told.
 
 use std::fs::{File, Metadata};
@@ -21,7 +21,7 @@ pub(super) struct OtherNames {
     pub elsewhere: u64,
 }
 
-/// Gives the new file what `existing`, which stands at `target`, is to hand on. What the system refuses is left: then
+/// Copies the attributes of `existing`, the file at `target`, to the new file. What the system refuses is left out, but
 /// the rights never become wider than they were.
 ///
 /// # Errors
@@ -36,7 +36,7 @@ pub(super) fn hand_on(new: &File, existing: &Metadata, target: &Path) -> io::Res
         let _ = fchown(new, Some(existing.uid()), None);
     }
     if own.gid() != existing.gid() && fchown(new, None, Some(existing.gid())).is_err() {
-        // What one group was allowed, another is not: it gets what everybody has.
+        // Another group must not get what this group was allowed: it gets what everybody has.
         rights = (rights & 0o707) | ((rights & 0o007) << 3);
     }
     new.set_permissions(std::fs::Permissions::from_mode(rights))?;
@@ -64,11 +64,11 @@ pub(super) fn hand_on(new: &File, existing: &Metadata, _target: &Path) -> io::Re
     new.set_permissions(existing.permissions())
 }
 
-/// Copies extended attributes, access control lists among them, as far as the system takes them.
+/// Copies extended attributes, including access control lists, as far as the system allows.
 #[cfg(any(target_os = "linux", target_os = "macos"))]
 fn copy_extended(new: &File, target: &Path) {
     use rustix::fs::{XattrFlags, fsetxattr, getxattr, getxattr_query, listxattr, listxattr_query};
-    // Somebody may change them meanwhile; the size is a guess then, and the call fails.
+    // They may change meanwhile; then the size is wrong, and the call fails.
     let sized = |size: usize| vec![0_u8; size];
     let Ok(mut names) = listxattr_query(target).map(sized) else {
         return;

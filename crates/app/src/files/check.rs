@@ -1,4 +1,4 @@
-//! Reading back what was written, before anything is replaced by it.
+//! Reads back what was written, before it replaces anything.
 
 use std::path::{Path, PathBuf};
 
@@ -20,8 +20,8 @@ pub struct Written<'a> {
     pub triangles: Option<Vec<u32>>,
 }
 
-/// Reads a save back from the disk, as whoever opens it next will, and compares its shape with the one that was to be
-/// saved. It is the last look before the old file goes.
+/// Reads a save back from the disk, as the next reader will, and compares its shape with the one that was to be saved.
+/// It is the last check before the old file is replaced.
 ///
 /// # Errors
 /// [`AppError::ReadBack`] where it can't be read or shows another shape; [`AppError::Interrupted`] soon after `cancel`
@@ -59,7 +59,7 @@ pub fn read_back(
         .map_err(refuse)
 }
 
-/// Neighbours as they will be: those that were written from where they wait, the others from beside OUT.
+/// Neighbours as they will be: new ones from their temporary files, the others from beside OUT.
 struct AmongWritten {
     written: Vec<(String, PathBuf)>,
     beside: Neighbours,

@@ -1,4 +1,4 @@
-//! Where a file is to be written, through links, and whether there may be one at all.
+//! Where a file is to be written, through links, and whether it may be written there.
 
 use std::ffi::OsStr;
 use std::fs::{self, Metadata};
@@ -8,16 +8,16 @@ use std::path::{Path, PathBuf};
 use super::error::{FileError, in_words};
 use super::{folder_of, follow};
 
-/// The place that a path leads to, looked at without opening anything.
+/// The place that a path leads to, found without opening anything.
 #[derive(Clone, Debug)]
 pub struct Destination {
     /// The path as the person gave it, for messages.
     pub given: PathBuf,
-    /// The file that is written: where links lead to, in a folder's true spelling. The link itself stays.
+    /// The file that is written: the target of links, with its folder's true spelling. The link itself stays.
     pub target: PathBuf,
     /// The folder in which it is prepared: its own, or for a neighbour that of the file which names it.
     pub home: PathBuf,
-    /// For a neighbour, the file that names it: where nothing stands yet, it gets that one's rights.
+    /// For a neighbour, the file that names it: a new neighbour gets that file's rights.
     pub(super) namer: Option<PathBuf>,
 }
 
@@ -25,8 +25,8 @@ impl Destination {
     /// Follows `path` as editors do.
     ///
     /// # Errors
-    /// Where its folder is missing, or what stands there is a folder, a device, a pipe or a socket, or may not be
-    /// written.
+    /// If its folder is missing, or if the place holds a folder, a device, a pipe or a socket, or a file that may not
+    /// be written.
     pub fn of(path: &Path) -> Result<Self, FileError> {
         let target = follow(path).map_err(|error| FileError::writing(path, error))?;
         let destination = Self {
@@ -54,7 +54,7 @@ impl Destination {
         self.target.file_name().unwrap_or_default()
     }
 
-    /// What stands there, if it is a file that may be replaced.
+    /// The existing file, if there is one and it may be replaced.
     ///
     /// # Errors
     /// As [`Self::of`].
@@ -73,7 +73,7 @@ impl Destination {
                 "a device, a pipe or a socket stands there; choose another place",
             ));
         }
-        // Renaming would replace it all the same; whoever took the right to write meant it.
+        // A rename would replace it anyway, but a file was made read-only for a reason.
         if metadata.permissions().readonly() {
             return refuse(ErrorKind::PermissionDenied.into());
         }

@@ -1,4 +1,4 @@
-//! The files that a save makes for a while, and clearing away those that one which was killed has left.
+//! The temporary files of a save, and the removal of those that a killed save has left.
 //!
 //! There are temporary files (`.pliant-XXXXXX.tmp`, and `.old` for what is put back should a save fail half-way), which
 //! nothing names; and neighbours under passing names (`.pliant-` and 16 hex digits and `-` and the name), which a glTF
@@ -54,7 +54,7 @@ fn behind_passing(name: &str) -> Option<&str> {
     is_ours.then_some(flat)
 }
 
-/// Removes what killed saves have left in a folder. To be called by who holds its lock alone.
+/// Removes what killed saves have left in a folder. The caller must hold its lock alone.
 pub(super) fn clear(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     let mut passing = Vec::new();
@@ -67,7 +67,7 @@ pub(super) fn clear(folder: &Path) {
             continue;
         }
         if name.ends_with(TEMPORARY) || name.ends_with(REPLACED) {
-            // One that can't be removed is a file too many, and no harm.
+            // One that can't be removed does no harm.
             let _ = fs::remove_file(entry.path());
         } else if is_passing(name) {
             passing.push(name.to_owned());
@@ -76,7 +76,7 @@ pub(super) fn clear(folder: &Path) {
     if passing.is_empty() {
         return;
     }
-    // A save that was killed half-way has left a glTF that lives on these.
+    // A save that was killed half-way has left a glTF that names these.
     let Some(named): Option<BTreeSet<String>> = names_in_folder(folder, None) else {
         return;
     };

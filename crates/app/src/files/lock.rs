@@ -1,11 +1,11 @@
 //! A lock on a folder that is written to.
 //!
-//! It is an advisory lock of the system on a file in that folder, so that it ends with the process that holds it,
-//! however that ends: nothing stale is ever waited for. A save of several files holds it alone; saves of single files,
-//! which are one rename each, hold it together. Whoever holds it alone knows that no other save is under way there, so
-//! that temporary files which lie about belong to nobody.
+//! It is an advisory lock of the system on a file in that folder. It ends with the process that holds it, however that
+//! ends, so there are no stale locks. A save of several files holds it alone; saves of single files, which are one
+//! rename each, share it. While it is held alone no other save is under way there, so temporary files in the folder are
+//! leftovers.
 //!
-//! The file itself goes with its last holder. One that a killed process left is taken over by the next save.
+//! The lock's file is removed by its last holder. One that a killed process left is used by the next save.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
@@ -36,13 +36,13 @@ pub enum Share {
 pub(super) struct FolderLock {
     pub folder: PathBuf,
     pub share: Share,
-    /// `None` where the file system knows no locks: then saves go on without.
+    /// `None` if the file system has no locks: then saves go on without one.
     file: Option<File>,
 }
 
 impl FolderLock {
-    /// Waits for the lock on `folder`. `clear` is called as soon as it is held alone, for a moment at least: if that
-    /// can't be had at once and `share` doesn't ask for it, it is not called.
+    /// Waits for the lock on `folder`. `clear` is called while it is held alone, at least for a moment; it is not
+    /// called if the lock can't be had alone at once and `share` doesn't ask for that.
     ///
     /// # Errors
     /// What the system says; [`ErrorKind::Interrupted`] when `cancel` is raised; a sentence when another save in the
@@ -64,7 +64,7 @@ impl FolderLock {
                     }
                     match share {
                         Share::Alone => true,
-                        // The change is not one step: somebody may hold it alone in between.
+                        // The change is not atomic: another process may hold it alone in between.
                         Share::Together => file.try_lock_shared().is_ok(),
                     }
                 }
@@ -118,7 +118,7 @@ impl Drop for FolderLock {
     }
 }
 
-/// Opens the lock's file, which is made if need be; never anything but an ordinary file, and never through a link.
+/// Opens the lock's file, and makes it if necessary. It is always an ordinary file, never reached through a link.
 fn open(path: &Path) -> io::Result<File> {
     let mut last = io::Error::from(ErrorKind::NotFound);
     // Its last holder may take it away between two looks.
@@ -160,7 +160,7 @@ fn for_everybody(file: &File) {
     let _ = file;
 }
 
-/// Whether the open file is the one that stands at the path now.
+/// Whether the open file is still the one at the path.
 fn is_at(file: &File, path: &Path) -> bool {
     #[cfg(unix)]
     {

@@ -1,10 +1,10 @@
 //! Files on disk: read whole, and written all or not at all.
 //!
-//! A save goes in this order. [`Destination`] says where a path leads and refuses what is no file. [`Staging`] takes a
-//! lock on the folders that are written to, so that two saves there don't mix and what a killed one left can be cleared
-//! away. [`placement`] finds a name for each neighbour under which nothing of somebody else's is lost. The bytes are
-//! written beside their places, with the attributes of what they replace, and [`check`]ed by reading them back. Only
-//! then are they renamed into place.
+//! The steps of a save: [`Destination`] resolves a path and refuses what is not a file. [`Staging`] locks the folders
+//! that are written to, so that two saves there don't mix and the leftovers of a killed save can be removed.
+//! [`placement`] finds a name for each neighbour under which no other file is overwritten. The bytes are written to
+//! temporary files beside their places, with the attributes of the files that they replace, and [`check`]ed by reading
+//! them back. Only then are they renamed into place.
 
 mod attributes;
 pub mod check;
@@ -72,7 +72,7 @@ pub(crate) fn neighbour_path(folder: &Path, name: &str) -> PathBuf {
     literal
 }
 
-/// A path for a message: on one line, and nothing in it that steers a terminal.
+/// A path for a message: on one line and without control characters.
 pub fn shown(path: &Path) -> String {
     pliant_io::quoted(&path.to_string_lossy())
 }

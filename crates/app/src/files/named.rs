@@ -12,8 +12,8 @@ use super::is_same;
 /// A glTF's text beyond this size is not looked through.
 const LONGEST_TEXT: u64 = 256 << 20;
 
-/// What the glTF in a folder name, but for one of them; `None` where one is too large to be looked through. Those that
-/// can't be read name nothing that anybody could follow.
+/// The files that the glTF in a folder name, except one glTF; `None` if one is too large to be parsed. Those that can't
+/// be read name nothing.
 pub(super) fn names_in_folder(folder: &Path, except: Option<&Path>) -> Option<BTreeSet<String>> {
     let mut names = BTreeSet::new();
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {

@@ -1,7 +1,7 @@
 //! A file's neighbours on disk: what a glTF or an OBJ names by a path relative to its own folder.
 //!
-//! A stranger's file may name anything. Only ordinary files by relative paths are read, each once however often and in
-//! whatever spelling it is named, and no more in all than a budget allows.
+//! A file from a stranger may name anything. Only ordinary files at relative paths are read, each once whatever its
+//! spellings, and together no more than a budget allows.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -75,7 +75,7 @@ impl Neighbours {
 
     fn read_in(&self, folder: &Path, path: &str) -> io::Result<Bytes> {
         let full = neighbour_path(folder, path);
-        // Files are looked at before they are opened: opening a pipe or a device may wait, or do something.
+        // A file's type is checked before it is opened: opening a pipe or a device may block, or have an effect.
         refuse_strange(&fs::metadata(&full)?)?;
         let place = fs::canonicalize(&full)?;
         let mut known = self.known.borrow_mut();
@@ -129,7 +129,7 @@ impl Resolver for Neighbours {
     }
 }
 
-/// A path in its shortest form, so that all spellings of one are equal; in words why it is not followed.
+/// A path in its shortest form, so that all spellings of it are equal, or a sentence that says why it is not followed.
 fn relative(uri: &str) -> Result<String, String> {
     if uri.contains("://") {
         return Err("it is an address and no path; download it and name it by its path".to_owned());
@@ -182,7 +182,7 @@ fn refuse_strange(metadata: &fs::Metadata) -> io::Result<()> {
     }
 }
 
-/// Opens a file without waiting, should it have become a pipe since it was looked at.
+/// Opens a file without blocking, in case it has become a pipe since it was checked.
 fn open(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);

@@ -1,4 +1,4 @@
-//! Names for the neighbours that a save writes, under which nothing is lost that somebody else may need.
+//! Names for the neighbours that a save writes, under which no file is overwritten that another file may need.
 //!
 //! **The rule.** A neighbour gets the name that the file gives it, unless something stands there already. What stands
 //! there is shared if it holds the very same bytes (a buffer only if no other file names it, since buffers are edited).
@@ -7,9 +7,9 @@
 //! case, a link that leads out of the folder among them, the neighbour gets another name (`scene-2.bin`), and the
 //! person is told.
 //!
-//! So an edit applied again and again writes the same files each time, a file that is saved over itself keeps its
-//! names, and of two downloads whose buffers are both `scene.bin` both keep their shape. The rule asks only what lies
-//! in the folder; it needs no notes of our own there or elsewhere.
+//! So an edit that is applied repeatedly writes the same files each time, a file that is saved over itself keeps its
+//! names, and two downloads whose buffers are both called `scene.bin` both keep their shape. The rule depends only on
+//! the folder's files; it needs no notes of our own.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -55,10 +55,10 @@ pub enum Action {
     Share,
 }
 
-/// Gives each neighbour of `saved` the name that it is written under, in the texts that name it, too. What was renamed
-/// is told among the save's warnings.
+/// Gives each neighbour of `saved` the name that it is written under, also in the texts that name it. Renamed
+/// neighbours are listed among the save's warnings.
 ///
-/// The folder must be locked: what stands there may not change until the files are in their places.
+/// The folder must be locked: its files may not change until the save is committed.
 ///
 /// # Errors
 /// Where a neighbour can't be called otherwise, or a thousand names are taken.
@@ -127,8 +127,8 @@ pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result
     Ok(settled)
 }
 
-/// Takes along the neighbours that OUT names by passing names and leaves as they are: a save of it was cut off, and this
-/// one gives them their own names back.
+/// Adds the unchanged neighbours that OUT names by passing names: an earlier save of it was cut off, and this one gives
+/// them their own names back.
 fn adopt_passing(saved: &mut Saved, output: &Destination) -> Result<(), FileError> {
     let Some(named) = neighbours_named(&saved.files[0].bytes) else {
         return Ok(());
@@ -214,7 +214,7 @@ impl<'a> Folder<'a> {
         let metadata = match fs::metadata(&target) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 let is_link = fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_symlink());
-                // A link that leads nowhere is somebody's, who may bring the file back.
+                // A link that leads nowhere is kept: its file may come back.
                 return if is_inside && !is_link {
                     There::Nothing(target)
                 } else {

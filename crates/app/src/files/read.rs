@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::error::{FileError, in_words};
 
-/// Reads a whole file. What is no ordinary file is refused: a pipe would wait for ever.
+/// Reads a whole file. Anything but an ordinary file is refused: reading a pipe could block for ever.
 ///
 /// # Errors
 /// What the system says.

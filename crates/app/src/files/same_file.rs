@@ -9,7 +9,7 @@ use super::error::in_words;
 use super::{folder_of, shown};
 use crate::AppError;
 
-/// Links that lead on to links, as the system counts them before it gives up.
+/// The most links to links that are followed, as in the system.
 const MOST_LINKS: usize = 40;
 
 /// The place that a path leads to through all links, with its folder in its one true spelling. The file itself need
@@ -67,13 +67,13 @@ fn identity(path: &Path) -> Option<Identity> {
     }))
 }
 
-/// Whether two paths lead to one file, by links, hard links or another spelling. Files that are not there yet are one
-/// where they would be.
+/// Whether two paths lead to one file, by links, hard links or another spelling. Files that don't exist yet are one if
+/// they would be.
 pub fn is_same(a: &Path, b: &Path) -> bool {
     a == b || identity(a).is_some_and(|a| identity(b) == Some(a))
 }
 
-/// Whether a folder's file system takes names that differ in case alone for one: told by the folder's own name.
+/// Whether a folder's file system ignores case in names, tested with the folder's own name.
 fn folds_case(folder: &Path) -> bool {
     let Some(name) = folder.file_name().and_then(OsStr::to_str) else {
         return cfg!(any(windows, target_os = "macos"));

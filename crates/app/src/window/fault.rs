@@ -1,6 +1,6 @@
-//! A fault of our own on the window's thread: what a person has left to go on with is a report and a recovery file.
+//! A panic on the window's thread leaves a report and a recovery file, from which a person can go on.
 //!
-//! A fault on another thread is caught there and said ([`super::workers`]); the window goes on.
+//! A panic on another thread is caught there and reported ([`super::workers`]); the window goes on.
 
 use std::backtrace::Backtrace;
 use std::fs;
@@ -11,7 +11,7 @@ use std::time::SystemTime;
 use super::files::recovery;
 use crate::version::VERSION;
 
-/// From now on a panic on this thread keeps the newest work and writes a report into `folder`.
+/// From now on a panic on this thread saves the newest work and writes a report into `folder`.
 pub fn listen(folder: PathBuf) {
     let before = take_hook();
     let window = std::thread::current().id();

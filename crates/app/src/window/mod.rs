@@ -38,7 +38,7 @@ use shell::Listener;
 
 use crate::error::AppError;
 
-/// What tells where a window can be opened, on systems with X11 or Wayland.
+/// The variables that tell of a display, on systems with X11 or Wayland.
 const DISPLAYS: [&str; 3] = ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"];
 
 /// Opens the window on a file, or on the built-in sample, and returns when it is closed.
@@ -101,7 +101,7 @@ pub fn run(file: Option<PathBuf>) -> Result<(), AppError> {
             return Err(error);
         }
         if !has_begun.get() {
-            // Nearly always it is the device; asking for one without a window tells.
+            // Nearly always the cause is the device; asking for one without a window tells.
             let reason = pliant_render::Headless::new().err().map_or_else(
                 || "the window system or the graphics driver refused it".to_owned(),
                 |error| error.to_string(),

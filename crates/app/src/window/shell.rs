@@ -1,5 +1,5 @@
-//! What eframe runs: the application, which outlives eframe's window when the graphics device is lost; and the keys of
-//! the numeric pad, which reach us by a way of their own.
+//! What eframe runs: the application, which outlives eframe's window when the graphics device is lost, and the keys of
+//! the numeric pad, which come directly from winit.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -59,7 +59,7 @@ impl eframe::App for Shell {
     }
 }
 
-/// eframe's event handler, with an ear for the numeric pad.
+/// eframe's event handler, extended by the keys of the numeric pad.
 pub struct Listener<'a> {
     /// eframe's own.
     pub inner: EframeWinitApplication<'a>,

@@ -1,4 +1,4 @@
-//! What a cell that bends keeps of the bending term, and what that makes of its matrix and its turn (see `bending`).
+//! The matrices that the bending term adds to a cell, and their effect on its matrix and rotation (see `bending`).
 
 /// Four numbers: a vector and one more.
 pub(crate) type Quad = [f64; 4];

@@ -1,24 +1,24 @@
 //! The bending term of the smooth energy, which makes point handles safe.
 //!
-//! The rims alone are a membrane: pulled at one vertex it draws out to a spike, however fine the mesh, since a point holds
-//! no function whose first derivatives alone are bounded. So each cell is tied to one affine map Φ_i as well, the best
-//! one, whose normals turn with the cell:
+//! The energy over rims is that of a membrane: pulled at one vertex it forms a spike, however fine the mesh, because a
+//! point cannot hold a function of which only first derivatives are bounded. So each cell is also tied to its best
+//! affine map Φ_i, whose normals turn with the cell:
 //!
 //! E = E_rims + ½ Σ_i min over Φ_i of β_i Σ_f∋i ⅓ A_f |F_f − Φ_i P_f|² + ν Σ_f∋i ⅓ A_f |(Φ_i − R_i) n_f|²
 //!
 //! with F_f the gradient of p' on a triangle, P_f the projection into its plane, n_f its normal and A_f its area, times
 //! its stiffness. Triangles x apart differ in F by the second derivatives of p' times x, so with β_i like κ A over the
-//! cell's squared size (see `ties`), A being the area of all cells, the term is ½ κ A ∫ |Hess p'|²: a thin plate without
-//! Poisson's effect, with free borders, and κ a number without unit.
+//! cell's squared size (see `ties`), A being the area of all cells, the term is ½ κ A ∫ |Hess p'|²: a thin plate
+//! without Poisson's effect, with free borders, and κ a number without unit.
 //!
 //! An affine map costs nothing, so a bumpy region turns at no cost in the majorising quadratic as well, where
 //! |L p' − R L p|² (the second order of [LG15] and [OHS25]) with its rotations held makes it pay
-//! κ A times its squared curvature. What an affine map of a curved cell could hide, its normals' stretch or tilt, ν
-//! holds as firmly as the membrane holds the rest.
+//! κ A times its squared curvature. An affine map of a curved cell could hide a stretch or tilt of its normals; ν
+//! resists that as firmly as the membrane resists the rest.
 //!
 //! With S⁰ = Σ_f ⅓ A_f P_f the cell's rest matrix (the cotangents' Σ w e eᵀ of a triangle is A P), N = Σ_f ⅓ A_f n nᵀ =
-//! ½ tr S⁰ − S⁰, μ = ν/β and K = (S⁰ + μ N)⁻¹, all of which commute, the best map is 1 + Φ with Φ = (B + μ (R − 1) N) K,
-//! and what is left is
+//! ½ tr S⁰ − S⁰, μ = ν/β and K = (S⁰ + μ N)⁻¹, all of which commute, the best map is 1 + Φ with Φ = (B + μ (R − 1) N)
+//! K, and what is left is
 //!
 //! ½ β Σ w |D|² − ½ ⟨B β K, B⟩ − ⟨R − 1, ν S⁰ N K + B ν K N⟩:
 //!
@@ -35,8 +35,9 @@ use super::domain::Domain;
 use crate::numerical::eigen::eigenvectors;
 use crate::operators::CHUNK;
 
-/// ν. Without it a bent cylinder flattens, its curvature hidden in affine maps; with 0.1 a little, and with 10 or 100 its
-/// shape is that of 1, but bumpy cells turn at a cost again: a scan of 43k vertices takes 26 and 42 steps instead of 15.
+/// ν. Without it a bent cylinder flattens, because affine maps hide its curvature; with 0.1 it flattens a little. With
+/// 10 or 100 the shape is that of 1, but turning bumpy cells costs energy again: a scan of 43k vertices takes 26 and 42
+/// steps instead of 15.
 const NORMAL: f64 = 1.0;
 
 /// κ A for cells on this domain.
@@ -49,8 +50,8 @@ pub(crate) fn stiffness(surface: &Surface, domain: &Domain, smoothness: f64) -> 
     smoothness * 0.5 * area
 }
 
-/// β of each cell, for κ A = `stiffness`: ½ κ A over what the triangles' gradients of a function with second derivatives
-/// of length 1 are squared, on average over the kinds of them and over the cell's area.
+/// β of each cell, for κ A = `stiffness`: ½ κ A over what the triangles' gradients of a function with second
+/// derivatives of length 1 are squared, on average over the kinds of them and over the cell's area.
 pub(crate) fn ties(surface: &Surface, topology: &Topology, domain: &Domain, stiffness: f64) -> Vec<f64> {
     domain.vertices[..domain.cell_count]
         .par_iter()
@@ -70,7 +71,7 @@ pub(crate) fn ties(surface: &Surface, topology: &Topology, domain: &Domain, stif
                 }
             }
             let tie = 3.0 * stiffness * area / squares;
-            // A cell with a triangle without area has gradients without bounds.
+            // A triangle without area has unbounded gradients.
             if tie.is_finite() { tie } else { 0.0 }
         })
         .collect()
@@ -91,7 +92,7 @@ pub(crate) fn add(cells: &mut Cells, ties: &[f64]) {
 fn bend(rest: &mut [f64; 6], tie: f64) -> Bend {
     let (axes, squares) = eigenvectors(&matrix(rest));
     let own = 0.5 * (squares.x + squares.y + squares.z);
-    // β K, ν K N and ν S⁰ N K along each axis; what has neither extent nor normal there is left alone.
+    // β K, ν K N and ν S⁰ N K along each axis; zero along an axis with neither extent nor normal.
     let along = |square: f64| {
         let square = square.max(0.0);
         let across = (own - square).max(0.0);
@@ -148,7 +149,7 @@ mod tests {
     use crate::arap::rims;
     use crate::arap::shape::{Guesses, Scratch, Shape};
 
-    /// What a sheet of `side` by `side` cells pays for ½ xᵀ H x beyond the rims, in units of ½ κ A |H|² A.
+    /// The energy of ½ xᵀ H x on a sheet of `side` by `side` cells, less that of the rims, in units of ½ κ A |H|² A.
     fn paid(side: usize, hessian: DMat2) -> f64 {
         let model = shapes::model(shapes::grid(side, side));
         let (surface, topology) = (&model.surface, &model.topology);

@@ -1,18 +1,19 @@
 //! An ARAP energy as one stencil a cell, whatever its edges are.
 //!
-//! With displacements d, D_v = d_v − d_i over a cell's ring and B_i = Σ_v D_v G_ivᵀ, a cell's matrix is S_i = S⁰_i + B_i
-//! and its energy
+//! With displacements d, D_v = d_v − d_i over a cell's ring and B_i = Σ_v D_v G_ivᵀ, a cell's matrix is S_i = S⁰_i +
+//! B_i and its energy
 //!
 //! E_i = ¼ Σ_v w_iv |D_v|² − ⟨R_i − 1, S_i⟩,
 //!
-//! which is ½ Σ w |e' − R_i e|² multiplied out so that nothing but differences of displacements and R_i − 1 enter: it is
-//! zero at rest to the last bit and keeps its digits near it. Its gradient is
+//! which is ½ Σ w |e' − R_i e|² multiplied out, so that only differences of displacements and R_i − 1 enter: it is zero
+//! at rest to the last bit and keeps its digits near rest. Its gradient is
 //!
 //! dE/dd_i = −Σ_v w_iv D_v + (R_i − 1) Σ_v (G_iv − G_vi) − Σ_v (R_v − R_i) G_vi,
 //!
-//! so a solver meets two gathers over the ring: positions for the matrices, turns for the gradient. Where cells bend, Z
-//! (see `bending`) stands for R − 1 here, and w, G_iv and G_vi have grown by their cells' 1 + β. `rims` and `spokes` say
-//! what G, S⁰ and w are; the edges that both ends' sums miscount are all constrained, and stand in `constant`.
+//! so a solver gathers over the ring twice: positions for the matrices, rotations for the gradient. Where cells bend, Z
+//! (see `bending`) stands for R − 1 here, and w, G_iv and G_vi have grown by their cells' 1 + β. `rims` and `spokes`
+//! define G, S⁰ and w. The edges that the sums over both ends count wrongly are all constrained; `constant` corrects
+//! them.
 
 use glam::DVec3;
 
@@ -52,7 +53,7 @@ impl Cells {
         self.offsets[cell] as usize..self.offsets[cell + 1] as usize
     }
 
-    /// The length that single-precision fields are measured in: about the model's.
+    /// The unit of length of single-precision fields: about the model's size.
     pub fn unit(&self) -> f64 {
         if self.scale > 0.0 { self.scale.sqrt() } else { 1.0 }
     }

@@ -1,9 +1,9 @@
-//! A surface of fewer vertices: one for each cluster of neighbours.
+//! A coarser surface with one vertex for each cluster of neighbours.
 //!
-//! Centres are vertices, taken by their numbers wherever none is near yet, so that any two lie apart; a cluster is what
-//! is nearest to its centre along the surface and has its role, so that it is constrained as a whole or not at all.
-//! Triangles are the faces whose corners lie in three clusters. Whatever the surface is, in parts, with borders or
-//! non-manifold, so may the coarse one be, and the method takes it.
+//! Centres are vertices, chosen in the order of their numbers wherever no other centre is near. A cluster consists of
+//! the vertices that are nearest to its centre along the surface and have its role, so it is constrained as a whole or
+//! not at all. Triangles are the faces whose corners lie in three clusters. The coarse surface may have several parts,
+//! borders or non-manifold edges wherever the fine one has them; the method takes such surfaces.
 
 use pliant_mesh::{DistanceSearch, Surface, SurfaceVertex, Topology};
 
@@ -11,10 +11,10 @@ use super::domain::{ABSENT, Domain};
 use crate::handles::Handle;
 use crate::{Problem, Role};
 
-/// How many centres that lie apart by 1 there are to a unit of area: 0.81 were found on scans.
+/// How many centres at a distance of 1 from each other there are per unit of area: 0.81 were found on scans.
 const DENSITY: f64 = 0.81;
 
-/// A coarse surface, and who belongs to which of its vertices.
+/// A coarse surface, and which vertices belong to each of its vertices.
 pub(crate) struct Clusters {
     pub surface: Surface,
     pub topology: Topology,
@@ -23,7 +23,7 @@ pub(crate) struct Clusters {
     pub roles: Vec<Role>,
     /// The mean of each cluster's.
     pub stiffness: Vec<f64>,
-    /// Of each of the surface's vertices: its cluster, [`ABSENT`] out of the domain.
+    /// The cluster of each surface vertex, [`ABSENT`] outside of the domain.
     pub cluster_of: Vec<u32>,
 }
 

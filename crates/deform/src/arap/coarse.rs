@@ -1,10 +1,10 @@
-//! The coarse level of a large surface, which finds in a fraction of the time where the surface will go.
+//! The coarse level of a large surface, which predicts its shape in a fraction of the time.
 //!
-//! It has the same energy on a surface of clusters, and dead loads that make its gradient the one of the fine shape that
-//! it was last told of (the full approximation scheme of [Bra77], as optimisation [Nas00]): it stands still where
-//! the fine shape does, and what it does otherwise corrects that. What goes back are turns alone. Each fine cell turns
-//! along with the coarse cells around it, and one global step (see `lead`) puts the vertices where the turned cells
-//! want them, so nothing of the clusters shows and what the fine shape has of its own stays.
+//! It has the same energy on a surface of clusters, and dead loads that make its gradient equal to that of the fine
+//! shape it was last restricted from (the full approximation scheme of [Bra77], as optimisation [Nas00]): at the fine
+//! minimum it does not move, and otherwise its motion is a correction. Only rotations are prolongated. Each fine cell
+//! turns with the coarse cells around it, and one global step (see `lead`) moves the vertices accordingly, so that the
+//! clusters don't show and the details of the fine shape stay.
 
 use glam::Quat;
 use pliant_mesh::{Cancel, Progress, SurfaceVertex};
@@ -21,12 +21,12 @@ use crate::operators::CHUNK;
 use crate::region::partition::Partition;
 use crate::{Arap, Constraints, Loose, Method, Ordering, Problem};
 
-/// Vertices in a cluster at least: the smaller, the less stiff against bending, the more like the fine surface, and the
-/// dearer. At the end of a drag of a scan of 173k vertices the energy is 4% above the minimum with 12, 5% with 16, 3%
-/// with 8 and 2% with 4; without a coarse level it is 62%.
+/// The fewest vertices of a cluster: the smaller, the less stiff against bending, the closer to the fine surface, and
+/// the more expensive. At the end of a drag of a scan of 173k vertices the energy is 4% above the minimum with 12, 5%
+/// with 16, 3% with 8 and 2% with 4; without a coarse level it is 62%.
 const CLUSTER: f64 = 12.0;
 
-/// About how many clusters there are at most, so that their steps fit into a frame.
+/// About how many clusters there are at most, so that steps of the coarse level fit into a frame.
 const MOST: f64 = 25_000.0;
 
 /// Coarse cells that a fine one turns along with.
@@ -35,11 +35,11 @@ const NEAREST: usize = 4;
 /// A coarse cell, and how much of its turn a fine cell takes.
 type Share = (u32, f32);
 
-/// The level's own solver, and how it hangs together with the fine one.
+/// The level's own solver, and how it is connected with the fine one.
 #[derive(Debug)]
 pub(crate) struct Coarse {
     solver: Box<ArapSolver>,
-    /// Of each fine cell; they sum to 1, or are nothing where no coarse cell is near.
+    /// For each fine cell; they sum to 1, or are 0 if no coarse cell is near.
     shares: Vec<[Share; NEAREST]>,
     leads_all: bool,
     /// Where each solved coarse vertex' row in `members` starts; one more at the end.
@@ -48,12 +48,12 @@ pub(crate) struct Coarse {
     members: Vec<Share>,
     /// Of each solved coarse vertex: the fine local vertex that it is.
     fine_of: Vec<u32>,
-    /// The coarse rotations that the fine cells have turned along with.
+    /// The coarse rotations that were last prolongated.
     followed: Vec<Rotation>,
 }
 
 impl Coarse {
-    /// For the bound `fine` domain of `problem`; `None` where that has none, and the fine level does without.
+    /// For the bound `fine` domain of `problem`; `None` if no coarse level can be made.
     pub fn of(problem: &Problem, options: &Arap, handles: &[Handle], fine: &Domain, cancel: &Cancel) -> Option<Self> {
         let size = CLUSTER.max(fine.vertices.len() as f64 / MOST);
         let clusters = Clusters::of(problem, fine, handles, size);
@@ -112,7 +112,7 @@ impl Coarse {
         })
     }
 
-    /// Whether every fine cell has a coarse one near: small parts may have none.
+    /// Whether every fine cell has a coarse one near it; small parts may have none.
     pub fn leads_all(&self) -> bool {
         self.leads_all
     }
@@ -128,8 +128,8 @@ impl Coarse {
         self.followed.fill(IDENTITY);
     }
 
-    /// Takes over the fine shape for `motions`, whose gradient in `unit` is known: every centre stands where it does
-    /// there, and loads make the coarse gradient the fine one's.
+    /// Restricts the fine shape for `motions`, whose gradient in `unit` is known: every centre takes its fine position,
+    /// and the loads make the coarse gradient equal to the fine one.
     pub fn restrict(&mut self, fine: &Shape, unit: f64, motions: &[Motion]) {
         let solver = &mut *self.solver;
         solver.leave(motions);
@@ -178,7 +178,8 @@ impl Coarse {
         self.followed.copy_from_slice(&current.rotations);
     }
 
-    /// Starts for new motions and takes `steps` steps. Says where from: from rest, the fine shape is to turn from there too.
+    /// Starts for new motions and takes `steps` steps. Returns where it started: if from rest, the fine shape must
+    /// start from rest too.
     pub fn start(&mut self, motions: &[Motion], steps: u32) -> Origin {
         let origin = self.solver.start(motions);
         if origin == Origin::Rest {
@@ -196,13 +197,13 @@ impl Coarse {
             }
         }
         if !self.solver.current.energy.is_finite() {
-            // Nobody follows; what the fine level learns next is where it goes on.
+            // These rotations are not prolongated; the next restriction decides where the level goes on.
             self.rest();
         }
     }
 
-    /// Turns the fine cells along, `from` being how they were when it last learned of them; those that have no coarse cell
-    /// near stay as they are in `to`.
+    /// Turns the fine cells with the coarse ones, `from` being their rotations at the last restriction; those without a
+    /// coarse cell near stay as they are in `to`.
     pub fn turn(&mut self, from: &[Rotation], to: &mut [Rotation]) {
         let rotations = &self.solver.current.rotations;
         let turn = |(now, before): (&Rotation, &Rotation)| (wide(*now) * wide(*before).conjugate()).as_quat();
@@ -218,7 +219,7 @@ impl Coarse {
                     let mut sum = Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
                     for &(cell, share) in shares {
                         let other = turns[cell as usize];
-                        // Both signs are the same turn: the one nearer to the first's is blended.
+                        // Both signs are the same rotation: the one nearer to the first is blended.
                         sum += other * share.copysign(other.dot(first));
                     }
                     // Opposed turns may cancel out.
@@ -233,8 +234,8 @@ impl Coarse {
     }
 }
 
-/// Of one of the surface's vertices: the nearest coarse cells of its cluster's ring, with shares that fall to nothing
-/// towards the next one.
+/// For a surface vertex, the nearest coarse cells of its cluster's ring, with shares that fall to 0 towards the next
+/// one.
 fn shares(problem: &Problem, clusters: &Clusters, domain: &Domain, vertex: u32) -> [Share; NEAREST] {
     let here = problem.surface.positions[vertex as usize];
     let own = clusters.cluster_of[vertex as usize];

@@ -29,7 +29,7 @@ impl DeformMethod for Arap {
 
     fn needs(&self) -> Needs {
         Needs::Surface {
-            // Across a constrained vertex, too, whose cell turns with all its neighbours.
+            // Across constrained vertices, too: their cells turn with all their neighbours.
             reach: 2,
             ordering_power: Some(self.operator_power()),
         }

@@ -1,21 +1,18 @@
-//! One step down.
+//! One descent step with a line search.
 
 use rayon::prelude::*;
 
 use super::history::Field;
 use super::shape::{Guesses, Shape};
 use super::{ArapSolver, State};
+use crate::numerical::line_search::Trial;
 use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
-
-/// A step must lower the energy by this share of what its slope promises.
-const SUFFICIENT: f64 = 1e-4;
 
 /// Lengths that a line search tries.
 const TRIALS: u32 = 10;
 
-/// Energies below this share of the rest shape's scale, edges that are off by what single precision rounds off, are
-/// rounding: of turns and gradients.
+/// Energies below this share of the rest shape's scale are rounding of rotations and gradients in single precision.
 const NOTHING: f64 = 3.6e-15;
 
 /// What is known where the last step ended.
@@ -24,8 +21,7 @@ pub(crate) enum End {
     /// The gradient.
     #[default]
     Known,
-    /// Not the gradient, but how far the step went against the direction; `trial` is then where it began, and `direction`
-    /// what it was.
+    /// Not the gradient, but how far the step went against `direction`; `trial` is then the shape before the step.
     Stepped(f64),
     /// Not even that.
     Unknown,
@@ -34,9 +30,9 @@ pub(crate) enum End {
 impl ArapSolver {
     /// Takes one step that lowers the energy, or finds that there is none to take.
     ///
-    /// Converged is a shape from which the quadratic model promises less than the tolerance's share of the energy, and
-    /// that the last step improved by less than that too. A plain local/global step always descends, in exact
-    /// arithmetic: where even that fails, rounding is all that is left.
+    /// A shape has converged if the quadratic model promises a decrease below the tolerance's share of the energy and
+    /// the last step gained less than that too. In exact arithmetic a plain local/global step always descends: if even
+    /// that fails, only rounding is left.
     pub(super) fn descend(&mut self) {
         self.finish_step();
         self.map_gradient();
@@ -65,7 +61,7 @@ impl ArapSolver {
         }
     }
 
-    /// Finds the gradient where the last step ended, and remembers what the step has shown.
+    /// Computes the gradient at the end of the last step, and adds the step to the history.
     pub(super) fn finish_step(&mut self) {
         let end = std::mem::take(&mut self.end);
         if matches!(end, End::Known) {
@@ -85,7 +81,8 @@ impl ArapSolver {
             .map(gradient, &mut self.history.mapped, &mut self.map_room);
     }
 
-    /// Moves against the direction, by its whole length if that lowers the energy enough; says whether any length did.
+    /// Moves against the direction, by its whole length if that lowers the energy enough. Returns whether any length
+    /// did.
     fn search(&mut self, slope: f64) -> bool {
         let before = self.current.energy;
         let mut length = 1.0;
@@ -94,19 +91,18 @@ impl ArapSolver {
             let guesses = Guesses::Given(&self.current.rotations);
             self.cells.measure(&mut self.trial, guesses, &mut self.scratch);
             self.springs.add_energy(&mut self.trial);
-            let after = self.trial.energy;
-            if after <= before + SUFFICIENT * length * slope && after < before {
+            let trial = Trial {
+                length,
+                before,
+                after: self.trial.energy,
+                slope,
+            };
+            if trial.is_sufficient() {
                 self.end = End::Stepped(length);
                 std::mem::swap(&mut self.current, &mut self.trial);
                 return true;
             }
-            // The least of the parabola through both energies and the slope.
-            let least = -0.5 * slope * length * length / (after - before - slope * length);
-            length = if least.is_finite() {
-                least.clamp(0.1 * length, 0.5 * length)
-            } else {
-                0.1 * length
-            };
+            length = trial.next_length();
         }
         false
     }

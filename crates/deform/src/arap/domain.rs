@@ -1,8 +1,8 @@
 //! The part of the surface that an ARAP energy sees, numbered for the solver.
 //!
-//! Local vertices are the solved ones first, in the order in which they are eliminated; then the constrained vertices
-//! next to them, whose cells bend as well; then the rest of those cells' rings. So a field over the solved vertices is
-//! the head of a field over all of them.
+//! Local vertices are first the solved ones, in the order of elimination; then their constrained neighbours, whose
+//! cells count too; then the rest of those cells' rings. So a field over the solved vertices is the head of a field
+//! over all local vertices.
 
 use pliant_mesh::{Surface, SurfaceVertex, Topology};
 

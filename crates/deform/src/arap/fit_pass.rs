@@ -1,5 +1,5 @@
-//! The first pass over the cells: each one's displaced ring becomes its matrix S, eight cells' rotations are fitted at
-//! once, and the energy is summed. It runs on whatever vectors the machine has (see [`crate::numerical::lanes`]).
+//! The first pass over the cells: gathers each cell's displaced ring into its matrix S, fits eight cells' rotations at
+//! once, and sums the energy. It runs on the machine's vectors (see [`crate::numerical::lanes`]).
 
 use std::hint::black_box;
 
@@ -12,7 +12,7 @@ use crate::numerical::lane_fits::Fits;
 use crate::numerical::lanes::LANES;
 use crate::numerical::prefetch::Prefetch;
 
-/// Entries between those that are gathered and those that are asked for: some eight cells'.
+/// How far ahead entries are prefetched: about eight cells.
 const AHEAD: usize = 48;
 
 /// Which rotations cells get.
@@ -146,7 +146,8 @@ impl Cells {
         for &end in self.ends.get(ahead).unwrap_or_default() {
             prefetch.item(&displacements[end as usize]);
         }
-        // Without its fourth number, which nothing needs, the compiler takes a quad apart into a pair and a single one.
+        // The fourth number is not needed, but without it the compiler splits the vector into a pair and a single
+        // number.
         let (b, laplacian, square) = black_box((b, laplacian, square));
         (b, laplacian, square[0] + square[1] + square[2])
     }

@@ -1,4 +1,4 @@
-//! The second pass: the turns of a vertex' ring become its gradient, on whatever vectors the machine has.
+//! The second pass: gathers the rotations of a vertex' ring into its gradient, on the machine's vectors.
 
 use glam::DVec3;
 use pulp::{Simd, WithSimd};
@@ -7,7 +7,7 @@ use super::cells::{Cells, Quad, minus};
 use super::rotation::Rotation;
 use crate::numerical::prefetch::Prefetch;
 
-/// Entries between those that are gathered and those that are asked for: some cells'.
+/// How far ahead entries are prefetched: some cells.
 const AHEAD: usize = 24;
 
 /// R − 1, or Z where cells bend, column by column.

@@ -1,14 +1,15 @@
 //! The limited-memory quasi-Newton direction [NW06, algorithm 7.4] in inner products alone.
 //!
 //! The preconditioner P majorises the energy's Hessian, so the first inverse is its inverse, unscaled, and the last
-//! steps' curvature corrects it: with no memory the direction is exactly a global step of the plain local/global method.
+//! steps' curvature corrects it: with no memory the direction is exactly a global step of the plain local/global
+//! method.
 //!
 //! With mapped gradients z = P⁻¹ g known at both ends of a step, P⁻¹ y is their difference, and the direction is a sum
 //! of z, steps s and mapped changes P⁻¹ y whose factors follow from products s · g, y · z = P⁻¹ y · g, s · y and y ·
-//! P⁻¹ y. So two fields a step are remembered, and an iteration reads them twice (products, sum), where the two loops
+//! P⁻¹ y. So two fields per step are remembered, and an iteration reads them twice (products, sum); the usual two loops
 //! read four times and write their field in between. All fields here are single precision, in units of a length of the
-//! model: a direction needs no more digits, and what it is measured by, slope and energy, is not computed from them.
-//! An iteration is as long as its fields take to come from memory, so they have three numbers a vertex and not four.
+//! model: a direction needs no more digits, and slope and energy are not computed from them. The time of an iteration
+//! is that of reading its fields from memory, so they have three numbers per vertex, not four.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -35,7 +36,7 @@ pub(crate) struct History {
     pending: Option<Pair>,
     /// Forgotten pairs' fields, to be used again.
     spare: Vec<Pair>,
-    /// Of each pair: s · g and P⁻¹ y · g at the last point asked for.
+    /// For each pair: s · g and P⁻¹ y · g at the last point asked for.
     step_gradient: Vec<f64>,
     change_mapped: Vec<f64>,
     /// The present point's mapped gradient, and the last one's.
@@ -83,8 +84,8 @@ impl History {
         self.spare.extend(self.pending.replace(pair));
     }
 
-    /// Takes in the present point's `gradient`, which was `before` where the step that is remembered last began, and the
-    /// mapped one; gives the factors of its direction.
+    /// Adds the present point's `gradient` and its mapped one; `before` was the gradient where the last remembered step
+    /// began. Returns the factors of the direction.
     pub fn factors(&mut self, before: &Field, gradient: &Field) -> Factors {
         let mut pending = self.pending.take();
         let own = pending.as_mut().map(|pair| self.map_change(pair, before, gradient));

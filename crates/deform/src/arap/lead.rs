@@ -1,9 +1,9 @@
-//! Steps of a large surface's solver that a coarse level leads.
+//! Steps of a large surface's solver that are led by its coarse level.
 //!
-//! For new targets the coarse level goes ahead and the fine cells turn along, in less time than the fine level's own
-//! start and step take. Towards targets that stay, corrections by the coarse level alternate with the fine level's steps
-//! as long as they are worth it. A correction that is taken is a step like any other: the energy falls, and the memory
-//! learns from it how soft the surface is along it, which the clusters, too stiff against bending, do not know.
+//! For new targets the coarse level steps first and its rotations are prolongated, in less time than the fine level's
+//! own start and step take. For unchanged targets, corrections by the coarse level alternate with the fine level's
+//! steps as long as they gain enough. An accepted correction is a step like any other: the energy falls, and the
+//! history learns how soft the surface is along it, which the clusters, being too stiff against bending, can't tell.
 
 use rayon::prelude::*;
 
@@ -15,7 +15,8 @@ use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screws};
 use crate::operators::CHUNK;
 
-/// Coarse steps for new targets: along a drag of 60 frames more than 4 did not get nearer to the minimum, 2 fell behind.
+/// Coarse steps for new targets: along a drag of 60 frames more than 4 did not get closer to the minimum, and 2 fell
+/// behind.
 const STEPS: u32 = 3;
 
 /// Coarse steps of a correction.
@@ -60,10 +61,10 @@ impl ArapSolver {
         }
     }
 
-    /// Makes the shape for new motions that the coarse level leads to.
+    /// Makes the shape for new motions that the coarse level predicts.
     ///
-    /// From the rest shape the blend is all: it is exact where everything moves rigidly, and the coarse level corrects it
-    /// next.
+    /// From the rest shape only the blend is used: it is exact where everything moves rigidly, and the coarse level
+    /// corrects it next.
     fn start_led(&mut self, coarse: &mut Coarse, motions: &[Motion]) {
         self.corrections = Corrections::default();
         if self.motions.iter().all(Motion::is_rest) {
@@ -96,10 +97,10 @@ impl ArapSolver {
         self.state = State::Descending;
     }
 
-    /// Takes the coarse level's correction, if it lowers the energy.
+    /// Accepts the coarse level's correction if it lowers the energy.
     fn correct(&mut self, coarse: &mut Coarse) {
         self.finish_step();
-        // The memory takes in the step before, and knows the mapped gradient where this one begins.
+        // The history adds the step before, and has the mapped gradient where this one begins.
         self.map_gradient();
         self.history.factors(&self.trial.gradient, &self.current.gradient);
         coarse.restrict(&self.current, self.unit, &self.motions);
@@ -130,8 +131,8 @@ impl ArapSolver {
         }
     }
 
-    /// Turns the trial shape's cells as the coarse level has turned since the current shape, and takes one global step to
-    /// the least of the quadratic that those turns make of the energy.
+    /// Prolongates the coarse level's rotations since the current shape to the trial shape's cells, and takes one
+    /// global step to the minimum of the energy with these rotations.
     fn prolongate(&mut self, coarse: &mut Coarse) {
         let Self {
             current,
@@ -162,7 +163,7 @@ impl ArapSolver {
         springs.add_energy(trial);
     }
 
-    /// Leaves the descent that it was in for `motions`, with the shape as it is.
+    /// Ends the present descent and begins one for `motions`, with the shape as it is.
     pub(super) fn leave(&mut self, motions: &[Motion]) {
         self.motions.copy_from_slice(motions);
         self.springs.aim(motions);

@@ -1,5 +1,5 @@
 //! The majorising quadratic's matrix on the solved vertices, as compressed columns in the order of elimination, scaled
-//! to a unit diagonal: the Laplacian −L, or with bending a plate.
+//! to a unit diagonal: the Laplacian −L or, with bending, a thin plate.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -15,7 +15,7 @@ use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::ordering::hubs::hub_degree;
 use crate::{ArapEnergy, Laplacian};
 
-/// The matrix on the solved vertices, and how constrained ones pull at them.
+/// The matrix on the solved vertices, and its entries for constrained ones.
 pub(crate) struct System {
     /// S A S, A the majorising quadratic's matrix.
     pub matrix: ScaledMatrix,
@@ -25,8 +25,8 @@ pub(crate) struct System {
 }
 
 impl System {
-    /// −A_sc x for the values `x` of constrained local vertices, and W x for those that a soft handle wants of its solved
-    /// ones: the right-hand side whose solution extends them.
+    /// The right-hand side for the values `x` of constrained local vertices, −A_sc x, and of soft handles' targets, W
+    /// x.
     pub fn pull(&self, x: &impl Fn(u32) -> f64) -> Vec<f64> {
         let mut pull = vec![0.0; self.matrix.scale.len()];
         for &(vertex, other, weight) in &self.coupling {
@@ -45,11 +45,11 @@ struct MatrixRow {
     others: Vec<(u32, f64)>,
 }
 
-/// Assembles the bending matrix of cells that bend: their weights' Laplacian less Σ_i Z_i β_i K_i Z_iᵀ, Z_i's rows being G_iv for
-/// the ring's vertices and minus their sum for the cell's own.
+/// Assembles the bending matrix of cells that bend: their weights' Laplacian less Σ_i Z_i β_i K_i Z_iᵀ, Z_i's rows
+/// being G_iv for the ring's vertices and minus their sum for the cell's own.
 ///
-/// What a hub's cell subtracts couples all its neighbours with each other, and is left out: the quadratic is larger then
-/// and majorises the energy as before, so that the shape is the same, and steps differ at hubs alone.
+/// The part that a hub's cell subtracts would couple all its neighbours with each other and is left out. The quadratic
+/// is larger then and still majorises the energy, so the minimum is the same, and only steps differ, at hubs.
 ///
 /// # Errors
 /// [`FactorError::Memory`].
@@ -71,7 +71,7 @@ pub(crate) fn assemble_bending(cells: &Cells, domain: &Domain, springs: &[Spring
     assembled(&rows, domain, springs)
 }
 
-/// Cells of more than `most` neighbours are hubs'. `slots` are all zero, and are so again behind it.
+/// Cells with more than `most` neighbours belong to hubs. `slots` are all zero before and after.
 fn bending_row(cells: &Cells, column: u32, most: usize, slots: &mut [u32]) -> MatrixRow {
     let mut others: Vec<(u32, f64)> = Vec::new();
     let mut add = |others: &mut Vec<(u32, f64)>, end: u32, value: f64| {

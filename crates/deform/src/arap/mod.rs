@@ -1,15 +1,16 @@
-//! As-rigid-as-possible deformation: each vertex's cell turned as well as it can be, and as little bent as possible.
+//! As-rigid-as-possible deformation: each vertex's cell is rotated as a whole and deviates from that rotation as little
+//! as possible.
 //!
 //! The energy is a function of the positions alone, E(p) = min over the cells' rotations, and is minimised by L-BFGS on
-//! top of the factored Laplacian with a line search on the true energy, so it never rises. With no memory a step *is*
-//! one iteration of the usual local/global method [SA07], which descends slowly: an iteration of ours
-//! costs a tenth more and needs an order of magnitude fewer.
+//! top of the factored Laplacian with a line search on the true energy, so it never rises. Without history a step *is*
+//! one iteration of the usual local/global method [SA07], which descends slowly: our iterations cost a tenth more, and
+//! an order of magnitude fewer are needed.
 //!
-//! Parts: `domain` numbers the vertices, `rims` and `spokes` make the two energies' `cells` and `bending` adds the smooth
-//! one's term, `shape` evaluates them in a `fit_pass` and a `gradient_pass`, `matrix` and `precondition` make the global
-//! step and the handles' weights, `start` chooses where to begin, `springs` are the soft handles, `history` gives the
-//! direction and `descent` takes the step.
-//! Of a large surface `clusters` make a small one, whose solver is its `coarse` level and takes the `lead`.
+//! Parts: `domain` numbers the vertices, `rims` and `spokes` make the two energies' `cells` and `bending` adds the
+//! smooth one's term, `shape` evaluates them in a `fit_pass` and a `gradient_pass`, `matrix` and `precondition` make
+//! the global step and the handles' weights, `start` chooses where to begin, `springs` are the soft handles, `history`
+//! gives the direction and `descent` takes the step. Of a large surface `clusters` make a small one, whose solver is
+//! its `coarse` level and takes the `lead`.
 
 mod bend;
 mod bending;
@@ -86,8 +87,8 @@ pub(crate) struct ArapSolver {
     /// The motions that `current` is a shape for.
     motions: Vec<Motion>,
     state: State,
-    /// How many targets to go before the blend from the rest shape is looked at again, and how many it is passed over
-    /// when it loses.
+    /// For how many more targets the blend from the rest shape is not tried, and for how many it is skipped after it
+    /// loses.
     until_blend: u32,
     patience: u32,
     /// What leads a large surface.
@@ -225,13 +226,7 @@ impl ArapSolver {
             springs,
             preconditioner,
             weights,
-            handles: handles
-                .iter()
-                .map(|handle| HandleFrame {
-                    centre: handle.world_centre - world_origin,
-                    radius: handle.radius,
-                })
-                .collect(),
+            handles: HandleFrame::of_all(handles, world_origin),
             prescribed,
             rest,
             current: at_rest.clone(),
@@ -258,13 +253,13 @@ impl ArapSolver {
         self.preconditioner.stored() + self.coarse.as_ref().map_or(0, |coarse| coarse.factor_len())
     }
 
-    /// The energy in units of the rest shape's, which a change of the model's scale leaves as it is.
+    /// The energy in units of the rest shape's, so that it does not depend on the model's scale.
     fn relative(&self, energy: f64) -> f64 {
         let scale = self.cells.scale;
         if scale > 0.0 { energy / scale } else { 0.0 }
     }
 
-    /// The energy of any displacements, one a surface vertex, while the handles are to go as in `motions`.
+    /// The energy of any displacements, one per surface vertex, for the targets in `motions`.
     pub fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
         let mut shape = self.current.clone();
         for (own, &vertex) in shape.displacements.iter_mut().zip(&self.domain.vertices) {
@@ -296,9 +291,10 @@ impl ArapSolver {
         }
     }
 
-    /// One step towards `motions`: writes the solved vertices' displacements. Says whether it converged, and the energy.
+    /// One step towards `motions`: writes the solved vertices' displacements. Returns whether it converged, and the
+    /// energy.
     pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> (bool, f64) {
-        // One entry into the pool: each of the many short loops would wait for it otherwise.
+        // The pool is entered once: otherwise each of the many short loops would wait for it.
         rayon::scope(|_| {
             if let Some(mut coarse) = self.coarse.take() {
                 self.step_led(&mut coarse, motions);

@@ -1,4 +1,4 @@
-//! What can be chosen.
+//! The options of ARAP.
 
 use crate::method::iteration;
 use crate::method::option::{Choice, Number, named_choices, options};
@@ -13,24 +13,25 @@ options! {
                    for folds and creases), or these and how it bends (\"smooth\", for even bends and twists and for \
                    handles of single points)",
         },
-        /// κ of the smooth energy (see [`ArapEnergy::Smooth`]), which bends like ½ κ A ∫ |Hess p'|², A being the area of
-        /// what can move: without unit and independent of the mesh's size and density. Other energies have no use for it.
+        /// κ of the smooth energy (see [`ArapEnergy::Smooth`]), which bends like ½ κ A ∫ |Hess p'|², A being the area
+        /// of what can move: without unit and independent of the mesh's size and density. Other energies have no use
+        /// for it.
         smoothness: f64 = Number {
             default: 0.003,
-            // From hardly smoother than the rims alone to nearly a plate that keeps its curvature.
+            // From hardly smoother than the rims alone to nearly a thin plate that keeps its curvature.
             range: [1e-6, 10.0],
             unit: "",
             help: "how much the energy \"smooth\" resists bending, whatever the mesh's size and density",
         },
-        /// Iteration ends where a step lowers the energy by less than this share of it; above 0.
+        /// Iteration ends when a step lowers the energy by less than this share of it; above 0.
         tolerance: f64 = iteration::TOLERANCE,
-        /// Iteration ends after so many steps towards one set of targets, converged or not; at least 1.
+        /// Iteration ends after this many steps towards one set of targets, converged or not; at least 1.
         max_iterations: u32 = iteration::MAX_ITERATIONS,
     }
     beside {
-        /// With more vertices to solve for than this a coarse level leads: it goes ahead for new targets and corrects
-        /// the way to the end, which stays a minimum of the whole energy. Below, the steps are quick enough without: at
-        /// 10k vertices both ways take as long.
+        /// With more solved vertices than this a coarse level leads: it predicts the shape for new targets and speeds
+        /// up convergence, to the same minimum. With fewer, steps are fast enough without it: at 10k vertices both take
+        /// the same time.
         coarse_above: usize = 20_000,
     }
 }
@@ -43,15 +44,15 @@ named_choices! {
         Spokes = "spokes",
         /// All edges of its vertex's triangles [CPSS10], with plain cotangents; never negative.
         SpokesAndRims = "spokes-and-rims",
-        /// Spokes and rims, and every cell held to an affine map of its own: a thin plate in which neither bumps nor free
-        /// borders tell, for what Levi & Gotsman (2015) and Oehri et al. (2025) smooth. No spikes at handles of a single
-        /// vertex; twists spread evenly.
+        /// Spokes and rims, with every cell tied to an affine map of its own: a thin plate that bumps and free borders
+        /// do not disturb, with the aim of [LG15] and [OHS25]. Handles of a single vertex make no spikes; twists spread
+        /// evenly.
         Smooth = "smooth",
     }
 }
 
 impl Arap {
-    /// What a person begins with: the smooth energy, which bends and twists evenly.
+    /// What the window begins with: the smooth energy, which bends and twists evenly.
     pub fn first_choice() -> Self {
         Self {
             energy: ArapEnergy::Smooth,

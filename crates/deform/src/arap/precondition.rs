@@ -11,12 +11,13 @@ use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::solve::substitution::{Real, Rhs, Room, Substitution};
+use crate::sparse::solve::rhs::{Real, Rhs};
+use crate::sparse::solve::substitution::{Room, Substitution};
 
-/// The inverse of the system on the solved vertices, or nearly so.
+/// An approximate inverse of the system on the solved vertices.
 ///
-/// It is kept in single precision where that is accurate enough to descend by: it is half the bytes to read, and what it
-/// rounds the next step corrects. Gradients and positions stay double.
+/// It is kept in single precision if that is accurate enough for a descent direction: that halves the bytes to read,
+/// and the next step corrects its rounding. Gradients and positions stay double.
 #[derive(Debug)]
 pub(crate) struct Preconditioner {
     solver: Solver,
@@ -41,7 +42,7 @@ pub(crate) struct MapRoom {
 pub(crate) enum PreconditionError {
     /// The pivot of this solved vertex is not above zero.
     Pivot(usize),
-    /// A constant is missed by this much at this solved vertex.
+    /// The solution of a constant is off by this much at this solved vertex.
     Inaccurate(usize, f64),
     Memory,
     Budget,
@@ -59,11 +60,12 @@ impl From<FactorError> for PreconditionError {
     }
 }
 
-/// By how much a constant may be missed: enough to descend by.
+/// How far off the solution of a constant may be: accurate enough for a descent direction.
 const TOLERANCE: f64 = 1e-2;
 
 impl Preconditioner {
-    /// Factors and checks the system, whose columns stand in blocks that end at `ends`; gives each handle's weights besides (see [`Preconditioner::weights`]).
+    /// Factors and checks the system, whose supernodes end at `ends`; also returns each handle's weights (see
+    /// [`Preconditioner::weights`]).
     pub fn of(
         system: &System,
         ends: &[u32],
@@ -189,8 +191,8 @@ impl Preconditioner {
         }
     }
 
-    /// Each handle's weight on each cell, row-major: 1 on its own vertices, 0 on other constrained ones, harmonic in the
-    /// system's sense between. Where nothing is fixed around a vertex they sum to 1.
+    /// Each handle's weight on each cell, row-major: 1 on its own vertices, 0 on other constrained ones, harmonic in
+    /// the system's sense between. Where nothing is fixed around a vertex they sum to 1.
     fn weights(&self, system: &System, input: &WeightInput<'_>) -> Result<Vec<f64>, FactorError> {
         let WeightInput {
             domain,
@@ -201,7 +203,7 @@ impl Preconditioner {
         let mut weights = filled(0.0, domain.cell_count * handle_count)?;
         let handles: Vec<usize> = (0..handle_count).collect();
         for group in handles.chunks(4) {
-            // Four right-hand sides a solve, the last group's spare ones empty.
+            // Four right-hand sides per solve; unused ones of the last group are empty.
             let of = |k: usize| {
                 let handle = group.get(k).copied();
                 move |other: u32| f64::from(u8::from(handle.is_some() && handle_of(other) == handle))

@@ -1,8 +1,8 @@
 //! The energy over spokes and rims [CPSS10]: a vertex's cell is all edges of its triangles.
 //!
 //! E = ½ Σ_i Σ_f∋i ⅓ Σ_e∈f w_fe |e' − R_i e|², with w_fe half the cotangent opposite e in f, plain, negative ones
-//! included: each triangle's inner sum is a squared norm whatever its shape, so nothing is ever negative. With the ⅓ the
-//! majorising quadratic's matrix is the Laplacian itself.
+//! included: each triangle's inner sum is a squared norm whatever its shape, so nothing is ever negative. With the ⅓
+//! the majorising quadratic's matrix is the Laplacian itself.
 //!
 //! A triangle's part of S is Σ_c p'_c g_cᵀ over its corners, with g_b = w_ab (b − a) + w_bc (b − c) and so on round.
 //! Stiffness is in w_fe: a face's by the mean of its corners.
@@ -132,7 +132,7 @@ fn add(face: &Face, cell: u32, entries: &mut [Entry], rest: &mut [f64; 6], place
     }
 }
 
-/// What the cells' quarter sums leave out or count twice: the truth is half of each triangle's edges, a third of it for
+/// What the cells' quarter sums leave out or count twice: each triangle's edges should count half, a third of it for
 /// each corner that has a cell.
 fn constant(faces: &[Face], domain: &Domain) -> Vec<(u32, u32, f64)> {
     let mut pairs = Vec::new();

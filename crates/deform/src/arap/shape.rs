@@ -1,8 +1,8 @@
-//! A shape under an energy: where the vertices are, how the cells are turned, what it costs and which way is down.
+//! A shape: positions, the cells' rotations, energy and gradient.
 //!
 //! Two passes over the cells. The first gathers a cell's displaced ring into its matrix S, fits eight cells' rotations
-//! at once, and sums the energy; the second gathers the ring's turns into the gradient, which a shape that new targets
-//! leave behind does without (see `fit_pass` and `gradient_pass`).
+//! at once, and sums the energy; the second gathers the ring's rotations into the gradient, and is skipped for a shape
+//! that new targets replace (see `fit_pass` and `gradient_pass`).
 
 use pulp::Arch;
 use rayon::prelude::*;
@@ -14,16 +14,17 @@ use super::history::Field;
 pub(crate) use super::rotation::{IDENTITY, Rotation, narrow, wide};
 use crate::operators::CHUNK;
 
-/// A shape; rotations and energy belong to the displacements once they were measured, the gradient once that was found.
+/// A shape. Rotations and energy are valid after a measurement of the displacements, the gradient after it was
+/// computed.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Shape {
     /// Of each local vertex, in world units; the fourth number is zero.
     pub displacements: Vec<Quad>,
-    /// Of each cell: the best one for the displacements, as a quaternion x, y, z, w. **f32**: the next fit starts from
-    /// it, and what is found from it is no finer.
+    /// For each cell the best rotation for the displacements, as a quaternion x, y, z, w. **f32**: the next fit only
+    /// starts from it.
     pub rotations: Vec<Rotation>,
-    /// dE/dp of each solved vertex, in units of [`Cells::unit`]. **f32**: it is for a direction alone, whose length a
-    /// line search on the energy measures.
+    /// dE/dp of each solved vertex, in units of [`Cells::unit`]. **f32**: it only makes a direction; a line search on
+    /// the energy finds the length.
     pub gradient: Field,
     /// E, in squared world units.
     pub energy: f64,
@@ -32,10 +33,11 @@ pub(crate) struct Shape {
 /// Room for an evaluation, kept from one to the next.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
-    /// R − 1 of each cell, or Z of one that bends, column by column. **f32**: each is read by all its neighbours, and for
-    /// the gradient alone.
+    /// R − 1 of each cell, or Z of one that bends, column by column. **f32**: each is read by all its neighbours, and
+    /// for the gradient alone.
     turns: Vec<Turn>,
-    /// Σ_v w_iv D_v − (R_i − 1) Σ_v (G_iv − G_vi) of each solved cell: what is left of two large sums. **f32** likewise.
+    /// Σ_v w_iv D_v − (R_i − 1) Σ_v (G_iv − G_vi) of each solved cell: what is left of two large sums. **f32**
+    /// likewise.
     laplacians: Vec<[f32; 4]>,
 }
 
@@ -75,7 +77,7 @@ impl Cells {
     /// Finds the gradient of the shape with its rotations as they are, best or not.
     pub fn find_pull(&self, shape: &mut Shape, scratch: &mut Scratch) {
         if !self.bending.is_empty() {
-            // What holds the cells' affine maps enters, which gathers their rings.
+            // The affine maps contribute too, which needs their rings.
             self.gather_all(shape, Guesses::Own, Turning::Given, scratch);
             self.find_gradient(shape, scratch);
             return;
@@ -143,7 +145,7 @@ impl Cells {
             })
             .sum();
         let sum = partial.iter().sum::<f64>() + constant;
-        // Rounding alone can carry it below; what is not a number stays so.
+        // Only rounding can make it negative; NaN stays NaN.
         *energy = if sum < 0.0 { 0.0 } else { sum };
     }
 
@@ -267,7 +269,7 @@ mod tests {
             }
             let displacements = shaken(domain, edge(surface));
             let mut shape = evaluated(domain, cells, &displacements);
-            // The best rotations to the last bit: what single precision rounds off them then enters squared.
+            // The best rotations to the last bit: their rounding to single precision then enters squared.
             for _ in 0..3 {
                 cells.measure(&mut shape, Guesses::Own, &mut Scratch::default());
             }

@@ -1,8 +1,8 @@
-//! Soft handles: a spring from each of their vertices to where its handle wants it.
+//! Soft handles: a spring from each of their vertices to its target.
 //!
 //! Their vertices are solved for like free ones, and E gains ½ Σ W_i |d_i − c_i|² with the strengths W of
-//! [`crate::Constraints`]: what a membrane of stiffness 1 opposes and, where the energy is smooth, a plate of stiffness κ A.
-//! That is a quadratic as it stands, so the majorising one has the same W on its diagonal.
+//! [`crate::Constraints`]: what a membrane of stiffness 1 opposes and, where the energy is smooth, a plate of stiffness
+//! κ A. That is quadratic already, so the majorising quadratic has the same W on its diagonal.
 
 use super::cells::{Quad, minus, quad};
 use super::domain::Domain;
@@ -36,8 +36,8 @@ pub(crate) struct Spring {
 }
 
 impl Springs {
-    /// Those of the handles that `partition` has soft; `laplacian` has rows for their vertices, and the energy bends with
-    /// the stiffness `bending`; gradients are measured in `unit`.
+    /// Those of the handles that `partition` has soft; `laplacian` has rows for their vertices, and the energy bends
+    /// with the stiffness `bending`; gradients are measured in `unit`.
     pub fn of(
         problem: &Problem,
         partition: &Partition,

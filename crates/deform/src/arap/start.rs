@@ -1,4 +1,4 @@
-//! Where to begin for new targets: the rest shape or the last one, carried by the handles' blended motions.
+//! The start for new targets: the rest shape or the last one, moved by the handles' blended motions.
 
 use glam::{DQuat, DVec3};
 use rayon::prelude::*;
@@ -11,15 +11,15 @@ use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
 use crate::operators::CHUNK;
 
-/// The blend from the rest shape is passed over for so many targets at most: it costs as much as the step after it and
-/// hardly ever wins along a drag, but a drag may turn back.
+/// The blend from the rest shape is skipped for this many targets at most: it costs as much as a step and hardly ever
+/// wins along a drag, but a drag may turn back.
 const PATIENCE: u32 = 8;
 
 impl ArapSolver {
-    /// Makes the better of two starts the current shape for `motions`, and says which.
+    /// Makes the better of two starts the current shape for `motions`, and returns which one it was.
     ///
-    /// Loads belong to the shape that they were found at: one from the rest shape goes without, and without them the two
-    /// are compared.
+    /// Loads belong to the shape that they were computed at: a start from rest has none, and the two starts are
+    /// compared without them.
     pub(super) fn start(&mut self, motions: &[Motion]) -> Origin {
         let was_at_rest = self.motions.iter().all(Motion::is_rest);
         let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
@@ -56,8 +56,8 @@ impl ArapSolver {
         origin
     }
 
-    /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles where they go, and
-    /// evaluates it.
+    /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles where they go,
+    /// and evaluates it.
     fn carry(&mut self, screws: &[Screw], origin: Origin) {
         self.carry_unmeasured(screws, origin);
         self.cells.evaluate(&mut self.trial, Guesses::Own, &mut self.scratch);
@@ -98,7 +98,7 @@ impl ArapSolver {
 }
 
 impl Shape {
-    /// Puts the constrained vertices exactly where they must be.
+    /// Sets the constrained vertices to their exact positions.
     pub(super) fn place(&mut self, prescribed: &[Vec<Prescribed>], motions: &[Motion]) {
         self.displacements[self.gradient.len()..].fill([0.0; 4]);
         for (own, motion) in prescribed.iter().zip(motions) {

@@ -1,9 +1,8 @@
 //! The bi-Laplacian's matrix A on the solved vertices, straight into compressed columns.
 //!
-//! Column by column, each from its vertex's n-ring, with no triplets and nothing sorted: columns are computed apart
-//! and stand in the order in which they are eliminated, so neither the order nor the number of threads shows. The
-//! matrix is scaled symmetrically to a unit diagonal, which takes the units and most of the spread of triangle sizes
-//! out of it.
+//! Each column is computed by itself from its vertex's n-ring, without triplets and without sorting, and stored in the
+//! order of elimination, so the result does not depend on the number of threads. The matrix is scaled symmetrically to
+//! a unit diagonal, which removes the units and most of the spread of triangle sizes.
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -21,7 +20,7 @@ use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
 /// [`CONSTRAINED`] where a local vertex has no column. The curvature at `hubs` is left to their correction.
 ///
 /// # Errors
-/// Where its entries exceed the budget, or the machine's memory.
+/// If its entries exceed the budget or the machine's memory.
 pub(crate) fn assemble_bilaplacian(
     operator: &BilaplacianOperator,
     columns: &[u32],
@@ -100,7 +99,7 @@ struct Chunk {
     lower_values: Vec<f64>,
 }
 
-/// `None` as soon as `fits` says that so many further entries don't.
+/// `None` as soon as `fits` says that this many more entries don't fit.
 fn assemble_chunk(
     operator: &BilaplacianOperator,
     columns: &[u32],
@@ -127,7 +126,7 @@ fn assemble_chunk(
             return None;
         }
         chunk.counts.push(count as u32);
-        // A vertex without any weight has an empty row: leave it to the factorisation to say so.
+        // A vertex without any weight has an empty row; the factorisation refuses it.
         let diagonal = chunk.lower_values[before];
         chunk
             .scale
@@ -136,9 +135,9 @@ fn assemble_chunk(
     Some(chunk)
 }
 
-/// Room for one column's entries as they are met.
+/// The entries of one column as they are found.
 struct Expansion {
-    /// One more than a local vertex's place among `entries`, 0 where it has none.
+    /// One more than a local vertex's place among `entries`; 0 if it has none.
     slots: Vec<u32>,
     entries: Vec<(u32, f64)>,
     inner: Vec<(u32, f64)>,
@@ -251,7 +250,7 @@ impl Expansion {
         self.entries[*slot as usize - 1].1 += value;
     }
 
-    /// Forgets which vertices were met.
+    /// Forgets which vertices have entries.
     fn close(&mut self) {
         for &(vertex, _) in &self.entries {
             self.slots[vertex as usize] = 0;

@@ -1,11 +1,11 @@
 //! Handle bases: a frame as one small product a vertex, with no solve in it.
 //!
-//! A handle moves affinely and the bi-Laplacian is linear, so the solved vertices' displacement is Σ_h B_h (T_h − I) with
-//! B_h = −A_ff⁻¹ A_fh [q 1], four columns a handle solved once at bind [BK04].
+//! A handle moves affinely and the bi-Laplacian is linear, so the solved vertices' displacement is Σ_h B_h (T_h − I)
+//! with B_h = −A_ff⁻¹ A_fh [q 1], four columns a handle solved once at bind [BK04].
 //!
-//! Where nothing is fixed the weights of all handles sum to 1, and that must survive rounding to f32, or a plain
-//! translation would leave dents. So there the motion of one *reference* handle's centre is taken out first and added
-//! back whole: what is left to the rounded weights is how the handles differ.
+//! Where nothing is fixed the weights of all handles sum to 1. Rounded to f32 they no longer do, and a plain
+//! translation would leave dents. So the motion of one *reference* handle's centre is subtracted first and added back
+//! exactly: the rounded weights only multiply differences between handles.
 
 use std::collections::TryReserveError;
 
@@ -90,7 +90,7 @@ impl HandleBases {
         })
     }
 
-    /// What the motions make of the solved ones among the vertices from `first` on.
+    /// The displacements of the solved vertices among those from `first` on.
     #[inline(always)]
     pub(crate) fn evaluate(&self, tables: &Tables, first: usize, out: &mut [DVec3]) {
         let place = |vertex: usize| self.vertices.partition_point(|&other| (other as usize) < vertex);

@@ -1,13 +1,13 @@
-//! With which continuity the bi-Laplacian joins what holds it ([BK04], section 4.2, in a symmetric form).
+//! The continuity with which the bi-Laplacian joins constrained vertices ([BK04], section 4.2, in a symmetric form).
 //!
-//! What is free sees the slope at a constrained vertex only through the curvature there, u_i = (M⁻¹ L d)_i, and the
-//! curvature only through its change across the faces beyond. So a damped M⁻¹ at constrained vertices makes a hinge, C⁰
-//! with u = 0; undamped, the slope is kept, C¹; and at order 3 the middle L of L M⁻¹ L M⁻¹ L, with the faces between
-//! constrained vertices or without them, makes C² or C¹. Their recursion damps the outer M⁻¹ alone, which is not
-//! symmetric; both of them damped alike, the system is that of an energy.
+//! The free surface depends on the slope at a constrained vertex only through the curvature there, u_i = (M⁻¹ L d)_i,
+//! and on the curvature only through its change across the faces beyond. So damping M⁻¹ at constrained vertices to
+//! nothing makes a hinge, C⁰ with u = 0; without damping the slope is kept, C¹. At order 3 the middle L of L M⁻¹ L M⁻¹
+//! L makes C² with the faces between constrained vertices and C¹ without them. The recursion of [BK04] damps the outer
+//! M⁻¹ only, which is not symmetric; with both damped alike the system belongs to an energy.
 //!
-//! Between two whole numbers stands a spring against the turn (or the curvature), of stiffness t / (1 − t) per
-//! diagonal: a damping that knows the size of its cell, so that the resolution does not show.
+//! Between two whole numbers there is a spring against the rotation (or the curvature), of stiffness t / (1 − t) per
+//! diagonal: the damping depends on the size of the cell, so that the shape does not depend on the resolution.
 
 use pliant_mesh::{SurfaceVertex, area_of_lengths};
 
@@ -62,7 +62,7 @@ pub(crate) fn join(
     }
 }
 
-/// What a cell of the size `size`, in diagonals, is damped by for the share `t` of a continuity.
+/// The damping of a cell of the size `size`, in diagonals, for the fractional part `t` of a continuity.
 fn damping(t: f64, size: f64) -> f64 {
     if t <= 0.0 {
         return 0.0;

@@ -1,7 +1,8 @@
 //! The bound bi-Laplacian: A_ff d_f = −A_fc d_c, factored, refined and checked.
 //!
-//! A factorisation that succeeds proves nothing: condition numbers reach 1e15 on real scans. So every solve is refined
-//! (see `refine`), and every bind solves for the constant 1, whose solution is known, and refuses where it is missed.
+//! That a factorisation succeeds proves nothing: condition numbers reach 1e15 on real scans. So every solve is refined
+//! (see `refine`), and every binding also solves for the constant 1, whose solution is known, and is refused if that is
+//! missed.
 
 use std::sync::Arc;
 
@@ -15,10 +16,10 @@ use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::budget::{Budget, bytes_of};
 use crate::operators::CHUNK;
 use crate::sparse::Elimination;
-use crate::sparse::cholesky::{Refactorisation, RenewableFactor};
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::low_rank::LowRank;
 use crate::sparse::matrix::CONSTRAINED;
+use crate::sparse::refactorisation::{Refactorisation, RenewableFactor};
 
 /// The factored system over the local vertices of its Laplacian.
 #[derive(Debug)]
@@ -29,9 +30,9 @@ pub(crate) struct BilaplacianSystem {
     /// The column of each of the operator's springs.
     spring_columns: Vec<u32>,
     factored: Arc<RenewableFactor>,
-    /// What hubs add to the factor; none without hubs.
+    /// The low-rank correction for hubs, if there are any.
     low_rank: Option<LowRank>,
-    /// How slowly refinement went at the check: [`crate::bilaplacian::refine`].
+    /// How slowly refinement converged at the check: see [`crate::bilaplacian::refine`].
     pub(crate) contraction: f64,
 }
 
@@ -45,8 +46,8 @@ pub(crate) enum SystemError {
     Cancelled,
 }
 
-/// Shifts of the unit diagonal that are tried one after the other. Refinement with the unshifted operator takes their
-/// effect out again; the check of the constant says whether it did.
+/// Shifts of the unit diagonal that are tried one after the other. Refinement with the unshifted operator removes their
+/// effect again; the check of the constant tells whether it did.
 const SHIFTS: [f64; 4] = [0.0, 1e-13, 1e-11, 1e-9];
 
 impl BilaplacianSystem {
@@ -72,7 +73,8 @@ impl BilaplacianSystem {
         let hubs = Hubs::of(&operator, &column_of);
         let mut elimination = elimination;
         if !hubs.is_empty() {
-            // The ordering has the surface's own hubs last; those of other triangles follow here.
+            // The ordering has the surface's own hubs last; the hubs of an intrinsic triangulation are moved to the end
+            // here.
             elimination = elimination
                 .with_last(|vertex| laplacian.local(vertex).is_some_and(|local| hubs.contains(local as u32)));
             (columns, column_of) = numbered(&elimination);
@@ -121,7 +123,7 @@ impl BilaplacianSystem {
         &self.columns
     }
 
-    /// x ← (S A S)⁻¹ x, or nearly so.
+    /// x ← (S A S)⁻¹ x, up to the error of the factor.
     pub fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]]) {
         self.factored.factor.solve(x);
         if let Some(low_rank) = &self.low_rank {
@@ -134,12 +136,12 @@ impl BilaplacianSystem {
         self.factored.factor.stored() + self.low_rank.as_ref().map_or(0, LowRank::stored)
     }
 
-    /// What a system that is nearly the same can take over.
+    /// What the binding of a nearly equal system can reuse.
     pub fn factored(&self) -> &Arc<RenewableFactor> {
         &self.factored
     }
 
-    /// What was added to the scaled matrix' unit diagonal to factor it; 0 where nothing had to be.
+    /// The shift that was added to the scaled matrix' unit diagonal to factor it; 0 if none was needed.
     pub fn shift(&self) -> f64 {
         self.factored.shift
     }

@@ -1,17 +1,18 @@
-//! What the bi-Laplacian does about hubs: vertices that very many others neighbour, such as the tip of a fan.
+//! How the bi-Laplacian treats hubs: vertices with very many neighbours, such as the tip of a fan.
 //!
-//! At order 2 and above the curvature at a hub couples all of its neighbours with each other: of a fan of d triangles the
-//! matrix alone would have d² / 2 entries. But all of them are one square, A = B + c p pᵀ, where p is the hub's row of
-//! −L. So the matrix is assembled without the curvature at hubs, and what it lacks is a correction of low rank
+//! At order 2 and above the curvature at a hub couples all of its neighbours with each other: for a fan of d triangles
+//! the matrix would have d² / 2 entries. But together they are one square, A = B + c p pᵀ, where p is the hub's row of
+//! −L. So the matrix is assembled without the curvature at hubs, and the difference is a correction of low rank
 //! ([`LowRank`](crate::sparse::low_rank::LowRank)), which is exact: the shape is the same.
 //!
 //! With u_h = 0 at a hub h (order 3: A = Qᵀ P Q with Q = M⁻¹ P) B lacks
 //!
 //! - order 2: c_h p_h p_hᵀ, c_h = k_b s_h / M_hh;
-//! - order 3: k_b (g_h q_hᵀ + q_h g_hᵀ + Σ_k P_hk q_h q_kᵀ), q_h being Q's row and g_h = Q₀ᵀ P e_h, Q₀ Q without its rows at hubs.
+//! - order 3: k_b (g_h q_hᵀ + q_h g_hᵀ + Σ_k P_hk q_h q_kᵀ), q_h being Q's row and g_h = Q₀ᵀ P e_h, Q₀ Q without its
+//!   rows at hubs.
 //!
-//! Without anything at hubs B would leave a peak there unopposed. So it is given a *stand-in* of p that has few entries,
-//! p̃_h = P_hh (e_h − the mean over some neighbours), which the correction takes out again.
+//! Without any term at hubs B would not resist a peak there. So it gets a *stand-in* for p with few entries, p̃_h =
+//! P_hh (e_h − the mean over some neighbours), which the correction removes again.
 
 use std::collections::BTreeMap;
 
@@ -29,14 +30,14 @@ pub(crate) struct Hubs {
     locals: Vec<u32>,
     /// By local vertex; empty where there is no hub.
     is_hub: Vec<bool>,
-    /// Of each hub γ, and t with B = A₀ + Σ γ t tᵀ, by local vertex.
+    /// For each hub γ and t with B = A₀ + Σ γ t tᵀ, by local vertex.
     stand_ins: Vec<(f64, SparseVector)>,
-    /// Of each local vertex the stand-ins that have an entry there.
+    /// For each local vertex the stand-ins that have an entry there.
     standing: BTreeMap<u32, Vec<(usize, f64)>>,
 }
 
 impl Hubs {
-    /// Those of the operator's vertices of whose neighbours too many are solved for: have an entry in `column_of`.
+    /// The operator's vertices with too many solved neighbours: neighbours that have an entry in `column_of`.
     pub fn of(operator: &BilaplacianOperator, column_of: &[u32]) -> Self {
         if operator.power == 1 {
             return Self::default();
@@ -224,7 +225,7 @@ mod tests {
     use crate::bilaplacian::setup::operator;
     use crate::handles::Handle;
     use crate::region::partition::Partition;
-    use crate::sparse::cholesky::Refactorisation;
+    use crate::sparse::refactorisation::Refactorisation;
     use crate::{Bilaplacian, BilaplacianOrder, Budget, Constraints, Loose, Method, Ordering, Problem, Role};
 
     /// Rings of `count` vertices around one in the middle, on a bumpy dish.

@@ -1,8 +1,9 @@
-//! The bi-Laplacian method: its [`options`](Bilaplacian), its operator, its factored system and its frames. It is linear:
-//! A d = 0, so a frame is a product with the handle bases [BK04, BS08].
+//! The bi-Laplacian method: its [`options`](Bilaplacian), its operator, its factored system and its frames. It is
+//! linear: A d = 0, so a frame is a product with the handle bases [BK04, BS08].
 
 pub(crate) mod assembly;
 mod bases;
+mod columns;
 mod continuity;
 mod declaration;
 pub(crate) mod factored;

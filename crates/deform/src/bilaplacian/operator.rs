@@ -4,9 +4,9 @@
 //! to the last bit at every order.
 //!
 //! Painted stiffness s scales the density of the energy, ½ ∫ k_s s |∇d|² + k_b s |Δd|²: the faces' cotangents in
-//! stretching and in the middle L of order 3, the cells of M⁻¹ at order 2. What is stiff keeps its curvature, turns with
-//! what holds it, and joins what is soft without a crease. (With the cotangents of both outer L scaled, which is
-//! ∫ |div(s ∇d)|², it is the slope in space that stiff parts keep: they don't turn, and crease at their rim.)
+//! stretching and in the middle L of order 3, the cells of M⁻¹ at order 2. A stiff part keeps its curvature, turns with
+//! its surroundings, and joins soft parts without a crease. (If the cotangents of both outer L were scaled,
+//! which is ∫ |div(s ∇d)|², stiff parts would keep their slope in space: they would not turn, and crease at their rim.)
 
 use rayon::prelude::*;
 
@@ -15,7 +15,7 @@ use crate::operators::CHUNK;
 use crate::sparse::ordering::hubs::hub_degree;
 use crate::{Bilaplacian, Laplacian};
 
-/// What A makes forces of: φ, and d itself where stretching has an L of its own.
+/// The functions that L is applied to last: φ, and d itself if stretching has its own L.
 #[derive(Debug)]
 pub(crate) struct Potential<'a, const K: usize> {
     phi: Vec<[f64; K]>,
@@ -24,7 +24,7 @@ pub(crate) struct Potential<'a, const K: usize> {
 
 /// A over the local vertices of its Laplacian, which has full rows around everything that moves.
 ///
-/// A *field* has one entry a local vertex and then one a spring, which is where its handle wants the spring's vertex.
+/// A *field* has one entry per local vertex, then one per spring: the target of the spring's vertex.
 #[derive(Debug)]
 pub(crate) struct BilaplacianOperator {
     pub laplacian: Laplacian,
@@ -82,7 +82,8 @@ impl BilaplacianOperator {
         }
     }
 
-    /// Hangs a handle's local vertices on springs of a weight (see [`crate::Constraints`]); returns their places in a field.
+    /// Attaches springs of a weight to a handle's local vertices (see [`crate::Constraints`]); returns their places in
+    /// a field.
     pub fn soften(&mut self, locals: &[u32], weight: f64) -> Vec<u32> {
         let area = |local: u32| self.laplacian.inverse_areas()[local as usize].recip();
         let square_wave_number = std::f64::consts::PI.powi(2) / locals.iter().map(|&local| area(local)).sum::<f64>();
@@ -94,20 +95,20 @@ impl BilaplacianOperator {
         (first..self.field_len() as u32).collect()
     }
 
-    /// By how much a field's spring pulls at its vertex: W_i (c_i − d_i).
+    /// The force of a spring on its vertex: W_i (c_i − d_i).
     pub fn pull<const K: usize>(&self, spring: usize, d: &[[f64; K]]) -> [f64; K] {
         let anchor = d[self.laplacian.vertices().len() + spring];
         let own = d[self.springs.local(spring) as usize];
         std::array::from_fn(|k| self.springs.strength(spring) * (anchor[k] - own[k]))
     }
 
-    /// By how much the cell of a local vertex is stiffer than 1 at order 2.
+    /// The stiffness of a local vertex's cell at order 2.
     #[inline]
     pub fn cell_stiffness(&self, local: usize) -> f64 {
         self.cell_stiffness.get(local).copied().unwrap_or(1.0)
     }
 
-    /// φ of K functions on the local vertices, right wherever a neighbour's row is full.
+    /// φ of K functions on the local vertices, correct wherever the neighbours' rows are full.
     pub fn potential<'a, const K: usize>(&self, d: &'a [[f64; K]]) -> Potential<'a, K> {
         if self.power == 1 {
             return Potential { phi: d.to_vec(), d };
@@ -152,8 +153,8 @@ impl BilaplacianOperator {
         force
     }
 
-    /// ½ dᵀ A d over K functions and the springs' ½ (c − d)ᵀ W (c − d), summed from squares of differences, so that large
-    /// common motions cost no digits.
+    /// ½ dᵀ A d over K functions and the springs' ½ (c − d)ᵀ W (c − d), summed from squares of differences, so that
+    /// large common motions cost no digits.
     pub fn energy<const K: usize>(&self, d: &[[f64; K]]) -> f64 {
         let hung: f64 = (0..self.springs.len())
             .map(|spring| {

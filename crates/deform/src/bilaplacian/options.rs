@@ -1,4 +1,4 @@
-//! Options of the bi-Laplacian [BS08, section 2]: what the surface is made of, and on which operator.
+//! Options of the bi-Laplacian [BS08, section 2]: the material, and the operator's discretisation.
 
 use crate::method::option::{Choice, Choices, Number, OptionType, named_choices, options};
 use crate::{OptionKind, OptionValue};
@@ -12,11 +12,11 @@ options! {
     /// A = k_s (−L) + k_b (−L)(−M⁻¹ L)ⁿ⁻¹,
     ///
     /// which at order n = 2 is (−k_s L + k_b L M⁻¹ L) d = 0 [BS08, equation 8]. A is symmetric and positive definite on
-    /// what is solved for. Lengths are measured in diagonals of the surface's bounding box, so neither coefficient depends
-    /// on the model's unit, and only their ratio shows in the shape; the energy ½ dᵀ A d has no unit.
+    /// what is solved for. Lengths are measured in diagonals of the surface's bounding box, so neither coefficient
+    /// depends on the model's unit. The shape depends only on their ratio; the energy ½ dᵀ A d has no unit.
     ///
-    /// Painted stiffness s scales the energy's density, ½ ∫ k_s s |∇d|² + k_b s |Δd|² at order 2 and s |∇Δd|² at order 3: a
-    /// part of stiffness 10 resists bending ten times as much, and turns with what holds it.
+    /// Painted stiffness s scales the energy's density, ½ ∫ k_s s |∇d|² + k_b s |Δd|² at order 2 and s |∇Δd|² at order
+    /// 3: a part of stiffness 10 resists bending ten times as much, and turns with what holds it.
     pub struct Bilaplacian {
         /// Which derivative of the displacement is kept small.
         order: BilaplacianOrder = Choice {
@@ -49,9 +49,9 @@ options! {
             help: "triangles of the Laplacian: as they are, or without negative weights (\"tufted\" on non-manifold \
                    meshes, too)",
         },
-        /// From 0, as the surface lies in space, to 1, as if it were stretched along the principal axes of the part that
-        /// may move until that varied alike along all of them, though by no more than a factor 10: stiffer along what is
-        /// long [BK04].
+        /// From 0, as the surface lies in space, to 1, as if it were stretched along the principal axes of the part
+        /// that may move until that varied alike along all of them, though by no more than a factor 10: stiffer along
+        /// what is long [BK04].
         anisotropy: f64 = Number {
             default: 0.0,
             range: [0.0, 1.0],
@@ -75,8 +75,9 @@ pub enum BilaplacianOrder {
 named_choices! {
     /// The weights w_ij and areas M_ii of the Laplacian [BS08, section 5.1].
     pub enum Discretisation {
-        /// w_ij = 1, M_ii = Σ_j w_ij: blind to the triangles' shapes. Up to one factor for the whole surface, which makes
-        /// it agree with the others where all triangles are equilateral; edges at a boundary count half, as they do there.
+        /// w_ij = 1, M_ii = Σ_j w_ij: blind to the triangles' shapes. Up to one factor for the whole surface, which
+        /// makes it agree with the others where all triangles are equilateral; edges at a boundary count half, as they
+        /// do there.
         Uniform = "uniform",
         /// w_ij = ½ (cot α + cot β), M_ii the same for all: blind to how dense the vertices are.
         Cotangent = "cotangent",
@@ -90,8 +91,8 @@ named_choices! {
     pub enum TriangulationKind {
         /// The surface's.
         AsIs = "as-is",
-        /// The surface's, with edges flipped within it until no weight is negative, except at edges with more or less than
-        /// two triangles [FSBS06].
+        /// The surface's, with edges flipped within it until no weight is negative, except at edges with more or less
+        /// than two triangles [FSBS06].
         IntrinsicDelaunay = "intrinsic-delaunay",
         /// The surface's tufted cover, flipped: no weight is negative on any triangles [SC20].
         Tufted = "tufted",

@@ -1,10 +1,10 @@
-//! Solving with a factor that is only nearly the operator's.
+//! Solving with a factor that is only approximately the operator's.
 //!
-//! The residual is formed by the operator itself, by differences along edges, which is exact on constants where the
-//! assembled matrix is not. Plain refinement with it takes a factor's 1e-5 to 1e-10 in one step. Where it falls slowly
-//! or not at all (a stiff patch held by soft ones, a vertex held by one neighbour, a factor that had to be
-//! regularised) the factor is wrong in a few directions only, and conjugate gradients, with the factor as
-//! preconditioner, take about one step for each of them.
+//! The residual is computed by the operator itself, by differences along edges, which is exact on constants, unlike the
+//! assembled matrix. Plain refinement with it reduces a factor's error of 1e-5 to 1e-10 in one step. Where the error
+//! falls slowly or not at all (a stiff patch held by soft ones, a vertex held by one neighbour, a regularised factor),
+//! the factor is wrong in a few directions only, and conjugate gradients with the factor as preconditioner need about
+//! one step for each of them.
 
 use pliant_mesh::Cancel;
 
@@ -13,7 +13,7 @@ use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
 /// Corrections of a solve, the first one included.
 const STEPS: std::ops::RangeInclusive<usize> = 2..=8;
 
-/// Refinement ends where the next correction would be below this share of the solution.
+/// Refinement ends when the next correction would be below this share of the solution.
 const NEGLIGIBLE: f64 = 1e-10;
 
 /// A correction that is not smaller than this share of the one before it calls for conjugate gradients.
@@ -22,17 +22,17 @@ const SLOW: f64 = 0.03;
 /// Steps of conjugate gradients within one correction.
 const GRADIENT_STEPS: usize = 48;
 
-/// Conjugate gradients end where the squared error's norm has fallen by this.
+/// Conjugate gradients end when the squared norm of the error has fallen by this factor.
 const GRADIENT_DROP: f64 = 1e-18;
 
 /// How a solve went.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Outcome {
-    /// An estimate of the error that is left, relative to the largest value: infinite where the result is not finite
-    /// or the solve was cancelled.
+    /// An estimate of the remaining error, relative to the largest value: infinite if the result is not finite or the
+    /// solve was cancelled.
     pub error: f64,
-    /// The share of an error that a correction by the factor leaves, as far as this solve showed it: 1 where it took
-    /// conjugate gradients.
+    /// The share of the error that a correction by the factor leaves, as far as this solve showed: 1 if conjugate
+    /// gradients were needed.
     pub contraction: f64,
 }
 
@@ -40,13 +40,13 @@ pub(crate) struct Outcome {
 const TOLERANCE: f64 = 1e-7;
 
 impl BilaplacianSystem {
-    /// Fills in the solved vertices of `d` from its constrained ones, as well as the check found it to take.
+    /// Fills in the solved vertices of `d` from its constrained ones, with the contraction that the check found.
     pub fn solve<const K: usize>(&self, d: &mut [[f64; K]], cancel: &Cancel) -> Outcome {
         solve(self, d, self.contraction, cancel)
     }
 
-    /// Solves as [`BilaplacianSystem::solve`] and keeps how fast refinement was. The last function of `d` is 1 at every constrained
-    /// place, so its solution is known: where that is missed, the factor is no good.
+    /// Solves as [`BilaplacianSystem::solve`] and remembers how fast refinement was. The last function of `d` is 1 at
+    /// every constrained place, so its solution is known to be 1: if that is missed, the factor is unusable.
     pub fn check<const K: usize>(&mut self, d: &mut [[f64; K]], cancel: &Cancel) -> Result<f64, SystemError> {
         let outcome = solve(self, d, 0.0, cancel);
         self.contraction = outcome.contraction;
@@ -71,8 +71,8 @@ impl BilaplacianSystem {
 
 /// Fills in the solved vertices of the fields `d` from their other entries.
 ///
-/// `contraction` is what an earlier solve found: a right-hand side that hardly touches a direction in which the factor
-/// is wrong would not show it by itself, and be left with a large part of a small correction.
+/// `contraction` is what an earlier solve found. A right-hand side with little in a direction in which the factor is
+/// wrong would not reveal the error by itself, and would keep a large part of it.
 fn solve<const K: usize>(system: &BilaplacianSystem, d: &mut [[f64; K]], contraction: f64, cancel: &Cancel) -> Outcome {
     for &local in system.columns() {
         d[local as usize] = [0.0; K];
@@ -82,7 +82,7 @@ fn solve<const K: usize>(system: &BilaplacianSystem, d: &mut [[f64; K]], contrac
         contraction,
     };
     let mut last = f64::INFINITY;
-    // How many corrections, counting the next, are by conjugate gradients.
+    // How many corrections, including the next, use conjugate gradients.
     let mut gradients = 0;
     for step in 1..=*STEPS.end() {
         if cancel.is_cancelled() {
@@ -159,10 +159,10 @@ fn conjugate_gradients<const K: usize>(
         for ((&local, &scale), p) in system.columns().iter().zip(system.scale()).zip(&p) {
             scattered[local as usize] = p.map(|value| value * scale);
         }
-        // The residual's sign is the other one: this is −S A S p.
+        // The residual has the opposite sign: this is −S A S p.
         let minus_ap = system.scaled_residual(&scattered);
         let curvature = dots(&p, &minus_ap).map(|value| -value);
-        // A column that is solved, or whose direction has no curvature left, stands still.
+        // A column that is solved, or whose direction has no curvature left, does not change any more.
         let alpha: [f64; K] = std::array::from_fn(|k| if curvature[k] > 0.0 { rho[k] / curvature[k] } else { 0.0 });
         for (i, minus_ap) in minus_ap.iter().enumerate() {
             for k in 0..K {

@@ -1,4 +1,4 @@
-//! From a problem to its operator and to what its handles prescribe.
+//! A problem's operator, and the values that its handles prescribe.
 
 use pliant_mesh::{SurfaceVertex, bounding_box};
 
@@ -45,8 +45,8 @@ pub(crate) fn operator(
     (operator, prescribed)
 }
 
-/// The vertices where L d can differ from zero: solved ones, handles and their neighbours, ascending. Their rows are
-/// enough at every order: further out all inner factors are zero, as they should be.
+/// The vertices where L d can differ from zero: solved ones, handles and their neighbours, ascending. These rows are
+/// enough at every order, because further out all inner factors are zero.
 fn bent_rows(triangulation: &Triangulation, solved: &[u32], handles: &[Handle]) -> Vec<u32> {
     let mut bent = vec![false; triangulation.vertex_count()];
     for &vertex in solved.iter().chain(handles.iter().flat_map(|handle| &handle.vertices)) {
@@ -61,7 +61,7 @@ fn bent_rows(triangulation: &Triangulation, solved: &[u32], handles: &[Handle]) 
         .collect()
 }
 
-/// Each handle's places in a field and their coordinates; soft handles' are hung on springs.
+/// Each handle's places in a field and their coordinates; soft handles get springs.
 fn prescribe(
     operator: &mut BilaplacianOperator,
     problem: &Problem,

@@ -1,4 +1,4 @@
-//! The bi-Laplacian's method: what binding it computes, and its two ways to a frame.
+//! The bound bi-Laplacian: its binding, and its frames, from the bases or by back substitution.
 
 use std::sync::Arc;
 
@@ -8,15 +8,15 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::bilaplacian::bases::Tables;
+use crate::bilaplacian::columns::{energy_blocks, solve_columns};
 use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
-use crate::bilaplacian::setup::{Prescribed, operator};
+use crate::bilaplacian::setup::operator;
 use crate::bilaplacian::slender;
-use crate::budget::filled;
 use crate::handles::{FRAME_CHUNK, Motion};
 use crate::method::{BindInput, Finite};
 use crate::operators::repairs;
 use crate::region::partition::Partition;
-use crate::sparse::cholesky::RenewableFactor;
+use crate::sparse::refactorisation::RenewableFactor;
 use crate::{Bilaplacian, BindError, HandleBases, Problem, SolveError};
 
 /// The bound bi-Laplacian.
@@ -58,39 +58,11 @@ impl BilaplacianSolver {
         let mut system =
             BilaplacianSystem::new(operator, elimination, refactorisation, partition.budget, cancel).map_err(refuse)?;
         progress.set(0.7);
-        let solved_locals = system.operator.laplacian.locals(solved);
-        // The constant is solved for beside the first handle: one pass over the factor for both.
-        let mut columns = Vec::with_capacity(handles.len());
-        match prescribed.split_first() {
-            None => {
-                let mut ones = vec![[1.0]; system.operator.field_len()];
-                system.check(&mut ones, cancel).map_err(refuse)?;
-            }
-            Some((first, others)) => {
-                let mut d = vec![[0.0, 0.0, 0.0, 0.0, 1.0]; system.operator.field_len()];
-                for &(place, [x, y, z, w]) in first {
-                    d[place as usize] = [x, y, z, w, 1.0];
-                }
-                let error = system.check(&mut d, cancel).map_err(refuse)?;
-                columns.push(Columns::of(&system, &d, first, &prescribed, &solved_locals, error));
-                progress.set(0.85);
-                let solve = |own: &Prescribed| {
-                    cancel.check()?;
-                    let mut d = vec![[0.0; 4]; system.operator.field_len()];
-                    for &(place, coordinates) in own {
-                        d[place as usize] = coordinates;
-                    }
-                    let error = system.solve(&mut d, cancel).error;
-                    cancel.check()?;
-                    Ok(Columns::of(&system, &d, own, &prescribed, &solved_locals, error))
-                };
-                columns.extend(others.par_iter().map(solve).collect::<Result<Vec<_>, BindError>>()?);
-            }
-        }
+        let columns = solve_columns(&mut system, &prescribed, solved, progress, cancel).map_err(refuse)?;
         for column in &columns {
-            if column.error.is_nan() || column.error > TOLERANCE {
-                let vertex = column.worst_vertex;
-                let (component, error) = (component_of(vertex), column.error);
+            let (vertex, error) = (column.vertex, column.error);
+            if error.is_nan() || error > TOLERANCE {
+                let component = component_of(vertex);
                 let refused = BindError::Inaccurate {
                     component,
                     vertex,
@@ -99,23 +71,14 @@ impl BilaplacianSolver {
                 return Err(of_order(options, refused));
             }
         }
-        let pairs = filled([[0.0; 4]; 4], handles.len() * handles.len());
-        let mut energy_blocks = pairs.map_err(|_| BindError::OutOfMemory {
-            free_count: solved.len(),
-        })?;
-        for (k, column) in columns.iter().enumerate() {
-            for (h, block) in column.energies.iter().enumerate() {
-                energy_blocks[h * handles.len() + k] = *block;
-            }
-        }
+        let free_count = solved.len();
+        let energy_blocks = energy_blocks(&columns).map_err(|_| BindError::OutOfMemory { free_count })?;
         let reference = reference_handles(problem, partition);
         let blocks: Vec<Vec<[f32; 4]>> = columns.into_iter().map(|column| column.rows).collect();
         let bases = HandleBases::new(solved.clone(), &blocks, |vertex| {
             reference[component_of(vertex) as usize]
         });
-        let bases = bases.map_err(|_| BindError::OutOfMemory {
-            free_count: solved.len(),
-        })?;
+        let bases = bases.map_err(|_| BindError::OutOfMemory { free_count })?;
         progress.set(1.0);
         Ok(Self {
             system,
@@ -162,7 +125,7 @@ impl BilaplacianSolver {
             .collect();
         if self.system.shift() > 0.0 {
             sentences.push(format!(
-                "the shell was barely stable on this mesh: it was stiffened by {:.0e} of its diagonal and refined",
+                "the bi-Laplacian was hardly positive definite on this mesh: {:.0e} of its diagonal was added, and the solution refined",
                 self.system.shift()
             ));
         }
@@ -199,7 +162,7 @@ impl BilaplacianSolver {
         if sum > 0.0 || sum.is_nan() { 0.5 * sum } else { 0.0 }
     }
 
-    /// The energy of any displacements, one a surface vertex, with soft handles wanting what `motions` say; components
+    /// The energy of any displacements, one per surface vertex, with soft handles pulling towards `motions`; components
     /// without a handle are left out.
     pub fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
         let mut d = self.field(displacements);
@@ -212,7 +175,7 @@ impl BilaplacianSolver {
         self.system.operator.energy(&d)
     }
 
-    /// Displacements, one a surface vertex, as a field.
+    /// Displacements, one per surface vertex, as a field.
     fn field(&self, displacements: &[DVec3]) -> Vec<[f64; 3]> {
         let operator = &self.system.operator;
         let vertices = operator.laplacian.vertices();
@@ -221,11 +184,11 @@ impl BilaplacianSolver {
             .collect()
     }
 
-    /// Solves for the solved vertices' displacements from whatever the other vertices' are, and those of soft handles'
-    /// vertices, which are taken as what the handles want.
+    /// Solves for the solved vertices' displacements, given all others. The displacements of soft handles' vertices are
+    /// taken as the handles' targets.
     ///
     /// # Errors
-    /// Where the solution stays too far from the operator's.
+    /// If the solution stays too inaccurate.
     pub fn back_substitute(&self, displacements: &mut [DVec3]) -> Result<(), SolveError> {
         let vertices = self.system.operator.laplacian.vertices();
         let mut d = self.field(displacements);
@@ -233,7 +196,7 @@ impl BilaplacianSolver {
         for &local in self.system.columns() {
             displacements[vertices[local as usize] as usize] = DVec3::from_array(d[local as usize]);
         }
-        // What is not finite is the gate's to say.
+        // An error that is not finite is reported by the check of all displacements.
         if error.is_finite() && error > TOLERANCE {
             Err(SolveError::Inaccurate { error })
         } else {
@@ -255,7 +218,7 @@ impl BilaplacianSolver {
     }
 }
 
-/// The refusal with a lower order as a further remedy, where there is one.
+/// The refusal with a lower order as a further remedy, if there is one.
 fn of_order(options: &Bilaplacian, refused: BindError) -> BindError {
     let order = options.operator_power();
     match refused {
@@ -267,60 +230,9 @@ fn of_order(options: &Bilaplacian, refused: BindError) -> BindError {
     }
 }
 
-/// One handle's four columns.
-struct Columns {
-    /// On the solved vertices, ascending. **f32**.
-    rows: Vec<[f32; 4]>,
-    /// C_hᵀ F of this handle against each handle h, F the force that it takes at h: A B, or the springs' W (C − B).
-    energies: Vec<[[f64; 4]; 4]>,
-    error: f64,
-    worst_vertex: u32,
-}
-
-impl Columns {
-    /// Of a solution whose first four functions are the handle's.
-    fn of<const K: usize>(
-        system: &BilaplacianSystem,
-        d: &[[f64; K]],
-        own: &Prescribed,
-        prescribed: &[Prescribed],
-        solved_locals: &[u32],
-        error: f64,
-    ) -> Self {
-        let operator = &system.operator;
-        let first_spring = operator.laplacian.vertices().len();
-        let potential = operator.potential(d);
-        let energy = |handle: &Prescribed| {
-            let mut block = [[0.0; 4]; 4];
-            for &(place, coordinates) in handle {
-                let force = match (place as usize).checked_sub(first_spring) {
-                    Some(spring) => operator.pull(spring, d),
-                    None => operator.force(place as usize, &potential),
-                };
-                for i in 0..4 {
-                    for j in 0..4 {
-                        block[i][j] += coordinates[i] * force[j];
-                    }
-                }
-            }
-            block
-        };
-        let row = |&local: &u32| std::array::from_fn(|k| d[local as usize][k] as f32);
-        let worst_vertex = own.first().map_or(0, |&(place, _)| {
-            operator.laplacian.vertices()[operator.local_of(place as usize) as usize]
-        });
-        Self {
-            rows: solved_locals.iter().map(row).collect(),
-            energies: prescribed.iter().map(energy).collect(),
-            error,
-            worst_vertex,
-        }
-    }
-}
-
 /// A chunk of a frame: the displacements of the vertices from `first` on, and whether all are finite.
 ///
-/// A closure would be compiled apart from the vectors that it is called for.
+/// A closure would be compiled without the vector instructions that its caller is compiled for.
 struct Frame<'a> {
     solver: &'a BilaplacianSolver,
     motions: &'a [Motion],

@@ -1,8 +1,8 @@
-//! Soft constraints: a spring from each vertex of a soft handle to where its handle wants it.
+//! Soft constraints: a spring from each vertex of a soft handle to its target.
 //!
-//! In (A + W) d = W c a soft handle's vertices are solved for like free ones, with W on the diagonal. What is wanted, c,
-//! stands behind the vertices in every field, so that W (c − d) is a difference like those along edges: zero on
-//! constants to the last bit.
+//! In (A + W) d = W c a soft handle's vertices are solved for like free ones, with W on the diagonal. The targets c
+//! come after the vertices in every field, so that W (c − d) is a difference like those along edges: zero on constants
+//! to the last bit.
 
 /// The springs of all soft handles, handle by handle.
 #[derive(Debug, Default)]

@@ -5,10 +5,10 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::handles::Motion;
+use crate::handles::{Handle, Motion};
 use crate::numerical::rotation::fit;
 
-/// A map whose determinant is below this, in units of its largest entry's cube, is taken by its rotation alone.
+/// Of a map whose determinant is below this, in units of its largest entry's cube, only the rotation is used.
 const SINGULAR: f64 = 1e-3;
 
 /// A handle's motion as its rigid part's logarithm and its stretch.
@@ -31,7 +31,7 @@ impl Screw {
         let rotation = fit(&linear, DQuat::IDENTITY);
         let stretch = DMat3::from_quat(rotation.conjugate()) * linear - DMat3::IDENTITY;
         let turn_rad = logarithm(rotation);
-        // The slide at the centre whose exponential shifts it by `shift`, seen from the origin.
+        // The velocity at the centre whose exponential shifts it by `shift`, as seen from the origin.
         let at_centre = if turn_rad == DVec3::ZERO {
             shift
         } else {
@@ -150,12 +150,21 @@ pub(crate) struct HandleFrame {
 }
 
 impl HandleFrame {
+    /// Of each handle, relative to `world_origin`.
+    pub fn of_all(handles: &[Handle], world_origin: DVec3) -> Vec<Self> {
+        let frame = |handle: &Handle| Self {
+            centre: handle.world_centre - world_origin,
+            radius: handle.radius,
+        };
+        handles.iter().map(frame).collect()
+    }
+
     /// The linear part of the map.
     pub fn linear(&self, motion: &Motion) -> DMat3 {
         DMat3::IDENTITY + motion.linear * self.radius.recip()
     }
 
-    /// The map from where `old` carries points to where `new` carries them.
+    /// The map from a point's position under `old` to its position under `new`.
     pub fn onwards(&self, old: &Motion, new: &Motion) -> Screw {
         let (mut from, mut to) = (self.linear(old), self.linear(new));
         let largest = from.to_cols_array().into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));

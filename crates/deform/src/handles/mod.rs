@@ -1,4 +1,4 @@
-//! A handle's vertices in coordinates of its own, and what a transform does in them.
+//! A handle's vertices in the handle's own coordinates, and transforms in these coordinates.
 //!
 //! The coordinates are centred on the handle and scaled to it. Bases in f32 over world coordinates lose 3e-3 at ten
 //! thousand diagonals from the origin; over these 3e-8, wherever the scan stands.
@@ -18,7 +18,7 @@ pub(crate) struct Handle {
     pub vertices: Vec<u32>,
     /// The mean of their rest positions.
     pub world_centre: DVec3,
-    /// The largest distance of one from the centre; 1 where all are in one place.
+    /// The largest distance of a vertex from the centre; 1 if all are in one place.
     pub radius: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What a method says of itself, for whoever lists, explains, chooses or prepares it.
+//! A method's declaration: everything that lists, explains or offers methods reads it.
 
 use super::{Method, OptionDeclaration};
 
@@ -15,21 +15,21 @@ pub struct MethodDeclaration {
     pub keywords: &'static str,
     /// Its options, in the order in which they are shown.
     pub options: &'static [OptionDeclaration],
-    /// What it heeds beyond handles and fixed vertices.
+    /// Which constraints it supports beyond handles and fixed vertices.
     pub heeds: &'static [ConstraintKind],
     /// The method with the defaults of the edit format.
     pub default: fn() -> Method,
-    /// The method as a person begins with it, which may differ from the defaults: these can't change, since edits leave
+    /// The method as the window begins with it. It may differ from the defaults, which can't change because edits leave
     /// them out.
     pub first_choice: fn() -> Method,
 }
 
-/// What a problem may ask for, and a method may not heed.
+/// A constraint that not every method supports.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum ConstraintKind {
     /// Handles that only pull at their vertices.
     SoftHandles,
-    /// With which continuity the free surface joins what holds it.
+    /// How smoothly the free surface joins constrained vertices.
     Continuity,
     /// Painted stiffness.
     Stiffness,
@@ -38,9 +38,9 @@ pub enum ConstraintKind {
 /// What a method works on.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Needs {
-    /// Points in space: it bends whatever is there, connected or not. Every free vertex is its own to move.
+    /// Points in space, connected or not. It moves every free vertex.
     Points,
-    /// A surface's triangles, of which it moves what a handle can reach.
+    /// A surface's triangles. It moves what a handle can reach.
     Surface {
         /// How many edges a handle's influence travels at a time, across constrained vertices too; at least 1.
         reach: u32,

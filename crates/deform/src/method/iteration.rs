@@ -1,8 +1,8 @@
-//! Options that all methods share which take steps until they have converged.
+//! Options that all iterative methods share.
 
 use super::option::{Number, Whole};
 
-/// When a step lowers the energy so little that it was the last one.
+/// The relative decrease of the energy below which a step was the last one.
 pub(crate) const TOLERANCE: Number = Number {
     default: 1e-7,
     range: [1e-12, 0.1],

@@ -1,6 +1,6 @@
 //! The methods: what each declares and implements, and the list of them all.
 //!
-//! `README.md` beside the sources says how one is added and what later ones bring along.
+//! `README.md` beside the sources says how a method is added and what later ones will bring along.
 
 mod declaration;
 pub(crate) mod iteration;
@@ -54,7 +54,7 @@ impl Method {
         self.0.needs()
     }
 
-    /// The power of the Laplacian in whose graph's order its system is eliminated, if it needs an ordering.
+    /// The power of the Laplacian whose graph the ordering is made for, if it needs one.
     pub fn ordering_power(&self) -> Option<u32> {
         self.needs().ordering_power()
     }
@@ -88,7 +88,7 @@ impl Method {
     /// The method with some of its options set.
     ///
     /// # Errors
-    /// An option that it does not have, or a value that it does not take, alone or beside the others.
+    /// An option that it does not have, or a value that it does not take, by itself or together with the other options.
     pub fn with<'a>(&self, values: impl IntoIterator<Item = (&'a str, OptionValue)>) -> Result<Self, OptionRefused> {
         let mut set = self.clone();
         for (name, value) in values {

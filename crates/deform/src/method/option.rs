@@ -1,4 +1,4 @@
-//! Options of methods: each is declared once, and everything that reads, writes, shows or explains it reads that.
+//! Options of methods. Each is declared once; reading, writing, showing and explaining all use the declaration.
 
 use std::fmt;
 
@@ -299,8 +299,8 @@ macro_rules! named_choices {
 
 /// The options of a method: a struct with its defaults, its list of declarations, and access by name.
 ///
-/// A field `name: type = declaration` is an option; the declaration is a [`Number`], a [`Whole`] or a [`Choice`]. What
-/// follows in `beside { .. }` is no option, but for tests and measurements.
+/// A field `name: type = declaration` is an option; the declaration is a [`Number`], a [`Whole`] or a [`Choice`].
+/// Fields in `beside { .. }` are no options: only tests and measurements set them.
 macro_rules! options {
     (
         $(#[$meta:meta])*

@@ -1,4 +1,4 @@
-//! What each method implements: once for its options, once for what binding makes of them.
+//! The traits that each method implements: one for its options, one for its bound form.
 
 use std::any::Any;
 use std::fmt::Debug;
@@ -10,7 +10,7 @@ use super::{MethodDeclaration, Needs, OptionRefused, OptionValue, Solve};
 use crate::handles::{Handle, Motion};
 use crate::operators::triangulation::Triangulation;
 use crate::region::partition::Partition;
-use crate::sparse::cholesky::Refactorisation;
+use crate::sparse::refactorisation::Refactorisation;
 use crate::{BindError, HandleBases, Ordering, Problem, ReusableFactor, SolveError};
 
 /// Options by name; [`super::option::options!`] implements it.
@@ -36,10 +36,10 @@ pub(crate) trait DeformMethod: Options {
     /// What it works on.
     fn needs(&self) -> Needs;
 
-    /// How it comes to its shape once it is bound.
+    /// How it is solved once it is bound.
     fn solve(&self) -> Solve;
 
-    /// Refuses options that exclude each other; each one's own range is checked already.
+    /// Refuses options that exclude each other. The range of each option was checked before.
     fn check(&self) -> Result<(), OptionRefused> {
         Ok(())
     }
@@ -93,12 +93,12 @@ impl<'a> BindInput<'a> {
 
 /// A bound method: motions of the handles in, displacements out.
 ///
-/// `motions` has one entry a handle, `displacements` one a surface vertex. At least one handle moves.
+/// `motions` has one entry per handle, `displacements` one per surface vertex. At least one handle moves.
 pub(crate) trait BoundMethod: Debug + Send + Sync {
     /// One step: fills *all* of `displacements`, handles' vertices and zeros included.
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError>;
 
-    /// As `step`, by solving where the step takes a short cut.
+    /// As `step`, but solves where a step takes a short cut.
     fn step_by_back_substitution(
         &mut self,
         motions: &[Motion],
@@ -110,7 +110,7 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
     /// No handle moves any more: the next step begins at rest.
     fn rest(&mut self) {}
 
-    /// The energy of any displacements, if it is one of the vertices.
+    /// The energy of any displacements, if the energy is a function of the vertices.
     fn energy_of(&self, _motions: &[Motion], _displacements: &[DVec3]) -> Option<f64> {
         None
     }
@@ -151,11 +151,11 @@ pub(crate) struct Stepped {
     pub converged: bool,
     /// As in [`crate::Step::energy`].
     pub energy: f64,
-    /// What was seen of the displacements while they were made.
+    /// Whether all displacements are finite, if that was checked while they were computed.
     pub finite: Finite,
 }
 
-/// Whether a shape was seen to be finite while it was made.
+/// Whether a shape was found to be finite while it was computed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Finite {
     Yes,

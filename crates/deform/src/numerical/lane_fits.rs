@@ -22,7 +22,7 @@ pub(crate) struct Fits {
 }
 
 impl Fits {
-    /// Makes of unit quaternions that were rounded such whose length is 1 to second order.
+    /// Corrects rounded unit quaternions, so that their length is 1 to second order.
     #[inline(always)]
     pub fn normalise<S: Simd>(&mut self, simd: S) {
         for place in 0..LANES / S::F64_LANES {
@@ -134,8 +134,8 @@ fn turns<S: Simd>([x, y, z, w]: [Vector<S>; 4]) -> Matrices<S> {
     ]
 }
 
-/// Newton's method of [`crate::numerical::rotation`] in every lane at once: the rotations that maximise tr(Rᵀ S), from the guesses
-/// `start`, and which lanes found theirs.
+/// Newton's method of [`crate::numerical::rotation`] in every lane at once: the rotations that maximise tr(Rᵀ S), from
+/// the guesses `start`, and which lanes found theirs.
 #[inline(always)]
 fn newton<S: Simd>(simd: S, s: &Matrices<S>, start: [Vector<S>; 4]) -> ([Vector<S>; 4], Mask<S>) {
     let (zero, one, half) = (

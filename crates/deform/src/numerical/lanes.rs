@@ -1,10 +1,10 @@
 //! Numbers of eight cells side by side.
 //!
-//! Matrices and quaternions lie in memory as numbers of eight cells each and are computed on in the machine's own vectors,
-//! as many at a time as those hold. The vectors are asked for by name, because the compiler splits arrays of eight into
-//! pairs and single numbers. The loops hold no closure, because a closure is compiled apart from the vectors that it is
-//! called for. No operation is fused and no lane sees another, so every machine and every grouping of cells gives the
-//! same bits.
+//! Matrices and quaternions lie in memory as numbers of eight cells each and are computed on in the machine's own
+//! vectors, as many at a time as those hold. The vectors are asked for by name, because the compiler splits arrays of
+//! eight into pairs and single numbers. The loops hold no closure, because a closure is compiled apart from the vectors
+//! that it is called for. No operation is fused and no lane sees another, so every machine and every grouping of cells
+//! gives the same bits.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -18,7 +18,7 @@ pub(crate) const LANES: usize = 8;
 #[repr(align(64))]
 pub(crate) struct Lanes(pub [f64; LANES]);
 
-/// A machine's vector of numbers, a cell each.
+/// A machine's vector of numbers, one per cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Vector<S: Simd> {
     pub(super) simd: S,
@@ -117,7 +117,7 @@ impl<S: Simd> Vector<S> {
         }
     }
 
-    /// Where it is less; not where either is not a number.
+    /// Where it is less; false where either is not a number.
     #[inline(always)]
     pub(super) fn less(self, other: Self) -> Mask<S> {
         Mask {

@@ -8,8 +8,8 @@ use std::collections::VecDeque;
 
 use crate::numerical::sums::{Field, add, dot};
 
-/// Steps that are remembered. On the bar, cylinder and cactus of [BS08] and a 43k scan 5, 8, 14 and 24 took the same
-/// iterations within 4%; each costs four passes over the field.
+/// How many steps are remembered. On the bar, cylinder and cactus of [BS08] and a scan of 43k vertices 5, 8, 14 and 24
+/// took the same number of iterations within 4%; each costs four passes over the field.
 const MEMORY: usize = 6;
 
 /// A pair whose curvature is below this share of its lengths says nothing.

@@ -1,10 +1,11 @@
-//! Small numerical tools that several methods share: descent directions, rotations and rigid motions that fit, sums that do
-//! not depend on the number of threads.
+//! Small numerical tools that several methods share: descent directions, line searches, rotations and rigid motions
+//! that fit, sums that do not depend on the number of threads.
 
 pub(crate) mod eigen;
 pub(crate) mod lane_fits;
 pub(crate) mod lanes;
 pub(crate) mod lbfgs;
+pub(crate) mod line_search;
 pub(crate) mod prefetch;
 pub(crate) mod rigid_fit;
 pub(crate) mod rotation;

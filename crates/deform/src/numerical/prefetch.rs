@@ -1,10 +1,10 @@
 //! Asking for cache lines before they are needed.
 //!
-//! Processors fetch ahead of what is read in rising order alone. A solve reads the factor once up and once down, and on
-//! the way down, where each block was waited for, half of the time went by; what a ring's vertices have is read wherever
-//! they stand. A hint cannot fault, wherever it points.
+//! Processors prefetch by themselves only what is read in rising order. The backward substitution reads the factor in
+//! falling order and spent half of its time waiting; the values of a ring's vertices are read in no order at all. A
+//! hint cannot fault, wherever it points.
 
-/// The machine's hint, where there is one.
+/// The machine's prefetch instruction, if it has one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Prefetch {
     #[cfg(target_arch = "x86_64")]
@@ -21,19 +21,19 @@ impl Prefetch {
         }
     }
 
-    /// Asks for what lies `distance` items behind `item`, for a walk up.
+    /// Prefetches what lies `distance` items after `item`, for a loop in rising order.
     #[inline(always)]
     pub fn above<T>(self, item: &T, distance: usize) {
         self.fetch(std::ptr::from_ref(item).wrapping_add(distance));
     }
 
-    /// Asks for what lies `distance` items before `item`, for a walk down.
+    /// Prefetches what lies `distance` items before `item`, for a loop in falling order.
     #[inline(always)]
     pub fn below<T>(self, item: &T, distance: usize) {
         self.fetch(std::ptr::from_ref(item).wrapping_sub(distance));
     }
 
-    /// Asks for an item of at most a cache line, both lines if it lies across two.
+    /// Prefetches an item of at most one cache line; both lines if it lies across two.
     #[inline(always)]
     pub fn item<T>(self, item: &T) {
         let first = std::ptr::from_ref(item);

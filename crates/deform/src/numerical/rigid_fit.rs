@@ -1,7 +1,7 @@
 //! The rigid motion that carries points best onto displaced ones [Hor87].
 //!
-//! By the unit quaternion that maximises qᵀ N q, which is a proper rotation whatever the points: a mirrored or flat
-//! patch needs no care, unlike with a singular value decomposition.
+//! The unit quaternion that maximises qᵀ N q is a proper rotation whatever the points are: unlike with a singular value
+//! decomposition, mirrored and flat patches need no special case.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -17,8 +17,8 @@ pub struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// The least-squares fit to `displacements` of the points `rest`, as many of both; `None` where none of them moves.
-    /// Points on a line get the least turn that carries the line along.
+    /// The least-squares fit to the `displacements` of the points `rest`, which are as many; `None` if none of them
+    /// moves. Points on a line get the smallest rotation that carries the line along.
     pub fn fit(rest: &[DVec3], displacements: &[DVec3]) -> Option<Self> {
         if displacements.iter().all(|&displacement| displacement == DVec3::ZERO) {
             return None;
@@ -35,7 +35,8 @@ impl RigidMotion {
             covariance += DMat3::from_cols(from * to.x, from * to.y, from * to.z);
             inertia += from.length_squared();
         }
-        // Points on a line, or all in one place, leave a rotation open: a hair of rest inertia chooses the least one.
+        // Points on a line, or all in one place, leave a rotation undetermined: a little rest inertia selects the
+        // smallest one.
         covariance += DMat3::from_diagonal(DVec3::splat(1e-12 * inertia + f64::MIN_POSITIVE));
         let turn = DMat3::from_quat(best_rotation(&covariance)) - DMat3::IDENTITY;
         Some(Self { centre, turn, shift })

@@ -13,11 +13,11 @@ use crate::numerical::rigid_fit::best_rotation;
 /// Newton steps before a start is given up.
 pub(crate) const STEPS: u32 = 6;
 
-/// The skew part that counts as none, in units of tr(B).
+/// A skew part below this, in units of tr(B), counts as zero.
 pub(crate) const STATIONARY: f64 = 1e-14;
 
-/// A turn, in radians, from which no further step is needed: convergence is quadratic at least, and what is left of it
-/// enters the energy squared once more. As a descent settles its turns get smaller, and the rotations exact.
+/// After a rotation by less than this, in radians, no further step is needed: convergence is at least quadratic, and
+/// the error enters the energy squared once more. As a descent settles, its steps get smaller and the rotations exact.
 pub(crate) const SMALL_RAD: f64 = 3e-3;
 
 /// What is added to H, in units of its trace: a cell whose edges lie on one line leaves the turn about it open, and
@@ -41,7 +41,7 @@ pub(crate) fn fit_anew(s: &DMat3, start: DQuat) -> DQuat {
         return start;
     }
     let rotation = best_rotation(&s.transpose());
-    // Where the maximum is not unique Newton cannot do better, and is not asked again.
+    // If the maximum is not unique, Newton's method cannot do better and is not tried again.
     newton(s, rotation).unwrap_or(rotation)
 }
 
@@ -134,7 +134,7 @@ mod tests {
         let line = DMat3::from_cols(DVec3::X, DVec3::ZERO, DVec3::ZERO);
         let twist = DQuat::from_rotation_x(0.7);
         assert!(fit(&line, twist).dot(twist).abs() > 1.0 - 1e-12);
-        // A mirrored isotropic cell has no single best rotation; any that is proper will do.
+        // A mirrored isotropic cell has no unique best rotation; any proper one will do.
         assert!(fit(&(-DMat3::IDENTITY), start).is_normalized());
     }
 }

@@ -5,10 +5,10 @@ use rayon::prelude::*;
 
 use crate::operators::CHUNK;
 
-/// A field of vectors, one a column of the factor.
+/// A field of vectors, one per column of the factor.
 pub(crate) type Field = Vec<[f64; 3]>;
 
-/// Chunks that a task takes at least: shorter fields are not worth a thread's waking.
+/// The fewest chunks of a task: shorter fields are not worth waking a thread.
 pub(crate) const CHUNKS_A_TASK: usize = 8;
 
 /// a · b.

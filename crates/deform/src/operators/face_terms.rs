@@ -1,4 +1,4 @@
-//! What one triangle adds to the Laplacian and to its corners' areas, by discretisation [BS08, section 5.1].
+//! A triangle's contribution to the Laplacian and to its corners' areas, by discretisation [BS08, section 5.1].
 
 use pliant_mesh::{SurfaceVertex, area_of_lengths, cotangents, mixed_corner_areas};
 use rayon::prelude::*;
@@ -30,7 +30,7 @@ pub(crate) struct Metric {
 }
 
 impl Metric {
-    /// Cotangents and the vertices' own areas: the default, which knows nothing of the whole.
+    /// Cotangents and the vertices' own areas: the default, which needs no global quantity.
     pub fn cotangent_area() -> Self {
         Self {
             discretisation: Discretisation::CotangentArea,
@@ -53,7 +53,7 @@ impl Metric {
         }
     }
 
-    /// The area that each vertex is given, whatever its triangles' are.
+    /// The area of every vertex, independent of its triangles.
     pub fn common_area(&self) -> Option<f64> {
         (self.discretisation == Discretisation::Cotangent).then_some(self.mean_vertex_area)
     }
@@ -83,7 +83,7 @@ impl Metric {
     }
 }
 
-/// Of all triangles, summed in chunks of a fixed size, so that the number of threads doesn't show.
+/// Over all triangles, summed in chunks of a fixed size, so that the result does not depend on the number of threads.
 fn total_area(triangulation: &Triangulation) -> f64 {
     let count = triangulation.face_count();
     let partial: Vec<f64> = (0..count.div_ceil(CHUNK))

@@ -3,7 +3,7 @@
 //! Sign: (L f)_i = Σ_j w_ij (f_j − f_i) with w_ij = ½ Σ cot over the triangles on edge ij, so L is symmetric and
 //! *negative* semidefinite ([BS08, equations 6 and 7], without the division by area), and L M⁻¹ L is positive
 //! semidefinite. It is applied by differences along edges, which gives zero on constants to the last bit, however far
-//! from the origin; a matrix with its diagonal summed up does not.
+//! from the origin; a product with an assembled matrix does not.
 //!
 //! Robustness: a triangle's cotangents come from its three edge lengths, *mollified* where they hardly or don't satisfy
 //! the triangle inequality ([SC20], section 4.5, here triangle by triangle and relative to its own longest
@@ -61,7 +61,7 @@ fn row_chunks<'a, T: Send>(entries: &'a mut [T], offsets: &[u32]) -> rayon::vec:
     chunks.into_par_iter()
 }
 
-/// Where `number` stands in an ascending row. Most rows are short, and looked through sooner than searched.
+/// The place of `number` in an ascending row. Most rows are short, so a linear search is faster.
 pub(crate) fn place_in<T: Ord>(row: &[T], number: &T) -> Option<usize> {
     if row.len() <= 32 {
         row.iter().position(|own| own == number)
@@ -97,8 +97,8 @@ impl Laplacian {
         Self::on(&triangulation, stiffness, rows, discretisation, &|_, _| 1.0)
     }
 
-    /// The operator on any triangles, the weights of each, not its areas, times what `factor` gives for its corners and
-    /// lengths, from 0.
+    /// The operator on any triangles. The weights of each triangle, but not its areas, are multiplied by `factor` of
+    /// its corners and lengths, which must be at least 0.
     pub(crate) fn on(
         triangulation: &Triangulation,
         stiffness: &[f64],
@@ -164,8 +164,8 @@ impl Laplacian {
         operator
     }
 
-    /// Cotangents per face first, then gathered per row: both sides of an edge add up the same numbers in the same
-    /// order, so the weights are symmetric to the last bit.
+    /// Cotangents are computed per face, then gathered per row: both sides of an edge add up the same numbers in the
+    /// same order, so the weights are symmetric to the last bit.
     fn fill(
         &mut self,
         triangulation: &Triangulation,
@@ -241,13 +241,13 @@ impl Laplacian {
         }
         for local in (0..areas.len()).filter(|&local| self.is_full(local)) {
             let (area, count) = sums[component(local)];
-            // A component of no area at all still has a shape to solve on: its lengths are all that matters then.
+            // A component without any area can still be solved on: then only its lengths matter.
             let mean = if area > 0.0 { area / count } else { 1.0 };
             areas[local] = areas[local].max(AREA_FLOOR * mean);
         }
     }
 
-    /// Multiplies 1 / M_ii by what `factor` gives for the local vertex, from 0.
+    /// Multiplies 1 / M_ii by `factor` of the local vertex, which must be at least 0.
     pub(crate) fn scale_inverse_areas(&mut self, factor: impl Fn(usize) -> f64) {
         for (local, inverse) in self.inverse_areas.iter_mut().enumerate() {
             *inverse *= factor(local);
@@ -284,7 +284,7 @@ impl Laplacian {
         &self.weights[self.offsets[local] as usize..self.offsets[local + 1] as usize]
     }
 
-    /// Whether the row of `local` knows all its neighbours. Every surface vertex has one at least.
+    /// Whether the row of `local` has all its neighbours. Every surface vertex has at least one.
     pub fn is_full(&self, local: usize) -> bool {
         self.offsets[local] < self.offsets[local + 1]
     }

@@ -4,8 +4,8 @@
 /// By how much two edges of a triangle are made to exceed the third, in units of the longest.
 const MOLLIFICATION: f64 = 1e-5;
 
-/// What each edge of a triangle must be longer by, in their unit, for any two to exceed the third by 1e-5 of the
-/// longest; below zero where they do.
+/// How much longer each edge of a triangle must be for any two to exceed the third by 1e-5 of the longest; below zero
+/// if they do already.
 pub(crate) fn lack(lengths: [f64; 3]) -> f64 {
     let sum = lengths[0] + lengths[1] + lengths[2];
     let longest = lengths[0].max(lengths[1]).max(lengths[2]);

@@ -27,7 +27,7 @@ impl DeformMethod for Primo {
 
     fn needs(&self) -> Needs {
         Needs::Surface {
-            // A prism has handles' and free vertices, and couples with all its neighbours.
+            // A prism may have free vertices and vertices of a handle, and is coupled with all its neighbours.
             reach: 2,
             // The prisms are eliminated in an order of their own.
             ordering_power: None,
@@ -84,8 +84,7 @@ impl BoundMethod for PrimoSolver {
         PrimoSolver::factor_len(self)
     }
 
-    /// A step took 17 ms on the bar of [BS08] (5,122 solved vertices, two cores): one shape a step is what keeps a window
-    /// going.
+    /// A step took 17 ms on the bar of [BS08] (5,122 solved vertices, two cores), so a window shows every step.
     fn step_cost(&self) -> usize {
         20 * self.vertices.vertices.len()
     }

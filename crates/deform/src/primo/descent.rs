@@ -1,22 +1,20 @@
-//! One step down.
+//! One descent step with a line search.
 
 use rayon::prelude::*;
 
 use super::hierarchy::Preconditioner;
 use super::{PrimoSolver, State};
+use crate::numerical::line_search::Trial;
 use crate::numerical::sums::{Field, dot};
 use crate::operators::CHUNK;
-
-/// A step must lower the energy by this share of what its slope promises.
-const SUFFICIENT: f64 = 1e-4;
 
 /// Lengths that a line search tries.
 const TRIALS: u32 = 12;
 
-/// Steps towards the same targets after which the matrix is factored anew, where the prisms are by then. A factorisation
-/// takes about as long as eight steps. On the bar of [BS08] at a thickness of 0.005 a step with each (plain Gauss–Newton)
-/// came within 1% of the least energy after 5, one with each tenth after 25 and the rest pose's alone after 133 steps,
-/// in 1.9, 1.5 and 6.2 s; at 0.05 after 1, 1 and 2 steps.
+/// Steps towards the same targets after which the matrix is factored again at the current pose. A factorisation takes
+/// about as long as eight steps. On the bar of [BS08] at a thickness of 0.005, factoring at every step (plain
+/// Gauss–Newton) came within 1% of the least energy after 5 steps, at every tenth step after 25, and only at rest after
+/// 133, in 1.9, 1.5 and 6.2 s; at 0.05 after 1, 1 and 2 steps.
 const RENEWAL: u32 = 20;
 
 /// Energies below this share of the surface's area are rounding.
@@ -25,8 +23,8 @@ const NOTHING: f64 = 1e-26;
 impl PrimoSolver {
     /// Takes one step that lowers the energy, or finds that there is none to take.
     ///
-    /// Converged is a pose from which the quadratic model promises less than the tolerance's share of the energy, and
-    /// that the last step improved by less than that too.
+    /// A pose has converged if the quadratic model promises a decrease below the tolerance's share of the energy and
+    /// the last step gained less than that too.
     pub(super) fn descend(&mut self) {
         if self.age == RENEWAL {
             self.age = 0;
@@ -60,7 +58,7 @@ impl PrimoSolver {
         }
     }
 
-    /// Moves against `uphill`, by its whole length if that lowers the energy enough; says whether any length did.
+    /// Moves against `uphill`, by its whole length if that lowers the energy enough. Returns whether any length did.
     fn search(&mut self, uphill: &Field, slope: f64) -> bool {
         let before = self.current.energy;
         let mut length = 1.0;
@@ -68,18 +66,17 @@ impl PrimoSolver {
             self.trial.moved(&self.current, uphill, -length);
             self.trial.settle(&self.joints, &self.springs);
             self.trial.evaluate(&self.joints);
-            let after = self.trial.energy;
-            if after <= before + SUFFICIENT * length * slope && after < before {
+            let trial = Trial {
+                length,
+                before,
+                after: self.trial.energy,
+                slope,
+            };
+            if trial.is_sufficient() {
                 self.accept(-length, uphill);
                 return true;
             }
-            // The least of the parabola through both energies and the slope.
-            let least = -0.5 * slope * length * length / (after - before - slope * length);
-            length = if least.is_finite() {
-                least.clamp(0.1 * length, 0.5 * length)
-            } else {
-                0.1 * length
-            };
+            length = trial.next_length();
         }
         false
     }

@@ -1,10 +1,10 @@
 //! Which triangles an edge joins.
 //!
-//! Two triangles on an edge are joined; more than two each with each, the couplings weaker by as much as there are more,
-//! so that a prism is held at such an edge as firmly as at any other. Pairs grow with the square of the triangles, so at
-//! an edge of very many, a *crowded* one, each is joined with a single one instead, the largest, as firmly as it would be
-//! with all others together. Where the triangles are alike that is the same energy but for one of them, which goes with
-//! the mean of the others.
+//! Two triangles on an edge are joined. More than two are joined each with each, with couplings that are weaker in
+//! proportion, so that a prism is held at such an edge as firmly as at any other. The number of pairs grows with the
+//! square of the triangles, so at an edge with very many, a *crowded* one, each is joined only with the largest, as
+//! firmly as with all others together. If the triangles are alike that is the same energy, except that the largest goes
+//! with the mean of the others.
 
 use std::collections::BTreeMap;
 

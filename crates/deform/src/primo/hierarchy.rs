@@ -1,10 +1,9 @@
-//! The Gauss–Newton matrix inverted nearly: directly where there are few prisms, by cells of prisms where there are
-//! many.
+//! An approximate inverse of the Gauss–Newton matrix: a factorisation for few prisms, cells of prisms for many.
 //!
-//! A cell moves its prisms together, as one rigid body, so that cells are coupled by the same joints as prisms are, and
-//! so are cells of cells. One cycle relaxes the fine bodies (each at its own least, one colour after the other), solves
-//! for the cells what is left, and relaxes again in the opposite order, which makes it a symmetric positive definite
-//! preconditioner. The result stays the full resolution's: only the way there is shorter.
+//! A cell moves its prisms as one rigid body, so that cells are coupled by the same joints as prisms are, and so are
+//! cells of cells. One cycle relaxes the fine bodies (each to its own minimum, one colour after the other), solves the
+//! remainder on the cells, and relaxes again in the opposite order, which makes it a symmetric positive definite
+//! preconditioner. The minimum is that of the full resolution; it is only reached sooner.
 
 use glam::{DMat3, DVec3};
 use pliant_mesh::Cancel;
@@ -26,7 +25,7 @@ pub(crate) const DIRECT: usize = 16_000;
 /// Bodies in a cell.
 const CELL: usize = 8;
 
-/// By how much a cell's motion is lengthened: rigid cells bend at their borders alone, and so resist too much.
+/// By how much a cell's motion is lengthened: rigid cells bend only at their borders and so resist too much.
 const OVERCORRECTION: f64 = 1.4;
 
 /// Velocity or force of a body: (ω, v) or (torque, force).
@@ -53,7 +52,7 @@ pub(crate) struct Cells {
 }
 
 impl Preconditioner {
-    /// For the bodies of `joints` at rest; up to `direct` of them are solved for directly.
+    /// For the bodies of `joints` at rest; up to `direct` bodies the matrix is factored.
     ///
     /// # Errors
     /// As [`Factored::at`]; a pivot is named by one of its prisms.
@@ -105,7 +104,7 @@ impl Preconditioner {
         }
     }
 
-    /// x ← (H⁻¹)_ωω x, nearly: velocities' turning parts for torques, forces being none.
+    /// x ← (H⁻¹)_ωω x, approximately: the angular velocities for torques without forces.
     pub fn apply(&self, joints: &Joints, x: &mut [[f64; 3]]) {
         let mut wrenches: Vec<Wrench> = x.iter().map(|x| [x[0], x[1], x[2], 0.0, 0.0, 0.0]).collect();
         self.solve(joints, &mut wrenches);
@@ -159,7 +158,7 @@ impl Cells {
         x
     }
 
-    /// Each body of a colour to where its own part of the energy is least.
+    /// Moves each body of a colour to the minimum of its own part of the energy.
     fn relax(&self, joints: &Joints, class: &[u32], b: &[Wrench], x: &mut [Wrench]) {
         let steps: Vec<Wrench> = class
             .par_iter()
@@ -245,8 +244,8 @@ fn inverse_block(joints: &Joints, body: usize) -> Block {
     inverse
 }
 
-/// The cell of each body: bodies found breadth-first from one, those with the lowest numbers of nothing left over first;
-/// what is left over between cells joins one of them.
+/// The cell of each body. Cells grow breadth-first from the unassigned body with the lowest number; bodies left over
+/// between cells join one of them.
 fn cells(joints: &Joints) -> Vec<u32> {
     const NONE: u32 = u32::MAX;
     let count = joints.count();
@@ -342,7 +341,7 @@ mod tests {
             let (ca, cb) = (solved(&cells, &joints, &a), solved(&cells, &joints, &b));
             assert!((dot(&a, &cb) - dot(&b, &ca)).abs() < 1e-9 * dot(&a, &ca));
             assert!(dot(&a, &ca) > 0.0 && dot(&b, &cb) > 0.0);
-            // The error that is slowest to go shows after some rounds.
+            // After some rounds only the most persistent error is left.
             let mut error = random(joints.count(), 3);
             let mut rate = 0.0;
             for _ in 0..30 {

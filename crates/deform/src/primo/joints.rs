@@ -12,7 +12,7 @@ use super::prisms::{NONE, Prisms};
 use super::quad::Quad;
 use crate::operators::CHUNK;
 
-/// The least weight of a coupling: an edge of no length still holds its prisms together.
+/// The least weight of a coupling: an edge without length still holds its prisms together.
 const WEIGHT_FLOOR: f64 = 1e-9;
 
 /// The weight of a pin, a multiple of what an edge of an equilateral triangle has: with 1 a handle of one vertex would
@@ -31,7 +31,7 @@ pub(crate) struct Joints {
     pub order: Vec<u32>,
     /// The sum of the solved prisms' areas.
     pub area: f64,
-    /// Where each block of prisms ends that is eliminated at once; empty: each by itself.
+    /// The ends of the supernodes of prisms; empty: each prism by itself.
     pub block_ends: Vec<u32>,
 }
 
@@ -63,7 +63,7 @@ pub(crate) struct Material<'a> {
 }
 
 impl Joints {
-    /// Where each block of a matrix' columns ends, of which a prism has so many.
+    /// The ends of the supernodes of a matrix with this many columns per prism.
     pub fn column_ends(&self, per_prism: usize) -> Vec<u32> {
         if self.block_ends.is_empty() {
             return (1..=self.count()).map(|end| (per_prism * end) as u32).collect();

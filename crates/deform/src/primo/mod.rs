@@ -1,25 +1,26 @@
-//! Coupled prisms [BPGK06]: every triangle a rigid prism, elastically joined to its
-//! neighbours over the quads that they share at rest.
+//! Coupled prisms [BPGK06]: every triangle is a rigid prism, elastically joined to its neighbours over the quads that
+//! they share at rest.
 //!
-//! The prisms' rotations are the unknowns. Where they are least stretched, given how they are turned, is a linear problem
-//! with one constant matrix, so that the translations are always solved for exactly (variable projection). What is left
-//! has long valleys no more: with the translations among the unknowns, turning a chain of prisms stretches it to second
-//! order, and steps stay short. The rotations descend by the quasi-Newton method on top of the factored Gauss–Newton
-//! matrix of *all* velocities, whose inverse's turning part is that of the reduced problem. In the prisms' own frames it
-//! hardly changes while they turn together, so the rest pose's serves for many steps, and is renewed where a minimum is
-//! far. The line search looks at the true energy, which never rises.
+//! The prisms' rotations are the unknowns. Given the rotations, the best translations solve a linear problem with one
+//! constant matrix, so they are always solved for exactly (variable projection). The remaining problem has no long
+//! valleys: with the translations among the unknowns, turning a chain of prisms would stretch it to second order, and
+//! steps would stay short. The rotations descend by a quasi-Newton method on top of the factored Gauss–Newton matrix of
+//! *all* velocities; the angular part of its inverse is that of the reduced problem. In the prisms' own frames this
+//! matrix hardly changes while they turn together, so the rest pose's serves for many steps, and is factored again only
+//! if the minimum is far. The line search uses the true energy, which never rises.
 //!
-//! Measured on the bar of [BS08] (12,106 faces), iterations to within 1% of the least energy at a thickness of 0.02: with
-//! translations among the unknowns and the rest pose's matrix over 1000, or 10 plain Gauss–Newton steps that each factor;
-//! with translations eliminated 23, or 17 with the matrix renewed every twelve steps.
+//! Measured on the bar of [BS08] (12,106 faces), iterations to within 1% of the least energy at a thickness of 0.02:
+//! with translations among the unknowns and the rest pose's matrix over 1000, or 10 plain Gauss–Newton steps that each
+//! factor; with translations eliminated 23, or 17 with the matrix renewed every twelve steps.
 //!
-//! Above some thousands of prisms the matrix is inverted only nearly, by cells of prisms, which is enough to descend by:
-//! on a scan of 86,482 faces binding took 0.75 instead of more than 3 s, a step 0.13 instead of 0.3 s, and there were as
-//! many steps.
+//! Above some thousands of prisms the matrix is inverted only approximately, by cells of prisms, which is enough for a
+//! descent direction: on a scan of 86,482 faces binding took 0.75 instead of more than 3 s, a step 0.13 instead of 0.3
+//! s, and the number of steps was the same.
 //!
-//! Parts: `edges` finds which triangles meet, `prisms` sorts them, `quad` is the integral over a shared quad, `joints` are the couplings, `pose` is
-//! where the prisms are and their energy, `system` and `factored` make the matrices, `hierarchy` the cells, `start` chooses where to begin,
-//! `sweep` unfolds, `descent` takes a step, and `vertices` takes the prisms' mean.
+//! Parts: `edges` finds which triangles meet, `prisms` sorts them, `quad` is the integral over a shared quad, `joints`
+//! are the couplings, `pose` is where the prisms are and their energy, `system` and `factored` make the matrices,
+//! `hierarchy` the cells, `start` chooses where to begin, `sweep` unfolds, `descent` takes a step, and `vertices` takes
+//! the prisms' mean.
 
 mod declaration;
 mod descent;
@@ -165,13 +166,7 @@ impl PrimoSolver {
             springs,
             preconditioner,
             weights,
-            handles: handles
-                .iter()
-                .map(|handle| HandleFrame {
-                    centre: handle.world_centre - world_origin,
-                    radius: handle.radius,
-                })
-                .collect(),
+            handles: HandleFrame::of_all(handles, world_origin),
             prescribed: handles
                 .iter()
                 .map(|handle| {
@@ -193,7 +188,7 @@ impl PrimoSolver {
         self.preconditioner.stored()
     }
 
-    /// The energy in units of the solved prisms' area, which a change of the model's scale leaves as it is.
+    /// The energy in units of the solved prisms' area, so that it does not depend on the model's scale.
     fn relative(&self, energy: f64) -> f64 {
         if self.joints.area > 0.0 {
             energy / self.joints.area
@@ -210,10 +205,10 @@ impl PrimoSolver {
         self.state = State::Converged;
     }
 
-    /// One step towards `motions`: writes the displacements of solved prisms' free vertices. Says whether it converged,
-    /// and the energy.
+    /// One step towards `motions`: writes the displacements of solved prisms' free vertices. Returns whether it
+    /// converged, and the energy.
     pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> (bool, f64) {
-        // One entry into the pool: each of the many short loops would wait for it otherwise.
+        // The pool is entered once: otherwise each of the many short loops would wait for it.
         rayon::scope(|_| {
             if self.motions != motions {
                 self.start(motions);

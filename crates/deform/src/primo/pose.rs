@@ -2,8 +2,8 @@
 //!
 //! A body's motion takes its rest centre c to c + shift and what lies around by a linear map: a rotation for a prism,
 //! any map for a ground, since a handle moves affinely. Velocities are those of the body's own frame: (ω, v) takes a
-//! prism with the rotation R to R exp(ω), its shift further by R v. A joint's gradient is then a function of how its two
-//! prisms lie to each other, and the Gauss–Newton matrix is the same wherever a rigid motion carries both.
+//! prism with the rotation R to R exp(ω), its shift further by R v. A joint's gradient is then a function of how its
+//! two prisms lie to each other, and the Gauss–Newton matrix is the same wherever a rigid motion carries both.
 
 use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
@@ -22,7 +22,7 @@ pub(crate) struct Pose {
     pub turns: Vec<DMat3>,
     /// The displacement of each body's centre.
     pub shifts: Vec<DVec3>,
-    /// Of each solved prism dE/dω, the shifts being where they belong.
+    /// dE/dω of each solved prism, with the best translations.
     pub gradient: Field,
     /// E.
     pub energy: f64,
@@ -40,7 +40,7 @@ impl Pose {
         }
     }
 
-    /// How a point moves that lies `arm` from the centre of `body`.
+    /// The displacement of a point at `arm` from the centre of `body`.
     #[inline]
     pub fn displacement(&self, body: usize, arm: DVec3) -> DVec3 {
         (self.turns[body] * arm - arm) + self.shifts[body]
@@ -66,7 +66,7 @@ impl Pose {
         self.energy = partial.iter().sum();
     }
 
-    /// Moves the prisms, turned as they are, to where the energy is least: a linear problem.
+    /// Solves for the translations that minimise the energy with these rotations: a linear problem.
     pub fn settle(&mut self, joints: &Joints, laplacian: &Springs) {
         let pull = |prism: usize| {
             let sum: DVec3 = joints
@@ -120,7 +120,7 @@ impl Pose {
         (energy, torque)
     }
 
-    /// By how much the quad's middle comes apart: where the own prism takes it, less where the other does.
+    /// The gap at the quad's middle: its position under this prism less that under the other.
     #[inline]
     pub fn apart(&self, prism: usize, side: &Side) -> DVec3 {
         self.displacement(prism, side.own_arm) - self.displacement(side.other as usize, side.other_arm)

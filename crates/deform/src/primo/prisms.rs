@@ -1,4 +1,4 @@
-//! Which triangles are prisms to be solved for, which ones move with a handle, and what joins them.
+//! Which triangles are solved prisms, which ones move with a handle, and how they are joined.
 //!
 //! A triangle whose three vertices are all fixed, or all one handle's, is *prescribed*: it moves with its *ground*, the
 //! fixed world or the handle. The others are free, and *solved* where a handle reaches them from triangle to triangle.
@@ -133,7 +133,8 @@ impl Prisms {
     }
 }
 
-/// Every free triangle's vertices that are held and whose ground no triangle joined to it around them stands on.
+/// The pins: constrained vertices of free triangles such that no triangle joined to it around the vertex stands on the
+/// vertex's ground.
 fn pins(edges: &Edges, roles: &[Role], grounds: &[u32]) -> Vec<Pin> {
     let mut pins = Vec::new();
     for (vertex, &role) in roles.iter().enumerate() {

@@ -23,7 +23,7 @@ pub(crate) struct Quad {
     pub spread: DMat3,
 }
 
-/// An extrusion that leans further towards its edge than this (the sine of their angle) spans no patch.
+/// An extrusion whose angle to its edge has a smaller sine than this spans no patch.
 const UPRIGHT: f64 = 0.1;
 
 impl Quad {
@@ -70,7 +70,7 @@ fn upright(edge: DVec3, [first, second]: [DVec3; 2], face_normal: DVec3) -> [DVe
     if stands(face) {
         return [face; 2];
     }
-    // A needle of no area: any direction will do, as long as there is one.
+    // For a needle without area any direction will do.
     [along
         .try_normalize()
         .map_or(DVec3::Z, |along| along.any_orthonormal_vector()); 2]

@@ -1,4 +1,4 @@
-//! Where to begin for new targets: the rest pose or the last one, carried by the handles' blended motions.
+//! The start for new targets: the rest pose or the last one, moved by the handles' blended motions.
 
 use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
@@ -27,7 +27,7 @@ impl PrimoSolver {
         self.state = self.how_folded();
     }
 
-    /// Makes the trial pose the rest pose or the current one, carried by `screws`, with the grounds where they go.
+    /// Makes the trial pose the rest pose or the current one, moved by `screws`, with the grounds at their targets.
     fn carry(&mut self, screws: &[Screw], origin: Origin) {
         let Self {
             current,

@@ -1,8 +1,8 @@
-//! Local shape matching: each prism turned the best way between its neighbours as they are ([BPGK06],
-//! section 4.2), which unfolds what Newton's method can't.
+//! Local shape matching: each prism takes its best rotation between its fixed neighbours ([BPGK06], section 4.2), which
+//! unfolds what Newton's method can't.
 //!
-//! Prisms of one colour share no joint and turn at once; each turn is the least of the energy over one rotation, so a
-//! sweep never raises it. The translations follow by the springs, all at once.
+//! Prisms of one colour share no joint and are updated in parallel; each update minimises the energy over one rotation,
+//! so a sweep never raises it. The translations are then solved for together.
 
 use glam::{DMat3, DQuat};
 use rayon::prelude::*;
@@ -67,8 +67,8 @@ impl Pose {
         }
     }
 
-    /// The rotation that is best while everything else stays: it maximises tr(Rᵀ S) with
-    /// S = Σ w (x m_iᵀ + R_j C), x from the own centre to where the other prism takes the quad's middle.
+    /// The best rotation while everything else stays: it maximises tr(Rᵀ S) with S = Σ w (x m_iᵀ + R_j C), x pointing
+    /// from the prism's centre to the quad's middle under the other prism.
     fn best_turn(&self, joints: &Joints, prism: usize) -> DQuat {
         let mut sum = DMat3::ZERO;
         for side in joints.sides(prism) {
@@ -81,7 +81,7 @@ impl Pose {
         fit(&sum, self.rotations[prism])
     }
 
-    /// Whether some prism lies to a neighbour by more than a quarter turn.
+    /// Whether some prism is rotated by more than a quarter turn from a neighbour.
     pub fn is_folded(&self, joints: &Joints) -> bool {
         (0..joints.count()).into_par_iter().with_min_len(CHUNK).any(|prism| {
             let own = self.rotations[prism];
@@ -101,7 +101,7 @@ impl PrimoSolver {
         }
     }
 
-    /// One sweep; sweeping ends where nothing is folded any more, or where a sweep gains nothing.
+    /// One sweep; sweeping ends when nothing is folded any more or a sweep gains nothing.
     pub(super) fn unfold(&mut self, left: u32) {
         self.trial.clone_from(&self.current);
         self.trial.sweep(&self.joints, &self.colours);

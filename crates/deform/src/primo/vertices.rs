@@ -1,4 +1,4 @@
-//! Vertices from prisms: each free vertex goes to the mean of where the prisms around it take it.
+//! Vertices from prisms: each free vertex moves to the mean of its positions under the prisms around it.
 
 use glam::DVec3;
 use pliant_mesh::{Surface, SurfaceVertex, Topology};

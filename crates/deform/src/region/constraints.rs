@@ -1,4 +1,4 @@
-//! How firmly handles pull, and how smoothly the surface joins what holds it.
+//! How firmly handles pull, and how smoothly the free surface joins constrained vertices.
 
 use std::ops::RangeInclusive;
 
@@ -7,23 +7,23 @@ use crate::{BindError, Loose, Problem};
 /// What constrained vertices do beyond their roles. The default is hard handles, joined as smoothly as the method can.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Constraints<'a> {
-    /// Of each handle: `None` where its vertices go exactly where it goes; for a *soft* one its weight, a number above
-    /// 0 without unit. Empty: all are hard.
+    /// For each handle: `None` if its vertices go exactly where it goes; for a *soft* one its weight, a number above 0
+    /// without unit. Empty: all are hard.
     ///
     /// A soft handle pulls at each of its vertices i by a spring of strength
     ///
     /// W_i = w M_ii (k_s q + k_b qⁿ), q = π² / Σ M_ii,
     ///
-    /// n the bi-Laplacian's order and the sum over the handle: w times what the bi-Laplacian opposes to a half wave as long as the
-    /// handle is wide, so that at 1 both give way to each other. Neither the resolution of the mesh nor its unit shows
-    /// in it. The larger w, the nearer to a hard handle.
+    /// where n is the bi-Laplacian's order and the sum goes over the handle. That is w times the resistance of the
+    /// bi-Laplacian to a half wave as long as the handle is wide, so that at 1 neither dominates. It depends neither on
+    /// the mesh's resolution nor on its unit. The larger w, the closer to a hard handle.
     pub soft: &'a [Option<f64>],
-    /// Of each surface vertex: with which continuity Cᵏ the free surface joins it, if it is constrained, and at most
-    /// Cⁿ⁻¹, n the bi-Laplacian's order; from 0 to 2 [BK04]. 0 is a hinge, 1 keeps the tangents, 2 the
-    /// curvature; a number between is a hinge with a spring that is as stiff at every resolution. Empty: 2 everywhere.
+    /// For each surface vertex that is constrained: the continuity Cᵏ with which the free surface joins it, from 0 to 2
+    /// [BK04] and at most Cⁿ⁻¹, n the bi-Laplacian's order. 0 is a hinge, 1 keeps the tangents, 2 the curvature; a
+    /// number between is a hinge with a spring, equally stiff at every resolution. Empty: 2 everywhere.
     pub continuity: &'a [f64],
-    /// What single components do that nothing holds, by their number in the topology, in place of [`Problem::loose`];
-    /// of several entries the last one counts.
+    /// What single components that nothing holds do, by their number in the topology, in place of [`Problem::loose`].
+    /// The last entry for a component counts.
     pub parts: &'a [(u32, Loose)],
 }
 
@@ -36,7 +36,7 @@ impl Constraints<'_> {
         self.soft.get(usize::from(handle)).copied().flatten()
     }
 
-    /// Whether every table fits the problem and every number is one that it may be.
+    /// Checks that every table fits the problem and that every number is in its range.
     pub(crate) fn check(&self, problem: &Problem) -> Result<(), BindError> {
         let vertex_count = problem.surface.positions.len();
         for (table, found, expected) in [

@@ -1,13 +1,13 @@
 //! Loose components travel rigidly with the nearest part of the surface that is being deformed.
 //!
-//! Real models are many pieces: a helmet has 55 components, and moving its shell alone would tear it apart. A loose
-//! component is tied to a *patch*, the surface around the point of the driven components that it touches or else comes
-//! nearest to, about as large as itself, and takes the rigid motion that fits the patch's displacements best. One that
-//! touches a larger loose component more than any driven one (a rivet on a strap) goes where that goes.
+//! Real models have many pieces: a helmet has 55 components, and moving its hull alone would tear it apart. A loose
+//! component is tied to a *patch*: the part of a driven component around the point that it touches or comes nearest to,
+//! about as large as itself. It takes the rigid motion that fits the patch's displacements best. A component that
+//! touches a larger loose component more than any driven one (a rivet on a strap) moves with that one.
 //!
-//! One that bends along has such a tie at several of its vertices, evenly spread, and between them the motions are
-//! blended as in an embedded deformation [SSP07]: each place by the four nearest, with weights (1 − d/d₅)²,
-//! d₅ the fifth's distance.
+//! A component that bends along has ties at several of its vertices, evenly spread. Between them the motions are
+//! blended as in an embedded deformation [SSP07]: at each vertex the four nearest, with weights (1 − d/d₅)², d₅ being
+//! the distance of the fifth.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -30,7 +30,7 @@ pub(crate) struct Followers {
     bending: Vec<Bending>,
 }
 
-/// A vertex that moves with one tie, as all of its component do.
+/// A vertex that moves with one tie, like all vertices of its component.
 #[derive(Clone, Copy, Debug)]
 struct Rigid {
     vertex: SurfaceVertex,
@@ -46,7 +46,7 @@ struct Bending {
     world_rest: Vec<DVec3>,
     /// The first of its ties.
     first_tie: usize,
-    /// Of each vertex the ties that move it, counted from the first, with their shares, whose sum is 1.
+    /// For each vertex the ties that move it, counted from the first, with their shares, whose sum is 1.
     shares: Vec<[(u16, f64); BLENDED]>,
 }
 
@@ -69,10 +69,10 @@ struct Place {
 /// How many ties move a vertex of a component that bends along.
 const BLENDED: usize = 4;
 
-/// At how many of its vertices a component that bends along is tied, at most.
+/// The most ties of a component that bends along.
 const MOST_TIES: usize = 64;
 
-/// A patch with more vertices than this is thinned out evenly: a fit needs no more.
+/// Of a patch with more vertices only this many, evenly chosen, are used: a fit needs no more.
 const PATCH_SAMPLES: usize = 256;
 
 /// A patch reaches at least this many mean edge lengths at its middle.
@@ -99,7 +99,7 @@ pub(crate) fn followers(
         middle,
         radius: (reach * radius).max(PATCH_EDGES * mean_edge(surface, topology, middle)),
     };
-    // All that is kept of a component that follows as a whole is its place.
+    // A component that follows as a whole needs only its place.
     let rigid: Vec<Option<Place>> = following
         .par_iter()
         .zip(&owners)
@@ -117,7 +117,7 @@ pub(crate) fn followers(
             Some(place(middle, radius))
         })
         .collect();
-    // Ties on components that bend along come last: those have to be carried first.
+    // Ties on components that bend along come last, because these components have to be moved first.
     let is_on_driven = |place: &Place| driven.binary_search(&topology.component(place.middle)).is_ok();
     let mut places = Places::default();
     let mut ties: Vec<Option<u32>> = vec![None; following.len()];
@@ -157,7 +157,7 @@ pub(crate) fn followers(
     Ok(followers)
 }
 
-/// The places of ties, those of components that follow as a whole each once.
+/// The places of ties; those of components that follow as a whole are listed once.
 #[derive(Default)]
 struct Places {
     list: Vec<Place>,
@@ -230,8 +230,8 @@ fn bending(
     Some((bending, places))
 }
 
-/// At most [`MOST_TIES`] of the points, each as far as can be from those before it, and how far apart they are in the
-/// end.
+/// At most [`MOST_TIES`] of the points, each as far as possible from those before it, and the smallest distance between
+/// them.
 fn spread(points: &[DVec3]) -> (Vec<usize>, f64) {
     let mut distances = vec![f64::INFINITY; points.len()];
     let (mut chosen, mut next, mut spacing) = (Vec::new(), 0, 0.0);
@@ -304,7 +304,7 @@ fn mean_edge(surface: &Surface, topology: &Topology, vertex: SurfaceVertex) -> f
 fn patch_around(surface: &Surface, topology: &Topology, place: &Place) -> Vec<SurfaceVertex> {
     let centre = surface.positions[place.middle.index()];
     let distance = |vertex: SurfaceVertex| surface.positions[vertex.index()].distance(centre);
-    // A table of all vertices for each of many patches would cost more than all patches.
+    // A table of all vertices per patch would cost more than the patches themselves.
     let mut seen = HashSet::from([place.middle]);
     let mut patch = vec![place.middle];
     let mut next = 0;

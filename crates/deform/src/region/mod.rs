@@ -1,4 +1,4 @@
-//! What the roles mean on a surface: who is solved for, who is held and how firmly, who follows.
+//! The roles applied to a surface: what is solved for, what is held and how firmly, what follows.
 
 pub(crate) mod constraints;
 pub(crate) mod follow;

@@ -1,4 +1,4 @@
-//! What a component that follows belongs to: what it touches most.
+//! Which component a following one belongs to: the one that it touches most.
 
 use std::collections::BTreeMap;
 
@@ -6,8 +6,8 @@ use pliant_mesh::{Bvh, Cancel, Cancelled, Contact, Surface, SurfaceVertex, Topol
 
 use crate::Loose;
 
-/// Where more components follow than this they are crumbs, and each is tied to the least patch, which those beside it
-/// share: patches as large as each of very many components would take much more room than the mesh.
+/// If more components follow than this, they are crumbs: each is tied to a patch of the smallest size, which its
+/// neighbours share. Patches as large as each of very many components would take much more memory than the mesh.
 pub(crate) const CRUMBS: usize = 10_000;
 
 /// What a component that follows touches most.
@@ -15,12 +15,12 @@ pub(crate) const CRUMBS: usize = 10_000;
 pub(crate) enum Owner {
     /// A vertex of a driven component, or of one that bends along.
     Surface(SurfaceVertex),
-    /// A component that follows as a whole, by its index among those that follow: both move as one.
+    /// A component that follows as a whole, by its index among the followers: both move as one.
     Follower(usize),
 }
 
-/// What each of the components `following` touches most: a driven component, or a larger one that follows; `None` where
-/// it touches neither. Crumbs are not asked.
+/// What each of the components `following` touches most: a driven component, or a larger follower; `None` if it touches
+/// neither. Crumbs are left out.
 pub(crate) fn owners(
     surface: &Surface,
     topology: &Topology,
@@ -68,7 +68,7 @@ pub(crate) fn owners(
     Ok(contacts.iter().map(owner).collect())
 }
 
-/// The component that a chain of touching ones ends at: that which is tied itself.
+/// The end of a chain of touching components: the one that is tied itself.
 pub(crate) fn end_of_chain(owners: &[Option<Owner>], mut index: usize) -> usize {
     while let Some(Owner::Follower(next)) = owners[index] {
         index = next;

@@ -1,10 +1,9 @@
-//! Who is solved for, who is prescribed, who follows: what the roles mean on this surface.
+//! Which vertices are solved for, which are prescribed and which follow: the roles applied to this surface.
 //!
-//! Only vertices that a handle can reach are solved for. The system's graph is that of Lⁿ, n the bi-Laplacian's order, so
-//! influence travels n edges at a time, across constrained vertices too, and ends where a band of constrained vertices
-//! is n rings wide.
-//! Free vertices that it does not reach have the solution zero and stay out of the factor: binding costs what is
-//! deformed, not what is loaded.
+//! Only vertices that a handle can reach are solved for. The system's graph is that of Lⁿ, n the bi-Laplacian's order,
+//! so influence travels n edges at a time, across constrained vertices too, and ends where a band of constrained
+//! vertices is n rings wide. Free vertices out of its reach have the solution zero and stay out of the factor, so that
+//! the cost of binding depends on what is deformed, not on what is loaded.
 
 use pliant_mesh::SurfaceVertex;
 
@@ -26,7 +25,7 @@ pub(crate) struct Partition<'a> {
     pub soft: Vec<Option<f64>>,
     /// Components that hold a handle, ascending.
     pub driven: Vec<u32>,
-    /// Components that hold neither a handle nor a fixed vertex and are to follow, ascending, and how.
+    /// Components without a handle and without a fixed vertex that are to follow, ascending, and how.
     pub following: Vec<(u32, Loose)>,
     /// Of each component: whether it holds a fixed vertex.
     pub held: Vec<bool>,
@@ -105,7 +104,7 @@ impl<'a> Partition<'a> {
 }
 
 impl Partition<'_> {
-    /// Takes over the budget, less what is kept of every handle at every solved vertex and pair of handles.
+    /// Sets the budget, less what is kept for every handle at every solved vertex and for every pair of handles.
     ///
     /// # Errors
     /// [`BindError::Handles`] where that alone exceeds it.
@@ -120,13 +119,13 @@ impl Partition<'_> {
     }
 }
 
-/// Bytes of a handle's basis at a vertex, while all are put together: twice four numbers in single precision.
+/// Bytes of a handle's basis at a vertex while the bases are assembled: twice four numbers in single precision.
 const ROW: usize = 32;
 
 /// Bytes of the energy's block of a pair of handles: 4 × 4 numbers.
 const PAIR: usize = 128;
 
-/// Whether every table fits the surface and every number is one that it may be.
+/// Checks that every table fits the surface and that every number is in its range.
 fn check(problem: &Problem) -> Result<(), BindError> {
     let expected = problem.surface.positions.len();
     for (table, found) in [
@@ -168,8 +167,8 @@ fn check(problem: &Problem) -> Result<(), BindError> {
     }
 }
 
-/// Who is solved for, ascending: of a surface the free vertices that handles reach, by walks of which no `reach`
-/// successive vertices are constrained; of points all free ones. A soft handle's vertices count as free.
+/// The vertices that are solved for, ascending. On a surface these are the free vertices that handles reach by walks
+/// without `reach` successive constrained vertices; of points all free ones. A soft handle's vertices count as free.
 fn solved(problem: &Problem, triangulation: &Triangulation, handles: &[Vec<u32>], soft: &[Option<f64>]) -> Vec<u32> {
     let is_free = |vertex: usize| match problem.roles[vertex] {
         Role::Free => true,
@@ -186,7 +185,7 @@ fn solved(problem: &Problem, triangulation: &Triangulation, handles: &[Vec<u32>]
         Needs::Points => return chosen(&is_free),
         Needs::Surface { reach, .. } => reach,
     };
-    // How many edges a walk may go on from here before it must meet a free vertex; at a reached one, `reach`.
+    // How many more edges a walk may take from here before it must meet a free vertex; at a reached one, `reach`.
     let mut left = vec![0; problem.roles.len()];
     let mut queue: Vec<u32> = handles.iter().flatten().copied().collect();
     for &vertex in &queue {
@@ -205,7 +204,7 @@ fn solved(problem: &Problem, triangulation: &Triangulation, handles: &[Vec<u32>]
     chosen(&|vertex| left[vertex] > 0 && is_free(vertex))
 }
 
-/// What is said of constraints that the method does not heed, with the methods that do.
+/// Sentences about constraints that the method does not support, with the methods that do.
 fn unheeded(problem: &Problem) -> Vec<String> {
     let constraints = &problem.constraints;
     let soft = constraints.soft.iter().position(Option::is_some);
@@ -244,7 +243,7 @@ fn unheeded(problem: &Problem) -> Vec<String> {
         .collect()
 }
 
-/// How many components are named one by one before they are only counted.
+/// How many components are named; more are only counted.
 const NAMED: usize = 4;
 
 fn warnings(problem: &Problem, loose: &[u32], loose_of: &[Loose], unheld: &[u32]) -> Vec<String> {

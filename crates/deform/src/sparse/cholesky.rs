@@ -1,4 +1,4 @@
-//! The supernodal sparse Cholesky factor L Lᵀ, in the order that the matrix already has [Dav06].
+//! The supernodal sparse Cholesky factor L Lᵀ of a matrix that is already permuted [Dav06].
 //!
 //! The ordering brings its supernodes (`ordering`). `symbolic` finds their rows, `numeric` factors over the parts that
 //! `symbolic::assembly_tree` cuts, and `solve` substitutes over the same parts.
@@ -6,18 +6,14 @@
 //! A simplicial factorisation of the same systems took 720 and 12,300 ms at 45,797 and 183,208 free vertices where a
 //! supernodal one took 114 and 840 (horse.ply and once subdivided, one core).
 
-use std::collections::BTreeSet;
-use std::sync::Arc;
-
 use pliant_mesh::Cancel;
 
 use crate::budget::Budget;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::numeric::Numbers;
-use crate::sparse::numeric::reuse::{Named, equal_parts, worth_keeping};
-use crate::sparse::ordering::elimination::Elimination;
-use crate::sparse::solve::substitution::{Real, Substitution};
+use crate::sparse::solve::rhs::Real;
+use crate::sparse::solve::substitution::Substitution;
 use crate::sparse::symbolic::Symbolic;
 use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 use crate::sparse::{numeric, solve};
@@ -25,37 +21,17 @@ use crate::sparse::{numeric, solve};
 /// A factor of the scaled matrix.
 #[derive(Debug)]
 pub(crate) struct Factor {
-    symbolic: Symbolic,
-    assembly_tree: AssemblyTree,
-    /// One a part; none before the factor is filled.
-    numbers: Vec<Numbers>,
+    pub(super) symbolic: Symbolic,
+    pub(super) assembly_tree: AssemblyTree,
+    /// One for each part; none before the factor is filled.
+    pub(super) numbers: Vec<Numbers>,
 }
 
-/// What of a factor is for the next one, of nearly the same matrix.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Refactorisation<'a> {
-    /// Nothing: there will be none. Half the memory.
-    Never,
-    /// What parts left is kept, as far as it is [worth it](worth_keeping); what the former factor, if there is one, has
-    /// to the bit is taken from there.
-    From(Option<&'a RenewableFactor>),
-}
-
-/// A factor that remembers what it was made from, so that one of nearly the same matrix can take over what is equal.
-#[derive(Debug)]
-pub(crate) struct RenewableFactor {
-    pub factor: Factor,
-    matrix: ScaledMatrix,
-    elimination: Elimination,
-    /// What was added to the matrix' unit diagonal.
-    pub shift: f64,
-}
-
-/// What is added to the unit diagonal, one after the other, of a matrix that is descended by.
+/// Shifts of the unit diagonal that are tried one after the other for a preconditioner.
 const SHIFTS: [f64; 6] = [0.0, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5];
 
 impl Factor {
-    /// Factors the matrix, whose columns stand in supernodes that end at `ends`, with `shift` added to its unit diagonal.
+    /// Factors the matrix, whose supernodes end at `ends`, with `shift` added to its unit diagonal.
     #[cfg(test)]
     pub fn of(matrix: &ScaledMatrix, ends: &[u32], shift: f64, cancel: &Cancel) -> Result<Self, FactorError> {
         let mut factor = Self::analysed(matrix, ends, Budget::default())?;
@@ -63,8 +39,8 @@ impl Factor {
         Ok(factor)
     }
 
-    /// As [`Factor::of`] for a method that only descends by it: something is added to the unit diagonal until that can
-    /// be factored. Steps get shorter by it; results stay the same. The refusal is that of the matrix as it is.
+    /// As [`Factor::of`], for a preconditioner: the unit diagonal is raised until the matrix can be factored. Steps get
+    /// shorter by that; the minimum stays the same. The refusal is that of the unshifted matrix.
     pub fn to_descend_by(
         matrix: &ScaledMatrix,
         ends: &[u32],
@@ -85,10 +61,10 @@ impl Factor {
         Err(refused.unwrap_or(FactorError::Memory))
     }
 
-    /// What the factor is to hold, without numbers.
+    /// The symbolic factorisation: everything but the numbers.
     ///
     /// # Errors
-    /// Where its factorisation takes more than the budget.
+    /// If the factorisation takes more than the budget.
     pub fn analysed(matrix: &ScaledMatrix, ends: &[u32], budget: Budget) -> Result<Self, FactorError> {
         let symbolic = Symbolic::of(matrix, ends, budget)?;
         let assembly_tree = AssemblyTree::of(&symbolic);
@@ -106,7 +82,7 @@ impl Factor {
         Ok(())
     }
 
-    /// Its values laid out for solving again and again.
+    /// A copy of its values, laid out for many solves.
     ///
     /// # Errors
     /// [`FactorError::Memory`].
@@ -142,112 +118,19 @@ impl Factor {
     }
 }
 
-impl RenewableFactor {
-    /// Factors the matrix whose columns are those of `elimination`, with the first of `shifts` with which that goes.
-    /// The refusal is that of the first.
-    pub fn of(
-        matrix: ScaledMatrix,
-        elimination: Elimination,
-        shifts: &[f64],
-        refactorisation: Refactorisation,
-        budget: Budget,
-        cancel: &Cancel,
-    ) -> Result<Self, FactorError> {
-        let mut factor = Factor::analysed(&matrix, &elimination.ends, budget)?;
-        let new = Named {
-            matrix: &matrix,
-            elimination: &elimination,
-            symbolic: &factor.symbolic,
-            assembly_tree: &factor.assembly_tree,
-        };
-        let mut refused = None;
-        let kept = match refactorisation {
-            Refactorisation::Never => Vec::new(),
-            Refactorisation::From(_) => worth_keeping(&factor.symbolic, &factor.assembly_tree),
-        };
-        for &shift in shifts {
-            let known = match refactorisation {
-                Refactorisation::From(Some(former)) if former.shift.to_bits() == shift.to_bits() => {
-                    former.known_to(new)
-                }
-                Refactorisation::Never | Refactorisation::From(_) => Vec::new(),
-            };
-            let (symbolic, assembly_tree) = (&factor.symbolic, &factor.assembly_tree);
-            match numeric::factor(&matrix, shift, symbolic, assembly_tree, &known, &kept, cancel) {
-                Ok(numbers) => {
-                    factor.numbers = numbers;
-                    return Ok(Self {
-                        factor,
-                        matrix,
-                        elimination,
-                        shift,
-                    });
-                }
-                Err(error @ FactorError::Pivot(_)) => refused = refused.or(Some(error)),
-                Err(other) => return Err(other),
-            }
-        }
-        Err(refused.unwrap_or(FactorError::Memory))
-    }
-
-    /// The numbers of the parts that another matrix has to the bit.
-    fn known_to(&self, new: Named) -> Vec<Option<Numbers>> {
-        let old = Named {
-            matrix: &self.matrix,
-            elimination: &self.elimination,
-            symbolic: &self.factor.symbolic,
-            assembly_tree: &self.factor.assembly_tree,
-        };
-        let equal = equal_parts(new, old);
-        equal
-            .into_iter()
-            .map(|part| Some(self.factor.numbers[part?].clone()))
-            .collect()
-    }
-
-    /// The share of the numbers that are `other`'s.
-    pub fn share_of(&self, other: &Self) -> f64 {
-        let theirs: BTreeSet<_> = other
-            .factor
-            .numbers
-            .iter()
-            .map(|numbers| Arc::as_ptr(&numbers.panels))
-            .collect();
-        let is_shared = |numbers: &&Numbers| theirs.contains(&Arc::as_ptr(&numbers.panels));
-        let lines = |numbers: &Numbers| numbers.panels.len();
-        let shared: usize = self.factor.numbers.iter().filter(is_shared).map(lines).sum();
-        let all: usize = self.factor.numbers.iter().map(lines).sum();
-        shared as f64 / all.max(1) as f64
-    }
-
-    /// S: the scale of each column.
-    pub fn scale(&self) -> &[f64] {
-        &self.matrix.scale
-    }
-
-    /// How many numbers are kept beside the factor for the next one.
-    #[cfg(test)]
-    pub fn kept(&self) -> usize {
-        self.factor.numbers.iter().map(Numbers::kept).sum()
-    }
-}
-
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 pub(crate) mod tests {
-    use super::{Factor, Refactorisation, RenewableFactor};
-    use crate::Bilaplacian;
-    use crate::Budget;
-    use crate::Laplacian;
-    use crate::Ordering;
+    use super::Factor;
     use crate::bilaplacian::assembly::assemble_bilaplacian;
     use crate::bilaplacian::hubs::Hubs;
     use crate::bilaplacian::operator::BilaplacianOperator;
     use crate::sparse::Elimination;
     use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
+    use crate::{Bilaplacian, Budget, Laplacian, Ordering};
     use pliant_mesh::{Cancel, Drawn, Progress, shapes};
 
-    /// The matrix's factor with every ninth vertex held, in the order that binding takes.
+    /// The factor with every ninth vertex constrained, in the order that binding uses.
     pub(crate) fn factor_of(drawn: Drawn) -> Factor {
         let (matrix, ends) = bilaplacian_of(drawn);
         Factor::of(&matrix, &ends, 0.0, &Cancel::new()).unwrap()
@@ -359,56 +242,5 @@ pub(crate) mod tests {
             let bits = |row: &[f64; 3]| row.map(f64::to_bits);
             assert!(x.iter().map(bits).eq(other_x.iter().map(bits)), "{threads}");
         }
-    }
-
-    /// Columns in an order that fits the matrix badly, so that parts leave much more than they have.
-    fn badly_ordered() -> (ScaledMatrix, Elimination) {
-        let model = shapes::model(shapes::grid(60, 60));
-        let count = model.surface.positions.len();
-        let laplacian = Laplacian::of(&model.surface, &model.topology, &vec![1.0; count]);
-        // Every other vertex first, one by one: hardly any of them neighbour each other.
-        let order: Vec<u32> = (0..count as u32)
-            .step_by(3)
-            .chain((0..count as u32).filter(|v| v % 3 != 0))
-            .collect();
-        let mut column_of = vec![CONSTRAINED; count];
-        for (column, &vertex) in order.iter().enumerate() {
-            column_of[vertex as usize] = column as u32;
-        }
-        let operator = BilaplacianOperator::new(laplacian, &Bilaplacian::default(), 1.0);
-        let mut matrix =
-            assemble_bilaplacian(&operator, &order, &column_of, &Hubs::default(), Budget::default()).unwrap();
-        // Nothing is held: let every vertex be held a little.
-        for column in 0..count {
-            matrix.lower_values[matrix.lower_offsets[column] as usize] += 0.1;
-        }
-        let ends = (1..=count as u32)
-            .filter(|end| end % 8 == 0 || *end == count as u32)
-            .collect();
-        (matrix, Elimination { order, ends })
-    }
-
-    #[test]
-    fn what_is_kept_for_the_next_factor_is_no_more_than_the_factor_and_is_worth_it() {
-        let (matrix, elimination) = badly_ordered();
-        let cancel = Cancel::new();
-        let bind = |refactorisation| {
-            let (matrix, elimination) = badly_ordered();
-            RenewableFactor::of(matrix, elimination, &[0.0], refactorisation, Budget::default(), &cancel).unwrap()
-        };
-        let all = {
-            let factor = Factor::analysed(&matrix, &elimination.ends, Budget::default()).unwrap();
-            let lines = |part: &crate::sparse::symbolic::assembly_tree::Part| {
-                crate::sparse::symbolic::contribution_lines(factor.symbolic.pattern(part.supernodes.end - 1).len())
-            };
-            8 * factor.assembly_tree.parts.iter().map(lines).sum::<usize>()
-        };
-        let first = bind(Refactorisation::From(None));
-        assert!(all > 2 * first.factor.stored(), "all of it is {all}");
-        assert!(first.kept() <= first.factor.stored());
-        assert!(2 * first.kept() > first.factor.stored());
-        // Nothing changed: all is taken over, whatever was kept of it.
-        assert_eq!(bind(Refactorisation::From(Some(&first))).share_of(&first), 1.0);
-        assert_eq!(bind(Refactorisation::Never).kept(), 0);
     }
 }

@@ -1,4 +1,4 @@
-//! Why a factorisation came to nothing.
+//! Why a factorisation failed.
 
 use std::collections::TryReserveError;
 

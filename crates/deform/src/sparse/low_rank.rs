@@ -1,4 +1,4 @@
-//! A system that is a sparse matrix and a correction of low rank: A = B + U C Uᵀ, with B factored.
+//! A system that is the sum of a factored sparse matrix and a correction of low rank: A = B + U C Uᵀ.
 //!
 //! A⁻¹ = B⁻¹ − Z N Uᵀ B⁻¹ with Z = B⁻¹ U and N = (1 + C Uᵀ Z)⁻¹ C (Sherman, Morrison & Woodbury), so that a solve with
 //! A is one with B and two products with tall matrices of as many columns as the correction's rank.
@@ -13,7 +13,7 @@ use crate::sparse::factor_error::FactorError;
 /// A sparse column: rows and their values.
 pub(crate) type SparseVector = Vec<(u32, f64)>;
 
-/// What turns a solution with B into one with A.
+/// The correction that turns a solution with B into one with A.
 #[derive(Debug)]
 pub(crate) struct LowRank {
     /// The columns of U.
@@ -71,7 +71,7 @@ impl LowRank {
         let first = vectors.first().and_then(|vector| vector.first());
         let singular = FactorError::Pivot(first.map_or(0, |&(row, _)| row as usize));
         let inner = solve_dense(matrix).ok_or(singular)?;
-        // Symmetric but for rounding: conjugate gradients count on it.
+        // Symmetric except for rounding; conjugate gradients need it to be symmetric.
         let inner = (0..rank * rank)
             .map(|place| 0.5 * (inner[place / rank][place % rank] + inner[place % rank][place / rank]))
             .collect();

@@ -1,5 +1,6 @@
-//! Sparse symmetric systems [Dav06]: `ordering`, `symbolic` and `numeric` factorisation, and `solve`, which is forward and
-//! backward substitution. `cholesky` is the factor that joins them.
+//! Sparse symmetric systems [Dav06]: `ordering`, `symbolic` and `numeric` factorisation, and `solve`, which is forward
+//! and backward substitution. `cholesky` is the factor that joins them, `refactorisation` a factor that takes over
+//! parts of the last one.
 
 pub(crate) mod cholesky;
 pub(crate) mod factor_error;
@@ -7,6 +8,7 @@ pub(crate) mod low_rank;
 pub(crate) mod matrix;
 pub(crate) mod numeric;
 pub(crate) mod ordering;
+pub(crate) mod refactorisation;
 pub(crate) mod solve;
 pub(crate) mod symbolic;
 

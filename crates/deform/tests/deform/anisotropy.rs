@@ -1,4 +1,4 @@
-//! Stiffer along what is long: the shell as if it were stretched along its principal axes.
+//! Stiffer along what is long: the bi-Laplacian of the surface stretched along its principal axes.
 
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{Bilaplacian, BilaplacianOrder, Method, Role};
@@ -13,8 +13,8 @@ fn method(order: BilaplacianOrder, anisotropy: f64) -> Method {
     Method::from(options)
 }
 
-/// A sheet 4 long in x and `width` wide, turned away from the axes, its rim held and a patch inside lifted by 1; heights
-/// and the positions within the sheet.
+/// A sheet 4 long in x and `width` wide, turned away from the axes, its rim held and a patch inside lifted by 1;
+/// heights and the positions within the sheet.
 fn sheet(width: f64, turn: DQuat, order: BilaplacianOrder, anisotropy: f64) -> (Vec<DVec3>, Vec<f64>) {
     let flat = shapes::grid(40, 20);
     let positions = flat
@@ -60,7 +60,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
 }
 
 #[test]
-fn it_is_the_shell_of_the_stretched_sheet() {
+fn it_is_the_bilaplacian_of_the_stretched_sheet() {
     // What may move of this sheet varies in x and y as 4 · 0.84 to 1 · 0.68.
     let turn = DQuat::from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 0.7);
     for order in BilaplacianOrder::ALL {

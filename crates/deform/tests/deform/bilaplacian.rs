@@ -5,6 +5,7 @@ use pliant_deform::{Bilaplacian, BilaplacianOrder, BindError, Discretisation, Me
 use pliant_mesh::{Drawn, shapes};
 
 use crate::rig::{Scene, apart, back_substitute, step, turned};
+use crate::strip::{heights, largest_error};
 
 fn bilaplacian(order: BilaplacianOrder, stretching: f64, bending: f64, discretisation: Discretisation) -> Method {
     let mut options = Bilaplacian::default();
@@ -19,31 +20,8 @@ pub fn of_order(order: BilaplacianOrder) -> Method {
     bilaplacian(order, 0.0, 1.0, Discretisation::CotangentArea)
 }
 
-/// Heights at the middle of a unit strip of `cells` rows, held over n rows at both ends, of which one is lifted by 1:
-/// at 0, h, .., 1 between the innermost held rows, with h.
 fn strip(cells: usize, method: Method) -> (Vec<f64>, f64) {
-    let Some(options) = method.options::<Bilaplacian>() else {
-        unreachable!()
-    };
-    let rows = options.order.number() as f64;
-    let pitch = 1.0 / cells as f64;
-    let (from, to) = ((rows - 0.5) * pitch, 1.0 - (rows - 0.5) * pitch);
-    let mut scene = Scene::new(shapes::grid(cells, cells))
-        .with(Role::Fixed, |p| p.x < from)
-        .with(Role::Handle(0), |p| p.x > to);
-    scene.method = method;
-    let displacements = scene.moved(&[DAffine3::from_translation(DVec3::Z)]);
-    let mut row: Vec<(f64, f64)> = scene
-        .positions()
-        .iter()
-        .zip(&displacements)
-        .filter(|(p, _)| (p.y - 0.5).abs() < 1e-9 && p.x > from - pitch && p.x < to + pitch)
-        .map(|(p, d)| (p.x, d.z))
-        .collect();
-    row.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let heights: Vec<f64> = row.into_iter().map(|(_, z)| z).collect();
-    let pitch = 1.0 / (heights.len() - 1) as f64;
-    (heights, pitch)
+    heights(cells, method, |_| ())
 }
 
 #[test]
@@ -56,19 +34,16 @@ fn each_order_converges_to_its_polynomial() {
     for (order, exact) in BilaplacianOrder::ALL.into_iter().zip(exact) {
         let errors = [12, 24, 48].map(|cells| {
             let (heights, pitch) = strip(cells, of_order(order));
-            let errors = heights
-                .iter()
-                .enumerate()
-                .map(|(i, z)| (z - exact(i as f64 * pitch)).abs());
-            errors.fold(0.0, f64::max)
+            largest_error(&heights, pitch, exact)
         });
         let fine = errors[2] < 1e-7 || (errors[1] < 0.65 * errors[0] && errors[2] < 0.65 * errors[1]);
         assert!(errors[2] < 0.03 && fine, "{order:?}: {errors:?}");
     }
 }
 
-/// The order's error against its polynomial between the middles of the n rows that hold each end: n values in a row that
-/// lie on the clamped polynomial are n zeros of the strip's, and to second order one of n-th order in their middle.
+/// The order's error against its polynomial between the middles of the n rows that hold each end: n values in a row
+/// that lie on the clamped polynomial are n zeros of the strip's, and to second order one of n-th order in their
+/// middle.
 #[test]
 fn each_order_converges_with_second_order_between_the_middles_of_what_holds_it() {
     let exact: [fn(f64) -> f64; 2] = [

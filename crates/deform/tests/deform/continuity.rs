@@ -1,39 +1,20 @@
-//! With which continuity the shell joins what holds it, boundary by boundary.
+//! The continuity with which the bi-Laplacian joins constrained vertices, boundary by boundary.
 
-use glam::{DAffine3, DVec3};
-use pliant_deform::{BilaplacianOrder, BindError, Role};
+use glam::DVec3;
+use pliant_deform::{BilaplacianOrder, BindError};
 use pliant_mesh::shapes;
 
 use crate::bilaplacian::of_order;
 use crate::rig::{Scene, apart, back_substitute, step, turned};
+use crate::strip::{heights, largest_error};
 
 /// Heights along a unit strip that joins the fixed end with the continuity `near` and the lifted one with `far`, from
 /// the last held row to the first lifted one, and their pitch.
 fn strip(cells: usize, order: BilaplacianOrder, near: f64, far: f64) -> (Vec<f64>, f64) {
-    let rows = order.number() as f64;
-    let step = 1.0 / cells as f64;
-    let (from, to) = ((rows - 0.5) * step, 1.0 - (rows - 0.5) * step);
-    let mut scene = Scene::new(shapes::grid(cells, cells))
-        .with(Role::Fixed, |p| p.x < from)
-        .with(Role::Handle(0), |p| p.x > to);
-    scene.method = of_order(order);
-    scene.continuity = scene
-        .positions()
-        .iter()
-        .map(|p| if p.x < 0.5 { near } else { far })
-        .collect();
-    let displacements = scene.moved(&[DAffine3::from_translation(DVec3::Z)]);
-    let mut row: Vec<(f64, f64)> = scene
-        .positions()
-        .iter()
-        .zip(&displacements)
-        .filter(|(p, _)| (p.y - 0.5).abs() < 1e-9 && p.x > from - step && p.x < to + step)
-        .map(|(p, d)| (p.x, d.z))
-        .collect();
-    row.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let heights: Vec<f64> = row.into_iter().map(|(_, z)| z).collect();
-    let pitch = 1.0 / (heights.len() - 1) as f64;
-    (heights, pitch)
+    let continuity = |p: &DVec3| if p.x < 0.5 { near } else { far };
+    heights(cells, of_order(order), |scene| {
+        scene.continuity = scene.positions().iter().map(continuity).collect();
+    })
 }
 
 type Polynomial = fn(f64) -> f64;
@@ -64,11 +45,7 @@ fn strips_converge_to_the_beams_with_these_ends() {
     for (order, near, far, exact) in BEAMS {
         let errors = [16, 32, 64].map(|cells| {
             let (heights, pitch) = strip(cells, order, near, far);
-            let errors = heights
-                .iter()
-                .enumerate()
-                .map(|(i, z)| (z - exact(i as f64 * pitch)).abs());
-            errors.fold(0.0, f64::max)
+            largest_error(&heights, pitch, exact)
         });
         let falls = errors[2] < 1e-6 || (errors[1] < 0.65 * errors[0] && errors[2] < 0.65 * errors[1]);
         assert!(errors[2] < 0.04 && falls, "{order:?} {near} {far}: {errors:?}");

@@ -49,8 +49,8 @@ fn product(matrix: &Dense, field: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// ½ ∫ k_s s |∇d|² / D² + k_b D^(2 (n − 2)) s |∇ⁿ d|² over the three coordinates, where ∇²d is the Laplacian and s is the
-/// painted stiffness: by the three products of n that stand between d and d.
+/// ½ ∫ k_s s |∇d|² / D² + k_b D^(2 (n − 2)) s |∇ⁿ d|² over the three coordinates, where ∇²d is the Laplacian and s is
+/// the painted stiffness: by the three products of n that stand between d and d.
 fn energy(scene: &Scene, options: &Bilaplacian, displacements: &[DVec3]) -> f64 {
     let (plain, areas) = operators(scene, &vec![1.0; scene.roles.len()]);
     let (stiff, _) = operators(scene, &scene.stiffness);

@@ -18,3 +18,4 @@ mod rebind;
 mod rig;
 mod robust;
 mod soft;
+mod strip;

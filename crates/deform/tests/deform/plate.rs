@@ -7,8 +7,8 @@ use pliant_mesh::{Drawn, shapes};
 
 /// Where a plate that is held over rows of vertices is taken to be clamped.
 ///
-/// A row's vertex sees the slope through half of its cell only, so two rows clamp midway between them: against that plate
-/// the error is of second order. A person takes what was selected, the innermost row: of first order.
+/// A row's vertex sees the slope through half of its cell only, so two rows clamp midway between them: against that
+/// plate the error is of second order. A person takes what was selected, the innermost row: of first order.
 #[derive(Clone, Copy, Debug)]
 enum Clamp {
     Innermost,

@@ -6,7 +6,7 @@ use pliant_mesh::{Cancel, Progress, shapes};
 
 use crate::rig::{Scene, back_substitute, turned};
 
-/// Everything that a bound shell gives, as bits.
+/// Everything that a bound bi-Laplacian gives, as bits.
 fn bits(bound: &mut Bound) -> Vec<u64> {
     let bases = bound.handle_bases().unwrap().rows().to_vec();
     let turn = turned(DVec3::X, 0.4, DVec3::new(0.1, 0.2, -0.3));

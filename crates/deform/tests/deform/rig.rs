@@ -48,7 +48,8 @@ impl Scene {
         self
     }
 
-    /// In every component: its first vertices in x, y or z fixed if `fixed`, its last ones the handles 0 and 1 by turns.
+    /// In every component: its first vertices in x, y or z fixed if `fixed`, its last ones the handles 0 and 1 by
+    /// turns.
     pub fn with_ends(mut self, fixed: bool) -> Self {
         for number in 0..self.model.topology.components().len() {
             let mut vertices: Vec<_> = self.model.topology.vertices_of(number as u32).collect();

@@ -122,7 +122,7 @@ fn a_weight_means_the_same_at_every_resolution_and_in_every_unit() {
 }
 
 #[test]
-fn a_stiffer_shell_gives_a_soft_handle_less() {
+fn a_stiffer_surface_gives_a_soft_handle_less() {
     let heights = [0.1, 1.0, 10.0].map(|stiffness| {
         let mut scene = plate(20, BilaplacianOrder::ThinPlate, Some(1.0));
         scene.stiffness.fill(stiffness);

@@ -1,4 +1,4 @@
-//! The program without a window: its parts, and the one function through which everything changes.
+//! The program without a window: its parts, and the single function through which everything changes.
 
 mod queries;
 
@@ -31,7 +31,7 @@ pub struct Editor {
     gesture: Option<Box<dyn Gesture>>,
     pointer: Option<Pointer>,
     key_map: KeyMap,
-    /// Events that wait until rays can be answered from what is drawn.
+    /// Events that wait until the hierarchy for rays has the drawn shape.
     waiting: VecDeque<Event>,
 }
 
@@ -132,7 +132,7 @@ impl Editor {
         }
     }
 
-    /// Draws the conclusions from what an event changed: jobs, colours, the way back of the camera.
+    /// Follows from what an event changed: jobs, colours, the camera's history.
     fn conclude(&mut self) {
         let gesture = self.gesture.as_deref();
         let activity = gesture.map_or(Activity::Still, Gesture::activity);
@@ -146,7 +146,7 @@ impl Editor {
         }
     }
 
-    /// The gesture that goes on, and apart from it all that it may touch.
+    /// The active gesture, and separately everything that it may touch.
     fn parts(&mut self) -> (&mut Option<Box<dyn Gesture>>, Context<'_>) {
         let context = Context {
             workspace: &mut self.workspace,
@@ -159,7 +159,7 @@ impl Editor {
         (&mut self.gesture, context)
     }
 
-    /// Tells the gesture of an event, if one goes on; what it says comes next.
+    /// Passes an event to the active gesture, if there is one, and returns what comes next.
     fn ask_gesture(&mut self, ask: impl FnOnce(&mut dyn Gesture, &mut Context<'_>) -> Next) -> Option<Next> {
         let (gesture, mut context) = self.parts();
         let next = ask(gesture.as_deref_mut()?, &mut context);
@@ -205,7 +205,7 @@ impl Editor {
         }
     }
 
-    /// Does what the command says; a command that can't be done now is ignored.
+    /// Executes the command; one that is not available now is ignored.
     fn execute(&mut self, command: Command) {
         if !self.is_enabled(&command) {
             return;
@@ -231,9 +231,9 @@ impl Editor {
         }
     }
 
-    /// Adds a command to the step that a widget is adjusting; the first begins it.
+    /// Adds a command to the step of the widget that is being adjusted; the first begins the step.
     fn adjust(&mut self, command: Command) {
-        // Steps and gestures of their own have no place within a step.
+        // Commands that make their own steps or gestures can't be part of a step.
         if matches!(command.scope(), Scope::History | Scope::Gesture) {
             return;
         }
@@ -269,7 +269,7 @@ impl Editor {
             Some(Arrival::Mirrored(image)) => take_mirrored(&mut self.workspace, image, self.gesture.is_none()),
             _ => {}
         }
-        // Nobody looks any more, and nothing was found: it was stopped, or it failed.
+        // The search has ended without a result: it was stopped, or it failed.
         if kind == JobKind::Enclose && self.is_looking() && !self.workspace.jobs.is_busy(kind) {
             self.abort_gesture();
         }
@@ -316,8 +316,8 @@ impl Editor {
         self.gesture.as_ref().is_some_and(|gesture| gesture.is_looking())
     }
 
-    /// Whether the event must wait for rays that answer from what is drawn, for what an outline holds, or for those
-    /// that wait already.
+    /// Whether the event must wait: for the hierarchy of the drawn shape, for the result of an outline, or behind
+    /// events that wait already.
     fn must_wait(&mut self, event: &Event) -> bool {
         let waits = !self.waiting.is_empty() || self.is_looking();
         match event {

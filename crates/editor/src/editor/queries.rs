@@ -1,4 +1,4 @@
-//! What can be asked of the program: what is to be shown, and what can be done.
+//! Queries: what is to be shown, and what can be done.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -102,8 +102,8 @@ impl Editor {
         self.workspace.colours().lit()
     }
 
-    /// The connected parts without paint that go along with what they touch, and those that were told what to do, by
-    /// their component's number, as of the last measured region.
+    /// The connected parts without paint that follow what they touch, and those with a setting of their own, by their
+    /// component's number, as of the last measured region.
     pub fn loose_components(&self) -> &[u32] {
         &self.workspace.computed().region.loose
     }
@@ -134,7 +134,7 @@ impl Editor {
         self.workspace.colours().since(regions_revision)
     }
 
-    /// What tells the colour of a vertex: see [`Editor::region_colours`].
+    /// What determines the colour of a vertex: see [`Editor::region_colours`].
     pub fn region_colour(&self) -> impl Fn(SurfaceVertex) -> [u8; 4] {
         region_colour(&self.workspace)
     }
@@ -145,7 +145,7 @@ impl Editor {
         rims(&self.workspace)
     }
 
-    /// What lies under a point of the view, in points; answered from the last shape that rays can be answered from.
+    /// What is under a point of the view, in points, on the last shape that the hierarchy for rays has.
     pub fn pick(&self, position_px: DVec2) -> Option<Pick> {
         self.workspace.pick(&self.view, position_px)
     }
@@ -208,13 +208,13 @@ impl Editor {
         })
     }
 
-    /// Whether a tool is in the middle of something that Esc ends: a stroke, a drag, a pivot to be picked.
+    /// Whether a gesture is active that Esc ends: a stroke, a drag, picking a pivot.
     pub fn is_acting(&self) -> bool {
         self.gesture.is_some() || self.settings.wants_pivot
     }
 
-    /// Whether shape and regions are final: nothing is being dragged or painted, and no job runs but those that get
-    /// ready for the pointer or the first drag.
+    /// Whether shape and regions are final: nothing is being dragged or painted, and no job runs except those that
+    /// prepare for the pointer or the first drag.
     pub fn is_settled(&self) -> bool {
         let awaited = |kind| match kind {
             JobKind::Pick => false,

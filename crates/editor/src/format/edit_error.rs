@@ -154,7 +154,7 @@ pub enum EditError {
 }
 
 impl EditError {
-    /// The refusal as seen from outside: what it speaks of stands in this member (`transform`) or element (`[3]`).
+    /// The refusal seen from the outer value: its place is in this member (`transform`) or element (`[3]`).
     pub(crate) fn under(mut self, step: &str) -> Self {
         if let Some(place) = self.place_mut() {
             *place = match place.chars().next() {
@@ -214,7 +214,7 @@ pub(crate) fn listed(names: &[&str]) -> String {
 fn edit_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();
-    // A name longer than any known one by far needs no exact distance, and must not cost time.
+    // The distance of a name that is far longer than all known ones is not computed, to save time.
     for (i, ca) in a.chars().take(64).enumerate() {
         let mut diagonal = row[0];
         row[0] = i + 1;

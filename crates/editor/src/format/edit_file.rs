@@ -9,7 +9,8 @@ use super::field::{FieldEntry, FieldKind};
 use super::json::parse;
 use super::loose::{OneOrList, StoredLoose};
 use super::method::{method_to_value, read_method};
-use super::reader::{read, shortened};
+use super::reader::read;
+use super::refusal::shortened;
 use super::selector::Selector;
 use crate::HandleTransform;
 
@@ -33,14 +34,14 @@ pub struct EditFile {
     pub fixed: Selector,
     /// The handles; they win over both.
     pub handles: Vec<HandleEntry>,
-    /// Painted stiffness; the later entry wins, and it is 1 where no entry speaks.
+    /// Painted stiffness; the later entry wins, and it is 1 where there is no entry.
     pub stiffness: Vec<FieldEntry>,
-    /// With which continuity the free surface joins what is fixed and the handles (0 to 2); the later entry wins, and it
-    /// is 2 where no entry speaks.
+    /// The continuity with which the free surface joins fixed vertices and handles (0 to 2); the later entry wins, and
+    /// it is 2 where there is no entry.
     pub continuity: Vec<FieldEntry>,
     /// What components that nothing holds do.
     pub loose: Loose,
-    /// What some of them do in place of that: those with a selected vertex; the later entry wins.
+    /// What single ones do instead: those with a selected vertex; the later entry wins.
     pub loose_parts: Vec<(Selector, Loose)>,
 }
 
@@ -59,7 +60,7 @@ pub struct HandleEntry {
     /// Its weight, in [`SOFT_RANGE`], if it only pulls at its vertices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub soft: Option<f64>,
-    /// The continuity of its own border, over whatever [`EditFile::continuity`] says.
+    /// The continuity of its own border, in place of [`EditFile::continuity`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub continuity: Option<f64>,
 }
@@ -148,7 +149,7 @@ impl EditFile {
             .map_err(|error| error.at("the edit"))
     }
 
-    /// What serde can't tell: options of the method, and values that are out of range or exclude each other.
+    /// What serde can't check: options of the method, and values that are out of range or exclude each other.
     fn of_stored(stored: StoredEdit) -> Result<Self, EditError> {
         let method = read_method(&stored.method).map_err(|error| error.under("method"))?;
         stored.region.check().map_err(|error| error.under("region"))?;

@@ -1,4 +1,4 @@
-//! A number painted on the surface, as it stands in an edit: selections with a value each, the later one winning.
+//! A number painted on the surface, as an edit has it: selections with a value each, the later one winning.
 
 use std::ops::RangeInclusive;
 

@@ -1,4 +1,4 @@
-//! JSON text as a value, in which no object has a member twice: which of the two was meant is nobody's to guess.
+//! JSON text as a value. A member that an object has twice is refused: it is not clear which one was meant.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -7,7 +7,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess,
 use serde_json::{Map, Value};
 
 use super::edit_error::EditError;
-use super::reader::shortened;
+use super::refusal::shortened;
 
 /// Reads a text, with or without a byte order mark in front, as some editors put it.
 ///
@@ -31,7 +31,7 @@ pub(crate) fn parse(text: &str) -> Result<Value, EditError> {
     }
 }
 
-/// Where a value stands; nothing is written down before a place has to be named.
+/// The place of a value, which is only put into words if it has to be named.
 #[derive(Clone, Copy)]
 enum Place<'a> {
     Whole,
@@ -40,7 +40,7 @@ enum Place<'a> {
 }
 
 impl Place<'_> {
-    /// The refusal of something in here, as seen from the whole.
+    /// The refusal with its place within the whole text.
     fn complete(&self, error: EditError) -> EditError {
         match self {
             Self::Whole => error,

@@ -1,8 +1,9 @@
 //! The edit format and the project format: what a document and an edit are as JSON, and an edit resolved on a model.
 //!
-//! `json` reads text, `reader` gives its values to what serde derives and names the place of whatever is refused;
-//! `edit_file` and `project` are the two formats, of `selector`s, `field`s, `transform`s and a `method`. `setup` is an
-//! edit or a document on a model, as the solver takes it, and `exchange` goes between documents and edits.
+//! `json` reads text, `reader` gives its values to what serde derives and names the place of whatever is refused
+//! (`refusal`); `edit_file` and `project` are the two formats, of `selector`s, `field`s, `transform`s and a `method`.
+//! `setup` is an edit or a document on a model, as the solver takes it, and `exchange` goes between documents and
+//! edits.
 
 mod beginning;
 mod edit_error;
@@ -14,6 +15,7 @@ mod loose;
 mod method;
 mod project;
 mod reader;
+mod refusal;
 mod selector;
 mod setup;
 mod transform;

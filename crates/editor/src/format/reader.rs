@@ -1,15 +1,16 @@
-//! A deserializer over JSON values whose refusals name the place: `handles[0].transform.scale must be 3 numbers, not ..`.
+//! A deserializer over JSON values whose refusals name the place: `handles[0].transform.scale must be 3 numbers, not
+//! ..`.
 //!
-//! What serde derives calls the constructors below with the names and values that it speaks of, so a refusal keeps them
-//! apart and can propose the nearest known name; `serde_path_to_error` over `serde_json` gives the place alone, and the
-//! rest as text that no longer tells a name from a sentence. A place grows as the refusal travels outwards, so what is
-//! read without one costs nothing.
+//! Code that serde derives calls the constructors in `refusal`, which keep names and values apart: a refusal can
+//! propose the nearest known name. (`serde_path_to_error` over `serde_json` gives the place too, but the rest only as
+//! text.) The place is put together only while a refusal travels outwards, so reading without one costs nothing.
 
 use serde::de::{self, DeserializeSeed, Deserializer, EnumAccess, Expected, MapAccess, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, forward_to_deserialize_any};
 use serde_json::{Map, Value};
 
-use super::edit_error::{EditError, listed, remedy};
+use super::edit_error::{EditError, listed};
+use super::refusal::unexpected;
 
 /// Reads a value.
 ///
@@ -300,141 +301,4 @@ impl<'de> Variant<'de> {
             de::Error::invalid_type(Unexpected::Str(self.name), &&*expected)
         })
     }
-}
-
-/// A value as serde speaks of it.
-fn unexpected(value: &Value) -> Unexpected<'_> {
-    match value {
-        Value::Null => Unexpected::Unit,
-        Value::Bool(value) => Unexpected::Bool(*value),
-        Value::String(text) => Unexpected::Str(text),
-        Value::Array(_) => Unexpected::Seq,
-        Value::Object(_) => Unexpected::Map,
-        Value::Number(number) => match (number.as_u64(), number.as_i64()) {
-            (Some(number), _) => Unexpected::Unsigned(number),
-            (None, Some(number)) => Unexpected::Signed(number),
-            (None, None) => Unexpected::Float(number.as_f64().unwrap_or(f64::NAN)),
-        },
-    }
-}
-
-/// The constructors that derived code calls. The place is the value at hand: [`EditError::under`] completes it.
-impl de::Error for EditError {
-    fn custom<T: std::fmt::Display>(sentence: T) -> Self {
-        Self::Other {
-            place: String::new(),
-            sentence: sentence.to_string(),
-        }
-    }
-
-    fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
-        Self::WrongKind {
-            place: String::new(),
-            expected: expected.to_string(),
-            found: kind(found),
-        }
-    }
-
-    fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
-        Self::OutOfRange {
-            place: String::new(),
-            found: match found {
-                Unexpected::Unsigned(number) => number.to_string(),
-                Unexpected::Signed(number) => number.to_string(),
-                Unexpected::Float(number) => number.to_string(),
-                found => kind(found),
-            },
-            allowed: expected.to_string(),
-        }
-    }
-
-    fn invalid_length(count: usize, expected: &dyn Expected) -> Self {
-        Self::WrongKind {
-            place: String::new(),
-            expected: expected.to_string(),
-            found: format!("{count} values"),
-        }
-    }
-
-    fn unknown_variant(name: &str, known: &'static [&'static str]) -> Self {
-        Self::unknown_name(name, known)
-    }
-
-    fn unknown_field(member: &str, known: &'static [&'static str]) -> Self {
-        Self::unknown_member(member, known)
-    }
-
-    fn missing_field(member: &'static str) -> Self {
-        Self::Missing {
-            member,
-            place: String::new(),
-        }
-    }
-
-    fn duplicate_field(member: &'static str) -> Self {
-        Self::Duplicate {
-            member: member.to_owned(),
-            place: String::new(),
-        }
-    }
-}
-
-impl EditError {
-    /// The refusal of a name that the format does not have here.
-    pub(crate) fn unknown_name(name: &str, known: &[&str]) -> Self {
-        Self::UnknownName {
-            name: shortened(name),
-            place: String::new(),
-            remedy: remedy(name, known),
-        }
-    }
-
-    /// The refusal of a member that the format does not have here.
-    pub(crate) fn unknown_member(member: &str, known: &[&str]) -> Self {
-        Self::UnknownMember {
-            member: shortened(member),
-            place: String::new(),
-            remedy: remedy(member, known),
-        }
-    }
-
-    /// The refusal of a value that lies outside of what is `allowed`.
-    pub(crate) fn out_of_range(value: &Value, allowed: &str) -> Self {
-        de::Error::invalid_value(unexpected(value), &allowed)
-    }
-
-    /// The refusal of a value of another kind than is `expected`.
-    pub(crate) fn wrong_kind(value: &Value, expected: &str) -> Self {
-        de::Error::invalid_type(unexpected(value), &expected)
-    }
-
-    /// `de::Error::custom` for code that knows the type.
-    pub(crate) fn custom(sentence: impl std::fmt::Display) -> Self {
-        de::Error::custom(sentence)
-    }
-}
-
-fn kind(found: Unexpected<'_>) -> String {
-    match found {
-        Unexpected::Unit => "null".to_owned(),
-        Unexpected::Bool(_) => "true or false".to_owned(),
-        Unexpected::Unsigned(number) => format!("the number {number}"),
-        Unexpected::Signed(number) => format!("the number {number}"),
-        Unexpected::Float(number) => format!("the number {number}"),
-        Unexpected::Str(text) => format!("\"{}\"", shortened(text)),
-        Unexpected::Seq => "a list".to_owned(),
-        Unexpected::Map => "an object".to_owned(),
-        Unexpected::Other(what) => what.to_owned(),
-        other => other.to_string(),
-    }
-}
-
-/// Keeps a refusal to one readable line, whatever the file holds.
-pub(crate) fn shortened(text: &str) -> String {
-    let clean: String = text
-        .chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .take(60)
-        .collect();
-    if text.chars().count() > 60 { clean + ".." } else { clean }
 }

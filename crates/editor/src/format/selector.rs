@@ -1,4 +1,4 @@
-//! Which vertices a part of an edit speaks of: the selectors of the edit format.
+//! The selectors of the edit format: sets of vertices.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

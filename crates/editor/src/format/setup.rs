@@ -20,7 +20,7 @@ pub struct Setup {
     pub roles: Vec<Role>,
     /// The handles; [`Role::Handle`] is the index.
     pub handles: Vec<HandleSetup>,
-    /// The stiffness of each surface vertex, 1 where nothing was said.
+    /// The stiffness of each surface vertex, 1 by default.
     pub stiffness: Vec<f64>,
     /// Each handle's weight, if it is soft.
     pub soft: Vec<Option<f64>>,
@@ -39,7 +39,7 @@ pub struct Setup {
 /// A rest shape.
 #[derive(Clone, Debug)]
 pub struct Rest {
-    /// Its displacements from the file's shape, one a surface vertex.
+    /// Its displacements from the file's shape, one per surface vertex.
     pub displacements: Arc<Vec<DVec3>>,
     /// The surface in it.
     pub surface: Arc<Surface>,
@@ -68,7 +68,7 @@ impl Setup {
         self.roles.iter().filter(|&&role| role == Role::Free).count()
     }
 
-    /// What is solved on `model`, the one that it was resolved on. The command line and the window both bind this.
+    /// The problem on `model`, the one that it was resolved on. The command line and the window both bind this.
     pub fn problem<'a>(&'a self, model: &'a Model) -> Problem<'a> {
         Problem {
             surface: self.rest.as_ref().map_or(&model.surface, |rest| &rest.surface),
@@ -201,7 +201,7 @@ impl EditFile {
         Ok(stiffness)
     }
 
-    /// The continuity of each surface vertex without the handles' own; empty where nothing is said.
+    /// The continuity of each surface vertex without the handles' own; empty if none is given.
     pub(crate) fn painted_continuity(&self, model: &Model) -> Result<Vec<f64>, EditError> {
         if self.continuity.is_empty() {
             return Ok(Vec::new());

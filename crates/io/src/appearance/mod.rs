@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use crate::Bytes;
 
-/// What a renderer or another kind of file needs beside positions and triangles; made on request, never edited.
+/// What a renderer or another file format needs besides positions and triangles; made on request, never edited.
 ///
 /// Each attribute is `None` when no drawn vertex has it, and else has one entry per drawn vertex.
 #[derive(Clone, Debug, Default)]
@@ -15,7 +15,7 @@ pub struct Appearance {
     pub normals: Option<Vec<[f32; 3]>>,
     /// Texture coordinates of the base colour image, v down (glTF's way), the material's transform applied.
     pub uvs: Option<Vec<[f32; 2]>>,
-    /// Texture coordinates as stored of the second set that materials look images up in, where one does.
+    /// Texture coordinates, as stored, of the second set that a material uses, if any does.
     pub second_uvs: Option<Vec<[f32; 2]>>,
     /// Linear-light vertex colours, 0 to 255; white where a vertex has none.
     pub colours: Option<Vec<[u8; 4]>>,
@@ -25,6 +25,21 @@ pub struct Appearance {
     pub materials: Vec<Material>,
     /// Images; every material's index is in range.
     pub images: Vec<Image>,
+}
+
+impl Appearance {
+    /// One plain material for all triangles: what a file without materials looks like.
+    pub(crate) fn plain(triangle_count: u32) -> Self {
+        Self {
+            groups: vec![Group {
+                triangles: 0..triangle_count,
+                material: 0,
+                node_name: String::new(),
+            }],
+            materials: vec![Material::plain("")],
+            ..Self::default()
+        }
+    }
 }
 
 /// A run of triangles that share node and material.
@@ -75,6 +90,18 @@ pub struct Material {
     pub wrap: [Wrap; 2],
 }
 
+impl Material {
+    /// A material of faces for which a scan format names nothing else. Such formats know no culling, so both sides are
+    /// drawn.
+    pub(crate) fn plain(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            double_sided: true,
+            ..Self::default()
+        }
+    }
+}
+
 impl Default for Material {
     fn default() -> Self {
         Self {
@@ -98,7 +125,7 @@ impl Default for Material {
     }
 }
 
-/// An image other than the base colour's, and how it is laid on the surface.
+/// An image other than the base colour's, and how it is mapped onto the surface.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Map {
     /// Index into [`Appearance::images`].
@@ -168,6 +195,6 @@ pub struct Image {
 pub enum Origin {
     /// The file itself, or its folder.
     Inside,
-    /// A place outside the file's folder: a stranger's file may point at anything there.
+    /// A place outside the file's folder, which a file from a stranger may point at.
     Outside,
 }

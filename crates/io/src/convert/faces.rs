@@ -1,5 +1,5 @@
-//! What the writers of OBJ, PLY, STL and OFF share: faces as they were, vertices without needless copies, and how
-//! finely a file's numbers have to be written.
+//! What the writers of OBJ, PLY, STL and OFF share: the file's own faces, vertices without needless copies, and the
+//! precision that numbers need.
 
 use glam::DVec3;
 use pliant_mesh::{Cancelled, DrawnVertex};
@@ -44,8 +44,8 @@ pub(crate) fn face_count(mesh: &NewMesh<'_>) -> usize {
         .map_or(mesh.triangles.len(), |polygons| polygons.len())
 }
 
-/// The vertices that a file without texture coordinates and normals needs, and the number of each drawn vertex among
-/// them: what a texture seam or a hard edge split is one vertex again.
+/// The vertices that a file without texture coordinates and normals needs, and each drawn vertex's number among them:
+/// vertices that a texture seam or a hard edge split are merged again.
 pub(crate) fn merged(mesh: &NewMesh<'_>) -> (Vec<DrawnVertex>, Vec<u32>) {
     let mut first_of_file: Vec<Option<u32>> = vec![None; mesh.file_vertex_count];
     let mut kept = Vec::new();
@@ -69,8 +69,8 @@ pub(crate) fn merged(mesh: &NewMesh<'_>) -> (Vec<DrawnVertex>, Vec<u32>) {
     (kept, number)
 }
 
-/// The most that 32-bit numbers round one of these coordinates by, when that is more than a ten-millionth of the
-/// shape's size; `None` where they are fine enough. Scans at geographic coordinates are where they aren't.
+/// The largest rounding of these coordinates to 32 bits, if it is more than a ten-millionth of the shape's size, as
+/// with scans at geographic coordinates; `None` if 32 bits are precise enough.
 pub(crate) fn coarse_in_f32(positions: &[DVec3]) -> Option<f64> {
     let finite = || positions.iter().filter(|position| position.is_finite());
     let min = finite().fold(DVec3::INFINITY, |min, &position| min.min(position));
@@ -79,14 +79,14 @@ pub(crate) fn coarse_in_f32(positions: &[DVec3]) -> Option<f64> {
     (rounding > 1.5e-7 * min.distance(max)).then_some(rounding)
 }
 
-/// Whether the mesh has materials that say more than that it is there.
+/// Whether the mesh has materials that differ from the plain one.
 pub(crate) fn has_materials(look: &Appearance) -> bool {
     look.materials
         .iter()
         .any(|material| material.base_colour != [1.0; 4] || !material.name.is_empty())
 }
 
-/// A warning that names what of the mesh's looks a kind of file can't hold; `None` where it holds all that there is.
+/// A warning that names the parts of the mesh's appearance that a format can't hold; `None` if it holds everything.
 pub(crate) fn lost(kind: &str, lost: &[(&str, Held)]) -> Option<String> {
     let names: Vec<&str> = lost
         .iter()
@@ -112,7 +112,7 @@ pub(crate) enum Held {
     Lost,
 }
 
-/// [`Held::Lost`] where the mesh has what the target can't hold.
+/// [`Held::Lost`] if the mesh has it and the target can't hold it.
 pub(crate) fn lost_where(mesh_has_it: bool) -> Held {
     if mesh_has_it { Held::Lost } else { Held::Kept }
 }

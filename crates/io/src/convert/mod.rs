@@ -1,4 +1,4 @@
-//! What any kind of file can be written from anew.
+//! A shape with its appearance, from which a new file of any format can be written.
 
 pub(crate) mod faces;
 
@@ -11,14 +11,14 @@ use crate::save::course::Course;
 use crate::save::moved::{Moved, check_single};
 use crate::{Appearance, SaveError};
 
-/// A deformed shape with its looks, free of the kind of file it came from.
+/// A deformed shape with its appearance, independent of the format that it came from.
 ///
 /// Vertices are the drawn ones (an OBJ's corner with its own UV is a vertex of its own); `file_vertex` says which of
 /// them are one vertex of the file that was read.
 pub(crate) struct NewMesh<'a> {
     /// OUT's file name.
     pub name: &'a str,
-    /// New world positions, one a drawn vertex; may be non-finite where the file's were.
+    /// New world positions, one per drawn vertex; may be non-finite where the file's were.
     pub positions: &'a [DVec3],
     /// Triangles over drawn vertices, in `appearance.groups`' order.
     pub triangles: &'a [[DrawnVertex; 3]],
@@ -28,13 +28,13 @@ pub(crate) struct NewMesh<'a> {
     pub file_vertex: &'a [FileVertex],
     /// How many vertices the file that was read has.
     pub file_vertex_count: usize,
-    /// Whether named parts stay apart, in kinds that need vertices of their own for that.
+    /// Whether named parts stay separate in formats that need separate vertices for that.
     pub parting: Parting,
-    /// Looks, with the normals already carried along with the deformation.
+    /// The appearance, with the normals already transformed by the deformation.
     pub appearance: Appearance,
 }
 
-/// What becomes of named parts in a kind of file in which parts do not share vertices.
+/// What becomes of named parts in a format in which parts do not share vertices.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Parting {
     /// Each name is a part of its own.
@@ -66,7 +66,7 @@ impl Polygons {
 }
 
 impl<'a> NewMesh<'a> {
-    /// The moved shape with `appearance`, whose normals are carried along here. Refuses a position beyond single
+    /// The moved shape with `appearance`, whose normals are transformed here. Refuses a position beyond single
     /// precision.
     pub fn of(
         moved: &Moved<'a>,
@@ -77,7 +77,7 @@ impl<'a> NewMesh<'a> {
         course: &Course<'_>,
     ) -> Result<Self, SaveError> {
         let (of_check, course) = course.split(0.1);
-        // What the file itself says is no number stays so; what is one has to stay one.
+        // A position that is not finite in the file stays so; every other one has to stay finite.
         for (v, &position) in moved.positions.iter().enumerate() {
             of_check.pass(v, moved.positions.len())?;
             if position.is_finite() {

@@ -1,7 +1,7 @@
-//! Two glTF compared part by part: JSON by its values, and what stands in buffers by what it says.
+//! Compares two glTF part by part: JSON by its values, buffers by their decoded contents.
 //!
-//! Accessors, meshes and images are compared where something names them, so that it doesn't matter which number a
-//! part has, where its bytes stand or in which container. What nothing names is compared by its number.
+//! Accessors, meshes and images are compared where something refers to them, so that a part's number, the place of its
+//! bytes and the container don't matter. Parts that nothing refers to are compared by their numbers.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::ops::Range;
@@ -33,7 +33,7 @@ struct Comparison<'a> {
     seen: BTreeSet<(usize, usize)>,
     /// Pairs of meshes that were compared.
     meshes_seen: BTreeSet<(usize, usize)>,
-    /// Pairs of images that were compared, by where their bytes are, and what differs.
+    /// Pairs of images that were compared, by the place of their bytes, and what differs.
     images_seen: HashMap<(Place, Place), Option<What>>,
     out: Vec<Difference>,
 }
@@ -47,7 +47,7 @@ enum Names {
     Mesh,
 }
 
-/// Sections that hold places, compared through what names them, and members that follow from other things.
+/// Sections that are compared through the parts that refer to them, and members that follow from other things.
 const PLACES: [&str; 3] = ["accessors", "bufferViews", "buffers"];
 
 /// How many values deep values are told apart.
@@ -170,7 +170,7 @@ impl Comparison<'_> {
         }
     }
 
-    /// A node shows another mesh than it did: a difference only where that holds something else.
+    /// A node refers to another mesh: a difference only if that mesh has other contents.
     fn meshes(&mut self, first: usize, second: usize, path: &[String]) {
         let (Some(&a), Some(&b)) = (self.a.meshes_at.get(first), self.b.meshes_at.get(second)) else {
             return self.say(path, What::OnlyInFirst);
@@ -244,7 +244,7 @@ impl Comparison<'_> {
         }
     }
 
-    /// Accessors of the first file that neither was named: an extension's own, compared by their numbers.
+    /// Accessors that nothing known refers to, such as an extension's, are compared by their numbers.
     fn unnamed_accessors(&mut self) {
         let named: BTreeSet<usize> = self.seen.iter().map(|&(first, _)| first).collect();
         for accessor in (0..self.a.accessors_at.len()).filter(|accessor| !named.contains(accessor)) {

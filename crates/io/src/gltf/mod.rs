@@ -67,11 +67,11 @@ pub(crate) fn join_glb(json: &[u8], bin: &[u8]) -> Option<Vec<u8>> {
     container::join(json, Some(bin), &[], &[])
 }
 
-/// What is said of a neighbour outside the file's folder that a save takes into its result.
+/// The warning about a neighbour outside the file's folder that a save includes in its result.
 pub(crate) const FROM_OUTSIDE: &str =
     "lies outside the file's own folder and was put into the result: share that only if you mean to share it too.";
 
-/// What is said of one that is named as an image and is none.
+/// The warning about one that is named as an image and isn't one.
 pub(crate) const NO_IMAGE: &str = "lies outside the file's own folder and is no image, so it was left out.";
 
 /// Whether a neighbour's path stays in the file's own folder.

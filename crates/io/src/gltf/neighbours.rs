@@ -1,4 +1,4 @@
-//! The files that a glTF names: gathered for a save, each name once, and what a text says of them.
+//! The files that a glTF names: collected for a save, each name once, and read from a text.
 
 use std::collections::BTreeSet;
 
@@ -25,10 +25,10 @@ impl Gathered {
         }
     }
 
-    /// Adds a neighbour and gives its name: `name`, or another where a neighbour with other bytes has that one.
+    /// Adds a neighbour and returns its name: `name`, or another if a neighbour with other bytes has that one.
     ///
-    /// Two buffers of a file may name one place. As long as they say the same they keep it; each gets a place of its
-    /// own as soon as an edit tells them apart.
+    /// Two buffers of a file may name the same file. As long as their bytes are the same they share it; as soon as an
+    /// edit makes them differ, each gets its own.
     pub fn add(&mut self, name: String, role: Role, bytes: &[u8]) -> String {
         let known = self.files.iter().find(|file| file.name == name);
         let name = match known {
@@ -71,8 +71,8 @@ pub(crate) fn paths(document: &Document) -> impl Iterator<Item = &str> {
     of_buffers.chain(of_images)
 }
 
-/// Whether a reader that follows `path` step by step arrives at the file `name`. One that goes through a folder and
-/// back (`b/../a.bin`) needs that folder, which OUT's may lack.
+/// Whether a reader that follows `path` step by step arrives at the file `name`. A path through a folder and back
+/// (`b/../a.bin`) needs that folder, which may not exist beside OUT.
 pub(crate) fn leads_to(path: &str, name: &str) -> bool {
     let steps = path.split('/').filter(|step| !matches!(*step, "" | "."));
     steps.eq(name.split('/'))
@@ -133,7 +133,8 @@ pub fn with_neighbours_renamed(file: &[u8], names: &[(&str, String)]) -> Option<
 ///
 /// A save changes numbers in buffers and what describes them (accessors, views, buffers), clones meshes, adds morph
 /// targets, writes compressed ones out plainly and gives neighbours other names. It never changes how many elements an
-/// accessor has, nor scenes, materials, textures, skins, cameras, extras, or what nodes are called and how many there are.
+/// accessor has, nor scenes, materials, textures, skins, cameras, extras, or what nodes are called and how many there
+/// are.
 pub fn is_same_document(a: &[u8], b: &[u8]) -> bool {
     let parsed = |file: &[u8]| Json::parse(text_of(file)?.to_vec()).ok();
     let (Some(a), Some(b)) = (parsed(a), parsed(b)) else {

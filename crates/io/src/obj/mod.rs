@@ -16,8 +16,8 @@ use std::sync::Arc;
 
 use pliant_mesh::{Drawn, DrawnVertex, Object};
 
-use crate::appearance::Group;
 use crate::appearance::colour::{byte, linear_of_srgb};
+use crate::appearance::{Group, Material};
 use crate::convert::Polygons;
 use crate::save::OutputFile;
 use crate::save::course::Course;
@@ -97,7 +97,7 @@ fn groups(statements: &Statements, corners: &corners::Corners, materials: &mut M
         .chain([corners.drawn.triangles.len() as u32]);
     let plain = materials.materials.len();
     if statements.runs.iter().any(|run| run.material.is_none()) {
-        materials.materials.push(materials::plain(""));
+        materials.materials.push(Material::plain(""));
     }
     let spans = corners.run_triangles.iter().zip(ends);
     statements

@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use pliant_mesh::Cancelled;
 
-use super::materials;
 use crate::appearance::colour::{srgb_bytes_of_linear, srgb_of_linear};
 use crate::appearance::{AlphaMode, Material, Origin};
 use crate::convert::NewMesh;
@@ -83,7 +82,7 @@ fn left_out(look: &Appearance) -> Option<String> {
 fn is_plain(material: &Material) -> bool {
     let plain = Material {
         double_sided: material.double_sided,
-        ..materials::plain("")
+        ..Material::plain("")
     };
     *material == plain
 }

@@ -11,7 +11,6 @@ use std::sync::Arc;
 use pliant_mesh::{Drawn, FileVertex};
 
 use crate::appearance::colour::{byte, linear_of_srgb};
-use crate::appearance::{Group, Material};
 use crate::convert::Polygons;
 use crate::polygon::{cut_faces, left_out_note};
 use crate::save::course::Course;
@@ -70,13 +69,7 @@ impl Stored {
     }
 
     pub(crate) fn summary(&self) -> Summary {
-        let meshes = usize::from(self.triangle_count > 0);
-        Summary {
-            meshes,
-            primitives: meshes,
-            nodes: meshes,
-            ..Summary::default()
-        }
+        Summary::of_one_mesh(self.triangle_count as usize)
     }
 
     pub(crate) fn appearance(&self) -> Appearance {
@@ -96,19 +89,8 @@ impl Stored {
         Appearance {
             normals: (!records.normals.is_empty()).then(|| records.normals.iter().map(unit).collect()),
             uvs: (!records.uvs.is_empty()).then(|| records.uvs.iter().map(|&[u, v]| [u, 1.0 - v]).collect()),
-            second_uvs: None,
             colours: (!records.colours.is_empty()).then(|| records.colours.iter().map(colour).collect()),
-            groups: vec![Group {
-                triangles: 0..self.triangle_count,
-                material: 0,
-                node_name: String::new(),
-            }],
-            // Scan formats know no culling, so both sides are drawn.
-            materials: vec![Material {
-                double_sided: true,
-                ..Material::default()
-            }],
-            images: Vec::new(),
+            ..Appearance::plain(self.triangle_count)
         }
     }
 

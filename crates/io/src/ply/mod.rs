@@ -15,7 +15,6 @@ use std::sync::Arc;
 use pliant_mesh::{Drawn, FileVertex};
 
 use crate::appearance::colour::{byte, linear_of_srgb};
-use crate::appearance::{Group, Material};
 use crate::convert::Polygons;
 use crate::polygon::{cut_faces, left_out_note};
 use crate::save::course::Course;
@@ -91,21 +90,10 @@ impl Stored {
     }
 
     pub(crate) fn summary(&self) -> Summary {
-        let meshes = usize::from(self.triangle_count > 0);
-        Summary {
-            meshes,
-            primitives: meshes,
-            nodes: meshes,
-            ..Summary::default()
-        }
+        Summary::of_one_mesh(self.triangle_count as usize)
     }
 
     pub(crate) fn appearance(&self) -> Appearance {
-        // Scan formats know no culling, so both sides are drawn.
-        let material = Material {
-            double_sided: true,
-            ..Material::default()
-        };
         let colour = |&[r, g, b, alpha]: &[f32; 4]| {
             let [r, g, b] = [r, g, b].map(|channel| byte(linear_of_srgb(channel)));
             [r, g, b, byte(alpha)]
@@ -115,15 +103,8 @@ impl Stored {
         Appearance {
             normals: are_any_set.then(|| self.normals.iter().map(unit).collect()),
             uvs: (!self.uvs.is_empty()).then(|| self.uvs.iter().map(|&[u, v]| [u, 1.0 - v]).collect()),
-            second_uvs: None,
             colours: (!self.colours.is_empty()).then(|| self.colours.iter().map(colour).collect()),
-            groups: vec![Group {
-                triangles: 0..self.triangle_count,
-                material: 0,
-                node_name: String::new(),
-            }],
-            materials: vec![material],
-            images: Vec::new(),
+            ..Appearance::plain(self.triangle_count)
         }
     }
 

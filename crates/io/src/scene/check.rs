@@ -7,7 +7,7 @@ use pliant_mesh::{Drawn, DrawnVertex};
 
 use crate::convert::Polygons;
 use crate::save::bits::bit_equal;
-use crate::scene::{Opened, Scene, Stored};
+use crate::scene::{Scene, SceneAndDrawn, Stored};
 use crate::{Format, MorphTarget, Save};
 
 impl Scene {
@@ -26,7 +26,7 @@ impl Scene {
         save: &Save<'_>,
         morph: Option<&MorphTarget<'_>>,
         triangles: Option<&[u32]>,
-        back: &Opened,
+        back: &SceneAndDrawn,
     ) -> Result<(), String> {
         let wanted = |vertex: usize| {
             let (rest, new) = (save.drawn.positions[vertex], save.positions[vertex]);
@@ -94,7 +94,7 @@ enum Precision<'a> {
 }
 
 impl<'a> Precision<'a> {
-    fn of(back: &'a Opened) -> Self {
+    fn of(back: &'a SceneAndDrawn) -> Self {
         match back.scene.stored() {
             Stored::Gltf(stored) => Self::Within(stored.roundings(&back.drawn)),
             _ => Self::Nearest(&back.scene),
@@ -132,7 +132,11 @@ fn same_count(what: &str, found: usize, wanted: usize) -> Result<(), String> {
 }
 
 /// Compares drawn vertices of `back`, each with the position that it is to have.
-fn each(mut wanted: impl Iterator<Item = (usize, DVec3)>, back: &Opened, stored: &Precision<'_>) -> Result<(), String> {
+fn each(
+    mut wanted: impl Iterator<Item = (usize, DVec3)>,
+    back: &SceneAndDrawn,
+    stored: &Precision<'_>,
+) -> Result<(), String> {
     let wrong = wanted.find(|&(v, wanted)| !stored.holds(v, back.drawn.positions[v], wanted));
     match wrong {
         None => Ok(()),

@@ -1,9 +1,9 @@
 //! A file as stored, whatever its kind, and the one place where kinds are told apart.
 //!
-//! Each kind is one module with the same face: `read(&Source) -> Result<(Stored, Drawn), ReadError>`;
-//! `Stored::{notes, summary, appearance, write}`, where `write(&Moved, &Course)` gives the file back with only the moved
-//! vertices' numbers changed, and warnings (it is called only when something moved); and `write_new(&NewMesh, &Course)`,
-//! which makes a file of that kind from any other.
+//! Each kind is one module with the same face: `read(&Source) -> Result<(Stored, Drawn), ReadError>`; `Stored::{notes,
+//! summary, appearance, write}`, where `write(&Moved, &Course)` gives the file back with only the moved vertices'
+//! numbers changed, and warnings (it is called only when something moved); and `write_new(&NewMesh, &Course)`, which
+//! makes a file of that kind from any other.
 
 mod check;
 pub(crate) mod difference;
@@ -28,7 +28,7 @@ use crate::{Appearance, Bytes, Format, ReadError, SaveError, gltf, obj, off, ply
 
 /// What [`read`] gives.
 #[derive(Debug)]
-pub struct Opened {
+pub struct SceneAndDrawn {
     /// The file as stored.
     pub scene: Scene,
     /// What it shows.
@@ -60,7 +60,7 @@ pub fn read(
     resolver: &dyn Resolver,
     progress: &Progress,
     cancel: &Cancel,
-) -> Result<Opened, ReadError> {
+) -> Result<SceneAndDrawn, ReadError> {
     cancel.check()?;
     let bytes = Arc::new(bytes);
     let source = Source {
@@ -94,7 +94,7 @@ pub fn read(
     };
     cancel.check()?;
     progress.set(1.0);
-    Ok(Opened {
+    Ok(SceneAndDrawn {
         scene: Scene { format, bytes, stored },
         drawn,
     })

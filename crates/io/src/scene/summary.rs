@@ -15,3 +15,16 @@ pub struct Summary {
     pub animations: usize,
     pub morph_targets: usize,
 }
+
+impl Summary {
+    /// Of a file whose triangles are one mesh.
+    pub(crate) fn of_one_mesh(triangle_count: usize) -> Self {
+        let meshes = usize::from(triangle_count > 0);
+        Self {
+            meshes,
+            primitives: meshes,
+            nodes: meshes,
+            ..Self::default()
+        }
+    }
+}

@@ -38,8 +38,8 @@ pub(crate) struct Looks {
 }
 
 impl Source<'_> {
-    /// Tells how far a reader is that has come to byte `at`, and looks whether its result is still wanted, now and then.
-    /// Bytes are what counts, since a line, a face or a record may be as long as the file.
+    /// Tells how far a reader is that has come to byte `at`, and looks whether its result is still wanted, now and
+    /// then. Bytes are what counts, since a line, a face or a record may be as long as the file.
     #[inline]
     pub fn pass(&self, looks: &mut Looks, at: usize) -> Result<(), Cancelled> {
         if at >= looks.next {

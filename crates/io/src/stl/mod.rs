@@ -12,7 +12,6 @@ use std::sync::Arc;
 use glam::DVec3;
 use pliant_mesh::{Drawn, DrawnVertex, FileVertex};
 
-use crate::appearance::{Group, Material};
 use crate::save::course::Course;
 use crate::save::moved::Moved;
 use crate::scene::summary::Summary;
@@ -81,29 +80,12 @@ impl Stored {
     }
 
     pub(crate) fn summary(&self) -> Summary {
-        let meshes = usize::from(self.facet_count > 0);
-        Summary {
-            meshes,
-            primitives: meshes,
-            nodes: meshes,
-            ..Summary::default()
-        }
+        Summary::of_one_mesh(self.facet_count)
     }
 
     /// No normals: a facet's own would show every triangle of a scan.
     pub(crate) fn appearance(&self) -> Appearance {
-        Appearance {
-            groups: vec![Group {
-                triangles: 0..self.facet_count as u32,
-                material: 0,
-                node_name: String::new(),
-            }],
-            materials: vec![Material {
-                double_sided: true,
-                ..Material::default()
-            }],
-            ..Appearance::default()
-        }
+        Appearance::plain(self.facet_count as u32)
     }
 
     /// The file with the moved corners' numbers and their facets' normals changed, and warnings.

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 use base64::Engine as _;
 use glam::{DQuat, DVec3, Vec3};
-use pliant_io::{Bytes, Format, Opened, Placement, ReadError, Resolver, Save, SaveError, Saved, read};
+use pliant_io::{Bytes, Format, Placement, ReadError, Resolver, Save, SaveError, Saved, SceneAndDrawn, read};
 use pliant_mesh::{Cancel, Progress};
 use serde_json::{Value, json};
 
@@ -309,12 +309,12 @@ pub fn split(glb: &[u8]) -> (String, Vec<u8>) {
     (String::from_utf8(glb[20..json_end].to_vec()).unwrap(), bin.to_vec())
 }
 
-pub fn try_open(bytes: &[u8], format: Format, folder: &Folder) -> Result<Opened, ReadError> {
+pub fn try_open(bytes: &[u8], format: Format, folder: &Folder) -> Result<SceneAndDrawn, ReadError> {
     let name = format!("test.{}", format.extension());
     read(bytes.to_vec(), format, &name, folder, &Progress::new(), &Cancel::new())
 }
 
-pub fn open(glb: &[u8]) -> Opened {
+pub fn open(glb: &[u8]) -> SceneAndDrawn {
     try_open(glb, Format::Glb, &Folder::default()).unwrap()
 }
 
@@ -326,7 +326,12 @@ pub fn refusal(glb: &[u8]) -> String {
     }
 }
 
-pub fn try_save(opened: &Opened, positions: &[DVec3], name: &str, placement: Placement) -> Result<Saved, SaveError> {
+pub fn try_save(
+    opened: &SceneAndDrawn,
+    positions: &[DVec3],
+    name: &str,
+    placement: Placement,
+) -> Result<Saved, SaveError> {
     let format = Format::of_name(name).unwrap();
     opened.scene.save(
         &Save {
@@ -342,14 +347,14 @@ pub fn try_save(opened: &Opened, positions: &[DVec3], name: &str, placement: Pla
 }
 
 /// The GLB of an edited GLB.
-pub fn saved_glb(opened: &Opened, positions: &[DVec3]) -> Vec<u8> {
+pub fn saved_glb(opened: &SceneAndDrawn, positions: &[DVec3]) -> Vec<u8> {
     let saved = try_save(opened, positions, "out.glb", Placement::OtherFolder).unwrap();
     assert_eq!(saved.files.len(), 1);
     saved.files[0].bytes.clone()
 }
 
 /// New positions: those of the drawn vertices that `which` names, moved.
-pub fn moved(opened: &Opened, which: impl Fn(usize) -> bool, to: impl Fn(DVec3) -> DVec3) -> Vec<DVec3> {
+pub fn moved(opened: &SceneAndDrawn, which: impl Fn(usize) -> bool, to: impl Fn(DVec3) -> DVec3) -> Vec<DVec3> {
     let one = |(v, &p): (usize, &DVec3)| if which(v) { to(p) } else { p };
     opened.drawn.positions.iter().enumerate().map(one).collect()
 }

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use glam::DVec3;
-use pliant_io::{Bytes, Format, Opened, Placement, ReadError, Resolver, Save, Saved, read};
+use pliant_io::{Bytes, Format, Placement, ReadError, Resolver, Save, Saved, SceneAndDrawn, read};
 use pliant_mesh::{Cancel, Progress};
 
 /// Neighbours in memory.
@@ -37,16 +37,16 @@ pub fn folder(files: &[(&str, &str)]) -> Folder {
     )
 }
 
-pub fn try_open(bytes: &[u8], format: Format) -> Result<Opened, ReadError> {
+pub fn try_open(bytes: &[u8], format: Format) -> Result<SceneAndDrawn, ReadError> {
     open_in(bytes, format, &Folder::default())
 }
 
-pub fn open_in(bytes: &[u8], format: Format, folder: &Folder) -> Result<Opened, ReadError> {
+pub fn open_in(bytes: &[u8], format: Format, folder: &Folder) -> Result<SceneAndDrawn, ReadError> {
     let name = format!("test.{}", format.extension());
     read(bytes.to_vec(), format, &name, folder, &Progress::new(), &Cancel::new())
 }
 
-pub fn open(bytes: &[u8], format: Format) -> Opened {
+pub fn open(bytes: &[u8], format: Format) -> SceneAndDrawn {
     try_open(bytes, format).unwrap()
 }
 
@@ -58,7 +58,7 @@ pub fn refusal(bytes: &[u8], format: Format) -> String {
     }
 }
 
-pub fn save_as(opened: &Opened, positions: &[DVec3], format: Format) -> Saved {
+pub fn save_as(opened: &SceneAndDrawn, positions: &[DVec3], format: Format) -> Saved {
     let name = format!("out.{}", format.extension());
     let save = Save {
         drawn: &opened.drawn,
@@ -71,7 +71,7 @@ pub fn save_as(opened: &Opened, positions: &[DVec3], format: Format) -> Saved {
 }
 
 /// The bytes of OUT in the scene's own format.
-pub fn save(opened: &Opened, positions: &[DVec3]) -> Vec<u8> {
+pub fn save(opened: &SceneAndDrawn, positions: &[DVec3]) -> Vec<u8> {
     save_as(opened, positions, opened.scene.format())
         .files
         .swap_remove(0)
@@ -79,7 +79,7 @@ pub fn save(opened: &Opened, positions: &[DVec3]) -> Vec<u8> {
 }
 
 /// New positions: `change` of every drawn vertex whose file vertex is wanted.
-pub fn moved(opened: &Opened, is_moved: impl Fn(u32) -> bool, change: impl Fn(DVec3) -> DVec3) -> Vec<DVec3> {
+pub fn moved(opened: &SceneAndDrawn, is_moved: impl Fn(u32) -> bool, change: impl Fn(DVec3) -> DVec3) -> Vec<DVec3> {
     let files = opened.drawn.file_vertex.iter();
     let pairs = opened.drawn.positions.iter().zip(files);
     pairs

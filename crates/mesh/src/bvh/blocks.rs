@@ -5,7 +5,7 @@ use std::sync::Arc;
 /// Elements of a block.
 pub(crate) const BLOCK: usize = 4096;
 
-/// A copy costs a pointer a block, and a change afterwards the blocks that it meets.
+/// A copy costs one pointer per block; a later change copies the blocks that it touches.
 #[derive(Clone)]
 pub(crate) struct Blocks<T>(Vec<Arc<[T]>>);
 
@@ -28,7 +28,8 @@ impl<T: Copy> Blocks<T> {
         &mut self.0
     }
 
-    /// Writes into one block with the others at hand: `write` gets the block, and all blocks before it was changed.
+    /// Writes into one block while all can be read: `write` gets the block, and all blocks as they were before the
+    /// change.
     pub(crate) fn rewrite(&mut self, number: usize, write: impl FnOnce(&mut [T], &Self)) {
         let mut block = std::mem::replace(&mut self.0[number], Arc::from([]));
         write(Arc::make_mut(&mut block), self);

@@ -1,4 +1,4 @@
-//! Boxes in f32, relative to a centre and scaled to the unit cube, rounded outward, and what rays do with them.
+//! Boxes in f32, relative to a centre and scaled to the unit cube, rounded outward, and their intersection with rays.
 
 use glam::{DVec3, Vec3, Vec3A};
 use obvhs::aabb::Aabb;
@@ -23,7 +23,7 @@ pub(super) struct BoxSpace {
 /// Boxes grow by this much of the cube, more than the rounding of everything that meets them.
 const MARGIN: f32 = 1e-6;
 
-/// So many vertices in a row share a box: they stand in Morton order, so a run of them is a patch.
+/// This many consecutive vertices share a box: they are in Morton order, so a run of them is a patch.
 pub(super) const RUN: usize = 64;
 
 impl Span {

@@ -4,8 +4,8 @@
 //! f32 throughout. Boxes are f32, relative to a centre and scaled to the unit cube, and rounded outward; positions and
 //! all tests on them are f64. So a surface at geographic coordinates is hit as exactly as one at the origin.
 //!
-//! Boxes and positions lie in [`Blocks`]: a copy is nearly free, and refitting it writes anew what moved alone, so that
-//! one is refitted while the other still answers.
+//! Boxes and positions are stored in [`Blocks`]: a copy is nearly free, and refitting it rewrites only what moved, so
+//! that one copy can be refitted while the other still answers queries.
 
 mod blocks;
 mod boxes;
@@ -100,9 +100,9 @@ impl Bvh {
         }
     }
 
-    /// Takes the vertices' new positions, all finite, from `position`. The tree's shape stays, so answers are right but
-    /// come slower the more the surface differs from the one it was built for. Takes as long as what moved is large,
-    /// after a look at everything.
+    /// Takes the vertices' new positions, all finite, from `position`. The tree's shape stays, so answers stay correct
+    /// but get slower the more the surface differs from the one it was built for. After one pass over everything, the
+    /// time depends on how much moved.
     pub fn refit(&mut self, position: impl Fn(SurfaceVertex) -> DVec3 + Sync) {
         let mut moved = vec![false; self.positions.len()];
         let blocks = self.positions.each_mut().par_iter_mut();

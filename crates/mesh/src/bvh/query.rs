@@ -1,4 +1,4 @@
-//! What is asked of a hierarchy: where a ray meets the surface, which vertices a view holds, which vertex is nearest.
+//! Queries: where a ray meets the surface, which vertices a view contains, which vertex is nearest.
 
 use glam::{DVec3, DVec4};
 

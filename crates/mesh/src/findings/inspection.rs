@@ -6,7 +6,7 @@ use crate::topology::rings::topology_findings;
 use crate::weld::{Welded, weld};
 use crate::{Bounds, Cancel, Cancelled, Drawn, Findings, LocatedFinding, Progress, WeldOptions, bounding_box};
 
-/// What [`Model::weld`](crate::Model::weld) would find, in less memory and time: nothing can be edited by it.
+/// What [`Model::weld`](crate::Model::weld) would find, in less memory and time, for callers that don't edit.
 #[derive(Clone, Debug, Default)]
 pub struct Inspection {
     /// How many vertices the file has, drawn or not.

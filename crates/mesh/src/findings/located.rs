@@ -30,8 +30,8 @@ pub struct Example {
 }
 
 impl Model {
-    /// What is wrong with the mesh, each with the places of its first examples, in the order of [`Findings::sentences`].
-    /// One look at every vertex, so made on request.
+    /// What is wrong with the mesh, each with the places of its first examples, in the order of
+    /// [`Findings::sentences`]. One look at every vertex, so made on request.
     pub fn located_findings(&self) -> Vec<LocatedFinding> {
         self.findings.located_findings(&self.drawn, &self.surface)
     }

@@ -31,7 +31,7 @@ pub struct Findings {
     /// Edges whose two triangles disagree about which side is outside; the examples are vertices on them.
     pub misoriented_edges: Finding,
     /// Closed parts whose triangles face inwards; the examples are their first vertices. A part within the box of
-    /// another closed part is taken for a cavity, which has to.
+    /// another closed part is taken for a cavity, whose triangles have to face inwards.
     pub inside_out_components: Finding,
     /// Edges with one triangle only; the examples are vertices on them.
     pub boundary_edges: Finding,
@@ -147,8 +147,8 @@ impl Findings {
         }
     }
 
-    /// A sentence about a kind; `None` where it is as in a clean, closed, connected mesh, and for rims' edges, which
-    /// their holes tell of.
+    /// A sentence about a kind; `None` if it is as in a clean, closed, connected mesh, and for edges of rims, which the
+    /// sentence about holes covers.
     pub fn sentence(&self, kind: FindingKind) -> Option<String> {
         let finding = self.of(kind);
         let vertices = ["vertex", "vertices"];

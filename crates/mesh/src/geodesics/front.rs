@@ -1,7 +1,7 @@
-//! The front of a search: what is reached comes out by rising distance.
+//! The front of a search: a priority queue of the vertices reached, by rising distance.
 //!
-//! Only what is about to come out is kept in order. The rest waits in bins by distance, so that the ordered part stays
-//! as small as a bin, and in the processor's caches, however wide the front is.
+//! Only the nearest vertices are kept in order. The rest waits in bins by distance, so that the ordered part stays as
+//! small as a bin and within the processor's caches, however wide the front is.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -1,4 +1,4 @@
-//! Distances along the surface, by a front that marches over triangles.
+//! Distances along the surface, by fast marching over triangles.
 //!
 //! Vertices settle by rising distance as in Dijkstra's search. A settled edge of a triangle also reaches the third
 //! vertex straight through the triangle: unfolded into the plane, the two distances place a virtual source behind the
@@ -32,11 +32,11 @@ pub fn distances_along_surface(
     distances
 }
 
-/// A search whose memory is kept from one call to the next: a brush's dab then costs what lies under it, not what the
-/// mesh has.
+/// A search whose memory is kept between calls: the cost of a brush's dab then depends on what is under it, not on the
+/// size of the mesh.
 #[derive(Clone, Debug, Default)]
 pub struct DistanceSearch {
-    /// The best distance so far, infinite where the front has not been; reset after each search.
+    /// The best distance so far, infinite where the front has not been yet; reset after each search.
     distance: Vec<f64>,
     is_settled: Vec<bool>,
     front: Front,

@@ -7,7 +7,7 @@ use crate::geometry::{area_of_lengths, cotangents, edge_lengths, face_area};
 use crate::surface::corners;
 use crate::{Surface, SurfaceVertex};
 
-/// Triangles a piece of a sum: sums are cut alike whatever the number of threads.
+/// Triangles per piece of a sum: sums are cut in the same way whatever the number of threads.
 const PIECE: usize = 16_384;
 
 /// The area of every triangle of `surface` with its vertices at `positions`.
@@ -44,8 +44,8 @@ pub fn mixed_corner_areas(lengths: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// The mixed Voronoi area of every vertex, all finite and not negative; they sum to the surface's area. A vertex whose
-/// triangles all lack area has none: who divides by it must bound it below.
+/// The mixed Voronoi area of every vertex, all finite and not negative; they sum to the surface's area. It is 0 for a
+/// vertex whose triangles all have no area, so callers that divide by it must bound it below.
 pub fn mixed_voronoi_areas(surface: &Surface) -> Vec<f64> {
     let shares: Vec<[f64; 3]> = (0..surface.triangles.len())
         .into_par_iter()
@@ -62,7 +62,7 @@ pub fn mixed_voronoi_areas(surface: &Surface) -> Vec<f64> {
 
 /// The volume inside a closed surface, positive where normals point outward; meaningless for an open one.
 pub fn signed_volume(triangles: &[[SurfaceVertex; 3]], positions: &[DVec3]) -> f64 {
-    // Relative to a vertex of the surface: far from the origin the terms would cancel.
+    // Relative to a vertex of the surface, because far from the origin the terms would cancel.
     let Some(&[apex, ..]) = triangles.first() else {
         return 0.0;
     };

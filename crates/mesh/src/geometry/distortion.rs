@@ -47,7 +47,7 @@ impl Distortion {
     }
 }
 
-/// Vertices or triangles a piece of a sum: sums are cut alike whatever the number of threads.
+/// Vertices or triangles per piece of a sum: sums are cut in the same way whatever the number of threads.
 const PIECE: usize = 8192;
 
 /// max(r, 1/r) of every edge with a rest length, r = deformed / rest length: the figures' own terms, in the order of

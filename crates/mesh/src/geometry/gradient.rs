@@ -7,8 +7,8 @@ use crate::geometry::is_without_area;
 /// The linear map that takes the rest triangle's edges to the deformed one's and its unit normal to the deformed one's
 /// (Sumner and Popović 2004, equation 4, with the normal kept a unit). The identity where either has no area.
 ///
-/// It tells all that happened to the surface at this triangle: a rigid motion gives its rotation. Normals turn by its
-/// inverse transpose, tangents by itself.
+/// It describes the whole deformation at this triangle; a rigid motion gives its rotation. Tangents are transformed by
+/// it, normals by its inverse transpose.
 pub fn face_gradient(rest: [DVec3; 3], deformed: [DVec3; 3]) -> DMat3 {
     if is_without_area(rest) || is_without_area(deformed) {
         return DMat3::IDENTITY;

@@ -1,7 +1,7 @@
 //! Lengths, areas, angles and normals of single triangles, and boxes.
 //!
-//! Angles and areas come from edge lengths [Kah14], so that the same functions serve mollified lengths, which belong to no
-//! positions.
+//! Angles and areas come from edge lengths [Kah14], so that the same functions serve mollified lengths, which belong to
+//! no positions.
 
 mod areas;
 mod distortion;
@@ -52,8 +52,8 @@ impl Bounds {
     }
 }
 
-/// The least box that holds all `positions`; `None` of none. On the caller's thread alone: the window's asks for it, too,
-/// and would wait in line behind a job's loops for longer than this takes.
+/// The smallest box that contains all `positions`; `None` for none. It runs on the caller's thread: the window asks for
+/// it too, and would wait behind a job's loops for longer than this takes.
 pub fn bounding_box(positions: &[DVec3]) -> Option<Bounds> {
     positions
         .iter()
@@ -61,7 +61,7 @@ pub fn bounding_box(positions: &[DVec3]) -> Option<Bounds> {
         .reduce(|a, b| a.union(&b))
 }
 
-/// The least box of a parallel iterator's positions. Least and greatest don't depend on the order.
+/// The smallest box of a parallel iterator's positions. Minima and maxima don't depend on the order.
 pub(crate) fn bounds_of(positions: impl ParallelIterator<Item = DVec3>) -> Option<Bounds> {
     positions
         .map(|p| Bounds { min: p, max: p })

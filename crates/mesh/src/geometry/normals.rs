@@ -1,10 +1,10 @@
-//! Vertex normals, every frame.
+//! Vertex normals, computed every frame.
 //!
 //! Each vertex gathers from its own surroundings, so the sums are the same bits whatever the number of threads. The
 //! triangles around a regular vertex add up to the area vector of the polygon that its neighbours form (with the vertex
 //! itself, where its fan is open), and a polygon's is that of its quadrilaterals: half the cross product of two
 //! diagonals. A vertex with six neighbours costs two cross products, and neither its own position nor any triangle is
-//! looked up. Lengths are taken in rows, many at a time, by loops compiled for the vectors that the machine has.
+//! looked up. Lengths are computed many at a time, by loops compiled for the machine's vectors.
 
 use glam::DVec3;
 use pulp::{Arch, Simd, WithSimd};
@@ -20,7 +20,7 @@ const CHUNK: usize = 2048;
 const BLOCK: usize = 64;
 
 /// The unit normal of every vertex into `out`: the mean of its triangles' normals weighted by area. Where none has an
-/// area, or where they cancel, zero or whichever way rounding points.
+/// area it is zero; where they cancel it may be any direction.
 pub fn vertex_normals(
     triangles: &[[SurfaceVertex; 3]],
     topology: &Topology,
@@ -53,7 +53,7 @@ struct Around<'a> {
 
 /// The unit normals of the vertices from `first` on.
 ///
-/// A closure would be compiled apart from the vectors that it is called for.
+/// A closure would be compiled without the vector instructions that its caller is compiled for.
 struct Fill<'a> {
     around: Around<'a>,
     first: usize,

@@ -1,5 +1,5 @@
-//! What a file shows, as the surface tells it: once welded, a drawn vertex stands where its surface vertex does, and
-//! what the surface says is not kept twice. The few that differ in a bit are kept apart.
+//! What a file shows, without what the surface has already: once welded, a drawn vertex has the position of its surface
+//! vertex, so that position is not stored twice. The few that differ in a bit are stored separately.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -13,8 +13,8 @@ pub(crate) const NONE: u32 = u32::MAX;
 /// Drawn vertices that a thread handles at a time.
 const CHUNK: usize = 8192;
 
-/// The drawn vertices and triangles of a file, in about a fifth of [`Drawn`]'s bytes. Positions and triangles need the
-/// surface to be told: [`Model`] gives them.
+/// The drawn vertices and triangles of a file, in about a fifth of [`Drawn`]'s bytes. Positions and triangles can only
+/// be restored with the surface: see [`Model`].
 #[derive(Clone, Debug, Default)]
 pub struct DrawnSet {
     /// [`NONE`] where no kept triangle uses a drawn vertex.
@@ -97,7 +97,7 @@ fn bits(position: DVec3) -> [u64; 3] {
 }
 
 impl DrawnSet {
-    /// What is left to keep of a drawn set whose vertices stand for those of a surface.
+    /// The compact form of a drawn set whose vertices belong to those of a surface.
     pub(crate) fn new(
         positions: Vec<DVec3>,
         surface_vertices: Vec<u32>,
@@ -121,7 +121,7 @@ impl DrawnSet {
         }
     }
 
-    /// The same without what the surface tells of its triangles.
+    /// The same without the triangles that the surface has.
     pub(crate) fn told_by(mut self, surface: &Surface) -> Self {
         let triangles = self.triangles;
         self.triangles = triangles.told_by(surface, &self.surface_vertices, &self.triangle_of_surface);
@@ -199,7 +199,7 @@ impl DrawnSet {
         stray.or_else(|| told().copied()).unwrap_or(DVec3::NAN)
     }
 
-    /// The corners of the drawn triangle of this number, found by a look at all.
+    /// The corners of the drawn triangle of this number, found by a linear search.
     pub(crate) fn triangle(&self, triangle: u32, surface: &Surface) -> Option<[DrawnVertex; 3]> {
         self.triangles.get(triangle, surface, &self.triangle_of_surface)
     }
@@ -239,7 +239,7 @@ impl Model {
         drawn.triangles.listed(&self.surface, &drawn.triangle_of_surface)
     }
 
-    /// The corners of a drawn triangle; `None` beyond the last. Found by a look at all: of many, ask for
+    /// The corners of a drawn triangle; `None` beyond the last. Found by a linear search: for many triangles use
     /// [`Self::drawn_triangles`].
     pub fn drawn_triangle(&self, triangle: u32) -> Option<[DrawnVertex; 3]> {
         self.drawn.triangle(triangle, &self.surface)

@@ -1,4 +1,4 @@
-//! The drawn triangles in as few bytes as their order allows: counted, told by the surface, or listed.
+//! The drawn triangles in as few bytes as their order allows: counted, taken from the surface, or listed.
 
 use rayon::prelude::*;
 
@@ -28,7 +28,8 @@ pub(crate) struct BySurface {
     count: usize,
     /// Of each surface vertex.
     first_drawn: Vec<DrawnVertex>,
-    /// The numbers, ascending, and the corners of those that the surface does not have or has over other drawn vertices.
+    /// The numbers, ascending, and the corners of those that the surface does not have or has over other drawn
+    /// vertices.
     others: Vec<u32>,
     corners_of_others: Vec<[DrawnVertex; 3]>,
 }
@@ -80,8 +81,8 @@ impl DrawnTriangles {
         }
     }
 
-    /// The same as a surface tells them, where that takes less. It has them at the places that `of_surface` says, and
-    /// its vertex behind each drawn one is that of `surface_vertices`, beyond all where there is none.
+    /// The same by reference to a surface, if that takes less. `of_surface` gives each triangle's place in the surface,
+    /// and `surface_vertices` the surface vertex behind each drawn one, a number beyond all if there is none.
     pub(crate) fn told_by(self, surface: &Surface, surface_vertices: &[u32], of_surface: &[u32]) -> Self {
         let Self::AsTheyCame(Corners::Listed(listed)) = self else {
             return self;

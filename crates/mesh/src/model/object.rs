@@ -1,4 +1,4 @@
-//! What a file itself tells apart: the triangles that one node shows in one material.
+//! An object of a file: the triangles that one node shows in one material.
 
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ pub struct Object {
 }
 
 impl Model {
-    /// The same with what the file tells apart. A model without any is one object.
+    /// The same with the file's objects. A model without any is one object.
     #[must_use]
     pub fn with_objects(self, objects: Vec<Object>) -> Self {
         Self { objects, ..self }

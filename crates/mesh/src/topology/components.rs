@@ -13,7 +13,7 @@ pub struct Component {
     pub first_file_vertex: FileVertex,
 }
 
-/// The components of a surface, and who belongs to them. A scan is mostly one, of which nothing need be listed.
+/// The components of a surface and their vertices. Most scans have only one, for which nothing is listed.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Components {
     /// By falling vertex count, then by rising first file vertex.

@@ -23,8 +23,8 @@ pub struct Contact {
 /// A component touches what is within this share of the half diagonal of its own bounding box.
 const TOUCH: f64 = 0.1;
 
-/// So many vertices of a component are asked at most, evenly spread over their order in the file. With the distance
-/// above, asking every vertex of a large component would look at most of its own triangles each time.
+/// At most this many vertices of a component are tested, evenly spread over their order in the file. With the distance
+/// above, testing every vertex of a large component would visit most of its own triangles each time.
 const SAMPLES: usize = 512;
 
 /// The area of each component, in square world units.
@@ -37,8 +37,9 @@ pub fn component_areas(surface: &Surface, topology: &Topology) -> Vec<f64> {
     areas
 }
 
-/// Where each of the components `of` touches others that `may_hold(component, other)` and whose triangles are in `tree`,
-/// a hierarchy over this surface; empty where it touches none. A vertex that lies beside several touches the nearest.
+/// Where each of the components `of` touches others that `may_hold(component, other)` and whose triangles are in
+/// `tree`, a hierarchy over this surface; empty where it touches none. A vertex that lies beside several touches the
+/// nearest.
 ///
 /// # Errors
 /// It was cancelled.

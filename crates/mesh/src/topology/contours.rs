@@ -1,8 +1,8 @@
-//! Lines on the surface where what its vertices are changes: around every region of one label.
+//! Lines on the surface around every region of vertices with the same label.
 //!
-//! In a triangle whose corners differ, the line runs from edge to edge, as marching triangles draw it. Middles of edges
-//! would make it zigzag from triangle to triangle, so its points slide along their edges towards the mean of those
-//! beside them: the line is straightened and yet separates the very same vertices.
+//! In a triangle whose corners differ, the line runs from edge to edge, as marching triangles draw it. With the middles
+//! of edges it would zigzag from triangle to triangle, so its points slide along their edges towards the mean of their
+//! neighbours: the line gets straighter and still separates the same vertices.
 
 use std::collections::HashMap;
 

@@ -1,5 +1,6 @@
-//! The triangles around a vertex, found from their order: they stand by their lowest vertex, so those of which a vertex
-//! is not the lowest stand in the runs of its lower neighbours. A list of them would be as much as the triangles.
+//! The triangles around a vertex, found from their order. They are sorted by their lowest vertex, so those of which a
+//! vertex is not the lowest are in the runs of its lower neighbours. A stored list would take as much memory as the
+//! triangles.
 
 use std::ops::Range;
 

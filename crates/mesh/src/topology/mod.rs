@@ -1,4 +1,4 @@
-//! Who neighbours whom: one-rings, triangles around vertices, components and rims, as compressed rows.
+//! Adjacency: one-rings, triangles around vertices, components and rims, as compressed rows.
 
 pub(crate) mod boundary;
 pub(crate) mod components;
@@ -44,7 +44,7 @@ impl Topology {
         let own: Vec<FileVertex> = (0..surface.positions.len() as u32).map(FileVertex).collect();
         let components = Components::of(&surface.triangles, &own);
         drop(own);
-        // Nobody else holds the flag that cancels, so the default is never taken.
+        // No one else has the cancel flag, so the default is never used.
         Self::with_components(surface, components, &Cancel::new()).unwrap_or_default()
     }
 

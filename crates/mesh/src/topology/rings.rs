@@ -93,7 +93,8 @@ pub enum FanKind {
     Irregular,
 }
 
-/// Pieces that are walked before they are put behind the rows that are done: few, so that hardly anything is held twice.
+/// Pieces that are walked before they are put behind the rows that are done: few, so that hardly anything is held
+/// twice.
 const BATCH: usize = 64;
 
 /// Parts of the vertices, one after the other, whose triangles are listed: all their rows would be as much as the

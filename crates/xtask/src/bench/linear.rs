@@ -1,4 +1,4 @@
-//! The linear shell, step by step, by the example `linear` of `deform`.
+//! The bi-Laplacian, step by step, by the example `linear` of `deform`.
 
 use super::Scale;
 use super::meshes::{creature_off, sizes};

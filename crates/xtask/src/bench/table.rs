@@ -25,6 +25,28 @@ impl Row {
         self
     }
 
+    /// The row with another text where it has one of this name.
+    #[must_use]
+    pub fn with_text(self, name: &str, value: &str) -> Self {
+        self.with(Self::default().text(name, value))
+    }
+
+    /// The row with another number where it has one of this name.
+    #[must_use]
+    pub fn with_number(self, name: &str, value: f64) -> Self {
+        self.with(Self::default().number(name, value))
+    }
+
+    fn with(mut self, other: Self) -> Self {
+        for (name, value) in other.0 {
+            self.0
+                .iter_mut()
+                .filter(|(own, _)| *own == name)
+                .for_each(|(_, own)| own.clone_from(&value));
+        }
+        self
+    }
+
     /// Appends another row.
     #[must_use]
     pub fn and(mut self, other: Self) -> Self {
@@ -177,6 +199,18 @@ mod tests {
         assert_eq!(Row::parse(&row.json()), Some(row.clone()));
         assert_eq!(Row::parse("bound in 3 ms"), None);
         assert_eq!(Row::parse("{}"), Some(Row::default()));
+    }
+
+    #[test]
+    fn a_value_is_replaced_in_its_column() {
+        let row = Row::default().text("solver", "a").number("ms", 2.0).text("mesh", "m");
+        let other = Row::default().text("solver", "b").number("ms", 3.0).text("mesh", "m");
+        assert_eq!(
+            row.with_text("solver", "b")
+                .with_number("ms", 3.0)
+                .with_number("kg", 1.0),
+            other
+        );
     }
 
     #[test]

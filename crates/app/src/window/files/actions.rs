@@ -1,4 +1,4 @@
-//! What the window does with files: the menu's commands, the questions they raise, and what comes of them.
+//! The window's file commands, the questions that they raise, and their results.
 
 use std::path::{Path, PathBuf};
 
@@ -78,8 +78,8 @@ impl Application {
         }
     }
 
-    /// Whether saving under a typed path would take a file away that is not the open one: the system's dialogs ask
-    /// for themselves.
+    /// Whether saving under a typed path would replace a file that is not the open one; the system's dialogs ask that
+    /// themselves.
     fn would_be_lost(&self, purpose: Purpose, path: &Path) -> bool {
         let path = match purpose {
             Purpose::SaveProject => project_path(path.to_owned()),
@@ -224,7 +224,7 @@ impl Application {
         } else if context.input(|input| input.viewport().close_requested()) && self.editor.view().unsaved {
             context.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.question = Some(Question::Discard(Then::Close));
-            // It is asked from the next frame on, and nobody need move the pointer for that.
+            // It is asked in the next frame, without waiting for the pointer to move.
             context.request_repaint();
         }
     }

@@ -1,8 +1,8 @@
-//! Where the program keeps what is its own: settings, and what a session that ends without saving leaves behind.
+//! The program's own directories: for settings, and for what a session that ends without saving leaves behind.
 
 use std::path::PathBuf;
 
-/// Folders of the program's own; `None` where the system names none, and in tests that must not touch a person's.
+/// The program's own folders; `None` if the system names none, and in tests, which must not touch a person's.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct AppDirectories {
     /// The file of settings.

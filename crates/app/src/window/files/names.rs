@@ -1,4 +1,4 @@
-//! What files are called: the sample, kept originals, and a path's last part for a person.
+//! Names of files: the sample, kept originals, and a path's last part for a person.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -8,8 +8,8 @@ pub(in crate::window) const SAMPLE: &[u8] = include_bytes!("../../../../../asset
 /// Its name.
 pub(in crate::window) const SAMPLE_NAME: &str = "creature.glb";
 
-/// `NAME.original.EXT` beside `NAME.EXT`. A `.gltf`'s buffers are saved over along with it, so that its original is
-/// kept packed, as `NAME.original.glb`.
+/// `NAME.original.EXT` beside `NAME.EXT`. A `.gltf`'s buffers are saved over along with it, so its original is kept as
+/// a GLB, `NAME.original.glb`.
 pub fn original_name(path: &Path) -> PathBuf {
     let mut name = path.file_stem().unwrap_or_default().to_owned();
     name.push(".original");

@@ -1,4 +1,4 @@
-//! A project as a file: finding its mesh again, and keeping the mesh that it needs.
+//! A project as a file: finds its mesh again, and keeps the mesh that it needs.
 
 use std::path::{Path, PathBuf};
 
@@ -19,11 +19,11 @@ pub enum MeshSource {
     Sample,
     /// In this file.
     File(PathBuf),
-    /// Nowhere any more: it was saved over. Whoever needs it writes it again.
+    /// Nowhere any more: it was saved over, and has to be written again if it is needed.
     Gone,
 }
 
-/// Writes a snapshot as a project. A mesh that stands nowhere is written beside it, as `NAME.source.EXT`.
+/// Writes a snapshot as a project. A mesh without a file is written beside it, as `NAME.source.EXT`.
 ///
 /// # Errors
 /// Where a file can't be written, or `cancel` is raised; an existing project is as it was then.
@@ -58,7 +58,7 @@ pub fn write(
         geometry,
     });
     let staged = staging.stage([(path.to_owned(), project.to_json().as_bytes())])?;
-    // The mesh first: the project must not stand there without it.
+    // The mesh first: the project must not be there without it.
     match beside {
         Some(mesh) => mesh.and(staged).commit()?,
         None => staged.commit()?,
@@ -66,7 +66,7 @@ pub fn write(
     Ok(())
 }
 
-/// What people call the mesh that a project belongs to; `None` if the project can't be read.
+/// The name that people know a project's mesh by; `None` if the project can't be read.
 pub fn mesh_name(project: &Path) -> Option<String> {
     /// A project, as far as it tells that.
     #[derive(serde::Deserialize)]
@@ -83,7 +83,7 @@ pub fn mesh_name(project: &Path) -> Option<String> {
     Some(name.unwrap_or_else(|| SAMPLE_NAME.to_owned()))
 }
 
-/// Where a project keeps a mesh that stands nowhere else; a `.gltf` is kept packed.
+/// Where a project keeps a mesh without a file; a `.gltf` is kept as a GLB.
 fn source_name(project: &Path, mesh: &Path) -> PathBuf {
     let mut name = project.file_stem().unwrap_or_default().to_owned();
     name.push(".source.");

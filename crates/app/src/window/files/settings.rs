@@ -1,6 +1,6 @@
-//! What is remembered from one session to the next, in a file of JSON that a person may edit.
+//! The settings: what is remembered from one session to the next, in a JSON file that a person may edit.
 //!
-//! A file that can't be read is left alone and said; what it lacks has its default.
+//! A file that can't be read is left alone and reported; missing members have their defaults.
 
 use std::path::{Path, PathBuf};
 
@@ -31,7 +31,7 @@ pub struct Settings {
     pub folded: std::collections::BTreeSet<String>,
     /// Whether the hints on the canvas were put away.
     pub hints_seen: bool,
-    /// Keys of commands, by the commands' names, where they are others than the program's own.
+    /// Keys of commands, by the commands' names, if they differ from the program's own.
     pub keys: std::collections::BTreeMap<String, Vec<String>>,
 }
 
@@ -45,7 +45,7 @@ pub struct SettingsFile {
 }
 
 impl SettingsFile {
-    /// The settings in this file; the defaults, kept nowhere, without one.
+    /// The settings in this file; without a file the defaults, which are not saved.
     pub fn open(path: Option<PathBuf>) -> Self {
         let (settings, problem) = path.as_deref().map_or_else(Default::default, Settings::read);
         Self {

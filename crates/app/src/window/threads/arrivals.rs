@@ -1,4 +1,4 @@
-//! What helpers on other threads bring: files, shapes in buffers, images; and how the view asks for them.
+//! Results of other threads: files, shapes in buffers, images; and the view's requests for them.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use glam::DVec3;
 use pliant_editor::{Event, JobKind, Shading};
 use pliant_mesh::Cancel;
 
-use super::message::{LoadedMaterials, Message, Opened, Posed};
+use super::message::{LoadedMaterials, Message, ModelToShow, Posed};
 use super::workers::Stage;
 use crate::drawing::{self, Drawing, Field};
 use crate::window::application::Application;
@@ -28,7 +28,7 @@ impl Application {
             match message {
                 Message::Job(done, posed) => {
                     self.editor.handle(Event::JobDone(done));
-                    // A stale result's pose is not shown: the editor kept another shape.
+                    // A stale result's pose is not shown: the editor has another shape.
                     if let Some(posed) =
                         posed.filter(|posed| Arc::ptr_eq(&posed.displacements, self.editor.view().displacements))
                     {
@@ -74,9 +74,9 @@ impl Application {
         posed.displacements.len() == self.editor.view().displacements.len()
     }
 
-    fn adopt(&mut self, opened: Opened) {
+    fn adopt(&mut self, opened: ModelToShow) {
         self.session.adopt(&opened);
-        let Opened {
+        let ModelToShow {
             loaded,
             drawing,
             surface,
@@ -124,7 +124,7 @@ impl Application {
         }
     }
 
-    /// The numbers of the shape that are to be shown as colours. Stiffness is none of the shape's.
+    /// The field of the shape that is shown as colours. Stiffness is not a field of the shape.
     pub(in crate::window) fn wanted_field(&self) -> Option<Field> {
         drawing::field(self.editor.view().look.shading).filter(|&field| field != Field::Stiffness)
     }
@@ -144,7 +144,7 @@ impl Application {
         self.workers.spawn(
             "images",
             move || {
-                // Nobody stops it: the file that it is for may be gone, but its images are decoded in rounds.
+                // It is never cancelled, even if its file was closed; images are decoded in rounds.
                 let decoded = match drawing.materials.decode(&Cancel::new()) {
                     Ok(decoded) => decoded,
                     Err(cancelled) => return Message::LoadedMaterials(drawing, Err(cancelled.to_string())),

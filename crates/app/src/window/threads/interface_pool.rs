@@ -2,15 +2,14 @@
 
 use rayon::ThreadPoolBuilder;
 
-/// Gives the thread that calls it threads of its own: from now on its parallel loops run on those, whoever wrote them.
-/// On those that jobs share a loop waits in line until one of them comes to a pause, which has kept the window still for
-/// a third of a second.
+/// Gives the calling thread its own thread pool: from now on all its parallel loops run there. On the pool that jobs
+/// share, a loop waits until a job pauses, which has frozen the window for a third of a second.
 pub fn install() {
     if is_installed() {
         return;
     }
     let builder = ThreadPoolBuilder::new().use_current_thread();
-    // Where the system gives no threads, loops wait in line as everybody's do.
+    // If the system gives no threads, loops run on the shared pool.
     if let Ok(pool) = builder.thread_name(|number| format!("window {number}")).build() {
         // It goes with the thread.
         std::mem::forget(pool);

@@ -1,4 +1,4 @@
-//! What the window's helpers on other threads tell it.
+//! Messages from other threads to the window.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use crate::drawing::{Drawing, Field, Pose, Scale};
 use crate::engine::Loaded;
 use crate::window::files::project_file::MeshSource;
 
-/// Something that ended elsewhere; the window takes all that wait at the start of each frame.
+/// A result of another thread; the window takes all waiting ones at the start of each frame.
 pub enum Message {
     /// One of the editor's jobs ended; a solved shape comes with its pose.
     Job(JobDone, Option<Posed>),
@@ -22,7 +22,7 @@ pub enum Message {
     /// The images of a file were decoded and uploaded, or why not.
     LoadedMaterials(Arc<Drawing>, Result<LoadedMaterials, String>),
     /// A file was opened, or why it was not.
-    Opened(Revision, Result<Box<Opened>, String>),
+    Opened(Revision, Result<Box<ModelToShow>, String>),
     /// A file was written, or why it was not.
     Written(Revision, Result<Written, String>),
     /// The state of the document with this key was kept for a recovery, or why it was not.
@@ -59,8 +59,8 @@ pub struct LoadedMaterials {
     pub notes: Vec<String>,
 }
 
-/// An opened file, ready to be shown and edited.
-pub struct Opened {
+/// A file that was read, welded and uploaded, ready to be shown and edited.
+pub struct ModelToShow {
     /// Where it stands; the built-in sample stands nowhere.
     pub path: Option<PathBuf>,
     /// The file as stored and its vertex sets.
@@ -77,7 +77,7 @@ pub struct Opened {
     pub project: Option<PathBuf>,
     /// Where the mesh as it was read stands; the built-in sample stands nowhere.
     pub source: MeshSource,
-    /// Whether it is what a session that ended without saving has left.
+    /// The recovery file that it was opened from, left by a session that ended without saving.
     pub recovered: Option<PathBuf>,
     /// What a person should know about the file, a sentence each.
     pub notes: Vec<String>,
@@ -124,7 +124,7 @@ pub enum Purpose {
 /// How a picture of the view is saved.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct PictureKind {
-    /// How many of its pixels a side one of the view's becomes, at least 1.
+    /// How many of its pixels along a side one pixel of the view becomes, at least 1.
     pub scale: u32,
     /// What is behind the surface.
     pub ground: Ground,

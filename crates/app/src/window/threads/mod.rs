@@ -1,4 +1,4 @@
-//! What runs beside the window's thread, and how its results come back.
+//! Work on other threads, and how its results come back.
 
 pub(in crate::window) mod arrivals;
 pub(in crate::window) mod interface_pool;

@@ -1,4 +1,4 @@
-//! Shapes that wait to be posed for the renderer: the present one at a time, and of those behind it only the newest.
+//! Shapes that wait to be posed for the renderer: one runs at a time, and of those that wait only the newest is kept.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Where the editor's jobs and the window's own work run: a thread a piece of work, results as messages.
+//! Runs the editor's jobs and the window's own work: one thread per job, results as messages.
 //!
 //! The editor never has more than one job of a kind running, so a handful of threads live at a time; starting one
 //! costs some tens of microseconds, and no job waits behind another kind's.
@@ -36,7 +36,7 @@ pub struct Stage {
     pub drawing: Arc<Drawing>,
     /// The numbers that are shown as colours.
     pub field: Option<Field>,
-    /// The scales used so far: some take a walk over the whole surface.
+    /// The scales used so far, cached because some take a pass over the whole surface.
     pub scales: Arc<Mutex<HashMap<Field, Arc<Scale>>>>,
 }
 
@@ -80,7 +80,7 @@ impl Workers {
         *self.context.lock().unwrap_or_else(PoisonError::into_inner) = context;
     }
 
-    /// Shapes that are solved from now on are posed for this file, still on the job's thread: a step less between
+    /// Shapes that are solved from now on are posed for this file on the job's own thread, which saves a step between
     /// the pointer and the picture.
     pub fn set_stage(&self, stage: Stage) {
         *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = Some(stage);
@@ -91,8 +91,8 @@ impl Workers {
         self.stage.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Does `work` on a thread of its own and sends its message. If it panics or no thread can be had, `failed` makes
-    /// the message of a sentence instead.
+    /// Does `work` on a thread of its own and sends its message. If it panics or the system gives no thread, the
+    /// message is `failed` of a sentence.
     pub fn spawn(
         &self,
         name: &str,

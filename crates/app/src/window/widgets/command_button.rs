@@ -30,7 +30,7 @@ pub fn command_choice(ui: &mut egui::Ui, editor: &Editor, command: &Command, cho
         .clicked()
 }
 
-/// A button that is greyed where something stands in its way, which it tells.
+/// A button that is greyed out with a reason, which its tooltip shows.
 fn enabled_unless(ui: &mut egui::Ui, obstacle: Option<Cow<'_, str>>, button: Button<'_>) -> egui::Response {
     let response = ui.add_enabled(obstacle.is_none(), button);
     match obstacle {

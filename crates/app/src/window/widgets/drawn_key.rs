@@ -1,4 +1,4 @@
-//! What a picture was drawn from, and when it serves for what is asked for now.
+//! What a picture was drawn from, and whether it can be shown for a new request.
 
 use pliant_editor::Look;
 use pliant_render::{Detail, Samples};
@@ -23,8 +23,8 @@ pub struct DrawnKey {
 }
 
 impl DrawnKey {
-    /// Whether this picture is as good as the one asked for: of the same thing, with as many samples, and as large or
-    /// as large as the view, `full_px`, itself.
+    /// Whether this picture is as good as the one asked for: of the same state, with as many samples, and as large, or
+    /// as large as the view, `full_px`.
     pub fn serves(&self, wanted: &Self, full_px: [u32; 2]) -> bool {
         let same = Self {
             size_px: wanted.size_px,

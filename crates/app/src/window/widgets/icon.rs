@@ -13,7 +13,7 @@ pub enum Icon {
     Alone,
 }
 
-/// A toggle with a name for those who don't see it; true when it is clicked.
+/// A toggle with a name for screen readers; true when it is clicked.
 pub fn toggle(ui: &mut egui::Ui, icon: Icon, is_on: bool, name: &str, hover: &str) -> bool {
     let (rect, response) = ui.allocate_exact_size(egui::vec2(18.0, 18.0), Sense::click());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, is_on, name));

@@ -1,4 +1,4 @@
-//! What panels and bars are made of.
+//! The widgets of panels and bars.
 
 pub(in crate::window) mod command_button;
 pub(in crate::window) mod drawn_key;

@@ -1,4 +1,4 @@
-//! What panels and bars ask of the editor in a frame.
+//! The requests of panels and bars to the editor in a frame.
 
 use eframe::egui::Response;
 use pliant_editor::{Command, Event};
@@ -13,7 +13,8 @@ impl Outbox {
         self.0.push(Event::Command(command));
     }
 
-    /// Asks for what a widget was set to: while it is dragged every value is shown, and all of them are one step.
+    /// Requests the value of a widget: while it is dragged every value is shown, and all of them make one step of the
+    /// history.
     pub fn adjust(&mut self, response: &Response, command: impl FnOnce() -> Command) {
         if response.changed() {
             if response.dragged() || response.drag_stopped() {

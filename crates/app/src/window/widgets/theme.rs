@@ -1,10 +1,10 @@
-//! The window's colours and spacing: a neutral frame, dim or bright, that leaves the eye to the surface.
+//! The window's colours and spacing: a neutral frame, dark or light, so that the surface stands out.
 
 use eframe::egui::{self, Color32, CornerRadius, Stroke, Theme, ThemePreference, Visuals};
 
 use crate::window::files::settings::{Settings, ThemeChoice};
 
-/// What the program asks the eye to notice: the selected handle, the active tool.
+/// The accent colour: for the selected handle and the active tool.
 pub const ACCENT: Color32 = Color32::from_rgb(226, 172, 72);
 
 /// Dresses the context as the settings say.
@@ -21,7 +21,7 @@ pub fn apply(context: &egui::Context, settings: &Settings) {
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
         style.spacing.button_padding = egui::vec2(9.0, 4.0);
         style.spacing.slider_width = 120.0;
-        // Scroll bars float, and would lie over what stands at the right edge.
+        // Scroll bars float, and would cover what is at the right edge.
         style.spacing.scroll.floating_allocated_width = style.spacing.scroll.bar_width;
         style
             .text_styles

@@ -23,10 +23,11 @@ const ALONE: Twin = Twin {
     turned: false,
 };
 
-/// An edge is flipped where the cotangents opposite it add up to less than this: rounding flips none to and fro.
+/// An edge is flipped if the cotangents opposite it add up to less than this, so that rounding does not flip it back
+/// and forth.
 const LEAST_SUM: f64 = -1e-9;
 
-/// So many flips a side end the search: on sound lengths it takes far fewer.
+/// The search ends after this many flips per side; on consistent lengths it takes far fewer.
 const FLIPS_PER_SIDE: usize = 64;
 
 impl Sides {
@@ -101,8 +102,8 @@ impl Sides {
         }
     }
 
-    /// Replaces the edge of two joined sides of different triangles by the other diagonal of their quadrilateral;
-    /// false, and nothing done, where the lengths do not allow it. The triangles are those of before.
+    /// Replaces the edge of two joined sides of different triangles by the other diagonal of their quadrilateral.
+    /// Returns false and does nothing if the lengths do not allow it. The triangles keep their numbers.
     fn flip(&mut self, side: u32) -> bool {
         let Twin { side: mut twin, turned } = self.twins[side as usize];
         if turned {
@@ -155,7 +156,8 @@ impl Sides {
     }
 }
 
-/// Flips edges until the cotangents opposite every joined one add up to 0 at least; false where some had to be left.
+/// Flips edges until the cotangents opposite every joined edge add up to at least 0. Returns false if some edges had to
+/// be left.
 pub(crate) fn flip_to_delaunay(sides: &mut Sides) -> bool {
     let count = sides.twins.len();
     let mut stack: Vec<u32> = (0..count as u32).rev().collect();

@@ -5,7 +5,7 @@
 //! to the last point. Edges at a border or with more than two triangles stay. [`Intrinsic::tufted`] first covers the
 //! surface twice, so that every edge has exactly two triangles (see `tufted`): then it is so on any triangles at all.
 //!
-//! Lengths are mollified before, for a whole component alike, so that they agree on both sides of an edge.
+//! Lengths are mollified first, by the same amount over a whole component, so that they agree on both sides of an edge.
 
 use pliant_mesh::SurfaceVertex;
 
@@ -94,7 +94,7 @@ impl Intrinsic {
         self.sides.lengths(face)
     }
 
-    /// How many times the triangles cover the surface, as a share of each.
+    /// One over the number of times that the triangles cover the surface.
     pub fn share(&self) -> f64 {
         self.share
     }
@@ -110,7 +110,8 @@ impl Intrinsic {
     }
 }
 
-/// The triangles' lengths, those of a component all longer by what its flattest triangle lacks; and how many lack some.
+/// The triangles' lengths, mollified by what the flattest triangle of each component needs, and the number of triangles
+/// that need it.
 fn mollified_lengths(triangulation: &SurfaceTriangulation) -> (Vec<[f64; 3]>, usize) {
     let mut lengths: Vec<[f64; 3]> = (0..triangulation.surface.triangles.len() as u32)
         .map(|face| triangulation.lengths(face))
@@ -214,7 +215,7 @@ mod tests {
         shapes::moved(&drawn, shear)
     }
 
-    /// Whether two operators do the same to a rough field, relative to the larger.
+    /// The difference of two operators on a rough field, relative to the larger result.
     fn agree(one: &Laplacian, other: &Laplacian, tolerance: f64) -> bool {
         let count = one.vertices().len();
         let field: Vec<[f64; 1]> = (0..count).map(|v| [((v * 7919) % 1009) as f64 / 1009.0]).collect();

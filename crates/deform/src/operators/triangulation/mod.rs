@@ -1,7 +1,7 @@
-//! What a Laplacian is made on: triangles with edge lengths, and who neighbours whom.
+//! What a Laplacian is defined on: triangles with edge lengths, and their adjacency.
 //!
-//! Either the surface's own triangles, measured in space or along stretched axes, or intrinsic ones on the same vertices,
-//! whose edges run straight within the surface and need not be edges of it.
+//! Either the surface's own triangles, measured in space or along stretched axes, or intrinsic ones on the same
+//! vertices, whose edges run straight within the surface and need not be edges of it.
 
 mod flips;
 mod intrinsic;
@@ -74,7 +74,7 @@ impl<'a> Triangulation<'a> {
         }
     }
 
-    /// Of the surface: its components are those of either kind.
+    /// The surface's topology: both kinds have its components.
     pub fn topology(&self) -> &'a Topology {
         match self {
             Self::Surface(triangulation) => triangulation.topology,
@@ -133,7 +133,7 @@ impl<'a> Triangulation<'a> {
         }
     }
 
-    /// How many triangles were given longer edges before anything was computed on them.
+    /// How many triangles were mollified.
     pub fn mollified_faces(&self) -> usize {
         match self {
             Self::Surface(_) => 0,
@@ -141,7 +141,7 @@ impl<'a> Triangulation<'a> {
         }
     }
 
-    /// Sentences for a person about what had to be left.
+    /// Sentences for a person about edges that could not be flipped.
     pub fn warning(&self) -> Option<&'static str> {
         match self {
             Self::Intrinsic(triangulation, _) if !triangulation.is_delaunay() => {

@@ -2,8 +2,8 @@
 //! ([BK04]; [BS08, section 4]: "the model is anisotropically scaled along its principal axes to have
 //! uniform variation").
 //!
-//! A bi-Laplacian's deformation fades over a length like its width, so that a long bar whose end is turned twists near that end
-//! alone. The stretched bar is as wide as long, and its twist spreads evenly over all of it.
+//! A bi-Laplacian's deformation fades over a length like its width, so that a long bar whose end is turned twists near
+//! that end alone. The stretched bar is as wide as long, and its twist spreads evenly over all of it.
 
 use glam::{DMat3, DVec3};
 use pliant_mesh::{SurfaceVertex, face_area};
@@ -11,11 +11,11 @@ use pliant_mesh::{SurfaceVertex, face_area};
 use crate::numerical::eigen::eigenvectors;
 use crate::{Problem, Role};
 
-/// Axes along which the surface is thinner than this share of its longest are stretched as if they were that wide: the
-/// bumps of a flat sheet are no width.
+/// Axes along which the surface is thinner than this share of its longest are stretched as if it were that wide: a flat
+/// sheet's bumps don't count as width.
 const THINNEST: f64 = 0.1;
 
-/// Stretches nearer to none than this are none.
+/// Stretches closer to 1 than this count as 1.
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// The map of each component's edges for an anisotropy from 0, none, to 1, equal variation along all axes; empty where

@@ -8,7 +8,7 @@ use pliant_mesh::{Surface, Topology, edge_lengths};
 pub(crate) struct SurfaceTriangulation<'a> {
     pub surface: &'a Surface,
     pub topology: &'a Topology,
-    /// Of each component, the map of its edges before they are measured; empty: none.
+    /// For each component the map that is applied to its edges before they are measured; empty: none.
     pub stretches: Vec<DMat3>,
 }
 

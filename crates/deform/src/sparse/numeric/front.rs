@@ -1,7 +1,7 @@
-//! The dense part of one supernode: its columns factored, and what they take from the rows below.
+//! The dense factorisation of one supernode, and its contribution matrix.
 //!
-//! Strips are finished from the left: all columns before a strip's next eight are multiplied in one go, in registers.
-//! Large fronts are cut into runs of strips, by size alone, that are worked on beside each other.
+//! The factorisation is left-looking: for a strip's next eight columns all columns before them are multiplied at once,
+//! in registers. Large fronts are cut, by size alone, into runs of strips that are processed in parallel.
 
 use pliant_mesh::Cancel;
 use pulp::{Arch, Simd, WithSimd};
@@ -16,7 +16,7 @@ const BLOCK: usize = 8;
 /// Multiplications that are worth a task of their own.
 const TASK: usize = 1 << 20;
 
-/// Factors a supernode's `panel`, which has this shape; a pivot that fails is named by its place.
+/// Factors a supernode's `panel`, which has this shape. The error is the column of the pivot that is not positive.
 pub(crate) fn factor_panel(shape: Shape, panel: &mut [Line], cancel: &Cancel) -> Result<(), FactorError> {
     let arch = Arch::new();
     for first in (0..shape.own()).step_by(BLOCK) {
@@ -100,7 +100,7 @@ impl WithSimd for Rows<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        // A few strips at a time stay near while all the blocks are taken to them.
+        // A few strips at a time stay in the cache while all the blocks are applied to them.
         let mut rest = self.rows;
         for first in self.strips.clone().step_by(3) {
             let end = (first + 3).min(self.strips.end);
@@ -114,7 +114,8 @@ impl WithSimd for Rows<'_> {
     }
 }
 
-/// Writes the contribution (update) matrix of a factored panel into `square`: the lower triangle of L Lᵀ of the rows below.
+/// Writes the contribution (update) matrix of a factored panel into `square`: the lower triangle of L Lᵀ of the rows
+/// below.
 pub(crate) fn update_matrix(shape: Shape, panel: &[Line], square: &mut [Line], cancel: &Cancel) {
     let below = &panel[shape.start(shape.own())..];
     let strips = 0..shape.strips() - shape.own();

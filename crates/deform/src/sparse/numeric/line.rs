@@ -1,8 +1,8 @@
-//! Cache lines of numbers and how a front's are laid out.
+//! Cache lines of numbers, and how a front is laid out in them.
 //!
-//! Rows stand in *strips* of eight. A strip holds one line a column: eight rows' numbers of it. So eight rows meet one
-//! number of another row in one instruction, nothing has to be copied before it is multiplied, and a factor is read
-//! line by line in the order in which it lies.
+//! Rows are grouped in *strips* of eight. A strip holds one line per column: that column's numbers in its eight rows.
+//! So one instruction multiplies eight rows by a number of another row, nothing has to be copied before it is
+//! multiplied, and a factor is read in the order in which it is stored.
 
 /// Rows of a strip, numbers of a line.
 pub(crate) const LANES: usize = 8;
@@ -31,8 +31,8 @@ pub(crate) fn triangle(strip: usize) -> usize {
 
 /// The columns of a supernode and the rows below them.
 ///
-/// Its own rows come first, a triangle of strips; then the rows of its pattern in strips of all its columns. The last
-/// strip of either is filled up with rows of zeros.
+/// Its own rows come first, as a triangle of strips; then the rows of its pattern, in strips of all its columns. The
+/// last strip of each is padded with rows of zeros.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Shape {
     pub width: usize,

@@ -1,8 +1,9 @@
 //! The numeric factorisation, supernode by supernode from the leaves [DR83].
 //!
 //! A supernode assembles its columns of the matrix and the contributions of its children (extend-add), is factored
-//! densely (`front`), and passes its own contribution to its parent. The parts that `assembly_tree` cuts need nothing from
-//! each other but the children's contributions, so they run in parallel; large fronts are worked on by several threads.
+//! densely (`front`), and passes its own contribution to its parent. The parts that `assembly_tree` cuts need nothing
+//! from each other but the children's contributions, so they run in parallel; large fronts are worked on by several
+//! threads.
 
 mod front;
 pub(crate) mod line;
@@ -26,7 +27,7 @@ use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 pub(crate) struct Numbers {
     /// The panels of its supernodes, one after the other.
     pub panels: Arc<Vec<Line>>,
-    /// The contribution matrix of its last supernode, which the part above adds in, where it is kept.
+    /// The contribution matrix of its last supernode, for the parent part, if it is kept.
     contribution: Option<Arc<Vec<Line>>>,
 }
 
@@ -49,12 +50,12 @@ struct Job<'a> {
     cancel: &'a Cancel,
     done: Vec<OnceLock<Arc<Vec<Line>>>>,
     contributions: Vec<Mutex<Option<Arc<Vec<Line>>>>>,
-    /// Which parts' contributions are kept for a factorisation of nearly the same matrix; none if empty.
+    /// Which parts' contributions are kept for the next factorisation; none if empty.
     kept: &'a [bool],
     rooms: Mutex<Vec<Room>>,
 }
 
-/// Factors the matrix with `shift` added to its unit diagonal. Takes over the parts that are `known`, one entry a part,
+/// Factors the matrix with `shift` added to its unit diagonal. Reuses the parts that are `known`, one entry per part,
 /// and keeps the contributions of the parts in `kept`.
 pub(crate) fn factor(
     matrix: &ScaledMatrix,
@@ -66,7 +67,7 @@ pub(crate) fn factor(
     cancel: &Cancel,
 ) -> Result<Vec<Numbers>, FactorError> {
     let count = assembly_tree.parts.len();
-    // A part's contribution is needed where the part above is not taken over.
+    // A part's contribution is needed if its parent is not reused.
     let mut is_known = vec![false; count];
     for part in (0..count).rev() {
         let above = assembly_tree.parts[part].parent;
@@ -137,8 +138,8 @@ struct Room {
 }
 
 impl Room {
-    /// So many lines of whatever, in the smallest spare matrix that holds them. Room is allocated in powers of two, so
-    /// that it is allocated seldom.
+    /// This many lines with any content, from the smallest spare matrix that holds them. Sizes are powers of two, so
+    /// that allocations are rare.
     fn take(&mut self, lines: usize) -> Result<Vec<Line>, FactorError> {
         let fitting = (0..self.spare.len())
             .filter(|&spare| self.spare[spare].capacity() >= lines)
@@ -215,7 +216,8 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Appends one supernode's panel, given its children's contributions here and in the room; returns its own.
+    /// Appends one supernode's panel, given its children's contributions from this part and from other parts; returns
+    /// its own.
     fn supernode(
         &self,
         s: usize,
@@ -248,7 +250,7 @@ impl Job<'_> {
             let (strip, lane) = shape.row(c);
             panel[strip + c].0[lane] += self.shift;
         }
-        // In postorder the children are the last ones; in any other order they are somewhere.
+        // In postorder the children are the last ones; in any other order they may be anywhere.
         let mut children = Vec::new();
         let count = self.symbolic.child_counts[s] as usize - given.len();
         for pending in (0..room.pending.len()).rev() {

@@ -1,9 +1,9 @@
-//! What a factor has in common with that of nearly the same matrix.
+//! Which parts of a factor are equal to those of another matrix's.
 //!
-//! A part's numbers follow from its columns of the matrix and from what its children leave, and from nothing else. So
-//! where all of these are the same to the bit, so are its numbers, and they are taken over: after a stroke that changes
-//! which vertices are free, what is factored again is the parts around the stroke and those on the way from there to the
-//! roots (after [HA18], "Factor Once", with supernodes in place of columns).
+//! A part's numbers depend only on its columns of the matrix and on its children's contributions. If these are the same
+//! to the bit, so are its numbers, and they are reused: after a stroke that changes which vertices are free, only the
+//! parts around the stroke and their ancestors are factored again (after [HA18], "Factor Once", with supernodes in
+//! place of columns).
 
 use std::collections::BTreeMap;
 
@@ -15,13 +15,13 @@ use crate::sparse::numeric::line::LANES;
 use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 use crate::sparse::symbolic::{Symbolic, contribution_lines};
 
-/// What is kept for the next factor takes at most so many times the factor's own memory. On a mesh's own triangles all
-/// of it takes about as much as the factor; where the ordering fits badly, as with flipped edges at order 3, it would
+/// The contributions that are kept take at most this many times the factor's own memory. On a mesh's own triangles all
+/// of them take about as much as the factor; if the ordering fits badly, as with flipped edges at order 3, they would
 /// take ten times that.
 const KEPT: usize = 1;
 
-/// Of each part, whether what it leaves is kept for the next factor: first where that spares most operations a byte, up
-/// to [`KEPT`] times the factor.
+/// For each part, whether its contribution is kept for the next factorisation: those that save the most operations per
+/// byte, up to [`KEPT`] times the factor.
 pub(crate) fn worth_keeping(symbolic: &Symbolic, assembly_tree: &AssemblyTree) -> Vec<bool> {
     let count = assembly_tree.parts.len();
     // What is spared is the whole subtree's work.
@@ -47,7 +47,7 @@ pub(crate) fn worth_keeping(symbolic: &Symbolic, assembly_tree: &AssemblyTree) -
     kept
 }
 
-/// What is factored, with the names of its columns: the same column of two matrices has the same name.
+/// A factorisation with the names of its columns: the same column of two matrices has the same name.
 #[derive(Clone, Copy)]
 pub(crate) struct Named<'a> {
     pub matrix: &'a ScaledMatrix,
@@ -56,7 +56,7 @@ pub(crate) struct Named<'a> {
     pub assembly_tree: &'a AssemblyTree,
 }
 
-/// Of each part of `new`, the part of `old` that it equals to the bit.
+/// For each part of `new`, the part of `old` that is equal to the bit, if any.
 pub(crate) fn equal_parts(new: Named, old: Named) -> Vec<Option<usize>> {
     let first = |part: usize| old.elimination.order[old.assembly_tree.parts[part].columns.start];
     let part_by_name: BTreeMap<u32, usize> = (0..old.assembly_tree.parts.len())

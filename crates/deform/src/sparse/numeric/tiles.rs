@@ -1,7 +1,7 @@
 //! Products of strips, in registers: the loops in which a factorisation spends its time.
 //!
-//! A tile is some strips by some columns of another strip's rows; each of its sums runs over all columns in order, so
-//! how a front is cut into tiles does not show in the bits.
+//! A tile is some strips by some columns of another strip's rows. Each of its sums runs over all columns in order, so
+//! the bits do not depend on how a front is cut into tiles.
 
 use pulp::Simd;
 
@@ -153,7 +153,7 @@ pub(crate) fn finish_strips<S: Simd>(
     }
 }
 
-/// Factors the eight columns of a strip that stand on its own rows; a pivot that fails is named by its place.
+/// Factors the eight columns of a strip on its own rows. The error is the column of the pivot that is not positive.
 #[inline(always)]
 pub(crate) fn finish_diagonal<S: Simd>(simd: S, strip: &mut [Line], block: usize) -> Result<(), FactorError> {
     let done = LANES * block;

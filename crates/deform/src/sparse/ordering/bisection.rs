@@ -1,9 +1,9 @@
-//! Cutting a graph in two: few edges across, halves alike.
+//! Bisection of a graph: few cut edges, and halves of about the same size.
 //!
-//! Multilevel [KK98]: vertices are joined in pairs along their heaviest edges until few are left, those
-//! are divided by growing one half from several seeds, and on the way back the cut is improved at every level by moving
-//! vertices across [FM82]. Planes and level sets of distances in place of this, at the finest
-//! level alone, left twice the work to the factorisation.
+//! Multilevel [KK98]: vertices are matched in pairs along their heaviest edges until few are left, the coarsest graph
+//! is divided by growing one half from several seeds, and at every finer level the cut is improved by moving vertices
+//! across [FM82]. With planes or level sets of distances at the finest level instead, the factorisation took twice the
+//! work.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -17,7 +17,7 @@ const SEEDS: usize = 4;
 /// Rounds of moves at each level.
 const ROUNDS: usize = 4;
 
-/// Moves that a round goes on without finding a better cut.
+/// How many moves a round makes without finding a better cut before it ends.
 const CLIMB: usize = 60;
 
 /// The least share of all weight in a half.
@@ -44,7 +44,7 @@ impl WeightedGraph {
         let count = self.weights.len();
         if count > COARSE {
             let (coarse, coarse_of) = self.coarsened();
-            // Where hardly anything can be joined, such as around one vertex that all others neighbour.
+            // Hardly anything can be matched, for example around one vertex that all others neighbour.
             if coarse.weights.len() * 20 < count * 19 {
                 let sides = coarse.bisect();
                 let rim: Vec<bool> = (0..sides.len()).map(|c| coarse.is_rim(&sides, c)).collect();
@@ -163,8 +163,8 @@ impl WeightedGraph {
         sides
     }
 
-    /// Moves vertices across while that makes the cut better; returns its cost. `near` are the vertices among which the
-    /// cut's ends are, each once.
+    /// Moves vertices across while that improves the cut; returns its cost. `near` are the vertices that may be at the
+    /// cut, each once.
     fn improve(&self, sides: &mut [bool], mut near: Vec<u32>, rounds: usize) -> f64 {
         let total = self.total();
         let balance = |inside: u64| inside.min(total - inside) as f64 / total as f64;
@@ -264,8 +264,8 @@ impl WeightedGraph {
     }
 }
 
-/// The work that a cut leaves: that of a part of n vertices grows as n to the power 1.5, that of its separator with the
-/// third power of the cut. Where a round plane part is halved, three tenths are the separator's.
+/// The factorisation work after a cut: that of a part of n vertices grows as n to the power 1.5, that of the separator
+/// with the third power of the cut. When a round plane part is halved, the separator takes three tenths.
 fn cost_of(cut: i64, share: f64, total: f64) -> f64 {
     let part = |share: f64| share * share.max(0.0).sqrt();
     let relative = cut as f64 / (1.6 * total.sqrt());

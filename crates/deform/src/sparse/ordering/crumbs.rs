@@ -1,13 +1,13 @@
-//! Graphs that lie in very many small components, such as a soup of single triangles.
+//! Graphs with very many small components, such as a soup of single triangles.
 //!
-//! Nothing has to be cut between components, and halving a million of them again and again costs more than all else. So
-//! small ones are packed together until a pack is worth a leaf of the dissection.
+//! Components need no cut between them, and bisecting a million of them repeatedly would cost more than everything
+//! else. So small ones are packed together until a pack is as large as a leaf of the dissection.
 
 use pliant_mesh::SurfaceVertex;
 
 use crate::operators::triangulation::Graph;
 
-/// So many small components are packed; fewer are cut apart like all else, which hardly costs anything.
+/// With this many small components they are packed; fewer are bisected like everything else, which costs little.
 const MANY: usize = 10_000;
 
 /// Vertices in whole small components, and all others.

@@ -1,10 +1,10 @@
-//! Nested dissection of a graph that is drawn on a surface: cut it in two, eliminate both halves first and what parts them last [Geo73].
+//! Nested dissection of a surface's graph: cut it in two, eliminate both halves first and the separator last [Geo73].
 //!
-//! `bisection` finds the cut, in the graph of L; its rim grows to a *separator* of the graph of Lᵏ: no walk of at most k
-//! edges leads from one half to the other but through it. So the graph of Lᵏ, several times larger, is never formed.
+//! `bisection` finds the cut, in the graph of L; its rim grows to a *separator* of the graph of Lᵏ: no walk of at most
+//! k edges leads from one half to the other but through it. So the graph of Lᵏ, several times larger, is never formed.
 //! Parts of some hundred vertices are left to `leaf`.
 //!
-//! A bad cut costs time and nothing else: what is eliminated with what is found out by `symbolic`, exactly.
+//! A bad cut costs only time: the fill is found exactly by `symbolic`.
 
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
@@ -96,7 +96,7 @@ impl<G: Graph> Dissection<'_, G> {
                 .collect::<Vec<u32>>()
         };
         let parts = halves.map(of);
-        // A graph that can't be cut, such as a vertex that all others neighbour: nothing is sparse there.
+        // A graph that can't be cut, such as a vertex that all others neighbour, is eliminated as one dense block.
         if parts.iter().any(Vec::is_empty) {
             vertices.iter().for_each(|&v| self.parts.set_label(v, id));
             return leaf::order(&self.parts, self.power, &vertices, id);
@@ -145,7 +145,7 @@ impl<G: Graph> Dissection<'_, G> {
     /// Takes a separator out of the halves; returns it, ascending.
     fn separator(&self, vertices: &[u32], halves: [u32; 2]) -> Vec<u32> {
         let is = |n: &SurfaceVertex, label: u32| self.parts.label(n.0) == label;
-        // Where L itself is factored one side's rim is enough; each further power takes a ring more.
+        // If L itself is factored, one side's rim is enough; each further power takes one more ring.
         let rim = |own: u32, other: u32| {
             let touches = |v: &u32| self.parts.label(*v) == own && self.parts.ring(*v).iter().any(|n| is(n, other));
             vertices.iter().copied().filter(touches).collect::<Vec<u32>>()
@@ -168,7 +168,7 @@ impl<G: Graph> Dissection<'_, G> {
             rims[side] = beyond;
             separator.extend(taken);
         }
-        // Walks around the end of the cut, through vertices that stand in no part any more.
+        // Walks around the end of the cut, through vertices that are in no part any more.
         if self.power > 1 {
             for &v in vertices {
                 let own = self.parts.label(v);

@@ -8,7 +8,7 @@ pub(crate) struct Elimination {
 }
 
 impl Elimination {
-    /// The same order with the vertices for which `is_last` holds as a supernode of their own behind all others.
+    /// The same order with the vertices for which `is_last` holds moved to a supernode of their own at the end.
     pub fn with_last(self, is_last: impl Fn(u32) -> bool) -> Self {
         let (mut first, mut last) = (Self::default(), Vec::new());
         let mut start = 0;

@@ -1,7 +1,7 @@
-//! Hubs: vertices that very many others neighbour, such as the tip of a fan of thousands of triangles.
+//! Hubs: vertices with very many neighbours, such as the tip of a fan of thousands of triangles.
 //!
-//! A quasi-dense row tells an ordering nothing, and costs it the square of its length at every look ([Dav06],
-//! section 7.1). So hubs are taken out of the graph first, and eliminated last.
+//! A quasi-dense row tells an ordering nothing and costs it the square of its length at every visit ([Dav06], section
+//! 7.1). So hubs are removed from the graph first and eliminated last.
 
 use pliant_mesh::SurfaceVertex;
 
@@ -11,9 +11,8 @@ use crate::operators::triangulation::Graph;
 /// as one dense block at little cost.
 const LEAST: usize = 512;
 
-/// How many neighbours a vertex of `vertex_count` has at least to be a hub. It grows with the root of the count: a
-/// low-rank correction costs numbers in proportion to the count, a dense block of all neighbours in proportion to their
-/// square.
+/// The fewest neighbours of a hub among `vertex_count` vertices. It grows with the root of the count: a low-rank
+/// correction stores numbers in proportion to the count, a dense block in proportion to the square of the neighbours.
 pub(crate) fn hub_degree(vertex_count: usize) -> usize {
     LEAST.max((2.0 * vertex_count as f64).sqrt() as usize)
 }

@@ -11,8 +11,8 @@ pub(crate) const CUT_OUT: u32 = 0;
 
 /// A graph and its vertices' labels: at first 1 everywhere, then halves of part i are 2 i and 2 i + 1.
 ///
-/// A part writes the labels of its own vertices alone, and reads beyond them only whether a vertex is its own: so the
-/// order in which parts are cut does not show.
+/// A part writes only the labels of its own vertices, and of others it reads only whether a vertex is its own, so the
+/// result does not depend on the order in which parts are cut.
 pub(crate) struct Labelled<'a, G> {
     graph: &'a G,
     labels: Vec<AtomicU32>,

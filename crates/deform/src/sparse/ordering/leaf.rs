@@ -2,17 +2,17 @@
 //!
 //! The graph is Lᵏ's on the part's vertices and on those around it that are eliminated later (its *halo*, Pellegrini et
 //! al. 2000): they count for the degrees, which spares the fill that a part ordered by itself has along its rim.
-//! Vertices with one pattern are eliminated at once, and supernodes that hardly differ are amalgamated, so what comes out is
-//! supernodes that are worth a dense factorisation.
+//! Vertices with one pattern are eliminated at once, and supernodes that hardly differ are amalgamated, so what comes
+//! out is supernodes that are worth a dense factorisation.
 
 use crate::operators::triangulation::Graph;
 use crate::sparse::ordering::elimination::Elimination;
 use crate::sparse::ordering::labels::Labelled;
 
-/// More vertices than this are taken as they stand: something is not like a surface there.
+/// More vertices than this are left in their order: such a part is not like a surface.
 const MOST: usize = 1024;
 
-/// Columns of a supernode where nothing is known about how they hang together.
+/// Columns of a supernode if nothing is known about their patterns.
 const PLAIN: usize = 32;
 
 /// Orders the vertices with the label `id` for the graph of the `power`-th power of the Laplacian.
@@ -74,7 +74,7 @@ struct Supernode {
 
 impl Rows {
     fn of<G: Graph>(parts: &Labelled<G>, power: u32, vertices: &[u32], near: &[u32], id: u32) -> Self {
-        // The part's vertices keep their numbers; the halo's come behind.
+        // The part's vertices keep their numbers; the halo's come after them.
         let mut number = Vec::with_capacity(near.len());
         let (mut own, mut halo) = (0, vertices.len());
         for &v in near {
@@ -88,7 +88,7 @@ impl Rows {
         }
         let words = halo.div_ceil(64);
         let place = |v: u32| near.binary_search(&v).ok();
-        // Rings as bits, then as often the union of the rings' rings as the power says.
+        // Each vertex's ring as bits, then the union of its neighbours' rings, repeated as the power says.
         let mut rings = vec![0_u64; near.len() * words];
         for (i, &v) in near.iter().enumerate() {
             let row = &mut rings[i * words..(i + 1) * words];
@@ -209,7 +209,7 @@ fn members(row: &[u64], count: usize) -> impl Iterator<Item = usize> + '_ {
         .take_while(move |&v| v < count)
 }
 
-/// Amalgamation: joins supernodes with their parents where that stores few zeros, and puts children before parents.
+/// Amalgamation: merges supernodes with their parents if that stores few zeros, and puts children before parents.
 fn amalgamate(mut supernodes: Vec<Supernode>) -> Vec<Supernode> {
     // How many zeros a supernode stores already.
     let mut zeros = vec![0_usize; supernodes.len()];

@@ -1,8 +1,8 @@
 //! One fill-reducing ordering per mesh and operator power.
 //!
-//! Ordering costs as much as factoring, yet depends on nothing but the surface: it is made once a mesh and *restricted*
-//! to whatever is solved for, which costs next to no time. The graph must be that of the system, Lᵏ: an ordering made
-//! for L costs seven times the fill when used for L².
+//! Ordering costs as much as factoring but depends only on the surface: it is made once per mesh and *restricted* to
+//! the vertices that are solved for, which takes next to no time. The graph must be that of the system, Lᵏ: an ordering
+//! made for L gives seven times the fill when used for L².
 
 mod bisection;
 mod crumbs;
@@ -33,7 +33,8 @@ pub struct Ordering {
 impl Ordering {
     /// Orders the graph of the `power`-th power of the Laplacian by nested dissection of the surface.
     ///
-    /// Which power, and whether any, [`crate::Method::ordering_power`] says. Uses rayon's current pool; the result doesn't depend on its size.
+    /// [`crate::Method::ordering_power`] gives the power. Uses rayon's current pool; the result doesn't depend on its
+    /// size.
     ///
     /// # Errors
     /// [`Cancelled`] soon after `cancel` is raised.

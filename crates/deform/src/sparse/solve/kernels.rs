@@ -1,4 +1,4 @@
-//! A supernode's triangular solves: the loops that read the factor, each line once.
+//! A supernode's triangular solves: the loops that read each line of the factor once.
 
 use pulp::{Simd, WithSimd};
 
@@ -8,17 +8,17 @@ use crate::sparse::numeric::line::{LANES, Line, Shape};
 /// K right-hand sides of eight rows, each a line.
 pub(crate) type Strip<const K: usize> = [Line; K];
 
-/// Strips that are taken at once: their sums are independent, which hides how long an addition takes.
+/// Strips that are processed at once: their sums are independent, which hides the latency of an addition.
 const STRIPS: usize = 4;
 
-/// Lines between the one that is read and the one that is asked for: some supernodes of the usual size.
+/// How far ahead lines are prefetched: some supernodes of the usual size.
 const AHEAD: usize = 128;
 
-/// Columns whose sums are kept near: their lines lie one after the other.
+/// Columns whose sums are kept in the cache: their lines are consecutive.
 const COLUMNS: usize = 64;
 
-/// Solves with a supernode's lower triangle for the first strips of `x`, its own rows, and writes what the rows below take
-/// into the others.
+/// Solves with a supernode's lower triangle for the first strips of `x`, its own rows, and writes the products of the
+/// rows below into the others.
 pub(crate) struct Forward<'a, const K: usize> {
     pub shape: Shape,
     pub panel: &'a [Line],
@@ -32,7 +32,7 @@ pub(crate) struct Backward<'a, const K: usize> {
     pub shape: Shape,
     pub panel: &'a [Line],
     pub x: &'a mut [Strip<K>],
-    /// Room for what the rows below take from each column, lane by lane.
+    /// For each column the products of the rows below, lane by lane.
     pub sums: &'a mut Vec<Strip<K>>,
 }
 

@@ -1,13 +1,13 @@
 //! Solving with a factor, several right-hand sides at once.
 //!
-//! The limit is memory: each solve reads the factor twice. So it is read in the order in which it lies, a line meeting
-//! all right-hand sides at once. The parts that `assembly_tree` cuts are solved beside each other: a part hands what its
-//! rows take to the part above in forward substitution, and gets what it needs from there in backward substitution, so nothing is shared
-//! and nothing is added up in an order that could vary. faer's own parallel solve was 3 to 40 times slower than its
-//! sequential one on such factors.
+//! The limit is memory bandwidth: each solve reads the factor twice. So it is read in the order in which it is stored,
+//! and each line is used for all right-hand sides at once. The parts of the assembly tree are solved in parallel
+//! (`passes`). faer's own parallel solve was 3 to 40 times slower than its sequential one on such factors.
 
+mod blocks;
 mod kernels;
 mod passes;
+pub(crate) mod rhs;
 pub(crate) mod substitution;
 
 use std::sync::{Mutex, PoisonError};
@@ -29,7 +29,20 @@ struct Room<const K: usize> {
     sums: Vec<Strip<K>>,
 }
 
-/// Solves L Lᵀ x = b in place; `x` has one row a column of the factor.
+impl<const K: usize> Room<K> {
+    /// Lays the supernode's own rows out in strips; those below are zero.
+    fn begin(&mut self, shape: Shape, own: &[[f64; K]]) {
+        self.x.clear();
+        self.x.resize(shape.strips(), [Line::ZERO; K]);
+        for (i, row) in own.iter().enumerate() {
+            for k in 0..K {
+                self.x[i / LANES][k].0[i % LANES] = row[k];
+            }
+        }
+    }
+}
+
+/// Solves L Lᵀ x = b in place; `x` has one row per column of the factor.
 pub(crate) fn solve_in_place<const K: usize>(
     symbolic: &Symbolic,
     assembly_tree: &AssemblyTree,
@@ -99,17 +112,11 @@ fn forward<const K: usize>(
     room: &mut Room<K>,
 ) {
     let own = first..first + shape.width;
-    // Most of a right-hand side that begins at a handle's rim is zero, and so is what it leaves.
+    // Most rows of a handle's right-hand side are zero, and zero rows change nothing below.
     if x[own.clone()].iter().all(|row| *row == [0.0; K]) {
         return;
     }
-    room.x.clear();
-    room.x.resize(shape.strips(), [Line::ZERO; K]);
-    for (i, row) in x[own.clone()].iter().enumerate() {
-        for k in 0..K {
-            room.x[i / LANES][k].0[i % LANES] = row[k];
-        }
-    }
+    room.begin(shape, &x[own.clone()]);
     Arch::new().dispatch(Forward {
         shape,
         panel,
@@ -137,13 +144,7 @@ fn backward<const K: usize>(
     room: &mut Room<K>,
 ) {
     let own = first..first + shape.width;
-    room.x.clear();
-    room.x.resize(shape.strips(), [Line::ZERO; K]);
-    for (i, row) in x[own.clone()].iter().enumerate() {
-        for k in 0..K {
-            room.x[i / LANES][k].0[i % LANES] = row[k];
-        }
-    }
+    room.begin(shape, &x[own.clone()]);
     for (places, strip) in places.chunks(LANES).zip(&mut room.x[shape.own()..]) {
         for (lane, &place) in places.iter().enumerate() {
             let row = &x[place as usize];

@@ -1,5 +1,5 @@
-//! Forward substitution from the leaves of an assembly tree to its roots and backward substitution from the roots to the
-//! leaves, part by part, with rows of right-hand sides.
+//! Forward substitution from the leaves of an assembly tree to its roots and backward substitution from the roots to
+//! the leaves, part by part, with rows of right-hand sides.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -9,16 +9,16 @@ use crate::sparse::symbolic::assembly_tree::AssemblyTree;
 struct PartRows<'a, R> {
     /// Its own columns of the right-hand sides.
     own: &'a mut [R],
-    /// First its own columns', then its last supernode's pattern's.
+    /// The rows of its own columns, then those of its last supernode's pattern.
     rows: &'a mut Vec<R>,
 }
 
-/// Solves for `x`, one row a column, part by part. `forward` gets a part's rows, with what its children changed added, and
-/// for the rows of the part above zeros and those changes; it changes them. `backward` gets the solved rows of the part
-/// above.
+/// Solves for `x`, which has one row per column, part by part. `forward` gets and changes a part's own rows and,
+/// starting from zero, the changes to its ancestors' rows; its children's changes are added before. `backward` gets the
+/// solved rows of the ancestors.
 ///
-/// A part hands what it changes to the part above and gets what it needs from there, so nothing is shared, and nothing is
-/// added up in an order that could vary. `part_rows` is room, kept from one time to the next.
+/// A part passes changes to its parent and gets solved rows from it, so nothing is shared, and nothing is summed in an
+/// order that could vary. `part_rows` is scratch memory that is kept between calls.
 pub(crate) fn forward_and_backward<R: Copy + Send + Sync>(
     assembly_tree: &AssemblyTree,
     x: &mut [R],

@@ -1,61 +1,21 @@
-//! A factor laid out for solving again and again with three right-hand sides, in single or double precision.
+//! A factor laid out for many solves with three right-hand sides, in single or double precision.
 //!
-//! An iterative method solves once a step and only needs a direction, so half the bytes are enough. Each supernode's
-//! columns stand in blocks of up to four, row by row: a row's four numbers meet four finished values in registers, and
-//! what is below is read and written once for four columns. The right-hand sides are rows of four, x, y, z and nothing,
-//! which is one vector in single precision. The parts that `assembly_tree` cuts run beside each other, as in `triangular`.
+//! An iterative method solves once per step and only needs a direction, so single precision is enough. A row of
+//! right-hand sides has four numbers, x, y, z and a zero, which is one vector in single precision. The parts of the
+//! assembly tree run beside each other (`passes`).
 
-use std::ops::{Add, Mul, Sub};
 use std::sync::{Mutex, PoisonError};
 
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::budget::reserved;
-use crate::numerical::prefetch::Prefetch;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::numeric::Numbers;
-use crate::sparse::numeric::line::{Line, Shape};
+use crate::sparse::solve::blocks::{backward_block, block, copy_node, forward_block, last_block, numbers};
 use crate::sparse::solve::passes::forward_and_backward;
+use crate::sparse::solve::rhs::{Real, Rhs, minus, plus};
 use crate::sparse::symbolic::Symbolic;
 use crate::sparse::symbolic::assembly_tree::AssemblyTree;
-
-/// A precision to solve in.
-pub(crate) trait Real:
-    Copy + Default + Send + Sync + std::fmt::Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + 'static
-{
-    /// Rounded to it.
-    fn of(value: f64) -> Self;
-    /// The same number.
-    fn wide(self) -> f64;
-}
-
-impl Real for f32 {
-    #[inline(always)]
-    fn of(value: f64) -> Self {
-        value as Self
-    }
-    #[inline(always)]
-    fn wide(self) -> f64 {
-        f64::from(self)
-    }
-}
-
-impl Real for f64 {
-    #[inline(always)]
-    fn of(value: f64) -> Self {
-        value
-    }
-    #[inline(always)]
-    fn wide(self) -> f64 {
-        self
-    }
-}
-
-/// Numbers between those that are read on the way down and those that are asked for: some blocks of the usual size.
-const AHEAD: usize = 1024;
-
-/// One row of three right-hand sides: x, y, z and a zero.
-pub(crate) type Rhs<T> = [T; 4];
 
 /// The factor, and where its parts lie.
 #[derive(Debug)]
@@ -120,7 +80,7 @@ impl<T: Real> Substitution<T> {
         self.values.len()
     }
 
-    /// Solves L Lᵀ x = b in place, one row a column of the factor.
+    /// Solves L Lᵀ x = b in place, with one row per column of the factor.
     pub fn solve(&self, x: &mut [Rhs<T>], room: &mut Room<T>) {
         let arch = Arch::new();
         let Room { part_rows, below } = room;
@@ -190,7 +150,7 @@ impl<T: Real> Substitution<T> {
         let mut left = own.len();
         let mut behind = 0;
         while left > 0 {
-            // The blocks of the way forward, from the last to the first.
+            // The same blocks as in forward substitution, from the last to the first.
             let width = last_block(left);
             let rows = behind + below.len();
             let (tail, numbers) = values.split_at(values.len() - width * (width + rows));
@@ -213,7 +173,7 @@ impl<T: Real> Substitution<T> {
     }
 }
 
-/// One way through some supernodes; what is in here is compiled for the machine's vectors.
+/// Forward or backward substitution through some supernodes, compiled for the machine's vectors.
 struct Pass<'a, T> {
     factor: &'a Substitution<T>,
     nodes: &'a [Node],
@@ -246,127 +206,6 @@ impl<T: Real> WithSimd for Pass<'_, T> {
             }
         }
     }
-}
-
-/// The width of the next block of so many columns.
-#[inline(always)]
-fn block(columns: usize) -> usize {
-    match columns {
-        0 | 1 => 1,
-        2 | 3 => 2,
-        _ => 4,
-    }
-}
-
-/// The width of the last block of so many columns, taken from the front.
-#[inline(always)]
-fn last_block(columns: usize) -> usize {
-    match columns % 4 {
-        0 => 4,
-        2 => 2,
-        _ => 1,
-    }
-}
-
-/// How many numbers a supernode's blocks hold.
-#[inline(always)]
-fn numbers(width: usize, height: usize) -> usize {
-    let (mut count, mut done) = (0, 0);
-    while done < width {
-        let block = block(width - done);
-        count += block * (height - done);
-        done += block;
-    }
-    count
-}
-
-/// Appends a supernode's columns as blocks, diagonals as their inverses.
-fn copy_node<T: Real>(panel: &[Line], shape: Shape, copied: &mut Vec<T>) {
-    let mut done = 0;
-    while done < shape.width {
-        let block = block(shape.width - done);
-        for row in done..shape.width + shape.below {
-            let (start, lane) = shape.row(row);
-            for column in done..done + block {
-                copied.push(if row < column {
-                    T::default()
-                } else {
-                    T::of(panel[start + column].0[lane])
-                });
-            }
-        }
-        done += block;
-    }
-}
-
-/// `rest` starts with the block's own rows.
-#[inline(always)]
-fn forward_block<T: Real, const B: usize>(numbers: &[T], rest: &mut [Rhs<T>], below: &mut [Rhs<T>]) {
-    let (triangle, numbers) = numbers.split_at(B * B);
-    let (own, rest) = rest.split_at_mut(B);
-    let mut values = [Rhs::default(); B];
-    values.copy_from_slice(own);
-    for c in 0..B {
-        values[c] = times(values[c], triangle[c * B + c]);
-        for r in c + 1..B {
-            values[r] = minus(values[r], times(values[c], triangle[r * B + c]));
-        }
-    }
-    own.copy_from_slice(&values);
-    let (inside, outside) = numbers.split_at(rest.len() * B);
-    for (row, numbers) in rest.iter_mut().zip(inside.chunks_exact(B)) {
-        for c in 0..B {
-            *row = minus(*row, times(values[c], numbers[c]));
-        }
-    }
-    for (row, numbers) in below.iter_mut().zip(outside.chunks_exact(B)) {
-        for c in 0..B {
-            *row = plus(*row, times(values[c], numbers[c]));
-        }
-    }
-}
-
-/// `rest` starts with the block's own rows.
-#[inline(always)]
-fn backward_block<T: Real, const B: usize>(numbers: &[T], rest: &mut [Rhs<T>], below: &[Rhs<T>]) {
-    let (triangle, numbers) = numbers.split_at(B * B);
-    let (own, rest) = rest.split_at_mut(B);
-    let mut sums = [Rhs::default(); B];
-    let (inside, outside) = numbers.split_at(rest.len() * B);
-    for (row, numbers) in rest.iter().zip(inside.chunks_exact(B)) {
-        for c in 0..B {
-            sums[c] = plus(sums[c], times(*row, numbers[c]));
-        }
-    }
-    let prefetch = Prefetch::new();
-    for (row, numbers) in below.iter().zip(outside.chunks_exact(B)) {
-        prefetch.below(&numbers[0], AHEAD);
-        for c in 0..B {
-            sums[c] = plus(sums[c], times(*row, numbers[c]));
-        }
-    }
-    for c in (0..B).rev() {
-        let mut value = minus(own[c], sums[c]);
-        for r in c + 1..B {
-            value = minus(value, times(own[r], triangle[r * B + c]));
-        }
-        own[c] = times(value, triangle[c * B + c]);
-    }
-}
-
-#[inline(always)]
-fn plus<T: Real>(a: Rhs<T>, b: Rhs<T>) -> Rhs<T> {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]]
-}
-
-#[inline(always)]
-fn minus<T: Real>(a: Rhs<T>, b: Rhs<T>) -> Rhs<T> {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
-}
-
-#[inline(always)]
-fn times<T: Real>(a: Rhs<T>, factor: T) -> Rhs<T> {
-    [a[0] * factor, a[1] * factor, a[2] * factor, a[3] * factor]
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
-//! The assembly tree of supernodes, cut into parts that are worked on one after the other or in parallel.
+//! The assembly tree of supernodes, cut into parts that can be processed in parallel.
 //!
-//! Columns stand in postorder, so a subtree is a run of supernodes and its columns a run of columns. A subtree is one part
-//! while it is little work; the supernodes above, the *top*, are parts of their own. The cut depends on the work
-//! below alone: neither on the number of threads nor on what the rest of the surface is.
+//! Columns are in postorder, so a subtree is a run of supernodes and its columns are a run of columns. A subtree of
+//! little work is one part; each supernode above, in the *top*, is a part of its own. The cut depends only on the work
+//! below: neither on the number of threads nor on the rest of the surface.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -31,7 +31,7 @@ pub(crate) struct Part {
     pub columns: Range<usize>,
     /// The part that takes this one's contribution.
     pub parent: Option<usize>,
-    /// The parts whose contributions this one takes, ascending.
+    /// The parts whose contributions this one assembles, ascending.
     pub children: Vec<usize>,
     /// The rows of its last supernode's pattern in the coordinates of the parent.
     pub outside: Vec<u32>,
@@ -57,7 +57,7 @@ impl AssemblyTree {
         for s in 0..count {
             let is_root_of_part = small(s) && (parent[s] == ROOT || !small(parent[s] as usize));
             if is_root_of_part && first[s] >= next && size[s] == s + 1 - first[s] {
-                // Whatever stands before the subtree and is in no part is one by itself.
+                // Supernodes before the subtree that are in no part yet are parts by themselves.
                 runs.extend((next..first[s]).map(|s| s..s + 1));
                 runs.push(first[s]..s + 1);
                 next = s + 1;
@@ -70,7 +70,7 @@ impl AssemblyTree {
         }
     }
 
-    /// Does something with every part, with children before parents; others run beside each other.
+    /// Visits every part, children before parents; unrelated parts run in parallel.
     pub fn upwards(&self, visit: impl Fn(usize) + Sync) {
         let left: Vec<AtomicUsize> = self
             .parts
@@ -91,11 +91,11 @@ impl AssemblyTree {
         if self.parts.len() == 1 {
             return leaves.for_each(climb);
         }
-        // The first are taken first, and other threads take from the other end: from another side of the tree.
+        // The first are processed first, and other threads steal from the other end: another side of the tree.
         rayon::scope(|scope| leaves.rev().for_each(|part| scope.spawn(move |_| climb(part))));
     }
 
-    /// Does something with every part, with parents before children; others run beside each other.
+    /// Visits every part, parents before children; unrelated parts run in parallel.
     pub fn downwards(&self, visit: impl Fn(usize) + Sync) {
         if self.parts.len() == 1 {
             return visit(0);
@@ -208,7 +208,7 @@ mod tests {
                     let parent = symbolic.parent[s];
                     let is_root = s + 1 == range.end;
                     assert!(is_root || (parent as usize) < range.end, "{name}");
-                    // Nothing below the columns of another part: what lies outside is in the root's pattern.
+                    // All rows outside of the part are in the pattern of its root.
                     let mut beyond = symbolic
                         .pattern(s)
                         .iter()

@@ -1,7 +1,7 @@
-//! Symbolic factorisation: the supernodes of a factor and the rows of each, before there are numbers.
+//! Symbolic factorisation: the supernodes of a factor and the rows of each.
 //!
-//! The order of elimination comes with its supernodes (`dissection`, `leaf`), so none have to be detected. A supernode's
-//! rows are exactly those of its columns in the matrix and those of its children's contributions.
+//! The order of elimination comes with its supernodes (`dissection`, `leaf`), so none have to be detected. A
+//! supernode's rows are exactly those of its columns in the matrix and those of its children's contributions.
 
 pub(crate) mod assembly_tree;
 
@@ -20,13 +20,13 @@ pub(crate) const ROOT: u32 = u32::MAX;
 struct Needed {
     rows: usize,
     panel_lines: usize,
-    /// Of the update matrices that wait for their parents, now and at most.
+    /// Lines of the contribution matrices that wait for their parents, now and at most.
     waiting: usize,
     most_waiting: usize,
 }
 
 impl Needed {
-    /// The next supernode, with what its children passed on to it, in lines.
+    /// Adds the next supernode, given the lines of its children's contributions.
     fn meet(&mut self, width: usize, below: usize, passed_on: usize) {
         let own = contribution_lines(below);
         self.rows += below;
@@ -43,7 +43,7 @@ impl Needed {
     }
 }
 
-/// Lines of the update matrix of a supernode with so many rows below.
+/// Lines of the contribution matrix of a supernode with this many rows below.
 pub(crate) fn contribution_lines(below: usize) -> usize {
     triangle(strips(below))
 }
@@ -67,7 +67,7 @@ impl Symbolic {
     /// The factor of `matrix`, whose columns are grouped in supernodes that end at `ends`.
     ///
     /// # Errors
-    /// As soon as what was found of it exceeds the budget: its numbers, its rows, and the contributions that wait at once.
+    /// As soon as its numbers, its rows and the waiting contributions exceed the budget.
     pub fn of(matrix: &ScaledMatrix, ends: &[u32], budget: Budget) -> Result<Self, FactorError> {
         let column_count = matrix.scale.len();
         let mut symbolic = Self {
@@ -130,7 +130,7 @@ impl Symbolic {
         self.starts[self.parent.len()] as usize
     }
 
-    /// How many numbers the factor stores, those that fill strips up among them.
+    /// How many numbers the factor stores, padding of strips included.
     pub fn stored(&self) -> usize {
         (0..self.supernode_count()).map(|s| LANES * self.shape(s).lines()).sum()
     }

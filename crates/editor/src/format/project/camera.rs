@@ -1,4 +1,4 @@
-//! Where the eye was, as a project stores it.
+//! The camera, as a project stores it.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

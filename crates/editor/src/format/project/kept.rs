@@ -1,4 +1,4 @@
-//! The shape that a stroke has kept, as a project stores it.
+//! The kept shape (see `document/kept_shape`), as a project stores it.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! A `.pliant` project: the document as it stands, which mesh it belongs to, and where the eye was.
+//! A `.pliant` project: the document, which mesh it belongs to, and the camera.
 //!
 //! JSON, with a version. The mesh is named by its path (for finding it) and by a hash of its geometry (for knowing it):
 //! the hash takes what vertex numbers mean (positions, triangles and the file's order), so the kept original of a file
@@ -31,7 +31,8 @@ use super::edit_error::EditError;
 use super::json::parse;
 use super::loose::StoredLoose;
 use super::method::{method_to_value, read_method};
-use super::reader::{self, read};
+use super::reader::read;
+use super::refusal::shortened;
 use super::setup::Setup;
 use crate::document::bits_equal;
 use crate::document::{Content, Document, Handle, HandleId, Paint, Tips};
@@ -83,7 +84,7 @@ pub struct Project {
     /// The present shape's displacements from the rest shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shape: Option<Field>,
-    /// What was seen when what holds the surface changed last, from which the next drag begins.
+    /// The shape when the constraints last changed, from which the next drag begins.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     kept: Option<StoredKept>,
     /// Whether that is what the handles' transforms mean; else it is computed on opening.
@@ -158,7 +159,7 @@ impl Project {
         // The version first: another one may have members that this one lacks.
         match value.get("version") {
             Some(version) if version.as_u64() == Some(PROJECT_VERSION) => {}
-            Some(version) => return Err(EditError::ProjectVersion(reader::shortened(&version.to_string()))),
+            Some(version) => return Err(EditError::ProjectVersion(shortened(&version.to_string()))),
             None => return Err(EditError::Project("it has no `version`: add it".to_owned())),
         }
         read(value).map_err(|error| error.at("the project"))
@@ -166,7 +167,7 @@ impl Project {
 
     /// The project as JSON text with a newline at its end.
     pub fn to_json(&self) -> String {
-        // Plain data with text keys: there is nothing that could fail.
+        // Plain data with text keys always serialises.
         let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
         text.push('\n');
         text
@@ -229,7 +230,7 @@ impl Project {
         &self.mesh
     }
 
-    /// A digest of the document in it, whichever path its mesh has and wherever the eye was.
+    /// A digest of the document in it, independent of the mesh's path and the camera.
     pub fn document_hash(&self) -> String {
         let document = Self {
             camera: None,
@@ -268,8 +269,8 @@ impl Project {
         if found != self.mesh.geometry {
             return Err(EditError::OtherMesh {
                 name: "the one at hand".to_owned(),
-                found: shortened(&found),
-                expected: shortened(&self.mesh.geometry),
+                found: hash_shown(&found),
+                expected: hash_shown(&self.mesh.geometry),
             });
         }
         let mut document = Content::new(model.surface.positions.len());
@@ -370,6 +371,7 @@ impl Project {
     }
 }
 
-fn shortened(hash: &str) -> String {
+/// As much of a hash as tells it from others.
+fn hash_shown(hash: &str) -> String {
     hash.chars().take(19).chain("…".chars()).collect()
 }

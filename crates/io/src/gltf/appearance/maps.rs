@@ -1,9 +1,9 @@
-//! A material's images other than the base colour's, and the texture coordinates that all of them take.
+//! A material's images other than the base colour's, and the texture coordinates that they use.
 //!
 //! The drawn vertices carry the base colour's coordinates with their transform applied, and at most one further set as
-//! stored. An image that takes the base colour's set is looked up from there, its own transform put behind the inverse
-//! of the base colour's; one that takes any other set comes from the second. They are read from the text, since the
-//! `gltf` crate types extensions of some texture references and not of others.
+//! stored. An image that uses the base colour's set is looked up there, with the inverse of the base colour's transform
+//! followed by its own; one that uses any other set is looked up in the second. They are read from the text, because
+//! the `gltf` crate has types for the extensions of only some texture references.
 
 use ::gltf::json::texture::WrappingMode;
 use ::gltf::json::validation::Checked;
@@ -53,7 +53,7 @@ impl MaterialMaps {
     }
 }
 
-/// Gives `out` what the text says about a material beside its base colour, factors and alpha.
+/// Sets in `out` what the text says about a material besides its base colour, factors and alpha.
 pub(crate) fn dress(document: &Document, material: usize, out: &mut Material) {
     let Some(&at) = document.materials_at.get(material) else {
         return;
@@ -89,7 +89,7 @@ const IMAGE_EXTENSIONS: [&str; 2] = ["EXT_texture_webp", "KHR_texture_basisu"];
 pub(crate) fn image_of(document: &Document, texture: usize) -> Option<(usize, [Wrap; 2])> {
     let texture = document.textures.get(texture)?;
     let others = texture.extensions.as_ref().map(|extensions| &extensions.others);
-    // The plain image comes first: an extension's is there for whoever reads it, and may be left out.
+    // The plain image comes first: an extension's is optional.
     let image = Some(texture.source.value())
         .filter(|&image| image < document.images.len())
         .or_else(|| {
@@ -164,7 +164,7 @@ impl Reference {
     }
 }
 
-/// Where a reference is looked up from what drawn vertices carry; `None` for an image that isn't there, or a third set.
+/// Where an image is looked up with the drawn vertices' coordinates; `None` for a missing image or a third set.
 fn map(document: &Document, sets: &MaterialMaps, reference: Reference) -> Option<Map> {
     let (image, wrap) = image_of(document, reference.texture)?;
     let own = reference.transform.matrix();

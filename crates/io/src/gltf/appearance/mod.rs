@@ -92,7 +92,7 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
     out
 }
 
-/// What the drawn set's nodes and materials tell apart; a node without a name is called as its mesh is.
+/// The objects by node and material of the drawn set; a node without a name gets its mesh's.
 pub(crate) fn objects(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<Object> {
     let mut names = Names::of(document);
     objects::gathered(pieces.pieces.iter().map(|piece| {
@@ -153,7 +153,7 @@ fn normals(document: &Document, instance: &Instance, primitive: &Primitive) -> O
         .weights
         .iter()
         .map(|&(target, weight)| (primitive.targets[target].normal, weight));
-    // A target whose normals can't be read leaves the others as they are.
+    // A target whose normals can't be read is left out.
     let _ = geometry::apply_targets(document, &mut normals, targets, &Cancel::new());
     Some(normals)
 }

@@ -1,4 +1,4 @@
-//! Which texture coordinates a material's images take, and how they are transformed.
+//! Which texture coordinates a material's images use, and how they are transformed.
 
 use glam::{Mat3, Vec2};
 

@@ -1,4 +1,4 @@
-//! Accessors as strided bytes: where each element stands, checked against the buffers before anything is read.
+//! Accessors as strided bytes: the place of each element, checked against the buffers before anything is read.
 
 use ::gltf::json::accessor::{ComponentType, Type};
 use ::gltf::json::validation::Checked;
@@ -11,7 +11,7 @@ pub(crate) use crate::gltf::document::layout::{Layout, Sparse, Strided};
 const CHUNK: usize = 1 << 14;
 
 impl Document {
-    /// An accessor's shape and place, checked once; in words what is wrong.
+    /// An accessor's layout, checked once, or a sentence that says what is wrong.
     pub fn layout(&self, accessor: usize) -> Result<Layout, String> {
         match self.layouts.get(accessor) {
             Some(layout) => layout.get_or_init(|| Layout::of(self, accessor)).clone(),
@@ -21,7 +21,8 @@ impl Document {
 }
 
 impl Layout {
-    /// Checks an accessor against its buffer views and buffers; in words what is wrong. [`Document::layout`] keeps it.
+    /// Checks an accessor against its buffer views and buffers; the error says what is wrong. [`Document::layout`]
+    /// caches the result.
     pub fn of(document: &Document, index: usize) -> Result<Self, String> {
         Self::check(document, index).map_err(|reason| format!("accessor {index} {reason}"))
     }
@@ -61,7 +62,7 @@ impl Layout {
             let some = sparse.indices.count;
             return Err(format!("has {some} sparse elements, more than its {count} elements"));
         }
-        // Zeros cost no bytes in the file, so their number is held to what the file could have stored.
+        // Zeros take no bytes in the file, so their number is limited by what the file could have stored.
         if dense.is_none() && count > document.loaded_bytes {
             return Err(format!(
                 "has {count} elements without bytes, more than the file has bytes"
@@ -124,7 +125,7 @@ impl Layout {
         out
     }
 
-    /// All elements as indices; in words what is wrong where they are not.
+    /// All elements as indices; the error says what is wrong.
     pub fn indices(&self, document: &Document) -> Result<Vec<u32>, String> {
         let is_index = matches!(
             self.component,

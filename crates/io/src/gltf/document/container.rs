@@ -26,7 +26,7 @@ pub(crate) fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
 
-/// Finds a GLB's parts; in words what is wrong where there are none.
+/// Finds a GLB's parts; the error says what is wrong.
 pub(crate) fn split(bytes: &[u8]) -> Result<Container, String> {
     let word = |at: usize| -> Option<u32> { Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?)) };
     if !is_glb(bytes) {

@@ -1,4 +1,4 @@
-//! What can be wrong with a glTF, before it is known which file it was.
+//! Errors of reading a glTF, before the file's name is added.
 
 use pliant_mesh::Cancelled;
 

@@ -1,7 +1,8 @@
-//! JSON as text: where each value stands, so that single values can be replaced and all else keeps its bytes.
+//! JSON as text: the place of each value, so that single values can be replaced and everything else keeps its bytes.
 //!
-//! A parsed document is a tape: one token a key or value, in the order of the text, each with its span and the token
-//! that follows its whole subtree. Twelve bytes a token and no recursion, so that neither deep nor long files hurt.
+//! A parsed document is a tape: one token per key or value, in the order of the text, each with its span and the token
+//! after its whole subtree. A token takes twelve bytes and parsing does not recurse, so that neither deep nor long
+//! files are a problem.
 
 use std::ops::Range;
 
@@ -27,7 +28,7 @@ struct Token {
 pub(crate) struct At(u32);
 
 impl Json {
-    /// Checks a text against JSON's grammar and notes where its values stand.
+    /// Checks a text against JSON's grammar and notes the places of its values.
     pub fn parse(text: Vec<u8>) -> Result<Self, String> {
         if u32::try_from(text.len()).is_err() {
             return Err("its JSON is larger than 4 GiB".to_owned());
@@ -202,7 +203,7 @@ fn scalar_end(text: &[u8], start: usize) -> usize {
 pub(crate) struct Edits(Vec<(Range<usize>, String)>);
 
 impl Edits {
-    /// Puts `new` in place of the bytes of `span`. Spans must not overlap; an empty span inserts.
+    /// Replaces the bytes of `span` by `new`. Spans must not overlap; an empty span inserts.
     pub fn replace(&mut self, span: Range<usize>, new: impl Into<String>) {
         self.0.push((span, new.into()));
     }
@@ -219,7 +220,7 @@ impl Edits {
         }
     }
 
-    /// Gives an object a member: in place of the one of that name, else as its last.
+    /// Sets a member of an object: replaces the one of that name, or adds it as the last.
     pub fn set_member(&mut self, json: &Json, object: At, key: &str, value: &str) {
         match (json.member(object, key), json.members(object).last()) {
             (Some(old), _) => self.replace(json.span(old), value),
@@ -228,7 +229,7 @@ impl Edits {
         }
     }
 
-    /// Takes members out of an object, with their commas; to be asked for once an object.
+    /// Removes members of an object, with their commas; at most one call per object.
     pub fn remove_members(&mut self, json: &Json, object: At, keys: &[&str]) {
         let members = json.members(object).map(|(name, value)| {
             let is_removed = keys.iter().any(|key| json.is_string(name, key));
@@ -237,15 +238,14 @@ impl Edits {
         self.remove(&members.collect::<Vec<_>>());
     }
 
-    /// Takes an element out of an array, with its comma; to be asked for once an array.
+    /// Removes an element of an array, with its comma; at most one call per array.
     pub fn remove_element(&mut self, json: &Json, array: At, place: usize) {
         let elements = json.elements(array).enumerate();
         let elements = elements.map(|(number, at)| (json.span(at), number == place));
         self.remove(&elements.collect::<Vec<_>>());
     }
 
-    /// Takes those of a list's parts out that are to be removed: with the comma before them, or, as long as none is
-    /// kept, with the one behind them.
+    /// Removes some parts of a list: each with the comma before it or, as long as none is kept, with the one after it.
     fn remove(&mut self, parts: &[(Range<usize>, bool)]) {
         let first_kept = parts.iter().position(|(_, is_removed)| !is_removed);
         for (place, (own, _)) in parts.iter().enumerate().filter(|(_, (_, is_removed))| *is_removed) {

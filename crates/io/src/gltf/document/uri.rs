@@ -21,7 +21,7 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// What a path may not hold as it is. Before a colon a reader would take the path's beginning for a scheme.
+/// What must be encoded in a path. A reader would take what is before a colon for a scheme.
 const ESCAPED: &AsciiSet = &CONTROLS
     .add(b' ')
     .add(b':')
@@ -33,7 +33,7 @@ const ESCAPED: &AsciiSet = &CONTROLS
     .add(b'<')
     .add(b'>');
 
-/// Reads a URI; in words what is wrong with a broken data URI.
+/// Reads a URI; the error says what is wrong with a data URI.
 pub(crate) fn address(uri: &str) -> Result<Address, String> {
     if let Some(rest) = uri
         .get(..5)
@@ -87,7 +87,7 @@ pub(crate) fn inside(path: &str) -> Option<String> {
     (!steps.is_empty()).then(|| steps.join("/"))
 }
 
-/// A path as a URI. One whose name is not UTF-8 is such already, see [`name_of_bytes`].
+/// A path as a URI. A name that is not UTF-8 is encoded already, see [`name_of_bytes`].
 pub(crate) fn encoded(path: &str) -> String {
     if percent_decode_str(path).decode_utf8().is_err() {
         return path.to_owned();

@@ -1,7 +1,7 @@
 //! Primitives under `KHR_draco_mesh_compression`: their accessors have no bytes of their own, and get them here.
 //!
-//! Accessors then read as any others. Where a file brings plain bytes beside the compressed ones, those are taken. An
-//! edit writes the mesh's accessors out plainly and takes the extension off its primitives (`patch.rs`).
+//! They are then read like all others. If a file has plain bytes beside the compressed ones, the plain ones are used.
+//! An edit writes the mesh's accessors out uncompressed and removes the extension from its primitives (`patch.rs`).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -53,7 +53,7 @@ impl Filled {
     }
 }
 
-/// Decodes every primitive whose accessors lack bytes. What can't be decoded is noted, to be told where it is drawn.
+/// Decodes every primitive whose accessors have no bytes. Failures are noted, and reported if the primitive is drawn.
 pub(crate) fn decode(document: &mut Document, meshes: &[Vec<Primitive>], cancel: &Cancel) -> Result<(), Cancelled> {
     let lacking: Vec<(&Primitive, At, Filled)> = meshes
         .iter()

@@ -37,8 +37,8 @@ pub(crate) fn extension_of(document: &Document, view: At) -> Option<At> {
         .find_map(|name| json.path(view, &["extensions", name]))
 }
 
-/// Decodes every compressed view. One that can't be decoded keeps its place in the buffer that stands in for it, and
-/// where that has no bytes either, is noted as undecoded with what is wrong.
+/// Decodes every compressed view. One that can't be decoded keeps its place in its fallback buffer; if that has no
+/// bytes either, it is noted as undecoded with what is wrong.
 pub(crate) fn decode(document: &mut Document, cancel: &Cancel) -> Result<(), Cancelled> {
     let views: Vec<(usize, At)> = document
         .views_at

@@ -55,7 +55,7 @@ pub(crate) struct Pieces {
     pub pieces: Vec<Piece>,
 }
 
-/// What a piece takes, however few triangles it has: its own description, a group's and an object's.
+/// What a piece takes besides its triangles: its own description, a group's and an object's.
 const PIECE_BYTES: usize = 256;
 
 /// Vertices that a thread handles at a time.
@@ -244,7 +244,7 @@ impl Weights {
     }
 }
 
-/// Adds the ways of morph targets, each times its weight. A target of another count is refused in words.
+/// Adds the displacements of morph targets, each times its weight. A target of another count is refused.
 pub(crate) fn apply_targets(
     document: &Document,
     elements: &mut [[f32; 3]],
@@ -341,8 +341,8 @@ impl Corners {
         }
     }
 
-    /// Appends the triangles over drawn vertices that begin at `first`. A strip's stitches (two equal corners) are
-    /// left out: they are there to be skipped.
+    /// Appends the triangles over drawn vertices that begin at `first`. Degenerate triangles that connect strips (two
+    /// equal corners) are left out.
     fn triangles(&self, mode: Mode, winding: Winding, first: u32, out: &mut Vec<[DrawnVertex; 3]>) {
         let corner = |k: usize| match self {
             Self::Listed(indices) => indices[k],

@@ -122,7 +122,7 @@ impl Primitive {
         })
     }
 
-    /// What makes the look of a primitive's vertices: equal for two whose drawn vertices are the same.
+    /// Everything that a primitive's drawn vertices are made of: equal for two whose drawn vertices are the same.
     fn attributes(&self) -> Attributes<'_> {
         let accessors = [
             self.position,
@@ -135,7 +135,7 @@ impl Primitive {
         (accessors, &self.targets, self.uv.map(|_| self.uv_transform.bits()))
     }
 
-    /// Refuses, in words, what is compressed and could not be decoded.
+    /// Refuses compressed accessors that could not be decoded.
     pub fn check_decoded(&self, document: &Document) -> Result<(), String> {
         if let Some(reason) = document.undecoded_primitives.get(&self.at) {
             return Err(format!("has {reason}"));

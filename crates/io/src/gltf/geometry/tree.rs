@@ -1,4 +1,4 @@
-//! The node tree: which mesh stands where in the default scene.
+//! The node tree: the meshes of the default scene and their world transforms.
 
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use pliant_mesh::Cancel;
@@ -23,7 +23,7 @@ const FLAT: f64 = 1e-12;
 /// The default scene's meshes in the order of its nodes, depth first; without a default scene those of all root
 /// nodes. Nodes whose world transform can't be inverted are left out and named in `notes`.
 ///
-/// A skinned mesh stands where its node stands, as its POSITION accessor has it: joints are not applied.
+/// A skinned mesh is placed by its node, with the positions of its POSITION accessor: joints are not applied.
 pub(crate) fn placed_meshes(document: &Document, notes: &mut Notes, cancel: &Cancel) -> Result<Vec<Placed>, Fault> {
     let json = &document.json;
     let node_count = document.nodes_at.len();
@@ -66,7 +66,7 @@ pub(crate) fn placed_meshes(document: &Document, notes: &mut Notes, cancel: &Can
         }
         open.extend(children[node].iter().rev().map(|&child| (child, world_from_node)));
     }
-    // A ring of nodes hangs on no root, so it shows only as nodes that nothing reaches.
+    // A ring of nodes has no root, so it is found as nodes that were not reached.
     if json.member(json.root(), "scene").is_none() && seen.contains(&false) {
         let node = seen.iter().position(|seen| !seen).unwrap_or(0);
         return Err(format!("node {node} is its own ancestor: its nodes are not a tree").into());

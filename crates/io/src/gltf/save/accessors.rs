@@ -1,4 +1,4 @@
-//! Changed attributes: written over an accessor's own bytes where those can hold them, or into a new accessor.
+//! Changed attributes: written over an accessor's own bytes if these can hold them, otherwise into a new accessor.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -64,8 +64,8 @@ pub(crate) fn with_changes<'a>(
 }
 
 impl Patch<'_> {
-    /// Writes a change over the accessor's own bytes; `None`, and nothing written, where they can't hold it: they are
-    /// not f32, not there (sparse zeros), or another accessor's too.
+    /// Writes a change over the accessor's own bytes. `None`, with nothing written, if they can't hold it: they are not
+    /// f32, missing (sparse zeros), or shared with another accessor.
     fn in_place(
         &mut self,
         accessor: usize,
@@ -120,8 +120,8 @@ impl Patch<'_> {
         Some(())
     }
 
-    /// Brings the accessor's min and max, where it has them, to the bounds of its new elements. A number that still
-    /// says the same keeps its text.
+    /// Sets the accessor's min and max, if it has them, to the bounds of its new elements. A number that is unchanged
+    /// keeps its text.
     fn set_bounds(&mut self, accessor: usize, elements: &[[f32; 4]], lanes: usize) {
         let json = &self.document.json;
         let bounds = Bounds::of(elements);
@@ -217,7 +217,7 @@ impl Bounds {
     }
 }
 
-/// An f32 as text that reads back as the same number, as f64 too: validators compare either way.
+/// An f32 as text that reads back as the same number, both as f32 and as f64: validators do either.
 pub(crate) fn number(value: f32) -> String {
     let value = f64::from(value);
     // Rust writes no exponent by itself, and a bound may be 1e-38.

@@ -81,7 +81,7 @@ impl InstanceChange {
 /// Vertices that a thread handles at a time.
 const CHUNK: usize = 1 << 13;
 
-/// Vertices between two looks at whether the save is still wanted.
+/// Vertices between two checks whether the save was cancelled.
 const BLOCK: usize = 1 << 17;
 
 /// The changes of every instance, in their order.
@@ -142,7 +142,8 @@ fn instance_change(
     let [of_positions, of_normals, of_tangents] =
         [(0.0, 0.3), (0.3, 0.6), (0.6, 1.0)].map(|(from, to)| course.part(from, to));
     let position = changed(&elements, &positions, &of_positions, |element, stored| {
-        // The displacement, not the position, goes back: far from the origin nothing of it is lost. f32 begins here.
+        // The displacement, not the position, is transformed back, so that far from the origin no digits are lost. f32
+        // begins here.
         let v = vertex(element).index();
         let by = node_from_world * (moved.positions[v] - moved.drawn.positions[v]);
         (xyz(stored) + by).as_vec3().extend(0.0)
@@ -212,12 +213,12 @@ fn xyz([x, y, z, _]: [f32; 4]) -> DVec3 {
     Vec3::new(x, y, z).as_dvec3()
 }
 
-/// What accessors hold before the edit, decoded once, to tell changes that come to the same apart from others.
+/// The accessors' elements before the edit, decoded once, to compare changes.
 #[derive(Default)]
 pub(crate) struct Rest(BTreeMap<usize, (Vec<[f32; 4]>, f32)>);
 
 impl Rest {
-    /// Whether two changes of one accessor come to the same but for the rounding of different nodes' transforms.
+    /// Whether two changes of one accessor are the same except for the rounding of different nodes' transforms.
     pub fn comes_to_the_same(&mut self, document: &Document, accessor: usize, a: &Change, b: &Change) -> bool {
         if a == b {
             return true;

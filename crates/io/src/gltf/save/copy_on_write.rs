@@ -1,9 +1,9 @@
-//! The copy-on-write plan of a save: which meshes are cloned and which accessors are copied, so that what did not change
-//! keeps what it shares.
+//! The copy-on-write plan of a save: which meshes are cloned and which accessors are copied, so that unchanged parts
+//! stay shared.
 //!
-//! A mesh that several nodes show is cloned where the nodes come to differ; the nodes that did not move, or else the
-//! first ones, keep the original. An accessor that several primitives name is copied where they come to differ;
-//! whatever did not change (or is no vertex attribute at all: morph targets, animations, skins) keeps the original.
+//! A mesh that several nodes show is cloned if the edit makes them differ; the nodes that did not move, or else the
+//! first ones, keep the original. An accessor that several primitives use is copied if they differ; unchanged uses, and
+//! those that are no vertex attributes (morph targets, animations, skins), keep the original.
 
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -28,8 +28,8 @@ pub(crate) struct MeshCopy {
 }
 
 impl MeshCopy {
-    /// The instance that says what becomes of each primitive. One that is not drawn (the lines along a surface's edges, say)
-    /// follows a drawn one of its mesh that names the same positions.
+    /// The instance that determines each primitive's change. A primitive that is not drawn (for example lines along a
+    /// surface's edges) follows a drawn one of its mesh with the same positions.
     pub fn followed_instances(&self, primitives: &[Primitive]) -> Vec<Option<usize>> {
         let mut leader: HashMap<Option<usize>, usize> = HashMap::new();
         for (instance, primitive) in self.instances.iter().zip(primitives) {
@@ -68,8 +68,8 @@ pub(crate) struct AccessorPlan<'a> {
 
 static UNCHANGED: Change = Change::new();
 
-/// Nodes of one mesh with this many different edits: further ones are told apart by their exact numbers alone, instead
-/// of being compared with each of them.
+/// The most different edits of one mesh that are compared with each other; further ones are only compared exactly, by
+/// hash.
 const MOST_CLASSES_COMPARED: usize = 64;
 
 /// A number for each instance's changes, by attribute; equal for equal ones.

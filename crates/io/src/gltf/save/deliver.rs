@@ -1,4 +1,4 @@
-//! A patched glTF as files: the container it came in, the neighbours that have to go with it.
+//! A patched glTF as files: its container, and the neighbours that have to go with it.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -58,7 +58,7 @@ pub(crate) fn in_its_kind(document: &Document, patched: Patched<'_>, save: &Save
     match save.placement {
         Placement::OtherFolder => bring_images(document, json, &image_uris, &mut gathered, &mut edits, &mut warnings)?,
         Placement::SameFile => {
-            // What shares a changed buffer's place, and did not change, gets a place of its own.
+            // An unchanged buffer that shared a file with a changed one gets a file of its own.
             let buffers = document.buffers.iter().zip(&patched.buffers).zip(&buffer_uris);
             let buffers = buffers.filter_map(|((buffer, bytes), at)| match (buffer, bytes) {
                 (Buffer::Neighbour { path, .. }, Cow::Borrowed(bytes)) => Some((Role::Buffer, path, *bytes, at)),

@@ -18,7 +18,7 @@ use crate::{Format, SaveError};
 use patch::Patched;
 
 impl Stored {
-    /// The file as GLB or `.gltf`, with the moved vertices' numbers in place of the stored ones.
+    /// The file as GLB or `.gltf`, with the moved vertices' numbers replaced.
     pub fn save(&self, save: &Save<'_>, moved: &Moved<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
         let Self {
             document,
@@ -36,7 +36,7 @@ impl Stored {
         self.deliver(patched, save)
     }
 
-    /// The file as GLB or `.gltf`, its shape as it was, with the moved vertices' way as one more morph target.
+    /// The file as GLB or `.gltf`, with its shape unchanged and the displacements as one more morph target.
     pub fn save_as_morph(
         &self,
         save: &Save<'_>,

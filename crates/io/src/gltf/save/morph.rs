@@ -1,8 +1,8 @@
 //! An edit saved as one more morph target: the shape stays as it is, and each primitive of the edited meshes gets the
-//! way from there to the edited shape.
+//! displacements to the edited shape.
 //!
-//! Whatever tells as many weights as a mesh has targets is told one more: the mesh's weights and names, the weights of
-//! its nodes, and the animations of them.
+//! Everything with one weight per target gets one more: the mesh's weights and names, the weights of its nodes, and
+//! their animations.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -70,7 +70,7 @@ struct TargetMaker<'a, 'b> {
     format: Format,
     /// The accessor of an instance's way, by attribute.
     deltas: BTreeMap<(usize, usize), usize>,
-    /// The accessor of so many zeros, by whether they are positions.
+    /// The accessor of this many zeros, by whether they are positions.
     zeros: BTreeMap<(usize, bool), usize>,
     /// Samplers to be added to each animation, and where.
     samplers: BTreeMap<usize, (At, Vec<String>)>,

@@ -1,8 +1,8 @@
-//! Which accessors stand on each other's bytes, so that writing over one would change another.
+//! Which accessors overlap in bytes, so that writing over one would change another.
 //!
-//! A file has many accessors, and any two may overlap: comparing all pairs is quadratic. Here they are sorted by where
-//! they begin, and of those that may reach into an accessor only so many are looked at. Beyond that an accessor counts
-//! as overlapped: then an edit gives it bytes of its own, which is always right.
+//! A file has many accessors, and any two may overlap: comparing all pairs is quadratic. Here they are sorted by their
+//! beginnings, and only a limited number of those that may reach into an accessor are compared. Beyond that an accessor
+//! counts as overlapped: an edit then gives it bytes of its own, which is always right.
 
 use std::cell::OnceCell;
 use std::collections::HashMap;

@@ -1,8 +1,8 @@
 //! A new glTF from the other kinds: a node and a mesh for each named part, a primitive for each material in it.
 //!
 //! A file of one part keeps the order and number of the drawn vertices; of several, each takes the vertices that it
-//! uses, in their order, so that those on a rim between two come twice. Where the shape stands so far out that f32 would round it,
-//! the vertices are taken relative to its centre and the node carries the way there.
+//! uses, in their order, so that those on a rim between two come twice. Where the shape stands so far out that f32
+//! would round it, the vertices are taken relative to its centre and the node carries the way there.
 
 mod attributes;
 mod buffer;
@@ -11,7 +11,7 @@ mod parts;
 
 use glam::{DVec3, Vec3};
 use pliant_mesh::bounding_box;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::convert::NewMesh;
 use crate::convert::faces::coarse_in_f32;
@@ -22,7 +22,7 @@ use crate::{Format, SaveError};
 use attributes::{attributes, indices, unit_normals};
 use buffer::Built;
 use looks::Looks;
-use parts::{order, parts};
+use parts::{NamedPart, order, parts};
 
 /// The mesh as a GLB.
 pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
@@ -56,20 +56,7 @@ fn build(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Buil
     let (of_looks, course) = course.split(0.5);
     let (of_parts, of_normals) = of_looks.split(0.5);
     let mut out = Built::default();
-    let finite: Vec<DVec3> = mesh
-        .positions
-        .iter()
-        .copied()
-        .filter(|position| position.is_finite())
-        .collect();
-    let centre = coarse_in_f32(&finite).and_then(|_| bounding_box(&finite));
-    let centre = centre.map_or(DVec3::ZERO, |bounds| bounds.centre());
-    // f32 begins here: glTF positions are f32.
-    let positions: Vec<Vec3> = mesh
-        .positions
-        .iter()
-        .map(|&position| (position - centre).as_vec3())
-        .collect();
+    let (positions, centre) = about_centre(mesh);
     let parts = parts(mesh, &positions, &mut out.warnings, &of_parts)?;
     if parts.is_empty() {
         return Err(SaveError::CannotHold {
@@ -81,7 +68,10 @@ fn build(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Buil
     out.triangles = order(&parts, mesh.triangles.len());
     let normals = unit_normals(mesh, &of_normals)?;
     let mut looks = Looks::default();
-    let mut number = vec![u32::MAX; positions.len()];
+    let mut numbering = Numbering {
+        own: vec![u32::MAX; positions.len()],
+        count: 0,
+    };
     let (mut nodes, mut meshes) = (Vec::new(), Vec::new());
     for (place, part) in parts.iter().enumerate() {
         let course = course.part(
@@ -92,23 +82,10 @@ fn build(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Buil
             1 => (0..positions.len() as u32).collect(),
             _ => part.vertices(mesh),
         };
-        for (own, &v) in (0..).zip(&vertices) {
-            number[v as usize] = own;
-        }
+        numbering.number(&vertices);
         let (of_attributes, course) = course.split(0.7);
         let attributes = attributes(&mut out, mesh, &positions, &normals, &vertices, &of_attributes)?;
-        let mut primitives = Vec::new();
-        for (place, (material, triangles)) in part.triangles.iter().enumerate() {
-            course.reach(place, part.triangles.len())?;
-            let corner = |k: usize| mesh.triangles[triangles[k / 3] as usize][k % 3];
-            let corners = (0..3 * triangles.len()).map(|k| number[corner(k).index()]);
-            let indices = indices(&mut out, corners, vertices.len());
-            let mut primitive = json!({ "attributes": attributes, "indices": indices });
-            if let Some(known) = mesh.appearance.materials.get(*material) {
-                primitive["material"] = looks.material(&mut out, mesh, *material, known).into();
-            }
-            primitives.push(primitive);
-        }
+        let primitives = primitives(&mut out, &mut looks, mesh, part, &attributes, &numbering, &course)?;
         let name = if part.name.is_empty() {
             stem(mesh.name)
         } else {
@@ -134,6 +111,63 @@ fn build(mesh: &NewMesh<'_>, format: Format, course: &Course<'_>) -> Result<Buil
     looks.add_to(&mut root);
     out.root = root;
     Ok(out)
+}
+
+/// The positions relative to a centre, which is zero unless f32 would round them.
+fn about_centre(mesh: &NewMesh<'_>) -> (Vec<Vec3>, DVec3) {
+    let finite: Vec<DVec3> = mesh
+        .positions
+        .iter()
+        .copied()
+        .filter(|position| position.is_finite())
+        .collect();
+    let centre = coarse_in_f32(&finite).and_then(|_| bounding_box(&finite));
+    let centre = centre.map_or(DVec3::ZERO, |bounds| bounds.centre());
+    // f32 begins here: glTF positions are f32.
+    let relative = |&position: &DVec3| (position - centre).as_vec3();
+    (mesh.positions.iter().map(relative).collect(), centre)
+}
+
+/// The numbers that vertices have in the part at hand.
+struct Numbering {
+    /// By the mesh's number; whatever it was before for vertices of other parts.
+    own: Vec<u32>,
+    count: usize,
+}
+
+impl Numbering {
+    /// Numbers the vertices of a part in order.
+    fn number(&mut self, vertices: &[u32]) {
+        for (own, &v) in (0..).zip(vertices) {
+            self.own[v as usize] = own;
+        }
+        self.count = vertices.len();
+    }
+}
+
+/// A part's primitives, one for each material.
+fn primitives(
+    out: &mut Built,
+    looks: &mut Looks,
+    mesh: &NewMesh<'_>,
+    part: &NamedPart<'_>,
+    attributes: &Value,
+    numbering: &Numbering,
+    course: &Course<'_>,
+) -> Result<Vec<Value>, SaveError> {
+    let mut primitives = Vec::new();
+    for (place, (material, triangles)) in part.triangles.iter().enumerate() {
+        course.reach(place, part.triangles.len())?;
+        let corner = |k: usize| mesh.triangles[triangles[k / 3] as usize][k % 3];
+        let corners = (0..3 * triangles.len()).map(|k| numbering.own[corner(k).index()]);
+        let indices = indices(out, corners, numbering.count);
+        let mut primitive = json!({ "attributes": attributes, "indices": indices });
+        if let Some(known) = mesh.appearance.materials.get(*material) {
+            primitive["material"] = looks.material(out, mesh, *material, known).into();
+        }
+        primitives.push(primitive);
+    }
+    Ok(primitives)
 }
 
 fn stem(name: &str) -> &str {

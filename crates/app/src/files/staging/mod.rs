@@ -1,16 +1,18 @@
-//! Saving several files at once, so that either all of them are there in the end or none was touched.
+//! Saves several files at once, so that in the end either all of them are there or none was touched.
 //!
-//! It goes in two steps. [`Staging::stage`] writes every file's bytes under a temporary name beside its target, with
-//! the attributes of what it replaces, and syncs them: whatever can fail for want of space or rights fails here.
-//! [`Staged::commit`] then renames them into place, one after the other, and puts back what it replaced should a rename
-//! fail after all.
+//! There are two steps. [`Staging::stage`] writes every file's bytes under a temporary name beside its target, with the
+//! attributes of the file that it replaces, and syncs them: a lack of space or rights shows here. [`Staged::commit`]
+//! then renames them into place, one after the other, and restores what it replaced if a rename fails after all.
 //!
-//! Between two renames the power may fail. A file that names others must not then stand beside others than it was
-//! written with: a [`Bridge`] is such a file that names its neighbours by names of their own, under which their bytes
-//! stand for the while. It is renamed into place first, then the neighbours, then the file itself; at every moment what
-//! stands there is the old state or the new one, whole, and what is left over can be told by its name.
+//! The power may fail between two renames. A file that names others must not then be left with other neighbours than it
+//! was written with. So a [`Bridge`] is a version of the file that names its neighbours by passing names, under which
+//! their bytes are available for the time of the commit. It is renamed into place first, then the neighbours, then the
+//! file itself. At every moment the folder has the old state or the new one, whole, and leftovers can be recognised by
+//! their names.
 
-use std::fs::{self, File};
+mod commit;
+
+use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
@@ -19,19 +21,19 @@ use pliant_mesh::{Cancel, Progress};
 use tempfile::{NamedTempFile, TempPath};
 
 use super::attributes::{self, OtherNames};
-use super::leftovers::{self, PREFIX, REPLACED, TEMPORARY};
+use super::leftovers::{self, PREFIX, TEMPORARY};
 use super::lock::{FolderLock, Share};
-use super::{Destination, FileError, folder_of, shown};
+use super::{Destination, FileError, shown};
 use crate::AppError;
 
-/// Bytes written between two looks at whether they are still wanted.
+/// Bytes written between two checks whether the save was cancelled.
 const BLOCK: usize = 1 << 22;
 
-/// Bytes after which they are made to last: what the system only remembers is not written yet, and the bar would stand
-/// at its end for as long as the disk takes.
+/// Bytes between two syncs. Without them the progress bar would stay at its end until the system has written its cache
+/// to the disk.
 const LASTING: usize = 1 << 26;
 
-/// The temporary files and locks of a save that is under way, so that an interrupt can take them away. Cloning shares
+/// The temporary files and locks of a save that is under way, so that an interrupt can remove them. Cloning shares
 /// them.
 #[derive(Clone, Debug, Default)]
 pub struct Staging(Arc<Mutex<State>>);
@@ -47,7 +49,7 @@ struct State {
 /// Who may read the files that are made.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 enum Readers {
-    /// Whoever could read what is replaced, and of new files whom the system lets by default.
+    /// The readers of the file that is replaced; for new files the system's default.
     #[default]
     AsUsual,
     /// Their owner alone.
@@ -67,7 +69,7 @@ pub struct NewFile<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct Held(Vec<Arc<FolderLock>>);
 
-/// Files that are written and synced under temporary names; dropping them takes them away again.
+/// Files that are written and synced under temporary names; dropping this removes them.
 #[derive(Debug)]
 pub struct Staged {
     files: Vec<StagedFile>,
@@ -84,7 +86,7 @@ struct StagedFile {
     other_names: OtherNames,
 }
 
-/// What stands in a file's place while its neighbours are replaced.
+/// The version of a file that takes its place while its neighbours are replaced.
 #[derive(Clone, Debug)]
 pub struct Bridge<'a> {
     /// The file, by its place among those that are staged.
@@ -104,15 +106,15 @@ struct StagedBridge {
 }
 
 impl Staging {
-    /// One whose files only their owner may read, whatever stood there before.
+    /// Files that are staged here may be read only by their owner, whatever file they replace.
     pub fn private() -> Self {
         let staging = Self::default();
         staging.lock().readers = Readers::Owner;
         staging
     }
 
-    /// Locks folders that are to be written to, after waiting for others who write there, and clears away what killed
-    /// saves have left in them. All folders of a save are to be asked for at once, lest two saves wait for each other.
+    /// Locks folders that are to be written to, after waiting for other saves there, and removes what killed saves have
+    /// left in them. All folders of a save must be locked in one call, so that two saves can't wait for each other.
     ///
     /// # Errors
     /// Where a folder can't be written; [`AppError::Interrupted`] when `cancel` is raised.
@@ -122,7 +124,7 @@ impl Staging {
         cancel: &Cancel,
     ) -> Result<Held, AppError> {
         let mut wanted: Vec<(&Destination, Share)> = folders.into_iter().collect();
-        // One order for everybody, and for each folder the stricter wish.
+        // One order for all saves, and for each folder the stricter request.
         wanted.sort_by(|(a, of_a), (b, of_b)| a.home.cmp(&b.home).then(of_b.cmp(of_a)));
         wanted.dedup_by(|(a, _), (b, _)| a.home == b.home);
         let mut held = Held::default();
@@ -213,8 +215,8 @@ impl Staging {
         Ok(staged)
     }
 
-    /// Takes away what is staged and not committed, and keeps anything from being staged or committed for as long as
-    /// the guard lives. `None` when a commit is done already and its files are to stay.
+    /// Removes what is staged and not committed, and prevents further staging and commits as long as the guard lives.
+    /// `None` if a commit is done already and its files are to stay.
     pub fn discard(&self) -> Option<Discarded<'_>> {
         let mut state = self.lock();
         if state.committed {
@@ -232,7 +234,7 @@ impl Staging {
         Some(Discarded { _state: state })
     }
 
-    /// Writes and syncs one file. `go_on` is told of the bytes that are written, and may end it.
+    /// Writes and syncs one file. `go_on` gets the number of bytes that were written, and may end it.
     fn stage_one(
         &self,
         file: &NewFile<'_>,
@@ -344,134 +346,6 @@ impl Staged {
         };
         with_more.map(note).collect()
     }
-
-    /// Renames every file into place, in order, and syncs the folders.
-    ///
-    /// # Errors
-    /// Where a rename fails. The files that were replaced before it are put back.
-    pub fn commit(self) -> Result<(), FileError> {
-        self.commit_watched(&mut || {})
-    }
-
-    /// As [`Self::commit`]; `before_each` is called before each change of what stands in the folders.
-    ///
-    /// # Errors
-    /// As [`Self::commit`].
-    pub fn commit_watched(mut self, before_each: &mut dyn FnMut()) -> Result<(), FileError> {
-        let staging = self.staging.clone();
-        let mut state = staging.lock();
-        let mut files = std::mem::take(&mut self.files);
-        let mut passing = Passing(Vec::new());
-        let mut first = Vec::new();
-        for bridge in self.bridges.drain(..) {
-            for (file, path) in bridge.passing {
-                before_each();
-                second_name(&files[file].temporary, &path).map_err(|error| FileError::writing(&path, error))?;
-                passing.0.push(path);
-            }
-            // The bridge must not last without what it names.
-            sync_folder(&bridge.file.to.home);
-            first.push(bridge.file);
-        }
-        files.splice(0..0, first);
-        let mut done = Done::default();
-        let last = files.len().saturating_sub(1);
-        for (i, file) in files.into_iter().enumerate() {
-            let StagedFile {
-                to,
-                temporary,
-                other_names,
-            } = file;
-            before_each();
-            // The last rename is the one that no other can fail after: it needs no way back.
-            let renamed = make_folders(folder_of(&to.target), &mut done.folders)
-                .and_then(|()| if i == last { Ok(None) } else { backup(&to) })
-                .and_then(|backup| {
-                    temporary.persist(&to.target).map_err(|error| error.error)?;
-                    Ok(backup)
-                });
-            match renamed {
-                Ok(backup) => {
-                    // The next rename must not last without this one.
-                    sync_folder(folder_of(&to.target));
-                    done.other_names
-                        .extend(other_names.here.into_iter().map(|name| (to.target.clone(), name)));
-                    done.replaced.push((to.target, backup));
-                }
-                Err(error) => {
-                    done.put_back();
-                    return Err(FileError::writing(&to.given, error));
-                }
-            }
-        }
-        before_each();
-        // Each other name is a step of its own: a name that can't be brought along keeps the old content.
-        for (target, name) in std::mem::take(&mut done.other_names) {
-            let _ = bring_along(&target, &name);
-        }
-        drop((passing, done));
-        // What a killed save left under passing names was named by what has just been replaced.
-        self.held
-            .0
-            .iter()
-            .filter(|lock| lock.share == Share::Alone)
-            .for_each(|lock| leftovers::clear(&lock.folder));
-        state.temporary.clear();
-        state.committed = true;
-        Ok(())
-    }
-}
-
-/// What a commit has changed so far.
-#[derive(Default)]
-struct Done {
-    /// Targets, and what stood there.
-    replaced: Vec<(PathBuf, Option<TempPath>)>,
-    /// Folders that were made, outer ones first.
-    folders: Vec<PathBuf>,
-    /// Targets and other names of what stood there.
-    other_names: Vec<(PathBuf, PathBuf)>,
-}
-
-impl Done {
-    fn put_back(self) {
-        for (target, backup) in self.replaced.into_iter().rev() {
-            // The error that led here is the one to tell; a second one has no better remedy.
-            let _ = match backup {
-                Some(backup) => backup.persist(&target).map_err(|error| error.error),
-                None => fs::remove_file(&target),
-            };
-        }
-        for folder in self.folders.into_iter().rev() {
-            // One that somebody has put something into stays.
-            let _ = fs::remove_dir(folder);
-        }
-    }
-}
-
-/// Makes a folder and those around it, as far as they are missing, and notes which.
-fn make_folders(folder: &Path, made: &mut Vec<PathBuf>) -> io::Result<()> {
-    if folder.is_dir() {
-        return Ok(());
-    }
-    if let Some(parent) = folder.parent() {
-        make_folders(parent, made)?;
-    }
-    fs::create_dir(folder)?;
-    made.push(folder.to_owned());
-    Ok(())
-}
-
-/// Files under passing names, which go when this does.
-struct Passing(Vec<PathBuf>);
-
-impl Drop for Passing {
-    fn drop(&mut self) {
-        for path in &self.0 {
-            // One that can't be removed is a file too many, and no harm.
-            let _ = fs::remove_file(path);
-        }
-    }
 }
 
 impl Drop for Staged {
@@ -479,52 +353,5 @@ impl Drop for Staged {
         // Before the folders are let go of: what lies there is ours as long as we hold them.
         self.files.clear();
         self.bridges.clear();
-    }
-}
-
-/// A second name for what stands at a destination, if anything does.
-fn backup(to: &Destination) -> io::Result<Option<TempPath>> {
-    if !to.target.exists() {
-        return Ok(None);
-    }
-    let name = tempfile::Builder::new()
-        .prefix(PREFIX)
-        .suffix(REPLACED)
-        .make_in(&to.home, |path| second_name(&to.target, path))?;
-    Ok(Some(name.into_temp_path()))
-}
-
-/// Lets another name of a file that was replaced lead to the new one.
-fn bring_along(target: &Path, name: &Path) -> io::Result<()> {
-    let temporary = tempfile::Builder::new()
-        .prefix(PREFIX)
-        .suffix(TEMPORARY)
-        .make_in(folder_of(name), |path| fs::hard_link(target, path))?;
-    temporary.into_temp_path().persist(name).map_err(|error| error.error)
-}
-
-/// Lets the bytes of `file` stand at `path` as well, where nothing may stand yet.
-fn second_name(file: &Path, path: &Path) -> io::Result<()> {
-    match fs::hard_link(file, path) {
-        Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-            // Not every file system has hard links.
-            let mut options = fs::OpenOptions::new();
-            options.write(true).create_new(true);
-            #[cfg(unix)]
-            std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-            let mut copy = options.open(path)?;
-            io::copy(&mut File::open(file)?, &mut copy)?;
-            copy.set_permissions(fs::metadata(file)?.permissions())?;
-            copy.sync_all()
-        }
-        done => done,
-    }
-}
-
-/// Makes a rename last through a power cut. Not every system can open a folder for that, and the files are whole
-/// either way.
-fn sync_folder(folder: &Path) {
-    if let Ok(folder) = File::open(folder) {
-        let _ = folder.sync_all();
     }
 }

@@ -2,18 +2,24 @@
 //!
 //! Nothing here can stop a file from being opened: what is missing or can't be read becomes a note and is drawn plain.
 
+mod library;
+mod names;
+mod neighbours;
+
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
 use crate::Bytes;
-use crate::appearance::colour::linear_of_srgb;
-use crate::appearance::{AlphaMode, Image, Material, Origin, Wrap};
+use crate::appearance::{Image, Material, Origin};
 use crate::gltf::stays_inside;
 use crate::quote::quoted;
-use crate::save::{OutputFile, Role};
 use crate::source::Source;
 use crate::source::notes::Notes;
 use crate::text::excerpt;
+use library::{parse, set_base_colour};
+use names::texture_file;
+pub(super) use names::{as_uri, behind_options, folder_of, join};
+pub(super) use neighbours::{neighbours, unread_lost};
 
 /// One material for each name, in order, and the images they use.
 #[derive(Debug, Default)]
@@ -69,9 +75,9 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
     let mut image_of: HashMap<String, Option<usize>> = HashMap::new();
     let mut image_at: HashMap<(usize, Range<usize>), usize> = HashMap::new();
     for name in names {
-        let mut material = plain(name);
+        let mut material = Material::plain(name);
         if let Some((stored, folder)) = known.get(name) {
-            dress(&mut material, stored);
+            set_base_colour(&mut material, stored);
             if let Some(texture) = &stored.diffuse_texture {
                 let (file, wrap) = texture_file(texture);
                 material.wrap = [wrap; 2];
@@ -86,18 +92,6 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
     }
     out
 }
-
-/// The material of faces for which none is named. Scan formats know no culling, so both sides are drawn.
-pub(super) fn plain(name: &str) -> Material {
-    Material {
-        name: name.to_owned(),
-        double_sided: true,
-        ..Material::default()
-    }
-}
-
-/// Unread statements that are named at most.
-const MOST_UNREAD: usize = 12;
 
 /// More libraries than any file has; beyond this many names, the file only asks for work.
 const MOST_LIBRARIES: usize = 256;
@@ -115,134 +109,6 @@ fn read_library(source: &Source<'_>, library: &[u8]) -> Result<Vec<(String, Byte
             }
             words.into_iter().map(read).collect()
         }
-    }
-}
-
-/// The materials of a library.
-///
-/// `tobj` gives up (or panics, at a `Kd` with fewer than three numbers) on a line that it doesn't expect, so it gets
-/// only the lines that matter here and that it can read.
-fn parse(text: &[u8], unread: &mut BTreeSet<String>) -> Vec<tobj::Material> {
-    let text = String::from_utf8_lossy(text);
-    let mut kept = String::new();
-    let mut is_named = false;
-    for line in text.split(['\n', '\r']) {
-        let line = line.trim();
-        let mut words = line.split_whitespace();
-        let is_wanted = match words.next() {
-            Some("newmtl") => {
-                is_named = words.next().is_some();
-                is_named
-            }
-            Some("Kd") => {
-                words
-                    .by_ref()
-                    .take(3)
-                    .filter(|word| word.parse::<f32>().is_ok())
-                    .count()
-                    == 3
-            }
-            Some("d") => words.next().is_some_and(|word| word.parse::<f32>().is_ok()),
-            Some("Tr" | "map_Kd") => words.next().is_some(),
-            Some(other) => {
-                if (is_other_map(other) || shines(other, words)) && unread.len() < MOST_UNREAD {
-                    unread.insert(excerpt(other.as_bytes()));
-                }
-                false
-            }
-            None => false,
-        };
-        if is_wanted && is_named {
-            kept.push_str(line);
-            kept.push('\n');
-        }
-    }
-    tobj::load_mtl_buf(&mut kept.as_bytes())
-        .map(|(materials, _)| materials)
-        .unwrap_or_default()
-}
-
-/// Whether a keyword names an image that isn't drawn.
-fn is_other_map(keyword: &str) -> bool {
-    keyword.starts_with("map_") || matches!(keyword, "bump" | "disp" | "decal" | "refl" | "norm")
-}
-
-/// Whether a statement says that a surface shines or glows, in a number above zero.
-fn shines<'a>(keyword: &str, mut numbers: impl Iterator<Item = &'a str>) -> bool {
-    matches!(keyword, "Ks" | "Ke" | "Pr" | "Pm" | "Ps" | "Pc")
-        && numbers.any(|word| word.parse::<f32>().is_ok_and(|number| number > 0.0))
-}
-
-/// Takes over what is drawn of a stored material.
-fn dress(material: &mut Material, stored: &tobj::Material) {
-    if let Some(diffuse) = stored
-        .diffuse
-        .filter(|diffuse| diffuse.iter().all(|channel| channel.is_finite()))
-    {
-        for (channel, value) in material.base_colour.iter_mut().zip(diffuse) {
-            *channel = linear_of_srgb(value);
-        }
-    }
-    let transparency = stored
-        .unknown_param
-        .get("Tr")
-        .and_then(|value| value.trim().parse::<f32>().ok());
-    let alpha = stored.dissolve.or(transparency.map(|value| 1.0 - value)).unwrap_or(1.0);
-    if (0.0..1.0).contains(&alpha) {
-        material.base_colour[3] = alpha;
-        material.alpha = AlphaMode::Blend;
-    }
-}
-
-/// The file name behind a `map_Kd`'s options, and how it continues beyond its edges.
-pub(super) fn texture_file(texture: &str) -> (String, Wrap) {
-    let (file, wrap) = behind_options(texture);
-    (as_uri(file), wrap)
-}
-
-/// As [`texture_file`], the name as it is written.
-pub(super) fn behind_options(texture: &str) -> (&str, Wrap) {
-    let mut rest = texture.trim();
-    let mut wrap = Wrap::Repeat;
-    while let Some(option) = rest.split_whitespace().next().filter(|word| word.starts_with('-')) {
-        let behind = rest[option.len()..].trim_start();
-        let arguments = match option {
-            "-o" | "-s" | "-t" => behind
-                .split_whitespace()
-                .take(3)
-                .take_while(|word| word.parse::<f32>().is_ok())
-                .count(),
-            "-mm" => 2,
-            _ => 1,
-        };
-        if option == "-clamp" && behind.starts_with("on") {
-            wrap = Wrap::ClampToEdge;
-        }
-        rest = behind;
-        for _ in 0..arguments {
-            rest = rest
-                .split_once(char::is_whitespace)
-                .map_or("", |(_, behind)| behind.trim_start());
-        }
-    }
-    (rest, wrap)
-}
-
-/// A name as a path with `/`.
-pub(super) fn as_uri(name: &str) -> String {
-    name.trim().trim_matches('"').replace('\\', "/")
-}
-
-/// Everything before a path's file name, with its `/`.
-pub(super) fn folder_of(uri: &str) -> &str {
-    uri.rfind('/').map_or("", |end| &uri[..=end])
-}
-
-pub(super) fn join(folder: &str, file: &str) -> String {
-    if file.starts_with('/') {
-        file.to_owned()
-    } else {
-        format!("{folder}{file}")
     }
 }
 
@@ -296,58 +162,10 @@ fn outside_note(what: &str, path: &str) -> Option<String> {
     (!stays_inside(path)).then(|| format!("{what} {} was read from outside the file's own folder.", quoted(path)))
 }
 
-/// The libraries and textures that an OBJ file in another folder needs beside it, and what stays behind.
-pub(super) fn neighbours(materials: &Materials) -> (Vec<OutputFile>, Vec<String>) {
-    let (mut files, mut warnings): (Vec<OutputFile>, Vec<String>) = (Vec::new(), Vec::new());
-    let libraries = materials.libraries.iter();
-    let libraries = libraries.map(|(path, bytes)| (Role::Library, path, &**bytes));
-    let images = materials.image_paths.iter().zip(&materials.images);
-    let images = images.map(|(path, image)| (Role::Image, path, &*image.encoded));
-    for (role, path, bytes) in libraries.chain(images) {
-        if files.iter().any(|file| file.name == *path) {
-            continue;
-        }
-        if is_inside(path) {
-            files.push(OutputFile {
-                name: path.clone(),
-                role,
-                bytes: bytes.to_vec(),
-            });
-        } else {
-            let path = excerpt(path.as_bytes());
-            warnings.push(format!(
-                "{path} lies outside the file's own folder and was not copied: copy it by hand."
-            ));
-        }
-    }
-    if materials.unread.iter().any(|keyword| is_other_map(keyword)) {
-        let warning = "Maps other than the base colour's stay in the old folder: copy them by hand.";
-        warnings.push(warning.to_owned());
-    }
-    (files, warnings)
-}
-
-/// A warning that names what of the libraries a file of another kind goes without.
-pub(super) fn unread_lost(materials: &Materials, kind: &str) -> Option<String> {
-    let names: Vec<&str> = materials.unread.iter().map(String::as_str).collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "{kind} output goes without what the material library says by {}: keep the .obj for it.",
-            names.join(", ")
-        )
-    })
-}
-
-/// Whether a path stays within the folder that it starts from, on every system.
-fn is_inside(path: &str) -> bool {
-    !path.is_empty()
-        && !path.contains([':', '\\', '\0'])
-        && path.split('/').all(|part| !matches!(part, "" | "." | ".."))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::appearance::Wrap;
 
     #[test]
     fn a_library_with_broken_lines_gives_what_it_can() {
@@ -365,8 +183,8 @@ mod tests {
         assert_eq!(materials[0].diffuse, Some([0.5, 0.25, 1.0]));
         let texture = materials[0].diffuse_texture.as_deref().unwrap_or_default();
         assert_eq!(texture_file(texture), ("my tex.png".to_owned(), Wrap::ClampToEdge));
-        let mut material = plain("c");
-        dress(&mut material, &materials[1]);
+        let mut material = Material::plain("c");
+        set_base_colour(&mut material, &materials[1]);
         assert_eq!(material.base_colour[3], 0.75);
     }
 
@@ -386,21 +204,5 @@ mod tests {
                 "GLB output goes without what the material library says by Ks, Pm, map_Bump, norm: keep the .obj for it."
             )
         );
-    }
-
-    #[test]
-    fn paths_that_leave_the_folder_are_never_written() {
-        for path in ["a.mtl", "textures/skin one.png"] {
-            assert!(is_inside(path), "{path}");
-        }
-        for path in ["", "/etc/x", "../a.mtl", "a/../../b", "C:/a.png", "a//b", "./a", "a\\b"] {
-            assert!(!is_inside(path), "{path}");
-        }
-    }
-
-    #[test]
-    fn options_without_a_file_end() {
-        assert_eq!(texture_file("-o -s -mm 1").0, "");
-        assert_eq!(texture_file("a\\b\\c.png").0, "a/b/c.png");
     }
 }

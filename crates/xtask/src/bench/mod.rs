@@ -37,7 +37,7 @@ struct Section {
 const SECTIONS: &[Section] = &[
     Section {
         name: "linear",
-        title: "The linear shell step by step: milliseconds, medians; megabytes",
+        title: "The bi-Laplacian, step by step: milliseconds, medians; megabytes",
         rows: linear::rows,
     },
     Section {

@@ -1,0 +1,93 @@
+//! Opens a mesh or a project, off the window's thread: from a file to a model with its drawing on the device.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_editor::Beginning;
+use pliant_mesh::WeldOptions;
+
+use super::names::{SAMPLE, SAMPLE_NAME, saved_name};
+use super::project_file::{self, MeshSource};
+use crate::AppError;
+use crate::drawing::Drawing;
+use crate::engine;
+use crate::files;
+use crate::watch::Watch;
+use crate::window::threads::message::ModelToShow;
+use crate::window::viewport::gpu::Gpu;
+
+/// Where a model comes from.
+#[derive(Clone, Debug)]
+pub enum Source {
+    /// The built-in sample.
+    Sample,
+    /// A mesh or a project.
+    File(PathBuf),
+    /// A project that was left by a session that ended without saving.
+    Recovered(PathBuf),
+}
+
+/// Reads, welds and uploads.
+pub(super) fn open(source: &Source, gpu: &Gpu, watch: &Watch) -> Result<Box<ModelToShow>, AppError> {
+    let weld = WeldOptions::default();
+    let mut beginning = None;
+    let (mut project, mut recovered) = (None, None);
+    let (loaded, path, source) = match source {
+        Source::Sample => (
+            engine::load_bytes(SAMPLE.to_vec(), Path::new(SAMPLE_NAME), &weld, watch)?,
+            None,
+            MeshSource::Sample,
+        ),
+        Source::File(path) if !engine::is_project(path) => (
+            engine::load(path, &weld, watch)?,
+            Some(path.clone()),
+            MeshSource::File(path.clone()),
+        ),
+        Source::File(path) | Source::Recovered(path) => {
+            let opened = project_file::read(path, watch)?;
+            match source {
+                Source::Recovered(_) => recovered = Some(path.clone()),
+                _ => project = Some(path.clone()),
+            }
+            beginning = Some(Beginning::from(opened.project));
+            let mesh = match &opened.source {
+                MeshSource::File(mesh) => Some(saved_name(mesh).unwrap_or_else(|| mesh.clone())),
+                MeshSource::Sample | MeshSource::Gone => None,
+            };
+            // A recovered session's own mesh file is removed with the recovery, so it counts as gone.
+            let source = match opened.source {
+                MeshSource::File(_) if recovered.is_some() && is_in_folder_of(&opened.source, path) => MeshSource::Gone,
+                source => source,
+            };
+            (opened.loaded, mesh, source)
+        }
+    };
+    let progress = watch.begin("getting the picture ready");
+    let notes: Vec<String> = loaded.scene.notes().to_vec();
+    let drawing = Drawing::new(&loaded.model, loaded.scene.appearance());
+    progress.set(0.7);
+    let displacements = Arc::new(vec![DVec3::ZERO; loaded.model.surface.positions.len()]);
+    let pose = drawing.pose(&loaded.model, &displacements);
+    progress.set(0.8);
+    let surface = gpu
+        .upload(&drawing, &pose)
+        .map_err(|error| AppError::System(error.to_string()))?;
+    Ok(Box::new(ModelToShow {
+        path,
+        loaded: Arc::new(loaded),
+        drawing: Arc::new(drawing),
+        surface,
+        displacements,
+        beginning,
+        project,
+        source,
+        recovered,
+        notes,
+    }))
+}
+
+/// Whether a mesh stands in the same folder as the project.
+fn is_in_folder_of(mesh: &MeshSource, project: &Path) -> bool {
+    matches!(mesh, MeshSource::File(mesh) if files::folder_of(mesh) == files::folder_of(project))
+}

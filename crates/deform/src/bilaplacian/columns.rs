@@ -1,0 +1,113 @@
+//! What binding solves for: the four columns of each handle's basis [BK04], and the energies between handles.
+
+use std::collections::TryReserveError;
+
+use pliant_mesh::{Cancel, Progress};
+use rayon::prelude::*;
+
+use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
+use crate::bilaplacian::setup::Prescribed;
+use crate::budget::filled;
+
+/// One handle's four columns.
+pub(crate) struct Columns {
+    /// On the solved vertices, ascending. **f32**.
+    pub rows: Vec<[f32; 4]>,
+    /// C_hᵀ F of this handle against each handle h, F the force that it takes at h: A B, or the springs' W (C − B).
+    energies: Vec<[[f64; 4]; 4]>,
+    /// How far off the solution is, relative to its largest value.
+    pub error: f64,
+    /// A vertex of the handle, to name where the error is.
+    pub vertex: u32,
+}
+
+/// Checks the system and solves for each handle's columns on the vertices `solved`; without handles it only checks.
+pub(crate) fn solve_columns(
+    system: &mut BilaplacianSystem,
+    prescribed: &[Prescribed],
+    solved: &[u32],
+    progress: &Progress,
+    cancel: &Cancel,
+) -> Result<Vec<Columns>, SystemError> {
+    let solved_locals = system.operator.laplacian.locals(solved);
+    let field_len = system.operator.field_len();
+    let Some((first, others)) = prescribed.split_first() else {
+        system.check(&mut vec![[1.0]; field_len], cancel)?;
+        return Ok(Vec::new());
+    };
+    // The constant is solved for beside the first handle: one pass over the factor for both.
+    let mut d = vec![[0.0, 0.0, 0.0, 0.0, 1.0]; field_len];
+    for &(place, [x, y, z, w]) in first {
+        d[place as usize] = [x, y, z, w, 1.0];
+    }
+    let error = system.check(&mut d, cancel)?;
+    let mut columns = Vec::with_capacity(prescribed.len());
+    columns.push(Columns::of(system, &d, first, prescribed, &solved_locals, error));
+    progress.set(0.85);
+    let system = &*system;
+    let is_wanted = || cancel.check().map_err(|_| SystemError::Cancelled);
+    let solve = |own: &Prescribed| {
+        is_wanted()?;
+        let mut d = vec![[0.0; 4]; field_len];
+        for &(place, coordinates) in own {
+            d[place as usize] = coordinates;
+        }
+        let error = system.solve(&mut d, cancel).error;
+        is_wanted()?;
+        Ok(Columns::of(system, &d, own, prescribed, &solved_locals, error))
+    };
+    columns.extend(others.par_iter().map(solve).collect::<Result<Vec<_>, SystemError>>()?);
+    Ok(columns)
+}
+
+/// The blocks G_hk of the energy ½ Σ_hk tr(X_hᵀ G_hk X_k) of motions X, row-major over pairs of handles.
+pub(crate) fn energy_blocks(columns: &[Columns]) -> Result<Vec<[[f64; 4]; 4]>, TryReserveError> {
+    let mut blocks = filled([[0.0; 4]; 4], columns.len() * columns.len())?;
+    for (k, column) in columns.iter().enumerate() {
+        for (h, block) in column.energies.iter().enumerate() {
+            blocks[h * columns.len() + k] = *block;
+        }
+    }
+    Ok(blocks)
+}
+
+impl Columns {
+    /// Of a solution whose first four functions are the handle's.
+    fn of<const K: usize>(
+        system: &BilaplacianSystem,
+        d: &[[f64; K]],
+        own: &Prescribed,
+        prescribed: &[Prescribed],
+        solved_locals: &[u32],
+        error: f64,
+    ) -> Self {
+        let operator = &system.operator;
+        let first_spring = operator.laplacian.vertices().len();
+        let potential = operator.potential(d);
+        let energy = |handle: &Prescribed| {
+            let mut block = [[0.0; 4]; 4];
+            for &(place, coordinates) in handle {
+                let force = match (place as usize).checked_sub(first_spring) {
+                    Some(spring) => operator.pull(spring, d),
+                    None => operator.force(place as usize, &potential),
+                };
+                for i in 0..4 {
+                    for j in 0..4 {
+                        block[i][j] += coordinates[i] * force[j];
+                    }
+                }
+            }
+            block
+        };
+        let row = |&local: &u32| std::array::from_fn(|k| d[local as usize][k] as f32);
+        let vertex = own.first().map_or(0, |&(place, _)| {
+            operator.laplacian.vertices()[operator.local_of(place as usize) as usize]
+        });
+        Self {
+            rows: solved_locals.iter().map(row).collect(),
+            energies: prescribed.iter().map(energy).collect(),
+            error,
+            vertex,
+        }
+    }
+}

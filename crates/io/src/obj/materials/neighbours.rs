@@ -1,0 +1,70 @@
+//! What of the libraries and textures a saved OBJ file takes along, and what it leaves behind.
+
+use super::Materials;
+use super::library::is_other_map;
+use crate::save::{OutputFile, Role};
+use crate::text::excerpt;
+
+/// The libraries and textures that an OBJ file in another folder needs beside it, and what stays behind.
+pub(in crate::obj) fn neighbours(materials: &Materials) -> (Vec<OutputFile>, Vec<String>) {
+    let (mut files, mut warnings): (Vec<OutputFile>, Vec<String>) = (Vec::new(), Vec::new());
+    let libraries = materials.libraries.iter();
+    let libraries = libraries.map(|(path, bytes)| (Role::Library, path, &**bytes));
+    let images = materials.image_paths.iter().zip(&materials.images);
+    let images = images.map(|(path, image)| (Role::Image, path, &*image.encoded));
+    for (role, path, bytes) in libraries.chain(images) {
+        if files.iter().any(|file| file.name == *path) {
+            continue;
+        }
+        if is_inside(path) {
+            files.push(OutputFile {
+                name: path.clone(),
+                role,
+                bytes: bytes.to_vec(),
+            });
+        } else {
+            let path = excerpt(path.as_bytes());
+            warnings.push(format!(
+                "{path} lies outside the file's own folder and was not copied: copy it by hand."
+            ));
+        }
+    }
+    if materials.unread.iter().any(|keyword| is_other_map(keyword)) {
+        let warning = "Maps other than the base colour's stay in the old folder: copy them by hand.";
+        warnings.push(warning.to_owned());
+    }
+    (files, warnings)
+}
+
+/// A warning that names what of the libraries a file of another kind goes without.
+pub(in crate::obj) fn unread_lost(materials: &Materials, kind: &str) -> Option<String> {
+    let names: Vec<&str> = materials.unread.iter().map(String::as_str).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{kind} output goes without what the material library says by {}: keep the .obj for it.",
+            names.join(", ")
+        )
+    })
+}
+
+/// Whether a path stays within the folder that it starts from, on every system.
+fn is_inside(path: &str) -> bool {
+    !path.is_empty()
+        && !path.contains([':', '\\', '\0'])
+        && path.split('/').all(|part| !matches!(part, "" | "." | ".."))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_inside;
+
+    #[test]
+    fn paths_that_leave_the_folder_are_never_written() {
+        for path in ["a.mtl", "textures/skin one.png"] {
+            assert!(is_inside(path), "{path}");
+        }
+        for path in ["", "/etc/x", "../a.mtl", "a/../../b", "C:/a.png", "a//b", "./a", "a\\b"] {
+            assert!(!is_inside(path), "{path}");
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! The records behind the header: vertices with what is drawn of them, faces, and strips of triangles.
+
+mod faces;
+mod record;
+mod vertices;
+
+use glam::DVec3;
+
+use super::header::{Element, Header};
+use super::scalar::Walk;
+use crate::source::Source;
+use crate::{Format, ReadError, quoted};
+use faces::{read_faces, read_strips};
+use record::pass_over;
+pub(super) use vertices::Columns;
+use vertices::read_vertices;
+
+/// Where the vertices' records are.
+#[derive(Clone, Debug)]
+pub(super) enum Places {
+    /// One after the other at the same distance.
+    Strided { first: usize, stride: usize },
+    /// Each where it begins.
+    Each(Vec<usize>),
+}
+
+impl Places {
+    pub(super) fn of(&self, vertex: usize) -> usize {
+        match self {
+            Self::Strided { first, stride } => first + vertex * stride,
+            Self::Each(starts) => starts[vertex],
+        }
+    }
+}
+
+/// The records as far as they are drawn or moved.
+#[derive(Debug)]
+pub(super) struct Records {
+    /// The element that holds the vertices.
+    pub(super) vertex_element: Option<usize>,
+    pub(super) columns: Columns,
+    pub(super) places: Places,
+    pub(super) positions: Vec<DVec3>,
+    /// Empty where the vertices have none. f32: drawn, and turned on saving, where f32 is what normals need.
+    pub(super) normals: Vec<[f32; 3]>,
+    /// From 0 to 1, as stored; empty where the vertices have none.
+    pub(super) colours: Vec<[f32; 4]>,
+    pub(super) uvs: Vec<[f32; 2]>,
+    /// Corners of all faces, then strips' triangles, one after the other.
+    pub(super) corners: Vec<u32>,
+    /// Where each face's corners end.
+    pub(super) face_ends: Vec<u32>,
+    /// How many faces have fewer than three corners.
+    pub(super) left_out: usize,
+}
+
+/// Reads the records up to the last element that is drawn.
+///
+/// # Errors
+/// Records that are cut short or aren't numbers, lists with impossible counts, faces that name missing vertices.
+pub(super) fn read(source: &Source<'_>, header: &Header) -> Result<Records, ReadError> {
+    let mut records = Records {
+        vertex_element: None,
+        columns: Columns::default(),
+        places: Places::Each(Vec::new()),
+        positions: Vec::new(),
+        normals: Vec::new(),
+        colours: Vec::new(),
+        uvs: Vec::new(),
+        corners: Vec::new(),
+        face_ends: Vec::new(),
+        left_out: 0,
+    };
+    let is_drawn = |element: &Element| matches!(element.name.as_str(), "vertex" | "face" | "tristrips");
+    let last = header.elements.iter().rposition(is_drawn).map_or(0, |last| last + 1);
+    let mut walk = Walk::new(source.bytes, header.data_at, header.encoding);
+    for (index, element) in header.elements[..last].iter().enumerate() {
+        check_count(source, header, element, &walk)?;
+        match element.name.as_str() {
+            "vertex" if records.vertex_element.is_none() => {
+                records.vertex_element = Some(index);
+                read_vertices(source, header, element, &mut walk, &mut records)?;
+            }
+            // Such records take no bytes, so nothing bounds their count.
+            _ if element.properties.is_empty() => {}
+            "face" => read_faces(source, element, &mut walk, &mut records)?,
+            "tristrips" => read_strips(source, element, &mut walk, &mut records)?,
+            _ => pass_over(source, header, element, &mut walk)?,
+        }
+        source
+            .progress
+            .set(0.8 * (1.0 - walk.left() as f32 / source.bytes.len() as f32));
+    }
+    let count = records.positions.len();
+    if let Some(&missing) = records.corners.iter().find(|&&corner| corner as usize >= count) {
+        let reason =
+            format!("a face names the vertex {missing}, but there are {count}, counted from 0: correct the face");
+        return Err(source.malformed(Format::Ply, reason));
+    }
+    Ok(records)
+}
+
+/// Refuses a count that the bytes left can't hold, before anything is allocated for it.
+fn check_count(source: &Source<'_>, header: &Header, element: &Element, walk: &Walk<'_>) -> Result<(), ReadError> {
+    // The last number of an ascii file needs no separator behind it.
+    let least = element.count.checked_mul(element.least_bytes(header.encoding));
+    let fits = least.is_some_and(|least| least <= walk.left() + 1);
+    let is_numbered = element.count < u64::from(u32::MAX) || element.properties.is_empty();
+    if fits && is_numbered {
+        return Ok(());
+    }
+    let reason = format!(
+        "the header promises {} records of '{}', but only {} bytes are left for them: the file is cut short",
+        element.count,
+        quoted(&element.name),
+        walk.left()
+    );
+    Err(source.malformed(Format::Ply, reason))
+}

@@ -1,0 +1,137 @@
+//! The vertices' records: which properties are read of them, and what they hold.
+
+use glam::DVec3;
+
+use super::record::{cut_short, read_all, read_record};
+use super::{Places, Records};
+use crate::ply::header::{Element, Header, Kind};
+use crate::ply::scalar::{Encoding, Scalar, Walk, decode};
+use crate::source::Source;
+use crate::{Format, ReadError};
+
+/// What is read of a vertex, in the order of [`Columns`].
+const COLUMN_NAMES: [&[&str]; 12] = [
+    &["x"],
+    &["y"],
+    &["z"],
+    &["nx", "normal_x"],
+    &["ny", "normal_y"],
+    &["nz", "normal_z"],
+    &["red", "r", "diffuse_red"],
+    &["green", "g", "diffuse_green"],
+    &["blue", "b", "diffuse_blue"],
+    &["alpha", "a", "diffuse_alpha"],
+    &["s", "u", "texture_u", "texture_s"],
+    &["t", "v", "texture_v", "texture_t"],
+];
+
+/// The property that holds each thing that is read of a vertex, if any: x, y, z, the normal, red, green, blue, alpha,
+/// and the texture coordinates.
+pub(in crate::ply) type Columns = [Option<usize>; COLUMN_NAMES.len()];
+
+pub(super) fn read_vertices(
+    source: &Source<'_>,
+    header: &Header,
+    element: &Element,
+    walk: &mut Walk<'_>,
+    records: &mut Records,
+) -> Result<(), ReadError> {
+    let is_scalar = |&index: &usize| matches!(element.properties[index].kind, Kind::Scalar(_));
+    let columns = COLUMN_NAMES.map(|names| element.property(names).filter(is_scalar));
+    records.columns = columns;
+    if element.count == 0 {
+        return Ok(());
+    }
+    if let Some(missing) = (0..3).find(|&axis| columns[axis].is_none()) {
+        let reason = format!(
+            "its vertices have no '{}': export the file anew",
+            COLUMN_NAMES[missing][0]
+        );
+        return Err(source.malformed(Format::Ply, reason));
+    }
+    let has = |span: std::ops::Range<usize>| columns[span].iter().all(Option::is_some);
+    let (has_normals, has_colours, has_uvs) = (has(3..6), has(6..9), has(10..12));
+    // Colours are counted by their type: bytes to 255, 16 bits to 65535, floating point to 1.
+    let colour_scale = columns[6].map_or(1.0, |red| match element.properties[red].kind {
+        Kind::Scalar(scalar) => scalar.integer_range().map_or(1.0, |[_, most]| most.recip()),
+        Kind::List { .. } => 1.0,
+    });
+    // The count was held against the bytes that are left.
+    let count = element.count as usize;
+    records.positions.reserve_exact(count);
+    records.normals.reserve_exact(if has_normals { count } else { 0 });
+    records.colours.reserve_exact(if has_colours { count } else { 0 });
+    records.uvs.reserve_exact(if has_uvs { count } else { 0 });
+    let mut take = |values: &[f64; COLUMN_NAMES.len()]| {
+        records.positions.push(DVec3::new(values[0], values[1], values[2]));
+        if has_normals {
+            records.normals.push([3, 4, 5].map(|slot: usize| values[slot] as f32));
+        }
+        if has_colours {
+            let alpha = if columns[9].is_some() {
+                values[9] * colour_scale
+            } else {
+                1.0
+            };
+            let [r, g, b] = [6, 7, 8].map(|slot: usize| (values[slot] * colour_scale) as f32);
+            records.colours.push([r, g, b, alpha as f32]);
+        }
+        if has_uvs {
+            records.uvs.push([values[10] as f32, values[11] as f32]);
+        }
+    };
+    let mut values = [0.0; COLUMN_NAMES.len()];
+    if header.encoding != Encoding::Ascii
+        && let Some(stride) = element.stride()
+    {
+        let wanted = wanted_offsets(element, &columns);
+        let first = walk.at();
+        for vertex in 0..element.count as usize {
+            if vertex.is_multiple_of(1 << 13) {
+                source.cancel.check()?;
+            }
+            for &(slot, offset, scalar) in &wanted {
+                values[slot] = decode(source.bytes, first + vertex * stride + offset, scalar, header.encoding)
+                    .ok_or_else(|| cut_short(source, element, vertex as u64, source.bytes.len()))?;
+            }
+            take(&values);
+        }
+        walk.skip(stride * element.count as usize);
+        records.places = Places::Strided { first, stride };
+        return Ok(());
+    }
+    let mut slots = vec![COLUMN_NAMES.len(); element.properties.len()];
+    for (slot, property) in columns.iter().enumerate() {
+        if let Some(property) = property {
+            slots[*property] = slot;
+        }
+    }
+    let mut starts = Vec::new();
+    read_all(source, element, walk, |walk| {
+        starts.push(walk.at());
+        let keep = |property: usize, value| {
+            if let Some(target) = values.get_mut(slots[property]) {
+                *target = value;
+            }
+        };
+        read_record(element, walk, || !source.cancel.is_cancelled(), keep, |_, _| ())?;
+        take(&values);
+        Some(())
+    })?;
+    records.places = Places::Each(starts);
+    Ok(())
+}
+
+/// Column, offset within a binary record and type of what is read of a vertex.
+fn wanted_offsets(element: &Element, columns: &Columns) -> Vec<(usize, usize, Scalar)> {
+    let mut wanted = Vec::new();
+    let mut offset = 0;
+    for (index, property) in element.properties.iter().enumerate() {
+        let Kind::Scalar(scalar) = property.kind else { continue };
+        if let Some(slot) = columns.iter().position(|column| *column == Some(index)) {
+            wanted.push((slot, offset, scalar));
+        }
+        offset += scalar.size();
+    }
+    wanted
+}
