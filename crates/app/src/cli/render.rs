@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pliant_editor::{Camera, Editor, Event, InlineExecutor, JobKind, Look, NamedView, Projection, Shading, UpAxis};
-use pliant_mesh::WeldOptions;
+use pliant_mesh::{Model, WeldOptions};
 use pliant_render::{Background, Frame, Headless, RenderError, Samples, SurfaceLine};
 
 use super::apply::read_edit;
@@ -118,31 +118,15 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
     surface.update_regions(&renderer, &colours).map_err(refuse)?;
     surface.update_lines(&renderer, &shape.outlines).map_err(refuse)?;
     if look.shading == Shading::Material {
-        let decoded = drawing
-            .materials
-            .decode(&watch.cancel)
-            .map_err(|_| AppError::Interrupted)?;
-        surface
-            .set_materials(decoded.upload(&renderer).map_err(refuse)?)
-            .map_err(refuse)?;
+        let decoded = drawing.materials.decode(&watch.cancel);
+        let materials = decoded.map_err(|_| AppError::Interrupted)?.upload(&renderer);
+        surface.set_materials(materials.map_err(refuse)?).map_err(refuse)?;
     }
     progress.set(0.3);
 
     let PictureSize { width, height } = arguments.size;
     let size_px = DVec2::new(f64::from(width), f64::from(height));
-    let mut camera = Camera {
-        up: up(arguments.up),
-        scale: bounds.diagonal(),
-        projection: match arguments.projection {
-            ProjectionName::Perspective => Projection::Perspective,
-            ProjectionName::Orthographic => Projection::Orthographic,
-        },
-        ..Camera::default()
-    };
-    camera.look_from(view(arguments.view));
-    // The rest shape is framed, whatever the edit does, so that before and after compare.
-    camera.frame(&model.surface.positions, size_px);
-    camera.distance *= ROOM_FOR_THE_EDIT;
+    let camera = camera(arguments, model, bounds.diagonal(), size_px);
     // Marks are as large as on a screen of the usual size, and smaller in a small picture.
     let pixels_per_point = (height as f32 / 620.0).clamp(0.7, 8.0);
     let mut style = drawing::style(&look, pixels_per_point);
@@ -185,6 +169,24 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
         progress.set(0.3 + 0.7 * (number + 1) as f32 / count as f32);
     }
     Ok(pngs)
+}
+
+/// Where the eye of the first picture is: it sees all of the rest shape, whatever the edit does, so that before and
+/// after compare. `diagonal` is the model's.
+fn camera(arguments: &RenderArguments, model: &Model, diagonal: f64, size_px: DVec2) -> Camera {
+    let mut camera = Camera {
+        up: up(arguments.up),
+        scale: diagonal,
+        projection: match arguments.projection {
+            ProjectionName::Perspective => Projection::Perspective,
+            ProjectionName::Orthographic => Projection::Orthographic,
+        },
+        ..Camera::default()
+    };
+    camera.look_from(view(arguments.view));
+    camera.frame(&model.surface.positions, size_px);
+    camera.distance *= ROOM_FOR_THE_EDIT;
+    camera
 }
 
 /// How much farther away the eye is than for the rest shape alone, so that the bent shape is seen whole, too.

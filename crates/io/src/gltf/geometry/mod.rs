@@ -22,6 +22,7 @@ use rayon::prelude::*;
 use crate::gltf::document::Document;
 use crate::gltf::document::fault::Fault;
 use crate::gltf::document::json::At;
+use crate::gltf::document::layout::Layout;
 use crate::gltf::geometry::primitive::{Mode, Primitive};
 use crate::gltf::geometry::tree::Placed;
 
@@ -70,12 +71,16 @@ pub(crate) fn drawn(
     cancel: &Cancel,
 ) -> Result<(Drawn, Pieces), Fault> {
     let (first_file_vertex, file_vertex_count) = number_file_vertices(document, meshes)?;
-    let mut drawn = Drawn {
-        file_vertex_count,
-        ..Drawn::default()
+    let mut gathering = Gathering {
+        document,
+        cancel,
+        drawn: Drawn {
+            file_vertex_count,
+            ..Drawn::default()
+        },
+        pieces: Pieces::default(),
+        budget: document.drawing_budget(),
     };
-    let mut pieces = Pieces::default();
-    let mut budget = document.drawing_budget();
     let mut weights = Weights::default();
     let mut first_alike: HashMap<usize, Vec<usize>> = HashMap::new();
     for (number, place) in placed.iter().enumerate() {
@@ -88,7 +93,7 @@ pub(crate) fn drawn(
         let applied = weights.of(document, place);
         for (number, primitive) in primitives.iter().enumerate() {
             cancel.check()?;
-            spend(&mut budget, 1, PIECE_BYTES, "runs of triangles")?;
+            spend(&mut gathering.budget, 1, PIECE_BYTES, "runs of triangles")?;
             let (Some(mode), Some(position)) = (primitive.mode, primitive.position) else {
                 continue;
             };
@@ -106,85 +111,109 @@ pub(crate) fn drawn(
             let instance = match instance_of.get(&alike[number]) {
                 Some(&known) => known,
                 None => {
-                    spend(
-                        &mut budget,
-                        layout.count,
-                        size_of::<[f64; 3]>() + size_of::<FileVertex>(),
-                        "vertices",
-                    )?;
-                    let start = drawn.positions.len() as u32;
-                    let weights: Vec<(usize, f64)> = applied
-                        .iter()
-                        .copied()
-                        .take_while(|(target, _)| *target < primitive.targets.len())
-                        .collect();
-                    // Every target is read for every instance that applies it.
-                    spend(
-                        &mut budget,
-                        weights.len().saturating_mul(layout.count.max(2)),
-                        size_of::<[f32; 3]>(),
-                        "numbers of morph targets",
-                    )?;
-                    let mut positions = layout.floats::<3>(document);
-                    let targets = weights
-                        .iter()
-                        .map(|&(target, weight)| (primitive.targets[target].position, weight));
-                    apply_targets(document, &mut positions, targets, cancel)?;
-                    place_vertices(
-                        &positions,
-                        place.world_from_node,
-                        first_file_vertex[position],
-                        &mut drawn,
-                    );
-                    let vertices = start..drawn.positions.len() as u32;
-                    let Placed {
-                        node,
-                        mesh,
-                        world_from_node,
-                    } = *place;
-                    pieces.instances.push(Instance {
-                        node,
-                        mesh,
-                        world_from_node,
-                        vertices,
-                        primitive: number,
-                        weights,
-                    });
-                    instance_of.insert(alike[number], pieces.instances.len() - 1);
-                    pieces.instances.len() - 1
+                    let first = first_file_vertex[position];
+                    let added = gathering.instance(place, primitive, number, &layout, first, &applied)?;
+                    instance_of.insert(alike[number], added);
+                    added
                 }
             };
-            let corner_count = corner_count(document, primitive, layout.count)?;
-            spend(
-                &mut budget,
-                triangle_count(mode, corner_count),
-                size_of::<[DrawnVertex; 3]>(),
-                "triangles",
-            )?;
-            let corners = corners(document, primitive, layout.count).map_err(|what| format!("{} {what}", here()))?;
-            let start = drawn.triangles.len() as u32;
-            let is_mirrored = place.world_from_node.matrix3.determinant() < 0.0;
-            let winding = if is_mirrored {
-                Winding::Flipped
-            } else {
-                Winding::AsStored
-            };
-            corners.triangles(
-                mode,
-                winding,
-                pieces.instances[instance].vertices.start,
-                &mut drawn.triangles,
-            );
-            let triangles = start..drawn.triangles.len() as u32;
-            pieces.pieces.push(Piece {
-                instance,
-                primitive: number,
-                triangles,
-            });
+            gathering.piece(place, primitive, mode, number, layout.count, instance)?;
         }
         progress.set((number + 1) as f32 / placed.len() as f32);
     }
-    Ok((drawn, pieces))
+    Ok((gathering.drawn, gathering.pieces))
+}
+
+/// The drawn set while it is read.
+struct Gathering<'a> {
+    document: &'a Document,
+    cancel: &'a Cancel,
+    drawn: Drawn,
+    pieces: Pieces,
+    /// The bytes that may still be spent.
+    budget: usize,
+}
+
+impl Gathering<'_> {
+    /// Adds the vertices of primitive `number`, seen through a node, and returns their instance's number.
+    fn instance(
+        &mut self,
+        place: &Placed,
+        primitive: &Primitive,
+        number: usize,
+        layout: &Layout,
+        first_file_vertex: Option<u32>,
+        applied: &[(usize, f64)],
+    ) -> Result<usize, Fault> {
+        let vertex_bytes = size_of::<[f64; 3]>() + size_of::<FileVertex>();
+        spend(&mut self.budget, layout.count, vertex_bytes, "vertices")?;
+        let start = self.drawn.positions.len() as u32;
+        let weights: Vec<(usize, f64)> = applied
+            .iter()
+            .copied()
+            .take_while(|(target, _)| *target < primitive.targets.len())
+            .collect();
+        // Every target is read for every instance that applies it.
+        let numbers = weights.len().saturating_mul(layout.count.max(2));
+        spend(
+            &mut self.budget,
+            numbers,
+            size_of::<[f32; 3]>(),
+            "numbers of morph targets",
+        )?;
+        let mut positions = layout.floats::<3>(self.document);
+        let targets = weights
+            .iter()
+            .map(|&(target, weight)| (primitive.targets[target].position, weight));
+        apply_targets(self.document, &mut positions, targets, self.cancel)?;
+        place_vertices(&positions, place.world_from_node, first_file_vertex, &mut self.drawn);
+        let Placed {
+            node,
+            mesh,
+            world_from_node,
+        } = *place;
+        self.pieces.instances.push(Instance {
+            node,
+            mesh,
+            world_from_node,
+            vertices: start..self.drawn.positions.len() as u32,
+            primitive: number,
+            weights,
+        });
+        Ok(self.pieces.instances.len() - 1)
+    }
+
+    /// Adds the triangles of primitive `number`, whose `vertex_count` vertices are those of `instance`.
+    fn piece(
+        &mut self,
+        place: &Placed,
+        primitive: &Primitive,
+        mode: Mode,
+        number: usize,
+        vertex_count: usize,
+        instance: usize,
+    ) -> Result<(), Fault> {
+        let corner_count = corner_count(self.document, primitive, vertex_count)?;
+        let count = triangle_count(mode, corner_count);
+        spend(&mut self.budget, count, size_of::<[DrawnVertex; 3]>(), "triangles")?;
+        let corners = corners(self.document, primitive, vertex_count)
+            .map_err(|what| format!("mesh {} primitive {number} {what}", place.mesh))?;
+        let start = self.drawn.triangles.len() as u32;
+        let is_mirrored = place.world_from_node.matrix3.determinant() < 0.0;
+        let winding = if is_mirrored {
+            Winding::Flipped
+        } else {
+            Winding::AsStored
+        };
+        let first = self.pieces.instances[instance].vertices.start;
+        corners.triangles(mode, winding, first, &mut self.drawn.triangles);
+        self.pieces.pieces.push(Piece {
+            instance,
+            primitive: number,
+            triangles: start..self.drawn.triangles.len() as u32,
+        });
+        Ok(())
+    }
 }
 
 /// The first file vertex of each accessor that is a POSITION, and how many file vertices there are.
