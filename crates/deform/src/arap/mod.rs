@@ -66,7 +66,7 @@ pub(crate) struct ArapSolver {
     cells: Cells,
     springs: Springs,
     preconditioner: Preconditioner,
-    /// Handles' harmonic weights, one row a cell.
+    /// Handles' harmonic weights, one row per cell.
     weights: Vec<f64>,
     /// The handles in coordinates relative to `world_origin`.
     handles: Vec<HandleFrame>,
