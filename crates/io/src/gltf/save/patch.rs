@@ -203,7 +203,7 @@ const MOST_SAVED: usize = 4;
 
 const TOO_MANY_COPIES: &str = "an edit that needs more copies of the same bytes than a file of its size justifies";
 
-/// The refusal of a save that takes more memory than the file justifies.
+/// The refusal of `what`, which the file's accessors can't hold.
 pub(crate) fn cannot_hold(what: String, format: Format) -> SaveError {
     SaveError::CannotHold {
         what,
