@@ -11,7 +11,7 @@ use pliant_mesh::{Drawn, shapes};
 use pliant_tests::{Folder, bare_edit, bend, data, datum, diagonal, extension, largest_distance, open};
 use serde_json::{Value, json};
 
-/// The world positions of an edited mesh, one a drawn vertex.
+/// The world positions of an edited mesh, one per drawn vertex.
 fn bent(drawn: &Drawn, edit: &Value) -> Vec<DVec3> {
     bent_with(drawn, edit, &[])
 }
@@ -135,7 +135,7 @@ fn the_surveys_scenes_meet_their_constraints() {
 
 /// Loose parts that nothing holds go with what they sit on: no triangle edge of a translated helmet tears away.
 #[test]
-fn loose_parts_of_real_models_travel_with_the_shell() {
+fn loose_parts_of_real_models_travel_with_the_surface() {
     for name in ["gltf/DamagedHelmet.glb", "gltf/FlightHelmet/FlightHelmet.gltf"] {
         let Some(path) = datum(name) else { continue };
         let before = open(&path);
@@ -239,7 +239,7 @@ fn a_component_that_nothing_holds_follows_or_rests() {
         DAffine3::from_translation(DVec3::new(0.0, 3.0, 0.0)),
     );
     let both = shapes::together(&[shapes::icosphere(2), nearby]);
-    let shell = shapes::icosphere(2).positions.len();
+    let first_of_second = shapes::icosphere(2).positions.len();
     let turn = DQuat::from_rotation_z(0.5);
     let mut edit = bare_edit();
     edit["handles"] = json!([handle(
@@ -251,7 +251,7 @@ fn a_component_that_nothing_holds_follows_or_rests() {
     let wanted: Vec<DVec3> = both.positions.iter().map(|&p| motion.transform_point3(p)).collect();
     assert!(largest_distance(&followed, &wanted) < 1e-6);
     edit["loose"] = json!("rest");
-    assert_eq!(bent(&both, &edit)[shell..], both.positions[shell..]);
+    assert_eq!(bent(&both, &edit)[first_of_second..], both.positions[first_of_second..]);
 }
 
 #[test]

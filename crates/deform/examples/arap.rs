@@ -1,9 +1,9 @@
 //! Times as-rigid-as-possible deformation: `arap MESH.off THREADS ENERGY [REACH.off]`.
 //!
-//! The edit stands beside the mesh as MESH.sel (a line a vertex: 0 fixed, 1 free, 2 handle) and MESH.def (the handle's
-//! matrix, row by row); without them it is the one that peers are timed on: the lowest 5% along the longest axis are
-//! fixed, the highest 5% turned by 60° and moved. One JSON object; times in milliseconds. With REACH.off, another's
-//! result for the same edit, it also says how long it took to get below that shape's energy.
+//! The edit stands beside the mesh as MESH.sel (a line per vertex: 0 fixed, 1 free, 2 handle) and MESH.def (the
+//! handle's matrix, row by row); without them it is the one that peers are timed on: the lowest 5% along the longest
+//! axis are fixed, the highest 5% turned by 60° and moved. One JSON object; times in milliseconds. With REACH.off,
+//! another's result for the same edit, it also says how long it took to get below that shape's energy.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
 mod common;

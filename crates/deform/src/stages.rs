@@ -72,8 +72,8 @@ impl Matrix {
         self.0.scale.len()
     }
 
-    /// Column starts, rows and values on and below the diagonal, in the order of elimination. The diagonal comes first in
-    /// its column; the other rows are in no order.
+    /// Column starts, rows and values on and below the diagonal, in the order of elimination. The diagonal comes first
+    /// in its column; the other rows are in no order.
     pub fn lower_columns(&self) -> (&[u32], &[u32], &[f64]) {
         (&self.0.lower_offsets, &self.0.lower_rows, &self.0.lower_values)
     }

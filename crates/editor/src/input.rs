@@ -1,4 +1,4 @@
-//! What a person's hands do: the pointer, its buttons, keys and the modifiers that are held.
+//! Input: the pointer, its buttons, keys and modifiers.
 
 use glam::DVec2;
 

@@ -2,7 +2,7 @@
 //! the edit format that the command line reads.
 //!
 //! Everything happens through [`Editor::handle`]: the window, a test and a script send it [`Event`]s. What is to be
-//! shown comes back as a [`SceneView`]; long work goes to the [`Executor`] that the app hands over.
+//! shown is a [`SceneView`]; long work goes to the [`Executor`] that the application provides.
 
 mod command;
 mod document;

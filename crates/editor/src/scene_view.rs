@@ -1,4 +1,4 @@
-//! What the window must show: borrowed from the editor after each event, with revisions that say what changed.
+//! What the window must show: borrowed from the editor after each event, with revisions that tell what changed.
 //!
 //! The app keeps the revisions of what it uploaded last and compares; nothing is uploaded or drawn when none changed.
 
@@ -46,7 +46,7 @@ pub struct SceneView<'a> {
     pub look: Look,
     /// What dragging the view does.
     pub orbit: Orbit,
-    /// How far, by what angle or factor the transform that goes on has come.
+    /// The present length, angle or factor of the active transform.
     pub readout: Option<Readout>,
     /// What the left button does on the surface.
     pub tool: ToolMode,
@@ -62,7 +62,7 @@ pub struct SceneView<'a> {
     pub brush_metric: BrushMetric,
     /// The stiffness brush.
     pub stiffness_brush: StiffnessBrush,
-    /// How hard a pen presses, 0 to 1; `None` where the system has never said.
+    /// How hard a pen presses, 0 to 1; `None` until the system reports it.
     pub pressure: Option<f64>,
     /// Along which axes the gizmo stands.
     pub orientation: GizmoOrientation,
@@ -76,7 +76,7 @@ pub struct SceneView<'a> {
     pub selected: Option<HandleId>,
     /// Handles that are selected along with it.
     pub companions: &'a [HandleId],
-    /// What the program is doing and what one can do next, in one line.
+    /// What the program is doing and what can be done next, in one line.
     pub status: String,
     /// The last thing that went wrong, in one sentence, until the next command that works.
     pub problem: Option<&'a str>,
@@ -94,7 +94,7 @@ pub struct SceneView<'a> {
     pub settled: bool,
 }
 
-/// A number to be shown beside what it is about, while something is dragged.
+/// A number to be shown beside the thing that is being dragged.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Readout {
     /// Where, in world space.

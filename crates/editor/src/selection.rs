@@ -47,8 +47,8 @@ impl Selection {
 impl Selector {
     /// The surface's vertices that the selector describes.
     ///
-    /// A welded vertex is selected when any of the file's vertices behind it is, so twins come along; the positions
-    /// asked are the file's own, in world space. Vertices of the file that no triangle uses may be named and select
+    /// A welded vertex is selected if any of the file's vertices behind it is, so twins are selected together.
+    /// Positions are the file's own, in world space. Vertices of the file that no triangle uses may be named and select
     /// nothing. A vertex or component number that the model does not have is an error.
     pub fn evaluate(&self, model: &Model) -> Result<Selection, EditError> {
         self.evaluate_at(model, "the selector")
@@ -124,7 +124,7 @@ fn no_such_vertex(place: &str, vertex: u32, count: usize) -> EditError {
     }
 }
 
-/// The surface's vertices any of whose drawn vertices `test` picks.
+/// The surface vertices with a drawn vertex for which `test` is true.
 fn by_drawn(model: &Model, test: impl Fn(DrawnVertex) -> bool) -> Vec<bool> {
     let mut selected = vec![false; model.surface.positions.len()];
     for (drawn, surface_vertex) in (0..).map(DrawnVertex).zip(model.drawn.surface_vertices()) {

@@ -1,4 +1,4 @@
-//! What an editor has and shows at one moment, to be written elsewhere or shown beside while the person goes on.
+//! The state of an editor at one moment, to be written or shown elsewhere while the person goes on.
 
 use std::sync::Arc;
 
@@ -9,8 +9,7 @@ use crate::view::{Camera, Look};
 use crate::workspace::WorkspaceSnapshot;
 use crate::{MeshReference, Project};
 
-/// A document that nobody changes any more, and how it is shown. Taking one costs next to nothing: its long vectors
-/// are shared.
+/// An immutable copy of the document, and how it is shown. Taking one is cheap: its long vectors are shared.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
     pub(crate) work: WorkspaceSnapshot,

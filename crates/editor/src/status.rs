@@ -1,4 +1,4 @@
-//! The status line: what the program is doing, and what one can do next.
+//! The status line: what the program is doing, and what can be done next.
 
 use crate::jobs::{Activity, Counts, JobKind};
 use crate::tool::{Gesture, ToolMode, ToolSettings};
@@ -25,7 +25,7 @@ pub(crate) fn status(
     parts.into_iter().flatten().collect::<Vec<_>>().join(" · ")
 }
 
-/// How far the shape's descent is, where its method takes steps.
+/// The progress of the shape's descent, if its method is iterative.
 fn descent(workspace: &Workspace) -> Option<String> {
     let document = &workspace.document;
     let descent = workspace.descent.filter(|_| document.is_displaced())?;
@@ -38,7 +38,7 @@ fn descent(workspace: &Workspace) -> Option<String> {
     Some(said.to_owned())
 }
 
-/// What can be done while nothing is going on, and how many vertices do what.
+/// What can be done when no gesture is active, and how many vertices have each role.
 fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
     let document = &workspace.document;
     let hint = if document.handles().is_empty() {
@@ -64,7 +64,7 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
     format!("{hint} · {handle} handle, {free} free, {fixed} fixed vertices")
 }
 
-/// What is computed in the background, as far as somebody waits for it.
+/// What is computed in the background, if a person waits for it.
 fn working(workspace: &Workspace, is_dragging: bool) -> Option<String> {
     let (jobs, document) = (&workspace.jobs, &workspace.document);
     let mut needed = [JobKind::Order, JobKind::Region, JobKind::Bind].into_iter();

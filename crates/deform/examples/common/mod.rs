@@ -33,7 +33,7 @@ pub fn name(file: &Path) -> String {
     file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The edit that stands beside a mesh as MESH.sel (a number a vertex: 0 fixed, 1 free, 2 handle) and MESH.def (the
+/// The edit that stands beside a mesh as MESH.sel (a number per vertex: 0 fixed, 1 free, 2 handle) and MESH.def (the
 /// handle's matrix, row by row); without them the one that peers are timed on.
 pub fn edit(mesh: &Path, model: &Model) -> (Vec<Role>, DAffine3) {
     let numbers = |extension: &str| -> Option<Vec<f64>> {

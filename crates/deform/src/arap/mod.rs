@@ -47,7 +47,7 @@ use self::descent::End;
 use self::domain::Domain;
 use self::history::{Field, History};
 use self::lead::Corrections;
-use self::precondition::{MapRoom, PreconditionError, Preconditioner, WeightInput};
+use self::precondition::{MapRoom, Preconditioner, WeightInput};
 use self::shape::{Guesses, IDENTITY, Scratch, Shape};
 use self::springs::Springs;
 use crate::handles::blend::HandleFrame;
@@ -66,7 +66,7 @@ pub(crate) struct ArapSolver {
     cells: Cells,
     springs: Springs,
     preconditioner: Preconditioner,
-    /// Handles' harmonic weights, one row a cell.
+    /// Handles' harmonic weights, one row per cell.
     weights: Vec<f64>,
     /// The handles in coordinates relative to `world_origin`.
     handles: Vec<HandleFrame>,
@@ -139,20 +139,7 @@ impl ArapSolver {
         let mollified_faces = laplacian.mollified_faces();
         cancel.check()?;
         progress.set(0.3);
-        let bending = match options.energy {
-            ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => 0.0,
-            ArapEnergy::Smooth => bending::stiffness(surface, &domain, options.smoothness),
-        };
-        let cells = match options.energy {
-            ArapEnergy::Spokes => spokes::cells(surface, &laplacian, &domain),
-            ArapEnergy::SpokesAndRims => rims::cells(surface, topology, problem.stiffness, &domain, &[]),
-            ArapEnergy::Smooth => {
-                let ties = bending::ties(surface, topology, &domain, bending);
-                let mut cells = rims::cells(surface, topology, problem.stiffness, &domain, &ties);
-                bending::add(&mut cells, &ties);
-                cells
-            }
-        };
+        let (cells, bending) = cells_of(problem, options, &laplacian, &domain);
         let springs = Springs::of(problem, partition, handles, &domain, &laplacian, bending, cells.unit());
         let system = match options.energy {
             ArapEnergy::Spokes | ArapEnergy::SpokesAndRims => {
@@ -178,40 +165,12 @@ impl ArapSolver {
             handle_of: &handle_of,
             unheld: &unheld,
         };
-        let (preconditioner, weights) =
-            Preconditioner::of(&system, &ends, &input, partition.budget, cancel).map_err(|error| match error {
-                PreconditionError::Pivot(local) => BindError::NotPositiveDefinite {
-                    component: component(local),
-                    vertex: domain.vertices[local],
-                },
-                PreconditionError::Inaccurate(local, error) => BindError::Inaccurate {
-                    component: component(local),
-                    vertex: domain.vertices[local],
-                    error,
-                },
-                PreconditionError::Memory => BindError::OutOfMemory {
-                    free_count: domain.solved_count,
-                },
-                PreconditionError::Budget => BindError::budget(domain.solved_count),
-                PreconditionError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
-            })?;
+        let (preconditioner, weights) = Preconditioner::of(&system, &ends, &input, partition.budget, cancel)
+            .map_err(|error| error.into_bind_error(&domain, component))?;
         cancel.check()?;
         progress.set(0.9);
         let world_origin = handles.first().map_or(DVec3::ZERO, |handle| handle.world_centre);
         let world_rest = |surface_vertex: u32| surface.positions[surface_vertex as usize];
-        let prescribed = handles
-            .iter()
-            .map(|handle| {
-                let of = |&surface_vertex: &u32| Prescribed {
-                    surface_vertex,
-                    local: domain.local_of[surface_vertex as usize],
-                    coordinates: handle.coordinates(world_rest(surface_vertex)),
-                };
-                handle.vertices.iter().map(of).collect()
-            })
-            .zip(&partition.soft)
-            .map(|(own, soft): (Vec<Prescribed>, _)| if soft.is_some() { Vec::new() } else { own })
-            .collect();
         let rest: Vec<DVec3> = domain.vertices.iter().map(|&v| world_rest(v) - world_origin).collect();
         let coarse = (domain.solved_count > options.coarse_above)
             .then(|| Coarse::of(problem, options, handles, &domain, cancel))
@@ -227,7 +186,7 @@ impl ArapSolver {
             preconditioner,
             weights,
             handles: HandleFrame::of_all(handles, world_origin),
-            prescribed,
+            prescribed: prescribed(problem, partition, handles, &domain),
             rest,
             current: at_rest.clone(),
             trial: at_rest,
@@ -328,4 +287,36 @@ impl ArapSolver {
         }
         (self.state == State::Converged, self.relative(energy))
     }
+}
+
+/// The cells of the options' energy, and the stiffness κ A of its bending term, 0 without one.
+fn cells_of(problem: &Problem, options: &Arap, laplacian: &Laplacian, domain: &Domain) -> (Cells, f64) {
+    let (surface, topology, stiffness) = (problem.surface, problem.topology, problem.stiffness);
+    match options.energy {
+        ArapEnergy::Spokes => (spokes::cells(surface, laplacian, domain), 0.0),
+        ArapEnergy::SpokesAndRims => (rims::cells(surface, topology, stiffness, domain, &[]), 0.0),
+        ArapEnergy::Smooth => {
+            let bending = bending::stiffness(surface, domain, options.smoothness);
+            let ties = bending::ties(surface, topology, domain, bending);
+            let mut cells = rims::cells(surface, topology, stiffness, domain, &ties);
+            bending::add(&mut cells, &ties);
+            (cells, bending)
+        }
+    }
+}
+
+/// Each handle's vertices that go exactly where it goes; none of a soft handle.
+fn prescribed(problem: &Problem, partition: &Partition, handles: &[Handle], domain: &Domain) -> Vec<Vec<Prescribed>> {
+    let one = |(handle, soft): (&Handle, &Option<f64>)| {
+        if soft.is_some() {
+            return Vec::new();
+        }
+        let of = |&surface_vertex: &u32| Prescribed {
+            surface_vertex,
+            local: domain.local_of[surface_vertex as usize],
+            coordinates: handle.coordinates(problem.surface.positions[surface_vertex as usize]),
+        };
+        handle.vertices.iter().map(of).collect()
+    };
+    handles.iter().zip(&partition.soft).map(one).collect()
 }

@@ -1,11 +1,12 @@
 //! The factored Laplacian: a global step, and the handles' harmonic weights.
 
-use pliant_mesh::Cancel;
+use pliant_mesh::{Cancel, Cancelled};
 use rayon::prelude::*;
 
 use super::cells::Quad;
 use super::domain::Domain;
 use super::matrix::System;
+use crate::BindError;
 use crate::budget::{Budget, filled};
 use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
@@ -56,6 +57,27 @@ impl From<FactorError> for PreconditionError {
             FactorError::Memory => Self::Memory,
             FactorError::Budget => Self::Budget,
             FactorError::Cancelled => Self::Cancelled,
+        }
+    }
+}
+
+impl PreconditionError {
+    /// The error as the caller sees it; `component` is that of a local vertex.
+    pub fn into_bind_error(self, domain: &Domain, component: impl Fn(usize) -> u32) -> BindError {
+        let free_count = domain.solved_count;
+        match self {
+            Self::Pivot(local) => BindError::NotPositiveDefinite {
+                component: component(local),
+                vertex: domain.vertices[local],
+            },
+            Self::Inaccurate(local, error) => BindError::Inaccurate {
+                component: component(local),
+                vertex: domain.vertices[local],
+                error,
+            },
+            Self::Memory => BindError::OutOfMemory { free_count },
+            Self::Budget => BindError::budget(free_count),
+            Self::Cancelled => BindError::Cancelled(Cancelled),
         }
     }
 }

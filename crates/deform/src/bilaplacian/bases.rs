@@ -35,7 +35,7 @@ struct Run {
 }
 
 impl HandleBases {
-    /// The surface vertices that are solved for, ascending: one a row.
+    /// The surface vertices that are solved for, ascending: one per row.
     pub fn vertices(&self) -> &[u32] {
         &self.vertices
     }

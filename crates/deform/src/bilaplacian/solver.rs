@@ -125,7 +125,7 @@ impl BilaplacianSolver {
             .collect();
         if self.system.shift() > 0.0 {
             sentences.push(format!(
-                "the bi-Laplacian was hardly positive definite on this mesh: {:.0e} of its diagonal was added, and the solution refined",
+                "the system was barely stable on this mesh: it was stiffened by {:.0e} of its diagonal and refined",
                 self.system.shift()
             ));
         }

@@ -58,7 +58,7 @@ impl Metric {
         (self.discretisation == Discretisation::Cotangent).then_some(self.mean_vertex_area)
     }
 
-    /// The terms of a triangle by corners and lengths; `stiffness` has one entry a surface vertex.
+    /// The terms of a triangle by corners and lengths; `stiffness` has one entry per surface vertex.
     pub fn face(&self, stiffness: &[f64], corners: [SurfaceVertex; 3], lengths: [f64; 3]) -> FaceTerms {
         let stiffness = corners.iter().map(|corner| stiffness[corner.index()]).sum::<f64>() / 3.0;
         if self.discretisation == Discretisation::Uniform {

@@ -74,7 +74,7 @@ pub(crate) fn place_in<T: Ord>(row: &[T], number: &T) -> Option<usize> {
 const ABSENT: u32 = u32::MAX;
 
 impl Laplacian {
-    /// The operator with full rows for all of `surface`; `stiffness` has one entry a vertex.
+    /// The operator with full rows for all of `surface`; `stiffness` has one entry per vertex.
     pub fn of(surface: &Surface, topology: &Topology, stiffness: &[f64]) -> Self {
         let all: Vec<u32> = (0..surface.positions.len() as u32).collect();
         Self::with_rows(surface, topology, stiffness, &all)

@@ -49,7 +49,7 @@ impl Vertices {
         own
     }
 
-    /// Writes their displacements, one a surface vertex.
+    /// Writes their displacements, one per surface vertex.
     pub fn write(&self, pose: &Pose, displacements: &mut [DVec3]) {
         let means: Vec<DVec3> = self
             .offsets

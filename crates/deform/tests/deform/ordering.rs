@@ -45,7 +45,7 @@ fn it_does_not_depend_on_the_number_of_threads() {
 fn it_keeps_the_factor_sparse() {
     let scene = Scene::new(shapes::icosphere(5)).with_ends(true);
     let bound = scene.bind();
-    // A band of two rings across the sphere would fill some 500 numbers a row.
+    // A band of two rings across the sphere would fill some 500 numbers per row.
     let per_row = bound.factor_len() / bound.solved_count();
     assert!(per_row < 200, "{per_row}");
 }

@@ -118,8 +118,8 @@ fn slivers_and_needles_are_solved() {
     }
 }
 
-/// A shape that nothing but one soft handle holds, by springs of next to nothing: beside the bi-Laplacian they are lost in
-/// rounding, and without them every translation is free.
+/// A shape that nothing but one soft handle holds, by springs of next to nothing: beside the bi-Laplacian they are lost
+/// in rounding, and without them every translation is free.
 fn adrift(drawn: &Drawn, order: BilaplacianOrder, weight: f64) -> Scene {
     let mut scene = Scene::new(drawn.clone()).with_ends(false);
     for role in &mut scene.roles {

@@ -98,7 +98,7 @@ impl<'de> Deserialize<'de> for Rotation {
             return refused("0, 0, 0, 0", "a quaternion x, y, z, w whose length is not 0");
         }
         let raw = DQuat::from_xyzw(x / largest, y / largest, z / largest, w / largest);
-        // What is normalised already keeps its bits, so that writing and reading an edit changes nothing.
+        // A quaternion that is normalised already keeps its bits, so that writing and reading an edit changes nothing.
         let direct = DQuat::from_xyzw(x, y, z, w);
         if (direct.length_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
             Ok(Self(direct))
@@ -199,7 +199,8 @@ impl<'de, const N: usize> Deserialize<'de> for Numbers<N> {
     }
 }
 
-/// A point or a direction, as three numbers: for `#[serde(with)]`, since glam knows serde only where everybody does.
+/// A point or a direction, as three numbers, for `#[serde(with)]`: glam's own serde feature would be on for every
+/// crate.
 pub(crate) mod vector {
     use super::{DVec3, Deserialize, Deserializer, Numbers, Serialize, Serializer};
 

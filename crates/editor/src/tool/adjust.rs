@@ -1,5 +1,5 @@
-//! A widget that is being dragged: whatever its commands change is shown at once and becomes one step at the end. The
-//! step itself is the workspace's, since commands add to it.
+//! A widget that is being dragged: the changes of its commands are shown at once and become one step at the end. The
+//! step itself belongs to the workspace, because commands add to it.
 
 use super::context::Context;
 use super::gesture::{Gesture, Next};

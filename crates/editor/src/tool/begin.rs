@@ -1,4 +1,4 @@
-//! What a button begins while nothing goes on: the gizmo comes first, then the surface, then the camera.
+//! The gesture that a button begins: the gizmo comes first, then the surface, then the camera.
 
 use super::constraint::Constraint;
 use super::context::Context;

@@ -1,8 +1,8 @@
 //! The brush: a disc of constant size on the screen that lies on the surface.
 //!
-//! Between two pointer events it is set down often enough that no gap is left. Each time it takes every vertex within
-//! its radius that is connected, within that radius, with the point under the pointer, and that faces the eye: the
-//! back of a thin part and a neighbouring finger stay clean.
+//! Between two pointer events there are enough dabs to leave no gap. A dab takes every vertex within its radius that is
+//! connected, within that radius, with the point under the pointer and that faces the eye: the back of a thin part and
+//! a neighbouring finger stay clean.
 
 use std::f64::consts::TAU;
 
@@ -13,17 +13,17 @@ use crate::view::{Pick, Picking};
 
 /// The smallest and largest radius, in points.
 pub const BRUSH_RADIUS_PX: std::ops::RangeInclusive<f64> = 2.0..=400.0;
-/// Where the brush is set down again, as a share of its radius: the scallops left are below 1% of the radius.
+/// The distance between dabs, as a share of the radius: the remaining scallops are below 1% of the radius.
 const SPACING: f64 = 0.25;
 const RING_SEGMENTS: usize = 48;
 
 /// How the brush measures what lies within its radius.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum BrushMetric {
-    /// What the disc on the screen covers, as far as it hangs together and faces the eye.
+    /// What the disc on the screen covers, if it is connected and faces the eye.
     #[default]
     Screen,
-    /// What is no farther along the surface: into folds and round edges, seen or not.
+    /// What is within the radius along the surface: into folds and around edges, visible or not.
     Surface,
     /// Everything that the disc on the screen covers, however far behind.
     Through,
@@ -91,7 +91,7 @@ impl Brush {
     fn dab(&mut self, picking: &Picking<'_>, pick: &Pick, radius_px: f64, visit: &mut impl FnMut(SurfaceVertex, f64)) {
         let radius = radius_px * picking.camera.world_per_px(pick.point, picking.viewport_px);
         self.begin(picking.model.surface.positions.len());
-        // However small the brush and large the triangles, something is painted: the nearest corner.
+        // Even if the brush is smaller than the triangles, the nearest corner is painted.
         visit(pick.vertex, 0.0);
         for vertex in picking.model.surface.triangles[pick.triangle as usize] {
             self.reach(picking, pick, radius, vertex);
@@ -176,7 +176,7 @@ fn sweep(
             visit(vertex, off_px / radius_px);
         }
     };
-    // The hierarchy of a shape that has moved on would miss what moved under the brush.
+    // The hierarchy of an earlier shape would miss what has moved under the brush.
     if picking.is_current {
         let planes = tube(picking, from_px, to_px, radius_px);
         picking.bvh.vertices_within(&planes, meet);
@@ -208,8 +208,8 @@ fn tube(picking: &Picking<'_>, from_px: DVec2, to_px: DVec2, radius_px: f64) -> 
     })
 }
 
-/// The brush's outline around a pick, a closed line. A brush that reaches through keeps its circle on the screen; any
-/// other lies on the surface, leaning as what it covers leans. Where the surface ends the line runs on in the brush's
+/// The brush's outline around a pick, a closed line. A brush that reaches through is a circle on the screen; any other
+/// lies on the surface, in the mean plane of what it covers. Where the surface ends the line continues in the brush's
 /// own plane.
 pub(crate) fn ring(picking: &Picking<'_>, position_px: DVec2, pick: &Pick, size: &BrushSize) -> Vec<DVec3> {
     let px = picking.camera.world_per_px(pick.point, picking.viewport_px);
@@ -220,7 +220,7 @@ pub(crate) fn ring(picking: &Picking<'_>, position_px: DVec2, pick: &Pick, size:
         BrushMetric::Screen | BrushMetric::Surface => leaning(picking, position_px, pick, size.radius_px, radius),
     };
     let (right, up) = normal.any_orthonormal_pair();
-    // Lifted towards the eye, so that the surface does not swallow it.
+    // Moved towards the eye, so that the surface does not hide it.
     let lifted = |point: DVec3| point + picking.camera.towards_eye(point) * px;
     (0..RING_SEGMENTS)
         .map(|step| {
@@ -235,8 +235,7 @@ pub(crate) fn ring(picking: &Picking<'_>, position_px: DVec2, pick: &Pick, size:
         .collect()
 }
 
-/// How the surface leans under the brush: the mean normal of what is seen within it, so that a rough scan does not make
-/// the ring flicker.
+/// The mean normal of the visible surface under the brush, so that a rough scan does not make the ring flicker.
 fn leaning(picking: &Picking<'_>, position_px: DVec2, pick: &Pick, radius_px: f64, radius: f64) -> DVec3 {
     const SAMPLES: usize = 12;
     let around = (0..SAMPLES).filter_map(|sample| {

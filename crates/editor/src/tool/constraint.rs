@@ -35,7 +35,7 @@ impl Constraint {
 
 /// Where on the line through `origin` along the unit vector `axis` the ray passes closest, as a length from `origin`.
 ///
-/// `None` where the ray runs nearly along the line, so that a small movement would mean a huge one.
+/// `None` if the ray is nearly parallel to the line, where a small movement would mean a huge one.
 pub(crate) fn along_axis(ray: Ray, origin: DVec3, axis: DVec3) -> Option<f64> {
     let cosine = ray.direction.dot(axis);
     let sine_squared = 1.0 - cosine * cosine;
@@ -46,8 +46,8 @@ pub(crate) fn along_axis(ray: Ray, origin: DVec3, axis: DVec3) -> Option<f64> {
     Some((cosine * ray.direction.dot(between) - axis.dot(between)) / sine_squared)
 }
 
-/// Where the ray meets the plane through `origin` across the unit vector `normal`; `None` where it runs nearly
-/// along the plane or away from it.
+/// Where the ray meets the plane through `origin` with the unit normal `normal`; `None` if it is nearly parallel to the
+/// plane or leads away from it.
 pub(crate) fn on_plane(ray: Ray, origin: DVec3, normal: DVec3) -> Option<DVec3> {
     let slope = ray.direction.dot(normal);
     if slope.abs() < 1e-3 {

@@ -1,4 +1,4 @@
-//! What tools and commands may touch.
+//! The parts of the program that tools and commands may change.
 
 use super::brush::Brush;
 use super::overlay::Overlay;
@@ -7,8 +7,8 @@ use crate::input::Pointer;
 use crate::view::{Pick, View};
 use crate::workspace::Workspace;
 
-/// The parts of the program, lent to a tool or a command while it does something. The gesture that goes on is not among
-/// them, nor are events that wait, keys, or what is drawn over the surface.
+/// The parts of the program, lent to a tool or a command for one call. The active gesture is not among them, nor are
+/// waiting events, keys or the overlay.
 pub(crate) struct Context<'a> {
     /// The document and what follows from it.
     pub(crate) workspace: &'a mut Workspace,

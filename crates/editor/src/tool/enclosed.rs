@@ -1,4 +1,4 @@
-//! Which vertices a closed line on the screen holds: looked for by a job, since what is seen takes a ray a vertex.
+//! The vertices inside of a closed line on the screen, found by a job, because visibility takes one ray per vertex.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::jobs::Pickable;
 use crate::view::{Camera, Picking, View};
 use crate::workspace::Workspace;
 
-/// How many vertices are asked between two looks at the progress.
+/// How many vertices are tested between two updates of the progress.
 const BATCH: usize = 16_384;
 /// The closed line's edges lie in bands of this height, so that a point is compared with a few of them.
 const BAND_PX: f64 = 4.0;
@@ -29,7 +29,7 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// A search in what is shown; `None` while rays can't be answered, or for a line without inside.
+    /// A search in the drawn shape; `None` while its hierarchy is not ready, or for a line without inside.
     pub(super) fn of(workspace: &Workspace, view: &View, corners_px: &[DVec2], depth: Depth) -> Option<Self> {
         Some(Self {
             model: Arc::clone(workspace.model()?),

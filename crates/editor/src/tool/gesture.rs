@@ -1,7 +1,7 @@
-//! What the pointer is doing: a stroke, a drag, an orbit; one state machine a file.
+//! What the pointer is doing: a stroke, a drag, an orbit; each is a state machine in a file of its own.
 //!
-//! A gesture is begun by a button, a key or a command ([`super::begin`]). It is asked about every event until it says
-//! that it has ended, and is told to abort when something else comes between; an aborted one leaves no trace.
+//! A gesture is begun by a button, a key or a command ([`super::begin`]). It gets every event until it ends, and is
+//! aborted if something else interrupts it; an aborted gesture leaves no trace.
 
 use glam::DVec2;
 use pliant_mesh::SurfaceVertex;
@@ -38,7 +38,7 @@ pub(crate) trait Gesture: std::fmt::Debug {
     /// What is shown over the surface meanwhile.
     fn lit(&self) -> Lit;
 
-    /// What goes on, for the status line; `None` where that is nothing to tell.
+    /// A sentence for the status line, if there is something to tell.
     fn status(&self, workspace: &Workspace, view: &View) -> Option<String>;
 
     /// The number to show beside what is dragged.
@@ -51,17 +51,17 @@ pub(crate) trait Gesture: std::fmt::Debug {
         Vec::new()
     }
 
-    /// Whether it moves the camera, so that the places it passes are none to come back to.
+    /// Whether it moves the camera: then the views on its way do not enter the camera's history.
     fn moves_camera(&self) -> bool {
         false
     }
 
-    /// Whether it measures with the camera that it began with, so that nothing else may zoom.
+    /// Whether it measures with the camera that it began with: then nothing else may zoom.
     fn holds_camera(&self) -> bool {
         false
     }
 
-    /// Whether it waits for a job that looks for what an outline holds.
+    /// Whether it waits for the job that finds the vertices inside of an outline.
     fn is_looking(&self) -> bool {
         false
     }

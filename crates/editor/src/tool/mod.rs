@@ -1,7 +1,7 @@
 //! What the left button does: tools, the gestures that they begin, brushes, and what is drawn over the surface.
 //!
-//! A tool is what a person has chosen ([`ToolMode`], [`ToolSettings`]); a gesture is what goes on while a button is
-//! held or a key has begun it ([`Gesture`]). A new gesture is a file of its own and a line in `begin.rs` or in the
+//! A tool is what a person has chosen ([`ToolMode`], [`ToolSettings`]); a gesture is active while a button is held or
+//! after a key has begun it ([`Gesture`]). A new gesture is a file of its own and a line in `begin.rs` or in the
 //! command that begins it.
 
 mod adjust;

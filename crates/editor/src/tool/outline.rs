@@ -1,4 +1,4 @@
-//! A lasso or a box over the view: what stands inside of it when the button goes up is painted as a stroke would.
+//! A lasso or a box over the view: when the button goes up, what is inside is painted as by a stroke.
 
 use glam::DVec2;
 use pliant_mesh::SurfaceVertex;

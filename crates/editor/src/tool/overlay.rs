@@ -1,7 +1,7 @@
-//! What lies over the surface: the brush's ring and the selected handle's gizmo.
+//! The overlay: the brush's ring and the selected handle's gizmo.
 //!
-//! While a brush is in hand strokes go through the gizmo, which is faded: only the part that the pointer rests on is
-//! lit, and grabbed by a press.
+//! While a brush is active the gizmo is faded and strokes go through it: only the part that the pointer rests on is
+//! highlighted, and a press grabs it.
 
 use glam::{DVec2, DVec3};
 
@@ -14,7 +14,7 @@ use crate::workspace::Workspace;
 /// What of the overlay is shown, by what goes on.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Lit {
-    /// Nothing goes on: the gizmo, with the part under the pointer lit, or else the brush's ring.
+    /// Without a gesture: the gizmo, with the part under the pointer highlighted, or else the brush's ring.
     Pointed,
     /// The gizmo, with this part lit.
     Gizmo(Option<GizmoPart>),
@@ -27,7 +27,7 @@ pub(crate) enum Lit {
 pub(crate) struct Overlay {
     pub(crate) ring: Vec<DVec3>,
     pub(crate) gizmo: Vec<GizmoShape>,
-    /// The part of the gizmo under the pointer, while nothing goes on.
+    /// The part of the gizmo under the pointer, without a gesture.
     pub(crate) hovered: Option<GizmoPart>,
     pub(crate) is_over_surface: bool,
     pub(crate) revision: u64,
@@ -35,7 +35,7 @@ pub(crate) struct Overlay {
     rested: Option<GizmoPart>,
 }
 
-/// How much of its colour the gizmo keeps while a brush is in hand.
+/// How much of its colour the gizmo keeps while a brush is active.
 const FADED: f64 = 0.4;
 
 impl Overlay {
@@ -70,7 +70,7 @@ impl Overlay {
             _ => None,
         };
         let is_painting = settings.mode != ToolMode::Select && lit == Lit::Pointed;
-        // Who moves off the part, or does anything else, rests no more.
+        // A pointer that leaves the part, or any other action, ends the rest.
         self.rested = self
             .rested
             .filter(|part| lit == Lit::Pointed && highlighted == Some(*part));

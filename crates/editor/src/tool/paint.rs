@@ -30,8 +30,8 @@ pub(crate) struct PaintStroke {
 }
 
 impl PaintStroke {
-    /// Begins a stroke with a first dab under the pointer. What was being bound is not wanted any more. `None`, with a
-    /// sentence, where the handle is locked.
+    /// Begins a stroke with a first dab under the pointer and cancels the binding that is under way. `None`, with a
+    /// sentence, if the handle is locked.
     pub(super) fn begin(context: &mut Context<'_>, pointer: Pointer) -> Option<Self> {
         let mut stroke = Self::begin_without_dab(context.workspace, context.settings, pointer)?;
         stroke.dab(context, pointer.position_px);
@@ -114,7 +114,7 @@ impl PaintStroke {
         self.take(context.workspace, met);
     }
 
-    /// Gives vertices the stroke's paint; those of locked handles and what is hidden or locked keep theirs.
+    /// Paints vertices; those of locked handles and those that are hidden or locked keep their paint.
     fn take(&self, workspace: &mut Workspace, mut vertices: Vec<SurfaceVertex>) {
         let document = &workspace.document;
         vertices.retain(|vertex| document.paint[vertex.index()] != self.paint);

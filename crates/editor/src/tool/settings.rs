@@ -1,4 +1,4 @@
-//! What a person has chosen for tools: which one, how it takes vertices, how the gizmo stands.
+//! The settings of tools: which one is chosen, how it selects vertices, how the gizmo is oriented.
 
 use super::brush::{BRUSH_RADIUS_PX, BrushSize};
 use super::mode::{Depth, StrokeShape, ToolMode};
@@ -14,7 +14,7 @@ pub(crate) struct ToolSettings {
     pub(crate) depth: Depth,
     pub(crate) brush: BrushSize,
     pub(crate) stiffness_brush: StiffnessBrush,
-    /// How hard a pen presses, 0 to 1; `None` until the system has said so.
+    /// How hard a pen presses, 0 to 1; `None` until the system reports it.
     pub(crate) pressure: Option<f64>,
     pub(crate) gizmo_mode: GizmoMode,
     pub(crate) orientation: GizmoOrientation,
@@ -23,7 +23,7 @@ pub(crate) struct ToolSettings {
 }
 
 impl ToolSettings {
-    /// The role that region commands speak of: the tool's, else the selected handle's.
+    /// The role that region commands apply to: the tool's, else the selected handle's.
     pub(crate) fn role_in_hand(&self, selected: Option<HandleId>) -> Option<Paint> {
         match self.mode {
             ToolMode::PaintFree => Some(Paint::Free),
@@ -39,7 +39,7 @@ impl ToolSettings {
         }
     }
 
-    /// How hard the pen presses; what reports no force presses fully.
+    /// How hard the pen presses; 1 for a device that reports no force.
     pub(crate) fn set_pressure(&mut self, pressure: Option<f64>) {
         let usable = pressure.filter(|pressure| pressure.is_finite());
         if pressure.is_some() || self.pressure.is_some() {

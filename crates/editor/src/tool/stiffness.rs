@@ -1,8 +1,8 @@
 //! A stroke of the stiffness brush: towards a value, towards the neighbours, or back to 1.
 //!
-//! Stiffness spans six decades, so everything is blended in its logarithm. Within one stroke a vertex is as far on its
-//! way as the firmest dab that met it: going over the same place again without letting go adds nothing, and a stroke
-//! looks the same however many events the pointer sent. Smoothing alone adds up.
+//! Stiffness spans six decades, so everything is blended in its logarithm. Within one stroke a vertex is changed as far
+//! as by its firmest dab: going over the same place again without letting go adds nothing, and a stroke does not depend
+//! on how many events the pointer sent. Only smoothing accumulates.
 
 use glam::DVec2;
 use pliant_mesh::{SurfaceVertex, Topology};
@@ -68,7 +68,7 @@ impl StiffnessStroke {
         if met.is_empty() {
             return;
         }
-        // The shape that is shown was made with another stiffness: it is kept, as with every stroke.
+        // The present shape was made with another stiffness; it is kept, as with every stroke.
         workspace.document.keep_shape();
         if self.brush.action == StiffnessAction::Smooth {
             if let Some(model) = workspace.model().cloned() {
@@ -143,7 +143,7 @@ impl Gesture for StiffnessStroke {
     }
 }
 
-/// Takes vertices towards the mean of their neighbours, as firmly as they were met; gives them back.
+/// Moves vertices' values towards the mean of their neighbours, by their firmness in the dab; returns them.
 fn smooth(mut met: Vec<(SurfaceVertex, f64)>, field: &mut [f64], topology: &Topology) -> Vec<SurfaceVertex> {
     // Every new value comes from old ones, whatever the order of the vertices.
     met.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));

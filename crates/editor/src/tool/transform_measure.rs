@@ -1,4 +1,4 @@
-//! How far the pointer, or a typed number, has taken a transform: a way, an angle, a factor.
+//! The length, angle or factor of a transform, from the pointer or a typed number.
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -79,7 +79,7 @@ impl Measure {
         self.last_px = position_px;
     }
 
-    /// The turn counts from the start again, along another constraint.
+    /// The angle starts again, about another axis.
     pub(super) fn restart(&mut self, view: &View) {
         self.turned_rad = 0.0;
         if self.kind == TransformKind::Turn {
@@ -87,7 +87,7 @@ impl Measure {
         }
     }
 
-    /// How far, by what angle or factor it has come, as typed or as the pointer says.
+    /// The length, angle or factor, as typed or as the pointer gives it.
     pub(super) fn label(&self, view: &View) -> String {
         let typed = self.number.text();
         match (typed.is_empty(), self.kind) {

@@ -1,4 +1,4 @@
-//! Images in: PNG, JPEG, WebP and KTX2 to pixels, whole or smaller.
+//! Decodes PNG, JPEG, WebP and KTX2 to pixels, in full size or smaller.
 
 use std::io::Cursor;
 
@@ -104,7 +104,7 @@ fn failed(error: &dyn std::fmt::Display) -> ImageError {
     ImageError { reason: quoted(&words) }
 }
 
-/// Each pixel the mean of those that it stands for. A few rows at a time, so that no whole copy is made.
+/// Each pixel is the mean of those that it replaces. A few rows at a time, so that no whole copy is made.
 fn halved(image: DynamicImage, halvings: u32) -> Rgba8 {
     let [width, height] = [image.width(), image.height()];
     let [new_width, new_height] = [width, height].map(|side| (side >> halvings).max(1));
@@ -174,7 +174,7 @@ fn comes_by_blocks(encoded: &[u8]) -> bool {
     false
 }
 
-/// The MIME type that an image's first bytes tell, for glTF; `None` for kinds that no glTF extension knows.
+/// The MIME type by an image's first bytes, for glTF; `None` for formats that no glTF extension has.
 pub(crate) fn mime_type(encoded: &[u8]) -> Option<&'static str> {
     let is_webp = encoded.starts_with(b"RIFF") && encoded.get(8..12) == Some(b"WEBP");
     match encoded {

@@ -1,4 +1,4 @@
-//! All images of a document within one budget of memory: what does not fit is decoded smaller.
+//! Decodes all images of a document within one memory budget: those that do not fit are decoded smaller.
 //!
 //! A few bytes may be an image of a gigabyte, and a document may hold many. Sizes are known from the headers, so it is
 //! decided before anything is decoded: the largest images are halved until all of them fit beside the memory that
@@ -29,7 +29,7 @@ pub struct DecodedImage {
     pub stored_size: [u32; 2],
 }
 
-/// Decodes images, beside each other as far as `budget` bytes allow; each gets pixels or a sentence.
+/// Decodes images, in parallel as far as `budget` bytes allow; each becomes pixels or a sentence.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `cancel` is raised: between two rounds.

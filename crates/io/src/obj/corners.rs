@@ -11,7 +11,7 @@ use pliant_mesh::{Cancel, Cancelled, Drawn, DrawnVertex, FileVertex};
 use super::statements::{NONE, Statements, UNUSED};
 use crate::polygon::{CORNERS_BETWEEN_LOOKS, triangulate};
 
-/// How many combinations of one `v` line are looked through one by one before a table is asked.
+/// How many combinations of one `v` line are searched linearly before a table is used.
 const LONGEST_CHAIN: u32 = 16;
 
 /// The drawn set of an OBJ file and what each drawn vertex looks up.

@@ -221,7 +221,7 @@ impl Stored {
         materials::neighbours(&self.materials)
     }
 
-    /// A warning that names what of the materials a file of another kind goes without.
+    /// A warning that names what of the materials a file of another format does not have.
     pub(crate) fn materials_lost(&self, kind: &str) -> Option<String> {
         materials::unread_lost(&self.materials, kind)
     }

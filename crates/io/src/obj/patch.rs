@@ -1,10 +1,10 @@
 //! An edited OBJ file: the bytes as read, with other numbers in the `v` lines of moved vertices and in the `vn` lines
 //! that only moved vertices use.
 //!
-//! Exporters share one `vn` line among all corners that happen to look the same way, so a `vn` has no single vertex
-//! to follow. The rule: a `vn` turns only where every vertex that uses it moved, and then by the mean of what its
-//! users ask for; one that also serves a vertex at rest keeps its bytes, since that vertex must look as it did. Both
-//! compromises are told where they are visible. New `vn` lines are not made: faces would have to change with them.
+//! Exporters share one `vn` line among all corners with the same normal, so a `vn` has no single vertex to follow. The
+//! rule: a `vn` is rotated only if every vertex that uses it moved, and then by the mean of their rotations. One that
+//! is also used by a vertex at rest keeps its bytes, because that vertex must look as before. Both compromises are
+//! reported if they are visible. New `vn` lines are not made, because faces would have to change with them.
 
 use glam::DVec3;
 use pliant_mesh::{Cancelled, DrawnVertex};
@@ -15,7 +15,7 @@ use crate::save::course::{Course, STEP};
 use crate::save::moved::Moved;
 use crate::text::{Cursor, Splice, push_f32, push_f64};
 
-/// Users of one `vn` that turn away from their mean by more than this are told of: the cosine of 5 degrees.
+/// Users of one `vn` that deviate from their mean by more than this are reported: the cosine of 5 degrees.
 const AGREEMENT: f64 = 0.996_194_698;
 
 /// The new bytes and the warnings.

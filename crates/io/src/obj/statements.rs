@@ -1,4 +1,4 @@
-//! An OBJ file's statements as they stand, with the place of every coordinate in the file.
+//! An OBJ file's statements, with the place of every coordinate in the file.
 //!
 //! Only what draws or moves is kept (`v`, `vt`, `vn`, `f`, `usemtl`, `mtllib`, `o`, `g`); everything else is passed
 //! over and stays in the bytes. Indices are resolved to numbers from 0; a corner may name a `v` line that comes later.
@@ -12,10 +12,10 @@ use crate::text::{Cursor, excerpt, malformed_at};
 use crate::{Format, ReadError};
 use glam::DVec3;
 
-/// Stands where a corner names no texture coordinate or no normal.
+/// For a corner without a texture coordinate or without a normal.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Stands where no corner has named a drawn vertex yet; also the limit of every count.
+/// For a drawn vertex that no corner has named yet; also the limit of every count.
 pub(super) const UNUSED: u32 = NONE - 1;
 
 /// One corner of a face: numbers of `v`, `vt` and `vn` lines from 0, the latter two possibly [`NONE`].

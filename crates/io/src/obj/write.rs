@@ -17,7 +17,7 @@ use crate::save::{OutputFile, Role, Saved, own_stem};
 use crate::text::{push_f32, push_f64};
 use crate::{Appearance, SaveError};
 
-/// Writes a mesh as OBJ: a `v` (with its colour), `vt` and `vn` line a drawn vertex, and its faces by object and
+/// Writes a mesh as OBJ: a `v` (with its colour), `vt` and `vn` line per drawn vertex, and its faces by object and
 /// material.
 pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
@@ -58,7 +58,7 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
 /// What a material library can't say of the materials.
 fn left_out(look: &Appearance) -> Option<String> {
     let any = |has: &dyn Fn(&Material) -> bool| lost_where(look.materials.iter().any(has));
-    // Metal that is rough all over is what glTF takes where a file says nothing.
+    // Fully rough metal is glTF's default, for a file that does not specify it.
     let is_said = |material: &Material| material.metallic > 0.0 && material.roughness < 1.0;
     lost(
         "OBJ",
@@ -78,7 +78,7 @@ fn left_out(look: &Appearance) -> Option<String> {
     )
 }
 
-/// Whether a material says nothing that a reader wouldn't assume.
+/// Whether a material is what a reader assumes by default.
 fn is_plain(material: &Material) -> bool {
     let plain = Material {
         double_sided: material.double_sided,
@@ -242,7 +242,7 @@ fn image_files(look: &Appearance, stem: &str, warnings: &mut Vec<String>) -> Vec
         }
         if image.origin == Origin::Outside && !name_of.contains_key(&image.encoded.place()) {
             let name = quoted(&image.name);
-            // A stranger's file may point at anything there, and would carry it away as an image.
+            // A file from a stranger may name anything there, and a private file would be copied as an image.
             if !decodes(&image.encoded) {
                 warnings.push(format!("{name} {NO_IMAGE}"));
                 return None;

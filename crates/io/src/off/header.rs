@@ -83,7 +83,7 @@ pub(super) fn parse<'a>(source: &Source<'a>) -> Result<(Header, Cursor<'a>), Rea
     header.faces = count("faces")?;
     // The number of edges, which nobody needs and some leave out, ends the line.
     cursor.next_line();
-    // Three digits with separators a vertex, one a face; the last needs no separator behind it.
+    // Three digits with separators per vertex, one per face; the last needs no separator behind it.
     let least = header
         .vertices
         .saturating_mul(6)

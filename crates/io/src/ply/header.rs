@@ -1,4 +1,4 @@
-//! A PLY file's header: which elements follow, how many, and of what their records are made.
+//! A PLY file's header: which elements follow, how many, and their properties.
 
 use super::scalar::{Encoding, Scalar};
 use crate::source::{Looks, Source};
@@ -21,7 +21,7 @@ pub(super) struct Property {
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(super) struct Element {
     pub(super) name: String,
-    /// How many records the header promises; the bytes have to bear it out.
+    /// How many records the header promises, checked against the bytes later.
     pub(super) count: u64,
     pub(super) properties: Vec<Property>,
 }

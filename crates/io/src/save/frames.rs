@@ -31,7 +31,7 @@ pub(crate) struct Frames {
 }
 
 impl Frames {
-    /// The frames between a rest shape and new positions (one a drawn vertex), grouped by the rest normals given.
+    /// The frames between a rest shape and new positions (one per drawn vertex), grouped by the rest normals given.
     pub fn of(drawn: &Drawn, positions: &[DVec3], normals: &[DVec3], course: &Course<'_>) -> Result<Self, Cancelled> {
         let (of_groups, course) = course.split(0.4);
         let (group_of, group_count) = group(drawn, positions, normals, &of_groups)?;

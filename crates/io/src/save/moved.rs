@@ -27,7 +27,7 @@ pub(crate) fn check_single(position: DVec3, file_vertex: FileVertex) -> Result<(
 /// position is finite in single precision, whatever kind of file it goes to: nearly every reader keeps no more.
 pub(crate) struct Moved<'a> {
     pub drawn: &'a Drawn,
-    /// New world positions, one a drawn vertex.
+    /// New world positions, one per drawn vertex.
     pub positions: &'a [DVec3],
     any: bool,
     of_file: OnceLock<Vec<Option<DVec3>>>,

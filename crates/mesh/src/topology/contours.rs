@@ -36,8 +36,8 @@ const ROUNDS: usize = 12;
 /// How near a point may come to an edge's ends, as a share of its length.
 const CLEARANCE: f64 = 0.08;
 
-/// The lines around the regions of equal `labels` (one a vertex), by triangle. Where regions meet, the line belongs to
-/// the higher label: none is drawn twice.
+/// The lines around the regions of equal `labels` (one per vertex), by triangle. Where regions meet, the line belongs
+/// to the higher label: none is drawn twice.
 pub fn contours(surface: &Surface, labels: &[u16]) -> Vec<ContourLine> {
     let mut lines: Vec<ContourLine> = surface
         .triangles

@@ -108,7 +108,7 @@ impl Topology {
         Faces::around(v, self.neighbours(v), triangles, &self.runs)
     }
 
-    /// Row starts into [`Self::neighbour_list`]: one a vertex and the list's length (nothing for a default topology).
+    /// Row starts into [`Self::neighbour_list`]: one per vertex and the list's length (nothing for a default topology).
     pub fn neighbour_offsets(&self) -> &[u32] {
         &self.neighbour_offsets
     }

@@ -70,7 +70,7 @@ impl Places {
         }
     }
 
-    /// Where an accessor's elements stand, the sparse ones' values and indices behind the dense ones.
+    /// The places of an accessor's elements; values and indices of sparse ones come after the dense ones.
     pub fn of_accessor(&self, accessor: usize) -> &[Strided] {
         &self.groups[self.group_of[accessor]].places
     }
@@ -81,7 +81,7 @@ impl Places {
         (group, &self.groups[group].accessors)
     }
 
-    /// Whether an accessor shares a byte with one that stands elsewhere.
+    /// Whether an accessor shares a byte with one at another place.
     pub fn is_overlapped(&self, accessor: usize) -> bool {
         let number = self.group_of[accessor];
         let group = &self.groups[number];

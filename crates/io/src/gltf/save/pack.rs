@@ -30,7 +30,7 @@ pub(crate) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
     for (buffer, bytes) in document.buffers.iter().zip(&patched.buffers) {
         homes.push(match buffer {
             Buffer::Decoded(_) => break,
-            // What stands in for compressed bytes stays a buffer without any.
+            // The fallback buffer of compressed bytes stays a buffer without bytes.
             Buffer::Absent => {
                 placeholders.push(homes.len());
                 Home::Placeholder(placeholders.len())
@@ -68,7 +68,7 @@ pub(crate) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
         if let ImageFile::Neighbour { path, .. } = &document.images[number]
             && uri::inside(path).is_none()
         {
-            // A stranger's file may point at anything there, and would carry it away as an image.
+            // A file from a stranger may name anything there, and a private file would be copied as an image.
             if !*sound.entry(bytes.place()).or_insert_with(|| decodes(bytes)) {
                 let path = quoted(path);
                 warnings.push(format!("{path} {NO_IMAGE}"));
@@ -111,8 +111,8 @@ pub(crate) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
     Ok(saved(save, bytes, Vec::new(), warnings))
 }
 
-/// Refuses a buffer outside the file's folder that no accessor reads: a stranger's file may point at anything there,
-/// and would carry it away.
+/// Refuses a buffer outside the file's folder that no accessor reads: a file from a stranger may name anything there,
+/// and a private file would be copied.
 fn refuse_unused(document: &Document, save: &Save<'_>) -> Result<(), SaveError> {
     let is_outside = |buffer: &Buffer| matches!(buffer, Buffer::Neighbour { path, .. } if uri::inside(path).is_none());
     if !document.buffers.iter().any(is_outside) {
@@ -129,7 +129,7 @@ fn refuse_unused(document: &Document, save: &Save<'_>) -> Result<(), SaveError> 
         _ => None,
     });
     let views: BTreeSet<usize> = views.map(|view| view.value()).chain(images).collect();
-    // The text says where a view stands; one that was decoded from compressed bytes stands elsewhere by now.
+    // The place in the text, because a view that was decoded from compressed bytes refers to another buffer by now.
     let mut used: BTreeSet<usize> = BTreeSet::new();
     for &at in views.iter().filter_map(|&view| document.views_at.get(view)) {
         let extensions = json.member(at, "extensions");
@@ -156,7 +156,7 @@ fn refuse_unused(document: &Document, save: &Save<'_>) -> Result<(), SaveError> 
     Ok(())
 }
 
-/// Puts bytes at the next multiple of four and says where they begin.
+/// Appends bytes at the next multiple of four and returns where they begin.
 fn append(bin: &mut Vec<u8>, bytes: &[u8]) -> usize {
     let start = bin.len().next_multiple_of(4);
     bin.resize(start, 0);
@@ -173,7 +173,7 @@ enum Home {
     Placeholder(usize),
 }
 
-/// Lets every buffer view, and what it says of compressed bytes, point where its buffer went.
+/// Makes every buffer view and its compression extension refer to its buffer's new place.
 fn move_views(json: &Json, homes: &[Home], edits: &mut Edits) {
     for view in elements(json, "bufferViews") {
         let extensions = json.member(view, "extensions");
@@ -218,7 +218,7 @@ fn set_buffers(json: &Json, length: usize, placeholders: &[usize], edits: &mut E
     let mut members: Vec<String> = vec![format!("\"byteLength\":{length}")];
     members.extend(kept.map(|(key, value)| format!("{}:{}", text(key), text(value))));
     let mut buffers = Vec::new();
-    // The placeholders' numbers begin at 1, so the packed buffer stands there even if it is empty.
+    // The placeholders' numbers begin at 1, so the packed buffer is kept even if it is empty.
     if length > 0 || !placeholders.is_empty() {
         buffers.push(format!("{{{}}}", members.join(",")));
     }

@@ -1,4 +1,4 @@
-//! A save's changes to the JSON text and the buffers' bytes, and to nothing else.
+//! A save's changes to the JSON text and to the buffers' bytes.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
@@ -83,8 +83,8 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// Puts bytes behind a buffer's others (those of `home` where it can take them) and gives the number of a view of
-    /// them, which has `members` beside its place; `None` where the file has no buffer with bytes.
+    /// Appends bytes to a buffer (`home`, if it can take them) and returns the number of a new view of them, which has
+    /// `members` besides its place; `None` if the file has no buffer with bytes.
     pub(crate) fn new_view(
         &mut self,
         home: Option<usize>,
@@ -107,7 +107,7 @@ impl<'a> Patch<'a> {
         Some(view)
     }
 
-    /// A buffer's bytes, to be changed; `None` where the save already takes more than the file justifies.
+    /// A buffer's bytes, to be changed; `None` if the save already takes more memory than the file justifies.
     pub(super) fn own(&mut self, buffer: usize) -> Option<&mut Vec<u8>> {
         let bytes = &mut self.out.buffers[buffer];
         if matches!(bytes, Cow::Borrowed(_)) {
@@ -143,7 +143,7 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// Adds the clones behind the meshes and lets their nodes show them.
+    /// Adds the clones after the meshes and makes their nodes refer to them.
     pub(crate) fn clone_meshes(&mut self, copies: &[MeshCopy]) {
         let json = &self.document.json;
         let mut clones = Vec::new();
@@ -203,7 +203,7 @@ const MOST_SAVED: usize = 4;
 
 const TOO_MANY_COPIES: &str = "an edit that needs more copies of the same bytes than a file of its size justifies";
 
-/// The refusal of something that no accessor of the file's can be.
+/// The refusal of `what`, which the file's accessors can't hold.
 pub(crate) fn cannot_hold(what: String, format: Format) -> SaveError {
     SaveError::CannotHold {
         what,

@@ -1,4 +1,4 @@
-//! Draco-compressed meshes that an edit changed, written out plainly.
+//! Writes Draco-compressed meshes that an edit changed without compression.
 //!
 //! A mesh's compressed data holds all its attributes at once, so that one of them can't change alone: its accessors
 //! get bytes of their own and its primitives lose the extension, in the mesh and in its clones alike.
@@ -92,14 +92,14 @@ impl Patch<'_> {
         let at = document.accessors_at[accessor];
         self.edits
             .set_member(&document.json, at, "bufferView", &view.to_string());
-        // Without a view of its own an accessor's offset said nothing; in the new one its elements begin at the start.
+        // Without a view the accessor's offset had no meaning; in the new view its elements begin at the start.
         if let Some(offset) = document.json.member(at, "byteOffset") {
             self.edits.replace(document.json.span(offset), "0");
         }
         Ok(())
     }
 
-    /// Takes an extension off the lists of those used and required.
+    /// Removes an extension from the lists of those used and required.
     fn take_off_lists(&mut self, name: &str) {
         let json = &self.document.json;
         let mut emptied = Vec::new();

@@ -28,7 +28,8 @@ pub(super) fn attributes(
     let looks = &mesh.appearance;
     let count = vertices.len();
     let each = || vertices.iter().map(|&v| v as usize);
-    // A vertex that is not finite is used by no triangle; it keeps its number and stands with the first sound one.
+    // A vertex that is not finite is used by no triangle; it keeps its number and gets the position of the first finite
+    // one.
     let stand_in = each().map(|v| positions[v]).find(|position| position.is_finite());
     let stand_in = stand_in.unwrap_or(Vec3::ZERO);
     let sound = |v: usize| {
@@ -75,8 +76,8 @@ pub(super) fn attributes(
     Ok(attributes)
 }
 
-/// Normals of unit length, as glTF insists: the file's own, or where it has none the mean of the faces around, by
-/// area; vertices of one file vertex share it.
+/// Normals of unit length, as glTF requires: the file's own, or, if it has none, the area-weighted mean of the faces
+/// around; vertices of one file vertex share it.
 pub(super) fn unit_normals(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Vec<Vec3>, Cancelled> {
     let count = mesh.positions.len();
     let (of_faces_around, of_vertices) = course.split(0.6);
@@ -111,7 +112,7 @@ pub(super) fn unit_normals(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Ve
 /// The accessor of the corners of a primitive's triangles.
 pub(super) fn indices(out: &mut Built, corners: impl ExactSizeIterator<Item = u32>, vertex_count: usize) -> usize {
     let count = corners.len();
-    // The largest number of each type is kept for restarting strips.
+    // The largest number of each type is reserved for restarting strips.
     let is_short = vertex_count <= usize::from(u16::MAX);
     let view = if is_short {
         out.view(

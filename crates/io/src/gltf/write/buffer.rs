@@ -1,4 +1,4 @@
-//! A glTF that is being put together: its one buffer, the views and accessors into it.
+//! A glTF under construction: its one buffer, and the views and accessors into it.
 
 use serde_json::{Value, json};
 

@@ -53,7 +53,7 @@ impl Looks {
             "metallicFactor": unit(material.metallic),
             "roughnessFactor": unit(material.roughness),
         });
-        // A texture without coordinates to look it up by is an error in glTF.
+        // A texture without texture coordinates is an error in glTF.
         let image = material.base_colour_image.filter(|_| mesh.appearance.uvs.is_some());
         if let Some(image) = image.and_then(|image| self.image(out, mesh, image)) {
             surface["baseColorTexture"] = json!({ "index": self.texture(image, material.wrap) });
@@ -103,7 +103,7 @@ impl Looks {
             return Some(same);
         }
         if found.origin == Origin::Outside && !decodes(&found.encoded) {
-            // A stranger's file may point at anything there, and would carry it away as an image.
+            // A file from a stranger may name anything there, and a private file would be copied as an image.
             out.warnings.push(format!("{name} {NO_IMAGE}"));
             self.image_of.insert(image, None);
             return None;
@@ -154,7 +154,7 @@ impl Looks {
     }
 }
 
-/// Where a value stands in a section, which it joins if it is new.
+/// The number of a value in a section; a new value is appended.
 pub(super) fn index_of(section: &mut Vec<Value>, value: Value) -> usize {
     let known = section.iter().position(|other| *other == value);
     known.unwrap_or_else(|| {

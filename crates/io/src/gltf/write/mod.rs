@@ -1,8 +1,8 @@
-//! A new glTF from the other kinds: a node and a mesh for each named part, a primitive for each material in it.
+//! A new glTF from another format: a node and a mesh for each named part, a primitive for each material in it.
 //!
-//! A file of one part keeps the order and number of the drawn vertices; of several, each takes the vertices that it
-//! uses, in their order, so that those on a rim between two come twice. Where the shape stands so far out that f32
-//! would round it, the vertices are taken relative to its centre and the node carries the way there.
+//! A file of one part keeps the order and number of the drawn vertices. Of several parts, each has the vertices that it
+//! uses, in their order, so that those between two parts occur twice. If the shape is so far from the origin that f32
+//! would round it, its vertices are relative to its centre, and the node has the translation.
 
 mod attributes;
 mod buffer;
@@ -35,7 +35,7 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
     })
 }
 
-/// The mesh as a `.gltf` and its buffer, which is called as OUT is.
+/// The mesh as a `.gltf` and its buffer, which has OUT's name.
 pub(crate) fn write_new_gltf(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let mut built = build(mesh, Format::Gltf, course)?;
     let buffer_name = format!("{}.bin", own_stem(mesh.name));
@@ -130,7 +130,7 @@ fn about_centre(mesh: &NewMesh<'_>) -> (Vec<Vec3>, DVec3) {
 
 /// The numbers that vertices have in the part at hand.
 struct Numbering {
-    /// By the mesh's number; whatever it was before for vertices of other parts.
+    /// By the mesh's number; vertices of other parts keep earlier values.
     own: Vec<u32>,
     count: usize,
 }

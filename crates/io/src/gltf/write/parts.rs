@@ -34,7 +34,7 @@ impl NamedPart<'_> {
     }
 }
 
-/// The triangles in the order in which the parts hold them; `None` where that is all of them, as they were.
+/// The triangles in the order of the parts; `None` if that is the mesh's own order, with none left out.
 pub(super) fn order(parts: &[NamedPart<'_>], count: usize) -> Option<Vec<u32>> {
     let written = || parts.iter().flat_map(|part| part.triangles.values().flatten().copied());
     let is_old = written().eq(0..count as u32);

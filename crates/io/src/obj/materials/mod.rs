@@ -1,6 +1,7 @@
 //! The materials that an OBJ file's `mtllib` libraries give to its `usemtl` names, read by `tobj`.
 //!
-//! Nothing here can stop a file from being opened: what is missing or can't be read becomes a note and is drawn plain.
+//! No error here prevents a file from being opened: a material that is missing or can't be read becomes a note and is
+//! drawn plain.
 
 mod library;
 mod names;
@@ -93,7 +94,7 @@ pub(super) fn look_up(source: &Source<'_>, libraries: &[&[u8]], names: &[String]
     out
 }
 
-/// More libraries than any file has; beyond this many names, the file only asks for work.
+/// The most libraries that are read: more than any real file has.
 const MOST_LIBRARIES: usize = 256;
 
 /// The bytes of a library, with its path: the whole rest of the line as one name, or else each word as one.
@@ -112,7 +113,7 @@ fn read_library(source: &Source<'_>, library: &[u8]) -> Result<Vec<(String, Byte
     }
 }
 
-/// Reads an image where it is said to be, or by its bare name beside the file (paths of another computer).
+/// Reads an image at its path, or by its bare name beside the file (for paths of another computer).
 ///
 /// `known` says which image each place in memory is, so that one file is one image however its path is spelt.
 fn read_image(

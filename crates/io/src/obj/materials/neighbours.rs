@@ -1,11 +1,12 @@
-//! What of the libraries and textures a saved OBJ file takes along, and what it leaves behind.
+//! Which libraries and textures are copied with a saved OBJ file, and which are not.
 
 use super::Materials;
 use super::library::is_other_map;
 use crate::save::{OutputFile, Role};
 use crate::text::excerpt;
 
-/// The libraries and textures that an OBJ file in another folder needs beside it, and what stays behind.
+/// The libraries and textures that an OBJ file in another folder needs beside it, and warnings about those that are not
+/// copied.
 pub(in crate::obj) fn neighbours(materials: &Materials) -> (Vec<OutputFile>, Vec<String>) {
     let (mut files, mut warnings): (Vec<OutputFile>, Vec<String>) = (Vec::new(), Vec::new());
     let libraries = materials.libraries.iter();
@@ -36,7 +37,7 @@ pub(in crate::obj) fn neighbours(materials: &Materials) -> (Vec<OutputFile>, Vec
     (files, warnings)
 }
 
-/// A warning that names what of the libraries a file of another kind goes without.
+/// A warning that names the statements of the libraries that a file of another format does not have.
 pub(in crate::obj) fn unread_lost(materials: &Materials, kind: &str) -> Option<String> {
     let names: Vec<&str> = materials.unread.iter().map(String::as_str).collect();
     (!names.is_empty()).then(|| {

@@ -41,7 +41,7 @@ pub(super) struct Records {
     pub(super) columns: Columns,
     pub(super) places: Places,
     pub(super) positions: Vec<DVec3>,
-    /// Empty where the vertices have none. f32: drawn, and turned on saving, where f32 is what normals need.
+    /// Empty if the vertices have none. f32 is enough for drawing normals, and for rotating them on saving.
     pub(super) normals: Vec<[f32; 3]>,
     /// From 0 to 1, as stored; empty where the vertices have none.
     pub(super) colours: Vec<[f32; 4]>,

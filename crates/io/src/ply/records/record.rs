@@ -1,4 +1,4 @@
-//! One record after the other, whatever the element.
+//! Reads the records of any element.
 
 use crate::ply::header::{Element, Header, Kind};
 use crate::ply::scalar::{Encoding, Walk};
@@ -21,7 +21,7 @@ pub(super) fn cut_short(source: &Source<'_>, element: &Element, record: u64, at:
     source.malformed(Format::Ply, reason)
 }
 
-/// Items of a list between two looks at whether they are still wanted.
+/// Items of a list between two checks for cancellation.
 const ITEMS_BETWEEN_LOOKS: u64 = 1 << 12;
 
 /// Reads one record, giving each scalar with its property's number and each list's items.
