@@ -191,7 +191,7 @@ impl ArapSolver {
                 PreconditionError::Memory => BindError::OutOfMemory {
                     free_count: domain.solved_count,
                 },
-                PreconditionError::Budget => BindError::budget(domain.solved_count),
+                PreconditionError::Budget(limit) => BindError::budget(domain.solved_count, limit),
                 PreconditionError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
             })?;
         cancel.check()?;

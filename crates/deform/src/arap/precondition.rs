@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::cells::Quad;
 use super::domain::Domain;
 use super::matrix::System;
-use crate::budget::{Budget, filled};
+use crate::budget::{Budget, Limit, filled};
 use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
 use crate::sparse::cholesky::Factor;
@@ -44,7 +44,7 @@ pub(crate) enum PreconditionError {
     /// A constant is missed by this much at this solved vertex.
     Inaccurate(usize, f64),
     Memory,
-    Budget,
+    Budget(Limit),
     Cancelled,
 }
 
@@ -53,7 +53,7 @@ impl From<FactorError> for PreconditionError {
         match error {
             FactorError::Pivot(column) => Self::Pivot(column),
             FactorError::Memory => Self::Memory,
-            FactorError::Budget => Self::Budget,
+            FactorError::Budget(limit) => Self::Budget(limit),
             FactorError::Cancelled => Self::Cancelled,
         }
     }

@@ -73,11 +73,11 @@ impl Factor {
     ) -> Result<Self, FactorError> {
         let mut refused = None;
         let mut factor = Self::analysed(matrix, ends, budget)?;
-        for shift in SHIFTS {
+        for shift in factor.affordable(&SHIFTS, budget) {
             if cancel.is_cancelled() {
                 return Err(FactorError::Cancelled);
             }
-            match factor.fill(matrix, shift, cancel) {
+            match factor.fill(matrix, *shift, cancel) {
                 Err(error @ FactorError::Pivot(_)) => refused = refused.or(Some(error)),
                 other => return other.map(|()| factor),
             }
@@ -131,6 +131,12 @@ impl Factor {
             .sum()
     }
 
+    /// Those of the shifts, from the first on, whose factorisations together stay within the budget; never none.
+    fn affordable<'a>(&self, shifts: &'a [f64], budget: Budget) -> &'a [f64] {
+        let affordable = (budget.operations_for(self.column_count()) / self.work().max(1.0)) as usize;
+        &shifts[..affordable.clamp(1, shifts.len())]
+    }
+
     #[cfg(test)]
     pub fn parts(&self) -> (&Symbolic, &AssemblyTree) {
         (&self.symbolic, &self.assembly_tree)
@@ -165,7 +171,7 @@ impl RenewableFactor {
             Refactorisation::Never => Vec::new(),
             Refactorisation::From(_) => worth_keeping(&factor.symbolic, &factor.assembly_tree),
         };
-        for &shift in shifts {
+        for &shift in factor.affordable(shifts, budget) {
             let known = match refactorisation {
                 Refactorisation::From(Some(former)) if former.shift.to_bits() == shift.to_bits() => {
                     former.known_to(new)
