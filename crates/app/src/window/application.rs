@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{self, CentralPanel, Panel};
 use glam::DVec3;
 use pliant_editor::{Command, Editor, Event, KeyMap};
+use pliant_mesh::Cancel;
 
 use super::bars::status;
 use super::bars::top_bar;
@@ -66,8 +67,8 @@ pub struct Application {
     /// The left session that is open now, until its work is kept or saved by this one.
     pub(super) recovered_from: Option<PathBuf>,
     longest_frame: Duration,
-    /// Whether the open file's images were asked for.
-    pub(super) has_requested_materials: bool,
+    /// Stops the decoding of the open file's images, once that was asked for.
+    pub(super) images: Option<Cancel>,
     pub(super) view_rect: egui::Rect,
     title: String,
 }
@@ -139,7 +140,7 @@ impl Application {
             closing: false,
             recovered_from: None,
             longest_frame: Duration::ZERO,
-            has_requested_materials: false,
+            images: None,
             view_rect: egui::Rect::ZERO,
             title: String::new(),
         };
@@ -165,7 +166,7 @@ impl Application {
         self.compare = None;
         self.workers.wake(context.egui_ctx.clone());
         self.input = Input::default();
-        self.has_requested_materials = false;
+        self.stop_images();
         self.title.clear();
         if let Some(open) = &self.session.open {
             let (drawing, model) = (Arc::clone(&open.drawing), &open.loaded.model);
