@@ -227,3 +227,36 @@ fn a_turntable_comes_all_around_and_begins_at_the_view() {
         assert_ne!(turned[n], turned[n - 1]);
     }
 }
+
+#[test]
+fn images_that_a_picture_does_not_show_are_told() {
+    let Some(_) = renderer() else { return };
+    let folder = Folder::new();
+    let model = folder.write(
+        "sheet.obj",
+        "mtllib sheet.mtl\nusemtl cloth\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n",
+    );
+    folder.write("sheet.mtl", "newmtl cloth\nmap_Kd skin.png\n");
+    let image = |bytes: &[u8]| folder.write("skin.png", bytes);
+    let mut whole = std::io::Cursor::new(Vec::new());
+    image::RgbaImage::new(8, 8)
+        .write_to(&mut whole, image::ImageFormat::Png)
+        .unwrap();
+    let told = |shading: &str| {
+        let words = ["render", "--size", "16x16", "--shading", shading, "--output"];
+        let words = words.map(std::ffi::OsString::from).into_iter();
+        run(words.chain([folder.at("a.png").into(), model.clone().into()]))
+            .done()
+            .out
+    };
+    image(whole.get_ref());
+    assert_eq!(told("material"), "");
+    image(&whole.get_ref()[..20]);
+    let said = told("material");
+    assert!(
+        said.lines().count() == 1 && said.contains("skin.png") && said.contains("is not shown"),
+        "{said:?}"
+    );
+    // What shows no image has none to leave out.
+    assert_eq!(told("clay"), "");
+}

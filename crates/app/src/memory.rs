@@ -11,9 +11,13 @@ use pliant_deform::Budget;
 /// would be too late. If the system does not tell, it is the solver's own budget.
 pub fn budget() -> Budget {
     let own = Budget::default().bytes;
-    let left = [left_in_machine(), left_in_group()].into_iter().flatten().min();
+    let left = [left_in_machine(), left_in_group(), left_to_process()]
+        .into_iter()
+        .flatten()
+        .min();
     Budget {
         bytes: left.map_or(own, |left| left.min(own)),
+        ..Budget::default()
     }
 }
 
@@ -22,6 +26,19 @@ fn left_in_machine() -> Option<u64> {
     let text = fs::read_to_string("/proc/meminfo").ok()?;
     let kilobytes = |name| number(&text, name);
     Some((kilobytes("MemAvailable:")? + kilobytes("SwapFree:").unwrap_or(0)) * 1024)
+}
+
+/// What the process's own limits leave it of addresses and of data (`ulimit -v` and `-d`).
+fn left_to_process() -> Option<u64> {
+    let limits = fs::read_to_string("/proc/self/limits").ok()?;
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    left_of_limits(&limits, &status)
+}
+
+fn left_of_limits(limits: &str, status: &str) -> Option<u64> {
+    let pairs = [("Max address space", "VmSize:"), ("Max data size", "VmData:")];
+    let left = pairs.map(|(limit, used)| Some(number(limits, limit)?.saturating_sub(1024 * number(status, used)?)));
+    left.into_iter().flatten().min()
 }
 
 /// What the limits of the process's control groups (usually a container's) leave: the least of all its groups.
@@ -82,6 +99,23 @@ mod tests {
         assert_eq!(left_of(folder.path(), "memory.max", "anon "), Some(700));
         write("memory.max", "200\n");
         assert_eq!(left_of(folder.path(), "memory.max", "anon "), Some(0));
+    }
+
+    #[test]
+    fn a_process_s_own_limits_leave_what_it_does_not_use() {
+        let limits = |size: &str, data: &str| {
+            format!(
+                "Limit  Soft Limit\nMax data size   {data}  unlimited  bytes\nMax address space   {size}   unlimited  bytes\n"
+            )
+        };
+        let status = "VmPeak:\t 9000 kB\nVmSize:\t    100 kB\nVmData:\t     10 kB\n";
+        assert_eq!(left_of_limits(&limits("unlimited", "unlimited"), status), None);
+        assert_eq!(
+            left_of_limits(&limits("1024000", "unlimited"), status),
+            Some(900 * 1024)
+        );
+        assert_eq!(left_of_limits(&limits("1024000", "20480"), status), Some(10 * 1024));
+        assert_eq!(left_of_limits(&limits("1024", "unlimited"), status), Some(0));
     }
 
     #[test]

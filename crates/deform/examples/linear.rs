@@ -11,11 +11,11 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use common::{median, ms, name, peak_mb, peers_edit, read};
+use common::{median, ms, name, peak_mb, peers_edit, read, stroke};
 use glam::DVec3;
 use pliant_deform::stages::Operator;
-use pliant_deform::{Bilaplacian, Constraints, Loose, Method, Ordering, Problem, Role};
-use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, vertex_normals};
+use pliant_deform::{Bilaplacian, Constraints, Loose, Method, Ordering, Problem};
+use pliant_mesh::{Cancel, Progress, vertex_normals};
 use rayon::prelude::*;
 
 fn main() {
@@ -106,28 +106,6 @@ fn measure(file: &Path, threads: usize, clock: fn() -> f64) {
         bound.solved_count(),
         1e-9 * work,
     );
-}
-
-/// The roles after a stroke on the handle's rim that adds a thousandth of the vertices to it.
-fn stroke(model: &Model, roles: &[Role]) -> Vec<Role> {
-    let mut stroked = roles.to_vec();
-    let at_rim = |v: &u32| {
-        let mut ring = model.topology.neighbours(SurfaceVertex(*v)).iter();
-        roles[*v as usize] == Role::Free && ring.any(|n| roles[n.index()] == Role::Handle(0))
-    };
-    let mut queue: Vec<u32> = (0..roles.len() as u32).find(at_rim).into_iter().collect();
-    let mut next = 0;
-    while next < queue.len() && next < roles.len().div_ceil(1000) {
-        let vertex = queue[next];
-        next += 1;
-        stroked[vertex as usize] = Role::Handle(0);
-        for neighbour in model.topology.neighbours(SurfaceVertex(vertex)) {
-            if stroked[neighbour.index()] == Role::Free && !queue.contains(&neighbour.0) {
-                queue.push(neighbour.0);
-            }
-        }
-    }
-    stroked
 }
 
 /// Times things by a clock.

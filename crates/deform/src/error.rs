@@ -2,7 +2,7 @@
 
 use pliant_mesh::{Cancelled, SurfaceVertex, Topology};
 
-use crate::Budget;
+use crate::{Budget, Limit};
 
 /// A problem could not be bound. Vertices are the surface's, until they are [`BindError::renumbered`].
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
@@ -132,12 +132,12 @@ pub enum BindError {
         order: u32,
     },
     /// Binding would take more than its [`crate::Budget`].
-    #[error("{}", over_budget(*.free_count, *.allowed_bytes, .crowded.as_ref()))]
+    #[error("{}", over_budget(*.free_count, *.limit, .crowded.as_ref()))]
     Budget {
         /// How many vertices are solved for.
         free_count: usize,
-        /// The budget.
-        allowed_bytes: u64,
+        /// What the budget allows.
+        limit: Limit,
         /// The vertex with the most neighbours, where these are many.
         crowded: Option<Crowded>,
     },
@@ -171,34 +171,39 @@ pub struct Crowded {
 /// A vertex of fewer neighbours than this is no culprit.
 const CROWD: usize = 100;
 
-fn over_budget(free_count: usize, allowed_bytes: u64, crowded: Option<&Crowded>) -> String {
-    let allowed = allowed_bytes as f64 / f64::from(1 << 30);
-    let remedy = match crowded {
-        Some(Crowded { vertex, neighbours }) => {
+fn over_budget(free_count: usize, limit: Limit, crowded: Option<&Crowded>) -> String {
+    let allowed = match limit {
+        Limit::Bytes(bytes) => format!("{:.1} GiB of memory", bytes as f64 / f64::from(1 << 30)),
+        Limit::Operations(operations) => format!("{:.0e} operations", operations as f64),
+    };
+    let remedy = match (crowded, limit) {
+        (Some(Crowded { vertex, neighbours }), _) => {
             format!("split vertex {vertex}, which has {neighbours} neighbours, or make the region smaller")
         }
-        None => "make the region smaller or the mesh coarser".to_owned(),
+        (None, Limit::Bytes(_)) => "make the region smaller or the mesh coarser".to_owned(),
+        (None, Limit::Operations(_)) => {
+            "make the region smaller or the mesh coarser, or move apart vertices that coincide by accident".to_owned()
+        }
     };
-    format!("solving for {free_count} free vertices takes more than the {allowed:.1} GiB of memory allowed: {remedy}")
+    format!("solving for {free_count} free vertices takes more than the {allowed} allowed: {remedy}")
 }
 
 impl BindError {
-    /// The refusal for this many free vertices; the binding fills in the rest.
-    pub(crate) fn budget(free_count: usize) -> Self {
+    /// The refusal for this many free vertices, which exceed what was left of the budget; the binding fills in the rest.
+    pub(crate) fn budget(free_count: usize, limit: Limit) -> Self {
         Self::Budget {
             free_count,
-            allowed_bytes: 0,
+            limit,
             crowded: None,
         }
     }
 
     /// Adds the budget and the vertex with the most neighbours, if the refusal is for memory.
     pub(crate) fn with_culprit(mut self, topology: &Topology, budget: Budget) -> Self {
-        if let Self::Budget {
-            allowed_bytes, crowded, ..
-        } = &mut self
-        {
-            *allowed_bytes = budget.bytes;
+        if let Self::Budget { limit, crowded, .. } = &mut self {
+            if let Limit::Bytes(bytes) = limit {
+                *bytes = budget.bytes;
+            }
             let count = |vertex: u32| topology.neighbours(SurfaceVertex(vertex)).len();
             let most = (0..topology.vertex_count() as u32).max_by_key(|&vertex| count(vertex));
             *crowded = most.filter(|&vertex| count(vertex) >= CROWD).map(|vertex| Crowded {

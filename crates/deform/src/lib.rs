@@ -30,7 +30,7 @@ pub mod stages;
 pub use arap::{Arap, ArapEnergy};
 pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Discretisation, HandleBases, TriangulationKind};
 pub use bound::{Bound, ReusableFactor, Step};
-pub use budget::Budget;
+pub use budget::{Budget, Limit};
 pub use error::{BindError, Crowded, SolveError};
 pub use method::{
     ConstraintKind, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused,

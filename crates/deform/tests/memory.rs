@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
 use pliant_deform::{
-    Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, Constraints, Loose, Method, Primo, Problem,
-    Role,
+    Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, Constraints, Limit, Loose, Method, Primo,
+    Problem, Role,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 
@@ -84,6 +84,21 @@ fn soup(count: usize) -> Drawn {
     Drawn::once(drawn.positions, drawn.triangles)
 }
 
+/// A sheet whose vertices coincide at random, a sixth of them being left.
+fn tangle(side: usize) -> Drawn {
+    let mut sheet = shapes::grid(side, side);
+    let mut state = 1_u64;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 33) as usize % below
+    };
+    let all = sheet.positions.clone();
+    for position in &mut sheet.positions {
+        *position = all[6 * random(all.len() / 6)];
+    }
+    sheet
+}
+
 struct Scene {
     model: Model,
     roles: Vec<Role>,
@@ -107,7 +122,7 @@ impl Scene {
     }
 
     /// Orders and binds within a budget: how much was held at most and allocated in all beyond what was before.
-    fn bind(&self, bytes: u64) -> (Result<usize, BindError>, usize, usize) {
+    fn bind(&self, budget: Budget) -> (Result<usize, BindError>, usize, usize) {
         let stiffness = vec![1.0; self.roles.len()];
         let problem = Problem {
             surface: &self.model.surface,
@@ -125,7 +140,7 @@ impl Scene {
         PEAK.store(before, Relaxed);
         ALLOCATED.store(0, Relaxed);
         let ordering = self.method.ordering(&self.model.topology, &progress, &cancel).unwrap();
-        let bound = problem.bind_within(ordering.as_ref(), Budget { bytes }, &progress, &cancel);
+        let bound = problem.bind_within(ordering.as_ref(), budget, &progress, &cancel);
         let (peak, allocated) = (PEAK.load(Relaxed) - before, ALLOCATED.load(Relaxed));
         (bound.map(|bound| bound.factor_len()), peak, allocated)
     }
@@ -146,7 +161,10 @@ fn methods() -> Vec<Method> {
     methods
 }
 
-const PLENTY: u64 = 1 << 34;
+const PLENTY: Budget = Budget {
+    bytes: 1 << 34,
+    operations: u64::MAX,
+};
 
 #[test]
 fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
@@ -175,12 +193,35 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
             let scene = Scene::new(shapes::grid(70, 70), &method);
             let (bound, peak, _) = scene.bind(PLENTY);
             bound.unwrap();
-            let (refused, least, _) = scene.bind(400_000);
+            let (refused, least, _) = scene.bind(Budget {
+                bytes: 400_000,
+                ..PLENTY
+            });
             assert!(
                 matches!(refused, Err(BindError::Budget { .. })),
                 "{method:?}: {refused:?}"
             );
             assert!(least < peak, "{method:?}: {least} {peak}");
         }
+        // So is one whose factorisation takes too many operations.
+        let method = Method::from(Bilaplacian::default());
+        let scene = Scene::new(tangle(170), &method);
+        let (bound, peak, _) = scene.bind(PLENTY);
+        bound.unwrap();
+        let (refused, least, _) = scene.bind(Budget {
+            operations: 0,
+            ..PLENTY
+        });
+        assert!(
+            matches!(
+                refused,
+                Err(BindError::Budget {
+                    limit: Limit::Operations(_),
+                    ..
+                })
+            ),
+            "{refused:?}"
+        );
+        assert!(least < peak, "{least} {peak}");
     });
 }

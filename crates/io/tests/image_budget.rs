@@ -91,6 +91,23 @@ fn images_fit_into_their_budget_or_are_refused() {
     let stopped = Cancel::new();
     stopped.cancel();
     assert_eq!(decode_images(&[&image], MIB, &stopped), Err(Cancelled));
+    // An image is stopped within itself: wherever its decoder reads, and at every row that is scaled.
+    for kind in kinds {
+        let image = encoded(kind, 512);
+        let mut scaled = 0;
+        for budget in [1 << 30, 5 * MIB / 2, 3 * MIB / 2] {
+            let result = |looks| decode_images(&[&image], budget, &Cancel::after_looks(looks));
+            let Ok(whole) = &result(usize::MAX).unwrap()[0] else {
+                continue;
+            };
+            let rows = Some(whole.pixels.height as usize).filter(|&rows| rows < 512);
+            scaled += usize::from(rows.is_some());
+            for looks in [0, 1, 2, rows.unwrap_or(0) + 2] {
+                assert_eq!(result(looks), Err(Cancelled), "{kind:?}: {looks} looks");
+            }
+        }
+        assert!(scaled > 0, "{kind:?}");
+    }
     // A KTX2 has smaller levels, or is scaled as others are.
     let ktx2 = include_bytes!("corpus/ramp-uastc.ktx2").to_vec();
     let (small, _) = decoded(&[ktx2], 16 * 16 * 4);

@@ -11,7 +11,7 @@ use crate::watch::Watch;
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Raises the flag on Ctrl-C (SIGINT), SIGTERM and SIGHUP. A command that has not ended a little later is ended here,
-/// without its files.
+/// without its files; so is the window, with its saves.
 pub(super) fn listen(watch: &Watch, staging: &Staging) {
     #[cfg(unix)]
     {
@@ -27,6 +27,8 @@ pub(super) fn listen(watch: &Watch, staging: &Staging) {
         std::thread::sleep(PATIENCE);
         // Held until the process has ended, so that nothing is renamed into place meanwhile.
         if let Some(_guard) = staging.discard() {
+            // The window's saves have a staging each.
+            staging.discard_others();
             let interrupted = AppError::Interrupted;
             let _ = writeln!(std::io::stderr(), "\r\x1b[Kpliant: {interrupted}");
             std::process::exit(i32::from(interrupted.status()));

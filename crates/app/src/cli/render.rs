@@ -11,7 +11,7 @@ use pliant_render::{Background, Frame, Headless, RenderError, Samples, SurfaceLi
 
 use super::apply::read_edit;
 use super::arguments::{self, PictureSize, ProjectionName, RenderArguments, Up, View};
-use super::{Console, on_threads};
+use super::{Console, on_threads, print};
 use crate::drawing::{self, Drawing, Scale};
 use crate::engine::{self, Loaded};
 use crate::files::Destination;
@@ -38,13 +38,21 @@ pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Res
         // What is no file is refused before anything is drawn.
         Destination::of(path)?;
     }
-    let pngs = on_threads(None, || pictures(arguments, &paths, watch))??;
+    let Pictures { pngs, notes } = on_threads(None, || pictures(arguments, &paths, watch))??;
     if watch.cancel.is_cancelled() {
         return Err(AppError::Interrupted);
     }
     let files = paths.into_iter().zip(pngs.iter().map(Vec::as_slice));
     console.staging.stage(files)?.commit()?;
-    Ok(())
+    let lines: String = notes.iter().map(|note| format!("note: {note}\n")).collect();
+    print(console.out, &lines)
+}
+
+/// What is drawn.
+struct Pictures {
+    pngs: Vec<Vec<u8>>,
+    /// What of the file they don't show, a sentence each.
+    notes: Vec<String>,
 }
 
 /// Where the pictures go.
@@ -86,7 +94,7 @@ fn look(arguments: &RenderArguments) -> Look {
 }
 
 /// The pictures that go to `paths`.
-fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Result<Vec<Vec<u8>>, AppError> {
+fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Result<Pictures, AppError> {
     let loaded = engine::load(&arguments.file, &WeldOptions::default(), watch)?;
     for path in paths {
         files::refuse_shared(("--output", path), loaded.sources())?;
@@ -117,10 +125,13 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
     let colours = drawing::drawn_colours(model, &colours);
     surface.update_regions(&renderer, &colours).map_err(refuse)?;
     surface.update_lines(&renderer, &shape.outlines).map_err(refuse)?;
+    let mut notes = Vec::new();
     if look.shading == Shading::Material {
         let decoded = drawing.materials.decode(&watch.cancel);
-        let materials = decoded.map_err(|_| AppError::Interrupted)?.upload(&renderer);
-        surface.set_materials(materials.map_err(refuse)?).map_err(refuse)?;
+        let decoded = decoded.map_err(|_| AppError::Interrupted)?;
+        let materials = decoded.upload(&renderer).map_err(refuse)?;
+        surface.set_materials(materials).map_err(refuse)?;
+        notes = decoded.notes;
     }
     progress.set(0.3);
 
@@ -168,7 +179,7 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
         pngs.push(picture_file::png(image)?);
         progress.set(0.3 + 0.7 * (number + 1) as f32 / count as f32);
     }
-    Ok(pngs)
+    Ok(Pictures { pngs, notes })
 }
 
 /// Where the eye of the first picture is: it sees all of the rest shape, whatever the edit does, so that before and

@@ -20,6 +20,7 @@ use pliant_io::{Format, Placement, Role, Saved, is_same_document, neighbours_nam
 
 use super::leftovers::{is_passing, real_name};
 use super::named::names_in_folder;
+use super::same_file::FileSet;
 use super::{Destination, FileError, folder_of, follow, is_same, neighbour_path};
 use crate::AppError;
 
@@ -115,7 +116,7 @@ pub fn settle(saved: &mut Saved, format: Format, output: &Destination) -> Result
             There::Taken => continue,
         };
         if action == Action::Write {
-            folder.taken.push(target.clone());
+            folder.taken.insert(target.clone());
         }
         settled.push(Settled {
             file: place,
@@ -163,11 +164,11 @@ enum There {
 struct Folder<'a> {
     output: &'a Destination,
     /// The neighbours that the existing OUT names, if it is a save of the same document.
-    own: Vec<String>,
+    own: BTreeSet<String>,
     /// The neighbours that other files in the folder name; `None` until somebody asks.
     others: Option<Others>,
     /// Places that this save writes.
-    taken: Vec<PathBuf>,
+    taken: FileSet,
 }
 
 /// What other glTF in the folder name; `None` where one of them is too large to be looked through.
@@ -181,11 +182,13 @@ impl<'a> Folder<'a> {
         let own = existing
             .and_then(|existing| neighbours_named(&existing))
             .unwrap_or_default();
+        let mut taken = FileSet::default();
+        taken.insert(output.target.clone());
         Self {
             output,
             own: own.iter().map(|name| real_name(name)).collect(),
             others: None,
-            taken: vec![output.target.clone()],
+            taken,
         }
     }
 
@@ -208,7 +211,7 @@ impl<'a> Folder<'a> {
             return There::Taken;
         };
         let is_inside = target.starts_with(home);
-        if self.taken.iter().any(|taken| is_same(taken, &target)) {
+        if self.taken.contains(&target) {
             return There::Taken;
         }
         let metadata = match fs::metadata(&target) {
@@ -225,7 +228,7 @@ impl<'a> Folder<'a> {
             _ => return There::Taken,
         };
         let is_equal = metadata.len() == bytes.len() as u64 && holds(&target, bytes);
-        let is_own = is_inside && self.own.iter().any(|own| own == name) && !self.is_named_by_others(name);
+        let is_own = is_inside && self.own.contains(name) && !self.is_named_by_others(name);
         match (is_equal, is_own, role) {
             (true, true, _) => There::Same(target),
             (true, false, Role::Buffer) if self.is_named_by_others(name) => There::Taken,

@@ -1,5 +1,6 @@
 //! Which file a path leads to, whatever it is called there.
 
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -36,7 +37,7 @@ pub fn follow(path: &Path) -> io::Result<PathBuf> {
 }
 
 /// A file as the system knows it.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum Identity {
     /// One that is there: hard links share it.
     #[cfg(unix)]
@@ -71,6 +72,26 @@ fn identity(path: &Path) -> Option<Identity> {
 /// they would be.
 pub fn is_same(a: &Path, b: &Path) -> bool {
     a == b || identity(a).is_some_and(|a| identity(b) == Some(a))
+}
+
+/// Files, of which [`is_same`] is asked without comparing each with each.
+#[derive(Clone, Default, Debug)]
+pub struct FileSet {
+    paths: BTreeSet<PathBuf>,
+    identities: BTreeSet<Identity>,
+}
+
+impl FileSet {
+    /// Adds the file that a path leads to now.
+    pub fn insert(&mut self, path: PathBuf) {
+        self.identities.extend(identity(&path));
+        self.paths.insert(path);
+    }
+
+    /// Whether a path leads to one of the files.
+    pub fn contains(&self, path: &Path) -> bool {
+        self.paths.contains(path) || identity(path).is_some_and(|identity| self.identities.contains(&identity))
+    }
 }
 
 /// Whether a folder's file system ignores case in names, tested with the folder's own name.
@@ -149,6 +170,26 @@ mod tests {
         }
         assert!(is_same(&at("new"), &at("sub/dangling")) && is_same(&at("new"), &at("sub/../new")));
         assert!(!is_same(&at("new"), &at("newer")) && !is_same(&at("new"), &at("none/new")));
+        // A set of files says the same as asking of each.
+        let names = [
+            "a",
+            "./a",
+            "b",
+            "hard",
+            "softer",
+            "new",
+            "newer",
+            "sub/dangling",
+            "none/new",
+            "circle",
+        ];
+        for (count, first) in names.iter().enumerate() {
+            let mut set = FileSet::default();
+            let members = &names[..count];
+            members.iter().for_each(|name| set.insert(at(name)));
+            let is_one = members.iter().any(|name| is_same(&at(name), &at(first)));
+            assert_eq!(set.contains(&at(first)), is_one, "{first} in {members:?}");
+        }
         assert_eq!(
             follow(&at("sub/dangling")).unwrap(),
             fs::canonicalize(folder.path()).unwrap().join("new")

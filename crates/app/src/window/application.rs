@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 use glam::DVec3;
 use pliant_editor::{Command, Editor, Event, KeyMap, Shading};
+use pliant_mesh::Cancel;
 
 use super::bars::toast::Toast;
 use super::dialogs::keys_window::KeysWindow;
@@ -68,8 +69,8 @@ pub struct Application {
     pub(super) is_to_fill_screen: bool,
     /// Where the window's content, its bars and its panel were in the last frame.
     pub(super) layout: [egui::Rect; 4],
-    /// Whether the open file's images were asked for.
-    pub(super) has_requested_materials: bool,
+    /// Stops the decoding of the open file's images, once that was asked for.
+    pub(super) images: Option<Cancel>,
     pub(super) view_rect: egui::Rect,
     pub(super) title: String,
 }
@@ -144,7 +145,7 @@ impl Application {
             longest_frame: Duration::ZERO,
             is_to_fill_screen: false,
             layout: [egui::Rect::NOTHING; 4],
-            has_requested_materials: false,
+            images: None,
             view_rect: egui::Rect::ZERO,
             title: String::new(),
         };
@@ -171,7 +172,7 @@ impl Application {
         self.compare = None;
         self.workers.wake(context.egui_ctx.clone());
         self.input = Input::default();
-        self.has_requested_materials = false;
+        self.stop_images();
         self.title.clear();
         if let Some(open) = &self.session.open {
             let (drawing, model) = (Arc::clone(&open.drawing), &open.loaded.model);

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use glam::{DAffine3, DMat3, DVec3};
 use pliant_deform::Role;
-use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, WeldOptions};
+use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, WeldOptions};
 
 /// The mesh of an OFF file of triangles.
 pub fn read(off: &Path) -> Model {
@@ -117,4 +117,26 @@ pub fn peak_mb() -> f64 {
 /// Lets [`peak_mb`] begin again at what the process holds now, where the system can do that.
 pub fn forget_peak() {
     let _ = std::fs::write("/proc/self/clear_refs", "5");
+}
+
+/// The roles after a stroke on the handle's rim that adds a thousandth of the vertices to it.
+pub fn stroke(model: &Model, roles: &[Role]) -> Vec<Role> {
+    let mut stroked = roles.to_vec();
+    let at_rim = |v: &u32| {
+        let mut ring = model.topology.neighbours(SurfaceVertex(*v)).iter();
+        roles[*v as usize] == Role::Free && ring.any(|n| roles[n.index()] == Role::Handle(0))
+    };
+    let mut queue: Vec<u32> = (0..roles.len() as u32).find(at_rim).into_iter().collect();
+    let mut next = 0;
+    while next < queue.len() && next < roles.len().div_ceil(1000) {
+        let vertex = queue[next];
+        next += 1;
+        stroked[vertex as usize] = Role::Handle(0);
+        for neighbour in model.topology.neighbours(SurfaceVertex(vertex)) {
+            if stroked[neighbour.index()] == Role::Free && !queue.contains(&neighbour.0) {
+                queue.push(neighbour.0);
+            }
+        }
+    }
+    stroked
 }

@@ -7,7 +7,7 @@ use super::cells::Quad;
 use super::domain::Domain;
 use super::matrix::System;
 use crate::BindError;
-use crate::budget::{Budget, filled};
+use crate::budget::{Budget, Limit, filled};
 use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::operators::CHUNK;
 use crate::sparse::cholesky::Factor;
@@ -46,7 +46,7 @@ pub(crate) enum PreconditionError {
     /// The solution of a constant is off by this much at this solved vertex.
     Inaccurate(usize, f64),
     Memory,
-    Budget,
+    Budget(Limit),
     Cancelled,
 }
 
@@ -55,7 +55,7 @@ impl From<FactorError> for PreconditionError {
         match error {
             FactorError::Pivot(column) => Self::Pivot(column),
             FactorError::Memory => Self::Memory,
-            FactorError::Budget => Self::Budget,
+            FactorError::Budget(limit) => Self::Budget(limit),
             FactorError::Cancelled => Self::Cancelled,
         }
     }
@@ -76,7 +76,7 @@ impl PreconditionError {
                 error,
             },
             Self::Memory => BindError::OutOfMemory { free_count },
-            Self::Budget => BindError::budget(free_count),
+            Self::Budget(limit) => BindError::budget(free_count, limit),
             Self::Cancelled => BindError::Cancelled(Cancelled),
         }
     }

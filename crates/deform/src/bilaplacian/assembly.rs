@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::Laplacian;
 use crate::bilaplacian::hubs::Hubs;
 use crate::bilaplacian::operator::BilaplacianOperator;
-use crate::budget::{Budget, filled};
+use crate::budget::{Budget, Limit, filled};
 use crate::operators::CHUNK;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::{CONSTRAINED, ScaledMatrix};
@@ -43,7 +43,7 @@ pub(crate) fn assemble_bilaplacian(
             },
         )
         .collect::<Option<_>>()
-        .ok_or(FactorError::Budget)?;
+        .ok_or(FactorError::Budget(Limit::Bytes(budget.bytes)))?;
     let scale: Vec<f64> = chunks.iter().flat_map(|chunk| chunk.scale.iter().copied()).collect();
     let mut lower_offsets = Vec::with_capacity(columns.len() + 1);
     lower_offsets.push(0);

@@ -13,7 +13,7 @@ use crate::BindError;
 use crate::bilaplacian::assembly::assemble_bilaplacian;
 use crate::bilaplacian::hubs::Hubs;
 use crate::bilaplacian::operator::BilaplacianOperator;
-use crate::budget::{Budget, bytes_of};
+use crate::budget::{Budget, Limit, bytes_of};
 use crate::operators::CHUNK;
 use crate::sparse::Elimination;
 use crate::sparse::factor_error::FactorError;
@@ -42,7 +42,7 @@ pub(crate) enum SystemError {
     NotPositiveDefinite { vertex: u32 },
     Inaccurate { vertex: u32, error: f64 },
     OutOfMemory,
-    Budget,
+    Budget(Limit),
     Cancelled,
 }
 
@@ -81,7 +81,7 @@ impl BilaplacianSystem {
         }
         let rank = hubs.rank(&operator);
         let of_hubs = bytes_of(LowRank::stored_at_rank(columns.len(), rank), size_of::<f64>());
-        let budget = budget.without(of_hubs).map_err(|_| SystemError::Budget)?;
+        let budget = budget.without(of_hubs).map_err(SystemError::Budget)?;
         let spring_columns = operator
             .springs
             .locals()
@@ -90,7 +90,7 @@ impl BilaplacianSystem {
             .collect();
         let refused = |error| match error {
             FactorError::Memory => SystemError::OutOfMemory,
-            FactorError::Budget => SystemError::Budget,
+            FactorError::Budget(limit) => SystemError::Budget(limit),
             FactorError::Cancelled => SystemError::Cancelled,
             FactorError::Pivot(column) => {
                 let local = columns.get(column).map_or(0, |&local| local as usize);
@@ -189,7 +189,7 @@ impl SystemError {
                 error,
             },
             Self::OutOfMemory => BindError::OutOfMemory { free_count },
-            Self::Budget => BindError::budget(free_count),
+            Self::Budget(limit) => BindError::budget(free_count, limit),
             Self::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
         }
     }

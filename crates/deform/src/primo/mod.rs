@@ -143,7 +143,7 @@ impl PrimoSolver {
                 let (component, SurfaceVertex(vertex)) = component(prism);
                 BindError::NotPositiveDefinite { component, vertex }
             }
-            FactorError::Budget => BindError::budget(partition.free_count),
+            FactorError::Budget(limit) => BindError::budget(partition.free_count, limit),
             FactorError::Memory => BindError::OutOfMemory {
                 free_count: partition.free_count,
             },

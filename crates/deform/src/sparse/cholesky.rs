@@ -49,11 +49,11 @@ impl Factor {
     ) -> Result<Self, FactorError> {
         let mut refused = None;
         let mut factor = Self::analysed(matrix, ends, budget)?;
-        for shift in SHIFTS {
+        for shift in factor.affordable(&SHIFTS, budget) {
             if cancel.is_cancelled() {
                 return Err(FactorError::Cancelled);
             }
-            match factor.fill(matrix, shift, cancel) {
+            match factor.fill(matrix, *shift, cancel) {
                 Err(error @ FactorError::Pivot(_)) => refused = refused.or(Some(error)),
                 other => return other.map(|()| factor),
             }
@@ -105,6 +105,12 @@ impl Factor {
         (0..self.symbolic.supernode_count())
             .map(|s| self.symbolic.work(s))
             .sum()
+    }
+
+    /// Those of the shifts, from the first on, whose factorisations together stay within the budget; never none.
+    pub(super) fn affordable<'a>(&self, shifts: &'a [f64], budget: Budget) -> &'a [f64] {
+        let affordable = (budget.operations_for(self.column_count()) / self.work().max(1.0)) as usize;
+        &shifts[..affordable.clamp(1, shifts.len())]
     }
 
     #[cfg(test)]

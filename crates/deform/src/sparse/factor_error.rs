@@ -2,7 +2,7 @@
 
 use std::collections::TryReserveError;
 
-use crate::budget::Exceeded;
+use crate::budget::Limit;
 
 /// Why there is no factor.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -11,8 +11,8 @@ pub(crate) enum FactorError {
     Pivot(usize),
     /// Too large for the machine or for the index type.
     Memory,
-    /// It takes more memory than the budget has left.
-    Budget,
+    /// It takes more than the budget has left.
+    Budget(Limit),
     /// Somebody raised the flag.
     Cancelled,
 }
@@ -23,8 +23,8 @@ impl From<TryReserveError> for FactorError {
     }
 }
 
-impl From<Exceeded> for FactorError {
-    fn from(_: Exceeded) -> Self {
-        Self::Budget
+impl From<Limit> for FactorError {
+    fn from(limit: Limit) -> Self {
+        Self::Budget(limit)
     }
 }

@@ -57,7 +57,7 @@ impl RenewableFactor {
             Refactorisation::Never => Vec::new(),
             Refactorisation::From(_) => worth_keeping(&factor.symbolic, &factor.assembly_tree),
         };
-        for &shift in shifts {
+        for &shift in factor.affordable(shifts, budget) {
             let known = match refactorisation {
                 Refactorisation::From(Some(former)) if former.shift.to_bits() == shift.to_bits() => {
                     former.known_to(new)

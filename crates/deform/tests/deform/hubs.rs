@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, Method, Primo, Role};
+use pliant_deform::{Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, Limit, Method, Primo, Role};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Progress, SurfaceVertex, shapes};
 
 use crate::rig::{Scene, settle};
@@ -101,12 +101,16 @@ fn what_exceeds_the_budget_is_refused_in_words_that_name_the_crowded_vertex() {
         let ordering = method.ordering(&scene.model.topology, &progress, &cancel).unwrap();
         let bind = |bytes| {
             let problem = scene.problem(&method);
-            problem.bind_within(ordering.as_ref(), Budget { bytes }, &progress, &cancel)
+            let budget = Budget {
+                bytes,
+                ..Budget::default()
+            };
+            problem.bind_within(ordering.as_ref(), budget, &progress, &cancel)
         };
         let refused = bind(100_000).err();
         let Some(BindError::Budget {
             crowded: Some(crowded),
-            allowed_bytes: 100_000,
+            limit: Limit::Bytes(100_000),
             ..
         }) = refused
         else {
@@ -123,6 +127,64 @@ fn what_exceeds_the_budget_is_refused_in_words_that_name_the_crowded_vertex() {
             matches!(refused, Some(BindError::Handles { handle_count: 1, .. })),
             "{refused:?}"
         );
+    }
+}
+
+/// A sheet whose vertices coincide at random: no surface any more.
+fn tangle(side: usize) -> Drawn {
+    let mut sheet = shapes::grid(side, side);
+    let mut state = 1_u64;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 33) as usize % below
+    };
+    let all = sheet.positions.clone();
+    for position in &mut sheet.positions {
+        *position = all[6 * random(all.len() / 6)];
+    }
+    sheet
+}
+
+#[test]
+fn operations_beyond_a_surface_s_are_refused_in_words_and_those_of_a_surface_never() {
+    for method in methods() {
+        let bound = |drawn: Drawn, operations: u64| {
+            let mut scene = Scene::new(drawn)
+                .with(Role::Fixed, |p| p.x < 0.1)
+                .with(Role::Handle(0), |p| p.x > 0.9);
+            scene.method = method.clone();
+            let (progress, cancel) = (Progress::new(), Cancel::new());
+            let ordering = method.ordering(&scene.model.topology, &progress, &cancel).unwrap();
+            let budget = Budget {
+                operations,
+                ..Budget::default()
+            };
+            let bound = scene
+                .problem(&method)
+                .bind_within(ordering.as_ref(), budget, &progress, &cancel);
+            bound.map(|bound| bound.factor_len())
+        };
+        for surface in [shapes::grid(60, 60), shapes::grid(900, 2), shapes::torus(60, 40)] {
+            assert!(bound(surface, 0).is_ok(), "{method:?}");
+        }
+        // Prisms are joined along edges, and these are the sheet's as before.
+        if method.options::<Primo>().is_some() {
+            continue;
+        }
+        let refused = bound(tangle(170), 1_000_000).unwrap_err();
+        let is_for_operations = matches!(
+            refused,
+            BindError::Budget {
+                limit: Limit::Operations(_),
+                ..
+            }
+        );
+        let words = refused.to_string();
+        assert!(
+            is_for_operations && words.contains("operations allowed"),
+            "{method:?}: {words}"
+        );
+        assert!(words.contains("make the region smaller"), "{words}");
     }
 }
 

@@ -1,6 +1,6 @@
 //! The files that a glTF names: collected for a save, each name once, and read from a text.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::gltf::document::container;
 use crate::gltf::document::container::without_padding;
@@ -12,6 +12,10 @@ use crate::save::{OutputFile, Role, numbered};
 /// The neighbours that a save writes, while they are gathered.
 pub(crate) struct Gathered {
     pub files: Vec<OutputFile>,
+    /// Where each name stands among the files.
+    place_of: BTreeMap<String, usize>,
+    /// The last number that a name was tried with: all smaller ones are taken.
+    last_number: BTreeMap<String, usize>,
     /// Names that are not free for a neighbour which needs another one.
     taken: BTreeSet<String>,
 }
@@ -21,6 +25,8 @@ impl Gathered {
     pub fn of(document: &Document) -> Self {
         Self {
             files: Vec::new(),
+            place_of: BTreeMap::new(),
+            last_number: BTreeMap::new(),
             taken: paths(document).filter_map(uri::inside).collect(),
         }
     }
@@ -30,13 +36,14 @@ impl Gathered {
     /// Two buffers of a file may name the same file. As long as their bytes are the same they share it; as soon as an
     /// edit makes them differ, each gets its own.
     pub fn add(&mut self, name: String, role: Role, bytes: &[u8]) -> String {
-        let known = self.files.iter().find(|file| file.name == name);
+        let known = self.place_of.get(&name).map(|&place| &self.files[place]);
         let name = match known {
             Some(known) if known.bytes == bytes => return name,
             Some(_) => self.free_name(&name),
             None => name,
         };
         self.taken.insert(name.clone());
+        self.place_of.insert(name.clone(), self.files.len());
         self.files.push(OutputFile {
             name: name.clone(),
             role,
@@ -47,14 +54,20 @@ impl Gathered {
 
     /// Whether the neighbour `name` is written with other bytes than these.
     pub fn differs(&self, name: &str, bytes: &[u8]) -> bool {
-        self.files.iter().any(|file| file.name == name && file.bytes != bytes)
+        let known = self.place_of.get(name).map(|&place| &self.files[place]);
+        known.is_some_and(|file| file.bytes != bytes)
     }
 
     /// `name` with the first number that makes it free.
-    fn free_name(&self, name: &str) -> String {
-        let free = (2..).map(|number| numbered(name, number));
-        let mut free = free.filter(|name| !self.taken.contains(name));
-        free.next().unwrap_or_default()
+    fn free_name(&mut self, name: &str) -> String {
+        let last = self.last_number.entry(name.to_owned()).or_insert(1);
+        loop {
+            *last += 1;
+            let free = numbered(name, *last);
+            if !self.taken.contains(&free) {
+                return free;
+            }
+        }
     }
 }
 

@@ -1,8 +1,10 @@
 //! Decodes PNG, JPEG, WebP and KTX2 to pixels, in full size or smaller.
 
-use std::io::Cursor;
+use std::io::{self, BufRead, Cursor, Read, Seek, SeekFrom};
 
 use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+
+use pliant_mesh::Cancel;
 
 use crate::ImageError;
 use crate::images::pixels::{LONGEST_SIDE_PX, Rgba8};
@@ -11,7 +13,7 @@ use crate::quote::quoted;
 /// Decodes a PNG, JPEG, WebP or KTX2 (with Basis Universal in it), told by its first bytes. Images beyond 16384 pixels
 /// a side are refused.
 pub fn decode_image(encoded: &[u8]) -> Result<Rgba8, ImageError> {
-    decode(encoded, 0)
+    decode(encoded, 0, &Cancel::new())
 }
 
 /// What an image's header tells.
@@ -48,7 +50,8 @@ pub(crate) fn header(encoded: &[u8]) -> Result<Header, ImageError> {
             decoding_bytes,
         });
     }
-    let (decoder, format) = decoder(encoded)?;
+    let never = Cancel::new();
+    let (decoder, format) = decoder(encoded, &never)?;
     let (width, height) = decoder.dimensions();
     let pixels = u64::from(width) * u64::from(height);
     let beside = match format {
@@ -70,23 +73,72 @@ pub(crate) fn header(encoded: &[u8]) -> Result<Header, ImageError> {
     })
 }
 
-/// Decodes an image, with each side halved so many times.
-pub(crate) fn decode(encoded: &[u8], halvings: u32) -> Result<Rgba8, ImageError> {
+/// Decodes an image, with each side halved so many times. Raising `cancel` ends it with an error where the decoder next
+/// asks for bytes, or at the next row that is halved.
+pub(crate) fn decode(encoded: &[u8], halvings: u32, cancel: &Cancel) -> Result<Rgba8, ImageError> {
     if mime_type(encoded) == Some("image/ktx2") {
         let (image, left) = crate::images::ktx2::decode(encoded, halvings)?;
-        return Ok(if left == 0 { image } else { halved(image.into(), left) });
+        return if left == 0 {
+            Ok(image)
+        } else {
+            halved(image.into(), left, cancel)
+        };
     }
-    let (decoder, _) = decoder(encoded)?;
+    let (decoder, _) = decoder(encoded, cancel)?;
     let image = DynamicImage::from_decoder(decoder).map_err(|error| failed(&error))?;
-    Ok(if halvings == 0 {
-        image.into()
-    } else {
-        halved(image, halvings)
-    })
+    if halvings == 0 {
+        return Ok(image.into());
+    }
+    halved(image, halvings, cancel)
 }
 
-fn decoder(encoded: &[u8]) -> Result<(impl ImageDecoder + '_, Option<ImageFormat>), ImageError> {
-    let mut reader = ImageReader::new(Cursor::new(encoded))
+/// Bytes that can no longer be read once a flag is raised. Decoders read a few kilobytes at a time, or everything.
+struct Cancellable<'a> {
+    bytes: Cursor<&'a [u8]>,
+    cancel: &'a Cancel,
+}
+
+/// What a decoder is given at once.
+const BLOCK: usize = 1 << 14;
+
+impl Cancellable<'_> {
+    fn check(&self) -> io::Result<()> {
+        // Not `Interrupted`, which readers take as a reason to try again.
+        self.cancel.check().map_err(io::Error::other)
+    }
+}
+
+impl Read for Cancellable<'_> {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        self.check()?;
+        self.bytes.read(out)
+    }
+}
+
+impl BufRead for Cancellable<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        self.check()?;
+        let bytes = self.bytes.fill_buf()?;
+        Ok(&bytes[..bytes.len().min(BLOCK)])
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.bytes.consume(count);
+    }
+}
+
+impl Seek for Cancellable<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.bytes.seek(to)
+    }
+}
+
+fn decoder<'a>(
+    encoded: &'a [u8],
+    cancel: &'a Cancel,
+) -> Result<(impl ImageDecoder + 'a, Option<ImageFormat>), ImageError> {
+    let bytes = Cursor::new(encoded);
+    let mut reader = ImageReader::new(Cancellable { bytes, cancel })
         .with_guessed_format()
         .map_err(|error| failed(&error))?;
     let mut limits = Limits::default();
@@ -105,12 +157,13 @@ fn failed(error: &dyn std::fmt::Display) -> ImageError {
 }
 
 /// Each pixel is the mean of those that it replaces. A few rows at a time, so that no whole copy is made.
-fn halved(image: DynamicImage, halvings: u32) -> Rgba8 {
+fn halved(image: DynamicImage, halvings: u32, cancel: &Cancel) -> Result<Rgba8, ImageError> {
     let [width, height] = [image.width(), image.height()];
     let [new_width, new_height] = [width, height].map(|side| (side >> halvings).max(1));
     let bound = |at: u32, new: u32, old: u32| (u64::from(at) * u64::from(old) / u64::from(new)) as u32;
     let mut pixels = Vec::with_capacity(4 * new_width as usize * new_height as usize);
     for y in 0..new_height {
+        cancel.check().map_err(|error| failed(&error))?;
         let (top, bottom) = (bound(y, new_height, height), bound(y + 1, new_height, height));
         let rows = image.crop_imm(0, top, width, bottom - top).into_rgba8();
         for x in 0..new_width {
@@ -127,11 +180,11 @@ fn halved(image: DynamicImage, halvings: u32) -> Rgba8 {
             pixels.extend(sum.map(|sum| ((sum + count / 2) / count) as u8));
         }
     }
-    Rgba8 {
+    Ok(Rgba8 {
         width: new_width,
         height: new_height,
         pixels,
-    }
+    })
 }
 
 impl From<DynamicImage> for Rgba8 {

@@ -32,7 +32,7 @@ pub struct DecodedImage {
 /// Decodes images, in parallel as far as `budget` bytes allow; each becomes pixels or a sentence.
 ///
 /// # Errors
-/// [`Cancelled`] soon after `cancel` is raised: between two rounds.
+/// [`Cancelled`] soon after `cancel` is raised: before the next image, and within one where its decoder next reads.
 pub fn decode_images(
     encoded: &[&[u8]],
     budget: u64,
@@ -41,8 +41,8 @@ pub fn decode_images(
     let plans = plans(encoded, budget);
     let mut out = Vec::with_capacity(plans.len());
     let mut held = 0;
+    cancel.check()?;
     while out.len() < plans.len() {
-        cancel.check()?;
         let first = out.len();
         // At least one, whose cost was held against the budget.
         let mut cost = 0;
@@ -55,12 +55,14 @@ pub fn decode_images(
         let round = first..first + count;
         out.par_extend(round.into_par_iter().map(|number| {
             let plan = plans[number].clone()?;
-            let pixels = decode(encoded[number], plan.halvings)?;
+            // A raised flag fails the image here or on its way; who looks after the round tells it for all of them.
+            let pixels = decode(encoded[number], plan.halvings, cancel)?;
             Ok(DecodedImage {
                 pixels,
                 stored_size: [plan.header.width, plan.header.height],
             })
         }));
+        cancel.check()?;
         let fresh = out[first..].iter().flatten();
         held += fresh.map(|image| image.pixels.pixels.len() as u64).sum::<u64>();
     }

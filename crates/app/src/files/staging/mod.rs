@@ -35,8 +35,14 @@ const LASTING: usize = 1 << 26;
 
 /// The temporary files and locks of a save that is under way, so that an interrupt can remove them. Cloning shares
 /// them.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Staging(Arc<Mutex<State>>);
+
+/// The saves of this process that are under way: the window has several at once, each by a thread of its own.
+static UNDER_WAY: UnderWay = UnderWay(Mutex::new(Vec::new()));
+
+#[derive(Debug, Default)]
+struct UnderWay(Mutex<Vec<Weak<Mutex<State>>>>);
 
 #[derive(Debug, Default)]
 struct State {
@@ -103,6 +109,34 @@ struct StagedBridge {
     file: StagedFile,
     /// The files, by their place among the staged ones, and the paths at which they stand for the while.
     passing: Vec<(usize, PathBuf)>,
+}
+
+impl UnderWay {
+    fn new_staging(&self) -> Staging {
+        let staging = Staging(Arc::default());
+        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        all.retain(|state| state.strong_count() > 0);
+        all.push(Arc::downgrade(&staging.0));
+        staging
+    }
+
+    fn discard_others(&self, own: &Staging) {
+        let others: Vec<Staging> = {
+            let all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            all.iter().filter_map(Weak::upgrade).map(Staging).collect()
+        };
+        for staging in others.into_iter().filter(|staging| !Arc::ptr_eq(&staging.0, &own.0)) {
+            // Locked until the process is gone.
+            let staging: &'static Staging = Box::leak(Box::new(staging));
+            std::mem::forget(staging.discard());
+        }
+    }
+}
+
+impl Default for Staging {
+    fn default() -> Self {
+        UNDER_WAY.new_staging()
+    }
 }
 
 impl Staging {
@@ -234,6 +268,12 @@ impl Staging {
         Some(Discarded { _state: state })
     }
 
+    /// Removes what every other save of this process has staged and not committed, and keeps them from going on: for
+    /// the process's end.
+    pub fn discard_others(&self) {
+        UNDER_WAY.discard_others(self);
+    }
+
     /// Writes and syncs one file. `go_on` gets the number of bytes that were written, and may end it.
     fn stage_one(
         &self,
@@ -353,5 +393,35 @@ impl Drop for Staged {
         // Before the folders are let go of: what lies there is ours as long as we hold them.
         self.files.clear();
         self.bridges.clear();
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use std::fs;
+
+    use super::UnderWay;
+
+    #[test]
+    fn at_the_process_s_end_every_save_loses_its_temporary_files_and_goes_no_further() {
+        let folder = tempfile::tempdir().unwrap();
+        let under_way = UnderWay::default();
+        let [own, waiting, done] = [(); 3].map(|()| under_way.new_staging());
+        let staged = waiting.stage([(folder.path().join("waiting"), &b"new"[..])]).unwrap();
+        done.stage([(folder.path().join("done"), &b"new"[..])])
+            .unwrap()
+            .commit()
+            .unwrap();
+        assert!(staged.temporary(0).exists());
+        under_way.discard_others(&own);
+        let left: Vec<_> = fs::read_dir(folder.path())
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name())
+            .collect();
+        assert_eq!(left, ["done"]);
+        // Neither a commit nor another temporary file gets its lock any more.
+        assert!(waiting.0.try_lock().is_err());
+        assert!(own.0.try_lock().is_ok() && done.0.try_lock().is_ok());
     }
 }

@@ -6,9 +6,9 @@ use glam::DVec3;
 use pliant_editor::{Event, JobKind, Shading};
 use pliant_mesh::Cancel;
 
-use super::message::{LoadedMaterials, Message, ModelToShow, Posed};
+use super::message::{ImagesOf, LoadedMaterials, Message, ModelToShow, Posed};
 use super::workers::Stage;
-use crate::drawing::{self, Drawing, Field};
+use crate::drawing::{self, Field};
 use crate::window::application::Application;
 use crate::window::files::session::OpenFile;
 use crate::window::panels::notes::Notes;
@@ -45,7 +45,7 @@ impl Application {
                 }
                 // That goes to the second view.
                 Message::Uploaded(..) => {}
-                Message::LoadedMaterials(drawing, result) => self.set_materials(&drawing, result),
+                Message::LoadedMaterials(of, result) => self.set_materials(&of, result),
                 Message::Opened(stamp, result) => match self.session.loaded(stamp, result, &self.workers) {
                     Some(Ok(opened)) => self.adopt(*opened),
                     Some(Err(sentence)) => {
@@ -99,7 +99,7 @@ impl Application {
             scales: Arc::default(),
         });
         self.poses.cancel();
-        self.has_requested_materials = false;
+        self.stop_images();
         let lowest = loaded.model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
         self.viewport.show(drawing, surface, displacements, lowest);
         self.notes = Notes {
@@ -132,40 +132,55 @@ impl Application {
     /// Has the images decoded and uploaded when materials are first shown.
     pub(in crate::window) fn request_images(&mut self) {
         let Some(open) = &self.session.open else { return };
-        if self.has_requested_materials
+        if self.images.is_some()
             || self.editor.view().look.shading != Shading::Material
             || !open.drawing.materials.has_images()
         {
             return;
         }
-        self.has_requested_materials = true;
-        let (drawing, gpu) = (Arc::clone(&open.drawing), self.viewport.gpu());
-        let failed = Arc::clone(&drawing);
+        let cancel = Cancel::new();
+        self.images = Some(cancel.clone());
+        let gpu = self.viewport.gpu();
+        let of = ImagesOf {
+            drawing: Arc::clone(&open.drawing),
+            cancel,
+        };
+        let failed = of.clone();
         self.workers.spawn(
             "images",
             move || {
-                // It is never cancelled, even if its file was closed; images are decoded in rounds.
-                let decoded = match drawing.materials.decode(&Cancel::new()) {
+                let decoded = match of.drawing.materials.decode(&of.cancel) {
                     Ok(decoded) => decoded,
-                    Err(cancelled) => return Message::LoadedMaterials(drawing, Err(cancelled.to_string())),
+                    Err(cancelled) => return Message::LoadedMaterials(of, Err(cancelled.to_string())),
                 };
                 let materials = gpu.upload_images(&decoded).map_err(|error| error.to_string());
                 let notes = decoded.notes;
-                Message::LoadedMaterials(drawing, materials.map(|materials| LoadedMaterials { materials, notes }))
+                Message::LoadedMaterials(of, materials.map(|materials| LoadedMaterials { materials, notes }))
             },
-            move |sentence| Message::LoadedMaterials(Arc::clone(&failed), Err(sentence)),
+            move |sentence| Message::LoadedMaterials(failed.clone(), Err(sentence)),
         );
     }
 
-    fn set_materials(&mut self, drawing: &Arc<Drawing>, result: Result<LoadedMaterials, String>) {
+    /// Stops the decoding of images, for another file or another device.
+    pub(in crate::window) fn stop_images(&mut self) {
+        if let Some(cancel) = self.images.take() {
+            cancel.cancel();
+        }
+    }
+
+    fn set_materials(&mut self, of: &ImagesOf, result: Result<LoadedMaterials, String>) {
+        // Another file is open, or its images are decoded again for another device.
+        if of.cancel.is_cancelled() {
+            return;
+        }
         let result = result.and_then(|LoadedMaterials { materials, notes }| {
             self.notes.about_file.extend(notes);
             self.viewport
-                .set_materials(drawing, materials)
+                .set_materials(&of.drawing, materials)
                 .map_err(|error| error.to_string())
         });
         if let Err(sentence) = result {
-            self.viewport.give_up_images(drawing);
+            self.viewport.give_up_images(&of.drawing);
             self.fail(format!("the materials are shown without their images: {sentence}"));
         }
     }

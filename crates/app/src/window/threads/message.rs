@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_editor::{Beginning, JobDone, Revision, SnapshotKey};
+use pliant_mesh::Cancel;
 use pliant_render::{Materials, Surface};
 
 use crate::drawing::{Drawing, Field, Pose, Scale};
@@ -20,7 +21,7 @@ pub enum Message {
     /// A file was uploaded once more, for a second view.
     Uploaded(Arc<Drawing>, Result<Surface, String>),
     /// The images of a file were decoded and uploaded, or why not.
-    LoadedMaterials(Arc<Drawing>, Result<LoadedMaterials, String>),
+    LoadedMaterials(ImagesOf, Result<LoadedMaterials, String>),
     /// A file was opened, or why it was not.
     Opened(Revision, Result<Box<ModelToShow>, String>),
     /// A file was written, or why it was not.
@@ -49,6 +50,15 @@ pub struct Painted {
     pub scale: Arc<Scale>,
     /// Colours of the drawn vertices.
     pub colours: Vec<[u8; 4]>,
+}
+
+/// Whose images are decoded, and what stops that.
+#[derive(Clone)]
+pub struct ImagesOf {
+    /// The file's drawing.
+    pub drawing: Arc<Drawing>,
+    /// Raised once nobody waits for them.
+    pub cancel: Cancel,
 }
 
 /// A file's materials with their images.

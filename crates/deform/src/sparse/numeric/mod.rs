@@ -103,7 +103,7 @@ pub(crate) fn factor(
     let failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
     let of = |error: &FactorError| match error {
         FactorError::Pivot(column) => *column,
-        FactorError::Memory | FactorError::Budget => usize::MAX - 1,
+        FactorError::Memory | FactorError::Budget(_) => usize::MAX - 1,
         FactorError::Cancelled => usize::MAX,
     };
     if let Some(error) = failures.into_iter().min_by_key(of) {

@@ -7,7 +7,7 @@ pub(crate) mod assembly_tree;
 
 use std::ops::Range;
 
-use crate::budget::{Budget, bytes_of};
+use crate::budget::{Budget, Limit, bytes_of};
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::numeric::line::{LANES, Line, Shape, strips, triangle};
@@ -23,6 +23,7 @@ struct Needed {
     /// Lines of the contribution matrices that wait for their parents, now and at most.
     waiting: usize,
     most_waiting: usize,
+    operations: f64,
 }
 
 impl Needed {
@@ -33,6 +34,7 @@ impl Needed {
         self.panel_lines = self.panel_lines.saturating_add(Shape { width, below }.lines());
         self.most_waiting = self.most_waiting.max(self.waiting + own);
         self.waiting = self.waiting + own - passed_on;
+        self.operations += operations(width, below);
     }
 
     /// In bytes.
@@ -41,6 +43,13 @@ impl Needed {
         let lines = self.panel_lines.saturating_add(self.most_waiting);
         bytes_of(lines, size_of::<Line>()).saturating_add(bytes_of(self.rows, 8))
     }
+}
+
+/// Multiplications and additions of a dense factorisation of `width` columns with `below` rows below: the sum of the
+/// squared column counts.
+fn operations(width: usize, below: usize) -> f64 {
+    let (width, below) = (width as f64, below as f64);
+    width * (width * width / 3.0 + width * below + below * below)
 }
 
 /// Lines of the contribution matrix of a supernode with this many rows below.
@@ -67,7 +76,8 @@ impl Symbolic {
     /// The factor of `matrix`, whose columns are grouped in supernodes that end at `ends`.
     ///
     /// # Errors
-    /// As soon as its numbers, its rows and the waiting contributions exceed the budget.
+    /// As soon as what was found of it exceeds the budget: its numbers, its rows, the contributions that wait at once,
+    /// or the operations of its factorisation.
     pub fn of(matrix: &ScaledMatrix, ends: &[u32], budget: Budget) -> Result<Self, FactorError> {
         let column_count = matrix.scale.len();
         let mut symbolic = Self {
@@ -86,6 +96,7 @@ impl Symbolic {
         let mut seen = vec![ROOT; column_count];
         let mut rows = Vec::new();
         let mut needed = Needed::default();
+        let most_operations = budget.operations_for(column_count);
         for s in 0..ends.len() {
             let own = symbolic.columns(s);
             let end = own.end as u32;
@@ -112,6 +123,9 @@ impl Symbolic {
             }
             needed.meet(own.len(), rows.len(), passed_on);
             budget.without(needed.bytes())?;
+            if needed.operations > most_operations {
+                return Err(Limit::Operations(most_operations as u64).into());
+            }
             symbolic.parent.push(parent);
             symbolic.rows.try_reserve(rows.len())?;
             symbolic.rows.extend_from_slice(&rows);
@@ -160,7 +174,6 @@ impl Symbolic {
 
     /// Multiplications and additions of a dense factorisation of a supernode.
     pub fn work(&self, s: usize) -> f64 {
-        let (width, below) = (self.columns(s).len() as f64, self.pattern(s).len() as f64);
-        width * (width * width / 3.0 + width * below + below * below)
+        operations(self.columns(s).len(), self.pattern(s).len())
     }
 }
