@@ -103,14 +103,14 @@ pub(crate) fn followers(
     let rigid: Vec<Option<Place>> = following
         .par_iter()
         .zip(&owners)
-        .map_init(Guess::default, |guess, (&(component, how), owner)| {
+        .map(|(&(component, how), owner)| {
             let vertices = topology.vertices_of(component);
             let (middle, radius) = match owner {
                 _ if how != Loose::Follow => return None,
                 Some(Owner::Follower(_)) => return None,
                 Some(Owner::Surface(middle)) => (*middle, half_diagonal(surface, vertices)),
                 None => (
-                    nearest(surface, vertices.clone(), &nearby, guess)?,
+                    nearest(surface, vertices.clone(), &nearby)?,
                     half_diagonal(surface, vertices),
                 ),
             };
@@ -182,40 +182,17 @@ fn positions_of(surface: &Surface, vertices: &[SurfaceVertex]) -> Vec<DVec3> {
         .collect()
 }
 
-/// The vertex that was nearest to the last component: the next one often lies beside that.
-#[derive(Default)]
-struct Guess(Option<SurfaceVertex>);
-
-/// The vertex of the driven surface that the component of these vertices comes nearest to. The guess shortens the search
-/// and changes nothing about what is found.
-fn nearest(
-    surface: &Surface,
-    vertices: impl Iterator<Item = SurfaceVertex>,
-    nearby: &Bvh,
-    guess: &mut Guess,
-) -> Option<SurfaceVertex> {
+/// The vertex of the driven surface that the component of these vertices comes nearest to.
+fn nearest(surface: &Surface, vertices: impl Iterator<Item = SurfaceVertex>, nearby: &Bvh) -> Option<SurfaceVertex> {
     let mut nearest: Option<(SurfaceVertex, f64)> = None;
     for point in vertices.map(|vertex| surface.positions[vertex.index()]) {
-        let found = match (nearest, guess.0) {
-            // Only what is nearer counts.
-            (Some((_, distance)), _) => nearby.nearest_vertex_within(point, distance),
-            (None, Some(guess)) => {
-                // The hierarchy may round in another way.
-                let limit = surface.positions[guess.index()].distance(point) * (1.0 + 1e-6);
-                nearby
-                    .nearest_vertex_within(point, limit)
-                    .or_else(|| nearby.nearest_vertex(point))
-            }
-            (None, None) => nearby.nearest_vertex(point),
-        };
-        if let Some(found) = found
+        if let Some(found) = nearby.nearest_vertex(point)
             && nearest.is_none_or(|(_, distance)| found.1 < distance)
         {
             nearest = Some(found);
         }
     }
-    guess.0 = nearest.map(|(middle, _)| middle).or(guess.0);
-    guess.0.filter(|_| nearest.is_some())
+    nearest.map(|(middle, _)| middle)
 }
 
 /// Half the diagonal of these vertices' bounding box.

@@ -99,24 +99,14 @@ impl Bvh {
     /// The vertex nearest to `point` in a straight line, of several the lowest, and its distance; `None` of an empty
     /// hierarchy.
     pub fn nearest_vertex(&self, point: DVec3) -> Option<(SurfaceVertex, f64)> {
-        self.nearest_vertex_within(point, f64::INFINITY)
-    }
-
-    /// As [`Bvh::nearest_vertex`], of those not farther than `limit`: what is known to be near spares the way there.
-    pub fn nearest_vertex_within(&self, point: DVec3, limit: f64) -> Option<(SurfaceVertex, f64)> {
         let in_boxes = self.space.of_point(point);
-        let farthest = limit * self.space.scale;
         let mut best: Option<(f64, SurfaceVertex)> = None;
         self.walk(
-            |span| {
-                Some(span.distance(in_boxes))
-                    .filter(|&d| d <= farthest)
-                    .unwrap_or(f64::INFINITY)
-            },
+            |span| span.distance(in_boxes),
             |place| {
                 for v in self.leaves.corners[place] {
                     let candidate = (self.positions.get(v.index()).distance(point), v);
-                    if candidate.0 <= limit && best.is_none_or(|best| candidate < best) {
+                    if best.is_none_or(|best| candidate < best) {
                         best = Some(candidate);
                     }
                 }
