@@ -112,7 +112,7 @@ pub(crate) fn drawn(
                 Some(&known) => known,
                 None => {
                     let first = first_file_vertex[position];
-                    let added = gathering.instance(place, primitive, number, &layout, first, &applied)?;
+                    let added = gathering.instance(place, primitive, number, &layout, first, applied)?;
                     instance_of.insert(alike[number], added);
                     added
                 }
