@@ -74,6 +74,8 @@ impl Shown {
             }
             _ => None,
         };
+        // One by one a vertex costs several times what it costs among all.
+        let recoloured = recoloured.filter(|vertices| vertices.len() < model.surface.positions.len() / 4);
         if let Some(vertices) = recoloured {
             let of_region = editor.region_colour();
             let colour = |vertex: SurfaceVertex| match (wanted, &self.scale) {
