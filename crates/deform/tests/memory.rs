@@ -84,21 +84,6 @@ fn soup(count: usize) -> Drawn {
     Drawn::once(drawn.positions, drawn.triangles)
 }
 
-/// A sheet whose vertices coincide at random, a sixth of them being left.
-fn tangle(side: usize) -> Drawn {
-    let mut sheet = shapes::grid(side, side);
-    let mut state = 1_u64;
-    let mut random = |below: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (state >> 33) as usize % below
-    };
-    let all = sheet.positions.clone();
-    for position in &mut sheet.positions {
-        *position = all[6 * random(all.len() / 6)];
-    }
-    sheet
-}
-
 struct Scene {
     model: Model,
     roles: Vec<Role>,
@@ -205,7 +190,7 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
         }
         // So is one whose factorisation takes too many operations.
         let method = Method::from(Bilaplacian::default());
-        let scene = Scene::new(tangle(170), &method);
+        let scene = Scene::new(shapes::tangle(170), &method);
         let (bound, peak, _) = scene.bind(PLENTY);
         bound.unwrap();
         let (refused, least, _) = scene.bind(Budget {

@@ -96,6 +96,21 @@ pub fn grid(nx: usize, ny: usize) -> Drawn {
     drawn(positions, quads(nx, ny, |x, y| y * (nx + 1) + x))
 }
 
+/// The sheet of [`grid`] whose vertices coincide at random, a sixth of the places being left: no surface any more.
+pub fn tangle(side: usize) -> Drawn {
+    let mut sheet = grid(side, side);
+    let mut state = 1_u64;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 33) as usize % below
+    };
+    let all = sheet.positions.clone();
+    for position in &mut sheet.positions {
+        *position = all[6 * random(all.len() / 6)];
+    }
+    sheet
+}
+
 /// A torus about z, radii 1 and 0.4: `around` by `across` cells. Closed, genus 1.
 pub fn torus(around: usize, across: usize) -> Drawn {
     let positions = (0..across)

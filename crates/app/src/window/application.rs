@@ -120,6 +120,7 @@ impl Application {
         }
         let mut session = Session::default();
         session.load(source, &viewport.gpu(), &workers);
+        let is_to_fill_screen = settings.get().maximised;
         let mut application = Self {
             editor: Editor::new(Box::new(workers.clone())),
             viewport,
@@ -143,13 +144,12 @@ impl Application {
             closing: false,
             recovered_from: None,
             longest_frame: Duration::ZERO,
-            is_to_fill_screen: false,
+            is_to_fill_screen,
             layout: [egui::Rect::NOTHING; 4],
             images: None,
             view_rect: egui::Rect::ZERO,
             title: String::new(),
         };
-        application.is_to_fill_screen = application.settings.get().maximised;
         application.take_keys();
         Ok(application)
     }

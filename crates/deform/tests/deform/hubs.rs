@@ -130,21 +130,6 @@ fn what_exceeds_the_budget_is_refused_in_words_that_name_the_crowded_vertex() {
     }
 }
 
-/// A sheet whose vertices coincide at random: no surface any more.
-fn tangle(side: usize) -> Drawn {
-    let mut sheet = shapes::grid(side, side);
-    let mut state = 1_u64;
-    let mut random = |below: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (state >> 33) as usize % below
-    };
-    let all = sheet.positions.clone();
-    for position in &mut sheet.positions {
-        *position = all[6 * random(all.len() / 6)];
-    }
-    sheet
-}
-
 #[test]
 fn operations_beyond_a_surface_s_are_refused_in_words_and_those_of_a_surface_never() {
     for method in methods() {
@@ -171,7 +156,7 @@ fn operations_beyond_a_surface_s_are_refused_in_words_and_those_of_a_surface_nev
         if method.options::<Primo>().is_some() {
             continue;
         }
-        let refused = bound(tangle(170), 1_000_000).unwrap_err();
+        let refused = bound(shapes::tangle(170), 1_000_000).unwrap_err();
         let is_for_operations = matches!(
             refused,
             BindError::Budget {
