@@ -235,11 +235,12 @@ pub fn dim_bare(appearance: &mut Appearance, triangles: u32) {
         }];
     }
     for material in &mut appearance.materials {
-        let (metallic, roughness) = (material.metallic, material.roughness);
+        let (metallic, roughness, double_sided) = (material.metallic, material.roughness, material.double_sided);
         let is_bare = *material
             == pliant_io::Material {
                 metallic,
                 roughness,
+                double_sided,
                 ..pliant_io::Material::default()
             };
         if is_bare {
