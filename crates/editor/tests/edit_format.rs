@@ -4,7 +4,8 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use pliant_deform::Loose;
-use pliant_editor::{EditFile, FieldEntry, HandleTransform, Selector};
+use pliant_editor::{Beginning, EditFile, FieldEntry, HandleTransform, Selector};
+use pliant_mesh::shapes;
 
 const FULL: &str = r#"{
   "version": 1,
@@ -287,4 +288,21 @@ fn a_version_that_is_no_number_is_not_quoted_whole() {
     let said = EditFile::parse(&text).unwrap_err().to_string();
     assert!(said.contains("`version`") && said.len() < 200, "{said}");
     assert!(!said.chars().any(char::is_control), "{said:?}");
+}
+
+/// Names come from the file, so a refusal cuts them.
+#[test]
+fn a_handle_with_a_long_name_is_refused_in_a_short_sentence() {
+    let model = shapes::model(shapes::grid(2, 2));
+    let long = "é".repeat(3000);
+    let handle = |vertices: &str| format!(r#"{{"name": "{long}", "select": {{"vertices": {vertices}}}}}"#);
+    for (handles, word) in [
+        (handle("[]"), "selects no vertex"),
+        ([handle("[0, 1]"), handle("[1, 2]")].join(", "), "share 1"),
+    ] {
+        let text = format!(r#"{{"version": 1, "method": {{"name": "arap"}}, "handles": [{handles}]}}"#);
+        let refused = Beginning::parse(&text).unwrap().resolve(&model);
+        let said = refused.unwrap_err().to_string();
+        assert!(said.contains(word) && said.chars().count() < 400, "{said}");
+    }
 }

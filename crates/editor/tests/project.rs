@@ -177,6 +177,33 @@ fn what_a_project_can_not_be_is_refused_in_a_sentence() {
     for end in (0..text.len()).step_by(97) {
         assert!(Beginning::parse(&text[..end]).is_err());
     }
+    // A handle's name comes from the file: however long it is, the sentence stays short.
+    let mut named: serde_json::Value = serde_json::from_str(&text).unwrap();
+    named["handles"][0]["name"] = "é\u{1b}".repeat(1500).into();
+    let with = |member: &str, value: serde_json::Value| {
+        let mut wrong = named.clone();
+        match member {
+            "next_handle" => wrong[member] = value,
+            _ => wrong["handles"][0][member] = value,
+        }
+        wrong
+    };
+    let beyond = rig.model.drawn.vertex_count();
+    for wrong in [
+        with("next_handle", 0.into()),
+        with("soft", (-1.0).into()),
+        with("vertices", serde_json::json!([[beyond, beyond]])),
+    ] {
+        let refused = Project::parse(&wrong.to_string())
+            .map(Beginning::from)
+            .and_then(|project| project.resolve(&rig.model));
+        let said = refused.unwrap_err().to_string();
+        assert!(said.contains("éé") || said.contains("é é"), "{said}");
+        assert!(
+            said.chars().count() < 300 && !said.chars().any(char::is_control),
+            "{said:?}"
+        );
+    }
     // A vertex beyond the mesh's.
     let count = rig.model.drawn.vertex_count();
     let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();

@@ -9,6 +9,7 @@ use pliant_mesh::{Model, Surface, SurfaceVertex};
 use super::edit_error::EditError;
 use super::edit_file::EditFile;
 use super::exchange::with_pivot;
+use super::refusal::shortened;
 use crate::HandleTransform;
 use crate::document::Document;
 use crate::jobs::Region;
@@ -160,15 +161,15 @@ impl EditFile {
             }
             if let Some(&(vertex, other)) = shared.first() {
                 return Err(EditError::SharedVertex {
-                    first: self.handles[usize::from(other)].name.clone(),
-                    second: entry.name.clone(),
+                    first: shortened(&self.handles[usize::from(other)].name),
+                    second: shortened(&entry.name),
                     shared: shared.iter().filter(|&&(_, o)| o == other).count(),
                     file_vertex: model.first_file_vertex(vertex).0,
                 });
             }
             if count == 0.0 {
                 return Err(EditError::EmptyHandle {
-                    handle: entry.name.clone(),
+                    handle: shortened(&entry.name),
                     index,
                 });
             }

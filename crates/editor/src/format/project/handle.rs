@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::field::Ranges;
 use crate::document::{Handle, HandleId, MirrorPlane, PivotPlace, Twin};
 use crate::document::{followed, means};
+use crate::format::refusal::shortened;
 use crate::{EditError, HandleTransform, Reach, SOFT_RANGE};
 
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -107,7 +108,7 @@ impl StoredHandle {
         if !(size.is_finite() && size >= 0.0) || refused_weight || self.twin.is_some_and(|twin| twin.axis > 2) {
             return Err(EditError::Project(format!(
                 "the handle `{}` has a reach, a weight, a continuity or a twin that can't be: save it again",
-                self.name
+                shortened(&self.name)
             )));
         }
         let id = HandleId(self.id);

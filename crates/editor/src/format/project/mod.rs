@@ -302,12 +302,13 @@ impl Project {
             if document.handles.iter().any(|handle| handle.id == id) || stored.id >= self.next_handle {
                 return Err(EditError::Project(format!(
                     "the handle `{}` has the number {}, which is another's or none: number them below `next_handle`",
-                    stored.name, stored.id
+                    shortened(&stored.name),
+                    stored.id
                 )));
             }
             put(
                 &stored.vertices,
-                &format!("handles: {}", stored.name),
+                &format!("handles: {}", shortened(&stored.name)),
                 Paint::Handle(id),
             )?;
             document.handles.push(stored.handle()?);
