@@ -29,13 +29,21 @@ impl Finding {
 
     /// One thing at each of `vertices`; the examples are the lowest of them, each once.
     pub(crate) fn at_vertices(vertices: impl Iterator<Item = u32>) -> Self {
-        let mut vertices: Vec<u32> = vertices.collect();
-        let count = vertices.len();
-        vertices.sort_unstable();
-        vertices.dedup();
+        let mut count = 0;
+        let mut lowest: Vec<u32> = Vec::with_capacity(Findings::EXAMPLES + 1);
+        for vertex in vertices {
+            count += 1;
+            if lowest.len() == Findings::EXAMPLES && vertex >= lowest[Findings::EXAMPLES - 1] {
+                continue;
+            }
+            if let Err(place) = lowest.binary_search(&vertex) {
+                lowest.insert(place, vertex);
+                lowest.truncate(Findings::EXAMPLES);
+            }
+        }
         Self {
             count,
-            ..Self::of(&vertices)
+            examples: lowest,
         }
     }
 

@@ -24,9 +24,9 @@ pub(crate) struct Parts<'a> {
 impl Parts<'_> {
     /// Reports what was found at surface vertices in terms of file vertices.
     pub(crate) fn report(&self, found: &TopologyFindings, findings: &mut Findings) {
-        let listed = found.vertices();
-        let first_file_vertices = self.drawn.first_file_vertices(&listed);
-        let file_vertex = |v: &SurfaceVertex| first_file_vertices[listed.partition_point(|u| u < v)].0;
+        let range = found.range();
+        let first_file_vertices = self.drawn.first_file_vertices(range.clone());
+        let file_vertex = |v: &SurfaceVertex| first_file_vertices[v.index() - range.start].0;
         let at = |found: &[SurfaceVertex]| Finding::at_vertices(found.iter().map(file_vertex));
         findings.non_manifold_edges = at(&found.non_manifold_edges);
         findings.non_manifold_vertices = at(&found.non_manifold_vertices);

@@ -1,6 +1,8 @@
 //! What a file shows, without what the surface has already: once welded, a drawn vertex has the position of its surface
 //! vertex, so that position is not stored twice. The few that differ in a bit are stored separately.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -170,21 +172,15 @@ impl DrawnSet {
         &self.triangle_of_surface
     }
 
-    /// The lowest of the file's vertices behind each of some surface vertices, which ascend.
-    pub(crate) fn first_file_vertices(&self, of: &[SurfaceVertex]) -> Vec<FileVertex> {
+    /// The lowest of the file's vertices behind each surface vertex of a range.
+    pub(crate) fn first_file_vertices(&self, of: Range<usize>) -> Vec<FileVertex> {
         let mut first = vec![FileVertex(u32::MAX); of.len()];
-        let (Some(lowest), Some(highest)) = (of.first(), of.last()) else {
+        if first.is_empty() {
             return first;
-        };
-        let mut is_wanted = vec![false; highest.index() - lowest.index() + 1];
-        for v in of {
-            is_wanted[v.index() - lowest.index()] = true;
         }
         for (v, file_vertex) in self.surface_vertices().zip(self.file_vertices()) {
-            let Some(v) = v else { continue };
-            let place = v.index().checked_sub(lowest.index());
-            if place.and_then(|place| is_wanted.get(place)) == Some(&true) {
-                let first = &mut first[of.partition_point(|u| *u < v)];
+            let place = v.and_then(|v| v.index().checked_sub(of.start));
+            if let Some(first) = place.and_then(|place| first.get_mut(place)) {
                 *first = file_vertex.min(*first);
             }
         }

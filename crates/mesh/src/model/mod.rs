@@ -79,7 +79,7 @@ impl Model {
 
     /// The lowest of the file's vertices behind a surface vertex.
     pub fn first_file_vertex(&self, vertex: SurfaceVertex) -> FileVertex {
-        self.drawn.first_file_vertices(&[vertex])[0]
+        self.drawn.first_file_vertices(vertex.index()..vertex.index() + 1)[0]
     }
 
     /// The table from the file's vertices to the surface's.

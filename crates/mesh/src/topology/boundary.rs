@@ -1,5 +1,7 @@
 //! Rims of holes, traced from the edges that have one triangle.
 
+use rayon::prelude::*;
+
 use crate::SurfaceVertex;
 
 /// Strings `edges` into loops, each vertex once in each loop.
@@ -11,107 +13,104 @@ pub(crate) fn trace_loops(edges: &[[SurfaceVertex; 2]]) -> Vec<Vec<SurfaceVertex
     let mut rim = Rim::of(edges);
     let mut place_on_path = vec![None; rim.vertices.len()];
     let mut loops = Vec::new();
-    let (chains, rings): (Vec<usize>, Vec<usize>) =
-        (0..rim.vertices.len()).partition(|&local| rim.is_chain_start(local));
+    let mut path: Vec<u32> = Vec::new();
+    let (chains, rings): (Vec<u32>, Vec<u32>) =
+        (0..rim.vertices.len() as u32).partition(|&local| rim.is_chain_start(local));
     for start in chains.into_iter().chain(rings) {
-        let mut path = vec![start];
-        place_on_path[start] = Some(0);
+        path.push(start);
+        place_on_path[start as usize] = Some(0);
         while let Some(next) = rim.take_edge(path[path.len() - 1]) {
-            if let Some(place) = place_on_path[next] {
-                loops.push(rim.named(&path[place..]));
-                for local in path.drain(place + 1..) {
-                    place_on_path[local] = None;
+            if let Some(place) = place_on_path[next as usize] {
+                loops.push(rim.named(&path[place as usize..]));
+                for local in path.drain(place as usize + 1..) {
+                    place_on_path[local as usize] = None;
                 }
             } else {
-                place_on_path[next] = Some(path.len());
+                place_on_path[next as usize] = Some(path.len() as u32);
                 path.push(next);
             }
         }
         if path.len() > 1 {
             loops.push(rim.named(&path));
         }
-        for local in path {
-            place_on_path[local] = None;
+        for local in path.drain(..) {
+            place_on_path[local as usize] = None;
         }
     }
     loops
 }
 
-/// One end of an edge, as a vertex of the rim sees it.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct End {
-    at: usize,
-    /// Whether the edge ends at this vertex rather than starts.
-    is_head: bool,
-    edge: usize,
-    other: usize,
-}
-
 /// The vertices on rims, numbered among themselves, and their edges.
 struct Rim {
+    /// Ascending.
     vertices: Vec<SurfaceVertex>,
-    /// Sorted: at each vertex the edges that start there come first.
-    ends: Vec<End>,
-    starts: Vec<usize>,
-    /// How far each vertex's ends are known to be used up.
-    next: Vec<usize>,
+    /// Both ends of each edge, by local number.
+    edges: Vec<[u32; 2]>,
+    /// The edges at each vertex: first those that start there, then those that end there, each by rising number.
+    edges_at: Vec<u32>,
+    /// Where each vertex's edges begin, and where the last one's end.
+    starts: Vec<u32>,
+    /// How far each vertex's edges are known to be used up.
+    next: Vec<u32>,
     used: Vec<bool>,
 }
 
 impl Rim {
     fn of(edges: &[[SurfaceVertex; 2]]) -> Self {
         let mut vertices: Vec<SurfaceVertex> = edges.iter().flatten().copied().collect();
-        vertices.sort_unstable();
+        vertices.par_sort_unstable();
         vertices.dedup();
-        let mut ends = Vec::with_capacity(2 * edges.len());
-        for (edge, ends_of_edge) in edges.iter().enumerate() {
-            let [from, to] = ends_of_edge.map(|vertex| vertices.partition_point(|&v| v < vertex));
-            ends.push(End {
-                at: from,
-                is_head: false,
-                edge,
-                other: to,
-            });
-            ends.push(End {
-                at: to,
-                is_head: true,
-                edge,
-                other: from,
-            });
+        let local = |vertex: SurfaceVertex| vertices.partition_point(|&v| v < vertex) as u32;
+        let edges: Vec<[u32; 2]> = edges.par_iter().map(|ends| ends.map(local)).collect();
+        // A counting sort. Shifted by one, each start moves on to the next vertex's start while its row fills.
+        let mut starts = vec![0; vertices.len() + 2];
+        for &end in edges.iter().flatten() {
+            starts[end as usize + 2] += 1;
         }
-        ends.sort_unstable();
-        let starts: Vec<usize> = (0..=vertices.len())
-            .map(|v| ends.partition_point(|end| end.at < v))
-            .collect();
+        for place in 2..starts.len() {
+            starts[place] += starts[place - 1];
+        }
+        let mut edges_at = vec![0; 2 * edges.len()];
+        for end in 0..2 {
+            for (number, ends) in (0..).zip(&edges) {
+                let place = &mut starts[ends[end] as usize + 1];
+                edges_at[*place as usize] = number;
+                *place += 1;
+            }
+        }
+        starts.pop();
         Self {
-            vertices,
-            ends,
             next: starts.clone(),
-            starts,
             used: vec![false; edges.len()],
+            vertices,
+            edges,
+            edges_at,
+            starts,
         }
     }
 
     /// Whether more edges start than end here, so that some walk must start here.
-    fn is_chain_start(&self, local: usize) -> bool {
-        let ends = &self.ends[self.starts[local]..self.starts[local + 1]];
-        2 * ends.iter().filter(|end| !end.is_head).count() > ends.len()
+    fn is_chain_start(&self, local: u32) -> bool {
+        let [start, end] = [0, 1].map(|next| self.starts[local as usize + next] as usize);
+        let own = &self.edges_at[start..end];
+        2 * own.partition_point(|&edge| self.edges[edge as usize][0] == local) > own.len()
     }
 
     /// Uses up the first unused edge at a vertex and gives its other end.
-    fn take_edge(&mut self, local: usize) -> Option<usize> {
-        while self.next[local] < self.starts[local + 1] {
-            let end = self.ends[self.next[local]];
-            self.next[local] += 1;
-            if !self.used[end.edge] {
-                self.used[end.edge] = true;
-                return Some(end.other);
+    fn take_edge(&mut self, local: u32) -> Option<u32> {
+        let (next, end) = (&mut self.next[local as usize], self.starts[local as usize + 1]);
+        while *next < end {
+            let edge = self.edges_at[*next as usize] as usize;
+            *next += 1;
+            if !std::mem::replace(&mut self.used[edge], true) {
+                let [from, to] = self.edges[edge];
+                return Some(if from == local { to } else { from });
             }
         }
         None
     }
 
-    fn named(&self, path: &[usize]) -> Vec<SurfaceVertex> {
-        path.iter().map(|&local| self.vertices[local]).collect()
+    fn named(&self, path: &[u32]) -> Vec<SurfaceVertex> {
+        path.iter().map(|&local| self.vertices[local as usize]).collect()
     }
 }

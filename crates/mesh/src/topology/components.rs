@@ -1,5 +1,7 @@
 //! Connected components of a surface, largest first.
 
+use rayon::prelude::*;
+
 use crate::{FileVertex, SurfaceVertex};
 
 /// A connected part of the surface: vertices joined by edges.
@@ -122,7 +124,7 @@ fn find(parent: &mut [u32], mut v: u32) -> u32 {
 /// Puts components into their order and renames the labels.
 fn sort(labels: &mut [u32], found: Vec<Component>) -> Vec<Component> {
     let mut order: Vec<(u32, Component)> = (0..).zip(found).collect();
-    order.sort_by_key(|(label, component)| {
+    order.par_sort_unstable_by_key(|(label, component)| {
         (
             std::cmp::Reverse(component.vertex_count),
             component.first_file_vertex,

@@ -51,18 +51,19 @@ impl Rings {
 }
 
 impl TopologyFindings {
-    /// Every vertex that is named, ascending, each once.
-    pub(crate) fn vertices(&self) -> Vec<SurfaceVertex> {
+    /// The vertices from the lowest to the highest one that is named.
+    pub(crate) fn range(&self) -> Range<usize> {
         let edges = self.boundary.as_flattened();
         let others = [
             &self.non_manifold_edges,
             &self.misoriented_edges,
             &self.non_manifold_vertices,
         ];
-        let mut all: Vec<SurfaceVertex> = edges.iter().chain(others.into_iter().flatten()).copied().collect();
-        all.sort_unstable();
-        all.dedup();
-        all
+        let named = edges.iter().chain(others.into_iter().flatten());
+        let (low, high) = named.fold((usize::MAX, 0), |(low, high), vertex| {
+            (low.min(vertex.index()), high.max(vertex.index() + 1))
+        });
+        low.min(high)..high
     }
 
     fn clear(&mut self) {
