@@ -8,7 +8,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
-use pliant_deform::{Bound, Method, Ordering, SolveError};
+use pliant_deform::{BindError, Bound, Method, Ordering, SolveError};
 use pliant_editor::{Beginning, Setup};
 use pliant_io::MorphTarget;
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
@@ -51,10 +51,15 @@ pub fn bind(
     let bound = setup
         .problem(model)
         .bind_within(ordering, memory::budget(), progress, cancel);
-    bound.map_err(|error| AppError::Bind {
+    bound.map_err(|error| refused(file, model, error))
+}
+
+/// The refusal of a binding, which names vertices by the file's numbers.
+fn refused(file: &Path, model: &Model, error: BindError) -> AppError {
+    AppError::Bind {
         file: file.to_owned(),
         source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
-    })
+    }
 }
 
 /// What [`apply`] is to do.
@@ -199,6 +204,8 @@ impl Solution {
 
 fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Result<Solution, AppError> {
     let start = Instant::now();
+    let checked = setup.problem(model).check_tables(memory::budget());
+    checked.map_err(|error| refused(apply.file, model, error))?;
     let ordering = order(model, &setup.method, &watch.begin("ordering"), &watch.cancel)?;
     let order_ms = ms_since(start);
     let start = Instant::now();

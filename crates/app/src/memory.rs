@@ -28,11 +28,12 @@ fn left_in_machine() -> Option<u64> {
     Some((kilobytes("MemAvailable:")? + kilobytes("SwapFree:").unwrap_or(0)) * 1024)
 }
 
-/// What the process's own limits leave it of addresses and of data (`ulimit -v` and `-d`).
+/// Three quarters of what the process's own limits leave it of addresses and of data (`ulimit -v` and `-d`): allocators
+/// reserve more than they hand out.
 fn left_to_process() -> Option<u64> {
     let limits = fs::read_to_string("/proc/self/limits").ok()?;
     let status = fs::read_to_string("/proc/self/status").ok()?;
-    left_of_limits(&limits, &status)
+    left_of_limits(&limits, &status).map(|left| left / 4 * 3)
 }
 
 fn left_of_limits(limits: &str, status: &str) -> Option<u64> {

@@ -88,7 +88,7 @@ impl Bound {
     ) -> Result<Self, BindError> {
         cancel.check()?;
         let mut partition = Partition::of(problem)?;
-        partition.take_budget(budget)?;
+        partition.take_budget(problem, budget)?;
         let positions = &problem.surface.positions;
         let handles: Vec<Handle> = partition
             .handles

@@ -121,15 +121,18 @@ pub enum BindError {
     },
     /// The region that is solved for is too long and thin to compute with.
     #[error(
-        "vertex {vertex} lies {edges} edges from all that holds it, too far to be solved for: fix vertices on the way, make the mesh coarser, or lower the method's `order` from {order}"
+        "vertex {vertex} lies {edges} edges from all that holds it, too far to be solved for: fix vertices on the way{}",
+        .order.map_or(" or make the mesh coarser".to_owned(), |order| {
+            format!(", make the mesh coarser, or lower the method's `order` from {order}")
+        })
     )]
     Slender {
         /// The vertex that is farthest.
         vertex: u32,
         /// How many edges lie between it and the nearest fixed vertex or handle.
         edges: usize,
-        /// The bi-Laplacian's order.
-        order: u32,
+        /// The bi-Laplacian's order, if that is the method.
+        order: Option<u32>,
     },
     /// Binding would take more than its [`crate::Budget`].
     #[error("{}", over_budget(*.free_count, *.limit, .crowded.as_ref()))]
@@ -173,6 +176,7 @@ const CROWD: usize = 100;
 
 fn over_budget(free_count: usize, limit: Limit, crowded: Option<&Crowded>) -> String {
     let allowed = match limit {
+        Limit::Bytes(bytes) if bytes < 1 << 30 => format!("{} MiB of memory", bytes >> 20),
         Limit::Bytes(bytes) => format!("{:.1} GiB of memory", bytes as f64 / f64::from(1 << 30)),
         Limit::Operations(operations) => format!("{:.0e} operations", operations as f64),
     };

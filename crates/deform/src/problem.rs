@@ -2,6 +2,7 @@
 
 use pliant_mesh::{Cancel, Progress, Surface, Topology};
 
+use crate::budget::bytes_of;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{BindError, Bound, Budget, Constraints, Method, Ordering, ReusableFactor};
 
@@ -56,6 +57,9 @@ pub struct Problem<'a> {
     pub revision: u64,
 }
 
+/// Bytes of a vertex while it is ordered, for each power of the Laplacian: as allocated, measured by `tests/memory.rs`.
+const ORDERING_ROW: usize = 230;
+
 impl Problem<'_> {
     /// What each component does if nothing holds it.
     pub(crate) fn loose_by_component(&self) -> Vec<Loose> {
@@ -66,6 +70,18 @@ impl Problem<'_> {
             }
         }
         loose
+    }
+
+    /// Refuses the problem where already its tables and its ordering would exceed a budget, before any of it is made.
+    ///
+    /// # Errors
+    /// [`BindError::Budget`].
+    pub fn check_tables(&self, budget: Budget) -> Result<(), BindError> {
+        let power = self.method.ordering_power().map_or(0, |power| power as usize);
+        let bytes = bytes_of(self.roles.len(), ORDERING_ROW * power);
+        let free = self.roles.iter().filter(|role| **role == Role::Free).count();
+        let checked = budget.without(bytes).map(|_| ());
+        checked.map_err(|limit| BindError::budget(free, limit).with_culprit(self.topology, budget))
     }
 
     /// Factors and solves everything that does not depend on the handles' transforms.

@@ -188,7 +188,21 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
             );
             assert!(least < peak, "{method:?}: {least} {peak}");
         }
-        // So is one whose factorisation takes too many operations.
+        // What binding is granted covers what it takes: with a tenth less than it held at most it is refused.
+        for method in methods() {
+            for drawn in [shapes::grid(120, 120), soup(8000)] {
+                let scene = Scene::new(drawn, &method);
+                let (bound, peak, _) = scene.bind(PLENTY);
+                bound.unwrap();
+                let (refused, ..) = scene.bind(Budget {
+                    bytes: peak as u64 * 9 / 10,
+                    ..PLENTY
+                });
+                let vertices = scene.roles.len();
+                assert!(refused.is_err(), "{method:?}: {peak} bytes for {vertices} vertices");
+            }
+        }
+        // A mesh whose factorisation takes too many operations is refused before its memory is taken.
         let method = Method::from(Bilaplacian::default());
         let scene = Scene::new(shapes::tangle(170), &method);
         let (bound, peak, _) = scene.bind(PLENTY);

@@ -41,6 +41,10 @@ impl DeformMethod for Arap {
         }
     }
 
+    fn row_bytes(&self) -> usize {
+        750
+    }
+
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         let (ordering, handles) = (input.ordering()?, input.handles);
         let solver = ArapSolver::bind(

@@ -12,7 +12,6 @@ pub(crate) mod operator;
 mod options;
 mod refine;
 pub(crate) mod setup;
-mod slender;
 mod solver;
 mod springs;
 

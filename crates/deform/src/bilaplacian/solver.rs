@@ -11,11 +11,11 @@ use crate::bilaplacian::bases::Tables;
 use crate::bilaplacian::columns::{energy_blocks, solve_columns};
 use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
 use crate::bilaplacian::setup::operator;
-use crate::bilaplacian::slender;
 use crate::handles::{FRAME_CHUNK, Motion};
 use crate::method::{BindInput, Finite};
 use crate::operators::repairs;
 use crate::region::partition::Partition;
+use crate::region::slender;
 use crate::sparse::refactorisation::RenewableFactor;
 use crate::{Bilaplacian, BindError, HandleBases, Problem, SolveError};
 
@@ -48,7 +48,13 @@ impl BilaplacianSolver {
         let solved = &partition.solved;
         let component_of = |vertex: u32| problem.topology.component(SurfaceVertex(vertex));
         let refuse = |error: SystemError| of_order(options, error.into_bind_error(component_of, solved.len()));
-        slender::check(&partition.triangulation, solved, options.operator_power())?;
+        let order = options.operator_power();
+        slender::check(
+            &partition.triangulation,
+            solved,
+            slender::most_edges(order),
+            Some(order),
+        )?;
         let elimination = input.ordering()?.elimination(solved);
         cancel.check()?;
         progress.set(0.1);

@@ -49,6 +49,12 @@ pub(crate) trait DeformMethod: Options {
         Triangulation::of_surface(problem.surface, problem.topology)
     }
 
+    /// Bytes of a solved vertex in the method's tables, without matrices and factors, whose entries are counted one by
+    /// one: as allocated, measured by `tests/memory.rs`.
+    fn row_bytes(&self) -> usize {
+        300
+    }
+
     /// Computes what does not depend on the handles' transforms.
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError>;
 }

@@ -40,6 +40,10 @@ impl DeformMethod for Primo {
         }
     }
 
+    fn row_bytes(&self) -> usize {
+        3400
+    }
+
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         let handles = input.handles;
         let solver = PrimoSolver::bind(

@@ -56,6 +56,7 @@ use crate::handles::blend::HandleFrame;
 use crate::handles::{Handle, Motion};
 use crate::numerical::lbfgs::Memory;
 use crate::region::partition::Partition;
+use crate::region::slender;
 use crate::sparse::Elimination;
 use crate::sparse::factor_error::FactorError;
 use crate::sparse::ordering::graph::elimination;
@@ -108,6 +109,8 @@ impl PrimoSolver {
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
         let (surface, topology) = (problem.surface, problem.topology);
+        let most = slender::MOST_EDGES_OF_PRISMS;
+        slender::check(&partition.triangulation, &partition.solved, most, None)?;
         let edges = Edges::of(surface, topology);
         let mut prisms = Prisms::of(&edges, problem.roles);
         cancel.check()?;

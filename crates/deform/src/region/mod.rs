@@ -4,3 +4,4 @@ pub(crate) mod constraints;
 pub(crate) mod follow;
 mod owners;
 pub(crate) mod partition;
+pub(crate) mod slender;

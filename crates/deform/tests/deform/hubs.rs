@@ -213,14 +213,31 @@ fn a_strip_too_long_for_its_order_is_refused_at_once_and_a_lower_order_bends_it(
         scene
     };
     let of_three = long(BilaplacianOrder::CurvatureVariation, 21_000).try_bind().err();
-    let Some(BindError::Slender { edges, order: 3, .. }) = of_three else {
+    let Some(BindError::Slender {
+        edges, order: Some(3), ..
+    }) = of_three
+    else {
         unreachable!("{of_three:?}")
     };
     assert!((10_000..10_600).contains(&edges), "{edges}");
     assert!(long(BilaplacianOrder::Membrane, 21_000).try_bind().is_ok());
     let of_two = long(BilaplacianOrder::ThinPlate, 210_000).try_bind().err();
-    let Some(BindError::Slender { edges, order: 2, .. }) = of_two else {
+    let Some(BindError::Slender {
+        edges, order: Some(2), ..
+    }) = of_two
+    else {
         unreachable!("{of_two:?}")
     };
     assert!((100_000..106_000).contains(&edges), "{edges}");
+    // Coupled prisms do not converge long before.
+    let prisms = |cells| {
+        let mut scene = long(BilaplacianOrder::Membrane, cells);
+        scene.method = Primo::default().into();
+        scene.try_bind()
+    };
+    let Some(BindError::Slender { edges, order: None, .. }) = prisms(31_000).err() else {
+        unreachable!("it is too long")
+    };
+    assert!((15_000..15_600).contains(&edges), "{edges}");
+    assert!(prisms(20_000).is_ok());
 }
