@@ -1,15 +1,14 @@
 //! Joins positions that are equal to within a tolerance.
 //!
-//! Positions are sorted along a Morton curve, which the welded vertices need anyway. Equal positions then fall into
-//! one fine cell and are found by walking the sorted list. What is left are pairs on either side of a cell's wall;
-//! for them the same list is read with coarser cells, in which nearly every position is alone and nearly none is
-//! close to a wall, so that few neighbouring cells have to be looked up. A grid hash did the same work in twice the
-//! time, because every look-up missed the cache.
+//! Positions are sorted along a Morton curve, which the welded vertices need anyway. Equal positions share a fine cell,
+//! so a walk along the sorted list finds them. That leaves pairs on either side of a cell's wall. They are found in the
+//! same list read with coarser cells, sized so that nearly every position is alone in its cell and few are close to a
+//! wall: few neighbouring cells have to be looked up. A hash grid took twice as long, because every look-up missed the
+//! cache.
 //!
-//! Joining is greedy, not transitive: taken by rising index, a position joins the lowest one within the tolerance
-//! that stands for itself, else it stands for itself. So no position moves further than the tolerance (twice that
-//! where a wall lies between), and a row of positions closer to each other than the tolerance does not collapse
-//! into one.
+//! Joining is greedy, not transitive. By ascending index, each position joins the lowest representative within the
+//! tolerance, or becomes a representative itself. So no position moves further than the tolerance (twice that across a
+//! cell's wall), and a row of positions closer to each other than the tolerance does not collapse into one.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -17,7 +16,7 @@ use rayon::prelude::*;
 use super::morton::{self, MortonGrid};
 use crate::Bounds;
 
-/// A position's place on the curve and its index: in twelve bytes, for a scan has many.
+/// A position's Morton code and its index, packed into twelve bytes because a scan has millions of them.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Entry {
     code_high: u32,
@@ -39,16 +38,16 @@ impl Entry {
     }
 }
 
-/// Positions grouped; groups are named by the place of their representative in Morton order.
+/// Positions in groups. A group is identified by its representative's place in Morton order.
 pub(crate) struct Joined {
-    /// Indices of the positions that took part, in Morton order; equal codes by rising index.
+    /// Indices of the positions that took part, in Morton order; equal codes by ascending index.
     pub(crate) order: Vec<u32>,
-    /// For each place in `order` the place of its representative (itself for a representative).
+    /// For each place in `order`, the place of its representative. A representative points at itself.
     pub(crate) representative: Vec<u32>,
 }
 
-/// Groups those `positions` whose indices are in `members` (ascending, all finite, inside `bounds`).
-/// `tolerance` is a length; zero joins equal positions only (−0 equals 0) and `None` none.
+/// Groups the `positions` whose indices are in `members` (ascending, all finite, inside `bounds`). `tolerance` is a
+/// length: zero joins only equal positions (−0 equals 0), and `None` joins none.
 pub(crate) fn join(positions: &[DVec3], members: Vec<u32>, bounds: &Bounds, tolerance: Option<f64>) -> Joined {
     let grid = MortonGrid::over(bounds);
     let mut entries: Vec<Entry> = members
@@ -64,16 +63,16 @@ pub(crate) fn join(positions: &[DVec3], members: Vec<u32>, bounds: &Bounds, tole
             join_across_cells(positions, &entries, &grid, tolerance, &mut representative);
         }
     }
-    // Written over the entries, of whose memory the rest goes back.
+    // Collecting reuses the entries' allocation; shrinking gives the rest of it back.
     let mut order: Vec<u32> = entries.into_iter().map(|entry| entry.index).collect();
     order.shrink_to_fit();
     Joined { order, representative }
 }
 
-/// Runs of this length or more are first thinned to different positions by sorting.
+/// Runs at least this long are first reduced to distinct positions by sorting.
 const CROWD: usize = 32;
 
-/// Joins entries of equal code, in parallel over pieces that end where a cell does.
+/// Joins entries of equal code, in parallel over pieces that end at cell boundaries.
 fn join_within_cells(positions: &[DVec3], entries: &[Entry], tolerance: f64, representative: &mut [u32]) {
     let mut pieces = Vec::new();
     let (mut rest, mut start) = (representative, 0);
@@ -109,7 +108,7 @@ fn join_within_cells(positions: &[DVec3], entries: &[Entry], tolerance: f64, rep
     });
 }
 
-/// Joins the entries of one cell, which stand by rising index; `offset` is the place of the first.
+/// Joins the entries of one cell, which are in ascending order of index; `offset` is the place of the first.
 fn join_run(positions: &[DVec3], run: &[Entry], offset: u32, tolerance: f64, representative: &mut [u32]) {
     let position = |place: usize| positions[run[place].index as usize];
     if run.len() >= CROWD {
@@ -122,7 +121,7 @@ fn join_run(positions: &[DVec3], run: &[Entry], offset: u32, tolerance: f64, rep
     let mut standing: Vec<usize> = Vec::with_capacity(8);
     for place in 0..run.len() {
         if representative[place] != offset + place as u32 {
-            // Equal to an earlier one, which has been taken already: go where it went.
+            // Equal to an earlier one, which already has its representative.
             representative[place] = representative[(representative[place] - offset) as usize];
             continue;
         }
@@ -138,7 +137,7 @@ fn join_run(positions: &[DVec3], run: &[Entry], offset: u32, tolerance: f64, rep
     }
 }
 
-/// Points each of `count` places at the first place of the same position.
+/// Points each of `count` places at the first place with the same position.
 fn join_equal_by_sorting(count: usize, position: impl Fn(usize) -> DVec3, offset: u32, representative: &mut [u32]) {
     // Adding zero turns −0 into 0, so that both sort alike.
     let key = |place: usize| (position(place) + DVec3::ZERO).to_array().map(ordered_bits);
@@ -154,7 +153,7 @@ fn join_equal_by_sorting(count: usize, position: impl Fn(usize) -> DVec3, offset
     }
 }
 
-/// Bits that compare as the finite numbers do.
+/// Bits that compare in the same order as the finite numbers.
 fn ordered_bits(number: f64) -> u64 {
     let bits = number.to_bits();
     if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
@@ -181,7 +180,7 @@ fn join_across_cells(
         tolerance,
     };
     let mut pairs: Vec<[u32; 2]> = near.find();
-    // By rising index of the higher, then of the lower one: the greedy order.
+    // The greedy order: by ascending index of the higher one, then of the lower one.
     let index = |place: u32| entries[place as usize].index;
     for pair in &mut pairs {
         pair.sort_unstable_by_key(|&place| index(place));
@@ -192,14 +191,14 @@ fn join_across_cells(
             representative[high as usize] = low;
         }
     }
-    // A fine cell's followers go where their representative went; one hop each, as roots never move twice.
+    // The members of a fine cell follow their representative. One hop is enough, because no representative moves twice.
     for place in 0..representative.len() {
         representative[place] = representative[representative[place] as usize];
     }
 }
 
-/// Bits a coordinate of the coarsest cells of which none is crowded, or of the finest that are still wider than
-/// the tolerance.
+/// Bits per coordinate of the coarsest cells that are not crowded, or else of the finest cells that are still wider
+/// than the tolerance.
 fn coarse_level(entries: &[Entry], standing: &[u32], tolerance_in_cells: f64) -> u32 {
     let finest = (0..morton::BITS)
         .find(|&bits| f64::from(1u32 << bits) > tolerance_in_cells)
@@ -227,7 +226,7 @@ struct NearPairs<'a> {
 }
 
 impl NearPairs<'_> {
-    /// Every near pair once, as places.
+    /// All near pairs, each once, as places.
     fn find(&self) -> Vec<[u32; 2]> {
         let found: Vec<Vec<[u32; 2]>> = (0..self.standing.len().div_ceil(8192))
             .into_par_iter()
@@ -252,7 +251,7 @@ impl NearPairs<'_> {
         self.positions[self.entries[self.standing[i] as usize].index as usize]
     }
 
-    /// Pairs of `i` and later ones in the same coarse cell.
+    /// Pairs of `i` and later representatives in the same coarse cell.
     fn pairs_in_cell(&self, i: usize, pairs: &mut Vec<[u32; 2]>) {
         let cell = self.cell(i);
         for j in i + 1..self.standing.len() {
@@ -263,12 +262,12 @@ impl NearPairs<'_> {
         }
     }
 
-    /// Pairs of `i` and later ones in the coarse cells whose wall is within the tolerance.
+    /// Pairs of `i` and later representatives in coarse cells that are within the tolerance.
     fn pairs_over_walls(&self, i: usize, pairs: &mut Vec<[u32; 2]>) {
         let side = f64::from(1u32 << (morton::BITS - self.level));
         let last_cell = f64::from((1u32 << self.level) - 1);
         let in_cells = self.grid.in_cells(self.position(i)) / side;
-        // A little more than the tolerance, for the rounding of the cells.
+        // Slightly more than the tolerance, to allow for rounding in the cell coordinates.
         let reach = self.grid.length_in_cells(self.tolerance) / side * (1.0 + 1e-6) + 1e-9;
         let lowest = (in_cells - reach)
             .floor()

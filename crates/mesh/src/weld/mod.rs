@@ -1,4 +1,4 @@
-//! From drawn vertices and triangles to a welded surface, with everything that was left out counted.
+//! Welds drawn vertices and triangles into a surface and counts everything that was left out.
 
 mod joining;
 mod morton;
@@ -15,19 +15,19 @@ use crate::{
 };
 use joining::Joined;
 
-/// Coordinates beyond this count as not finite: areas and volumes of such a mesh would overflow.
+/// Larger coordinates count as not finite, because areas and volumes of such a mesh would overflow.
 const LARGEST_COORDINATE: f64 = 1e60;
 
-/// Larger tolerances than this share of the diagonal are taken as this one: they would eat the mesh.
+/// The largest tolerance, as a share of the diagonal. A larger one would collapse the mesh and is clamped to this.
 const LARGEST_TOLERANCE: f64 = 1e-4;
 
-/// What welding makes.
+/// The result of welding.
 pub(crate) struct Welded {
     pub(crate) surface: Surface,
-    /// What was welded, its triangles as they came.
+    /// The drawn set that was welded, its triangles in their original order.
     pub(crate) drawn: DrawnSet,
     pub(crate) components: Components,
-    /// Those findings that are about file vertices and triangles; the topology's are still empty.
+    /// The findings about file vertices and triangles. Those about the topology are still empty.
     pub(crate) findings: Findings,
 }
 
@@ -39,8 +39,8 @@ enum Use {
     Triangle,
 }
 
-/// Welds `drawn`; progress goes from 0 to 0.6. What is no longer needed goes at once: a scan's positions alone are as
-/// much as its file.
+/// Welds `drawn`; progress goes from 0 to 0.6. Each array is dropped as soon as it is no longer needed, because a
+/// scan's positions alone take as much memory as its file.
 pub(crate) fn weld(
     drawn: Drawn,
     options: &WeldOptions,
@@ -142,7 +142,7 @@ fn is_collapsed([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// Triangles with an unusable corner don't count as users: their other corners would float.
+/// A triangle with an unusable corner is left out, so it does not count as a user of its other corners.
 fn uses_of_vertices(corners: &Corners, usable: &[bool]) -> Vec<Use> {
     let mut uses = vec![Use::None; usable.len()];
     for triangle in corners.iter() {
@@ -158,7 +158,7 @@ fn uses_of_vertices(corners: &Corners, usable: &[bool]) -> Vec<Use> {
     uses
 }
 
-/// Finds the file's vertices that are not finite or that no triangle uses.
+/// Finds file vertices that are not finite and those that no triangle uses.
 fn report_vertices(file_vertices: &FileVertices, usable: &[bool], uses: &[Use], findings: &mut Findings) {
     let count = file_vertices.count();
     let mut is_used = vec![false; count];
@@ -175,7 +175,7 @@ fn report_vertices(file_vertices: &FileVertices, usable: &[bool], uses: &[Use], 
     findings.unreferenced_vertices = collect(count, |v| !is_used[v]);
 }
 
-/// The place of each vertex's representative, [`NONE`] for vertices that took no part.
+/// The place of each vertex's representative, or [`NONE`] for a vertex that took no part.
 fn groups_by_vertex(vertex_count: usize, joined: &Joined) -> Vec<u32> {
     let mut groups = vec![NONE; vertex_count];
     for (&vertex, &representative) in joined.order.iter().zip(&joined.representative) {
@@ -184,7 +184,7 @@ fn groups_by_vertex(vertex_count: usize, joined: &Joined) -> Vec<u32> {
     groups
 }
 
-/// Numbers the groups that proper triangles use, in Morton order.
+/// Numbers, in Morton order, the groups that proper triangles use.
 fn number_used_groups(triangles: impl Iterator<Item = [u32; 3]>, group_count: usize) -> Vec<u32> {
     let mut number = vec![NONE; group_count];
     for corners in triangles {
@@ -200,10 +200,11 @@ fn number_used_groups(triangles: impl Iterator<Item = [u32; 3]>, group_count: us
     number
 }
 
-/// The proper triangles by lowest, middle and highest vertex, so that triangles near each other are near in memory,
-/// without those that repeat an earlier one; corners stay in drawn order. With each the drawn triangle behind it.
+/// The proper triangles without duplicates, and the drawn triangle that each came from.
 ///
-/// A triangle with a corner that no proper triangle uses is not proper, so the vertices alone say which are.
+/// They are sorted by lowest, middle and highest vertex, so that triangles near each other are near in memory; corners
+/// keep their drawn order. A corner that no proper triangle uses has no surface vertex, so the surface vertices alone
+/// tell which triangles are proper.
 fn sort_triangles(
     count: usize,
     in_surface: impl Fn(usize) -> [u32; 3] + Sync,
@@ -219,7 +220,8 @@ fn sort_triangles(
         })
         .collect();
 
-    // Counting sort by lowest vertex. Shifted by one, each start moves on to the next row's start while its row fills.
+    // Counting sort by lowest vertex. The starts are shifted by one row: filling a row advances its start to the next
+    // row's.
     let mut starts = vec![0u32; vertex_count + 2];
     for &v in lowest.iter().filter(|&&v| v != NONE) {
         starts[v as usize + 2] += 1;
@@ -239,7 +241,7 @@ fn sort_triangles(
 
     let mut repeated = Vec::new();
     let mut row: Vec<(u32, u32, u32)> = Vec::new();
-    // Rows only shrink, so they are written over the ones that were read.
+    // Rows only shrink, so the result overwrites rows that have already been read.
     let mut end = 0;
     for v in 0..vertex_count {
         row.clear();

@@ -1,13 +1,13 @@
-//! Morton codes: positions to numbers along a curve that keeps neighbours near each other.
+//! Morton codes: numbers along a curve that keeps neighbouring positions near each other.
 
 use glam::DVec3;
 
 use crate::Bounds;
 
-/// Bits a coordinate: three of them fill a `u64` but for its top bit.
+/// Bits per coordinate: three coordinates fill all of a `u64` except its top bit.
 pub(crate) const BITS: u32 = 21;
 
-/// A cube of `2^BITS` cells a side around a bounding box.
+/// A cube around a bounding box, divided into `2^BITS` cells per side.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MortonGrid {
     origin: DVec3,
@@ -15,11 +15,11 @@ pub(crate) struct MortonGrid {
 }
 
 impl MortonGrid {
-    /// The grid over `bounds`, its cells cubes; a box without extent gets one cell.
+    /// The grid over `bounds`, with cubic cells; a box without extent gets one cell.
     pub(crate) fn over(bounds: &Bounds) -> Self {
         let side = bounds.extent().max_element();
         let cells_per_unit = f64::from(1u32 << BITS) / side;
-        // A side so small that its inverse overflows is a point for all we know.
+        // The inverse of a very small side overflows; such a box is treated as a point.
         let cells_per_unit = if cells_per_unit.is_finite() {
             cells_per_unit
         } else {
@@ -46,18 +46,18 @@ impl MortonGrid {
     #[inline]
     pub(crate) fn code(&self, position: DVec3) -> u64 {
         let cells = self.in_cells(position);
-        // `as` saturates, so the far faces fall into the last cells.
+        // `as` saturates, so positions on the far faces fall into the last cells.
         encode([cells.x, cells.y, cells.z].map(|c| (c as u32).min((1 << BITS) - 1)))
     }
 }
 
-/// Interleaves three coordinates below `2^BITS`, x lowest.
+/// Interleaves three coordinates below `2^BITS`, with x in the lowest bits.
 #[inline]
 pub(crate) fn encode(cell: [u32; 3]) -> u64 {
     spread(cell[0]) | spread(cell[1]) << 1 | spread(cell[2]) << 2
 }
 
-/// Puts two zero bits between every two bits of a number below `2^BITS`.
+/// Inserts two zero bits between adjacent bits of a number below `2^BITS`.
 #[inline]
 fn spread(number: u32) -> u64 {
     let mut x = u64::from(number);
