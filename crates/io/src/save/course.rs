@@ -1,11 +1,11 @@
-//! How far a save is, and whether it is still wanted.
+//! The progress of a save, and whether it has been cancelled.
 
 use pliant_mesh::{Cancel, Cancelled, Progress};
 
-/// Elements between two looks: a few milliseconds of the slowest loop, which writes decimals.
+/// Elements between two checks for cancelling: a few milliseconds of the slowest loop, which writes decimals.
 pub(crate) const STEP: usize = 1 << 13;
 
-/// A save's way, or a part of it.
+/// The progress of a save, or of a part of it.
 #[derive(Clone)]
 pub(crate) struct Course<'a> {
     pub progress: Progress,
@@ -21,23 +21,23 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// The part from one share of this to another.
+    /// The part between two shares of this one.
     pub fn part(&self, from: f32, to: f32) -> Self {
         Self::new(&self.progress.part(from, to), self.cancel)
     }
 
-    /// The course before `share`, and what follows.
+    /// Splits this into the part before `share` and the part after it.
     pub fn split(&self, share: f32) -> (Self, Self) {
         (self.part(0.0, share), self.part(share, 1.0))
     }
 
-    /// Says that `done` of `all` is done, unless nobody wants the rest.
+    /// Reports that `done` of `all` is done. Fails if the save was cancelled.
     pub fn reach(&self, done: usize, all: usize) -> Result<(), Cancelled> {
         self.progress.set(done as f32 / all.max(1) as f32);
         self.cancel.check()
     }
 
-    /// As [`Self::reach`], for each element of a loop: says and looks at every [`STEP`]th.
+    /// Like [`Self::reach`], for each element of a loop: reports and checks at every [`STEP`]th element.
     pub fn pass(&self, element: usize, all: usize) -> Result<(), Cancelled> {
         if element.is_multiple_of(STEP) {
             self.reach(element, all)?;

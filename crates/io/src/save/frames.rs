@@ -13,11 +13,11 @@ use rayon::prelude::*;
 use crate::save::bits::bit_equal;
 use crate::save::course::Course;
 
-/// Frames closer to the identity than this leave stored numbers as they are: f32 resolves 6e-8.
+/// Frames closer to the identity than this leave stored numbers unchanged: f32 resolves 6e-8.
 const UNTURNED: f64 = 1e-7;
 
-/// Triangles whose gradients are made in parallel before they are summed up in order: a fixed size, so that sums do
-/// not depend on the number of threads.
+/// Triangles whose gradients are computed in parallel before they are summed in order. The size is fixed, so that sums
+/// do not depend on the number of threads.
 const BLOCK: usize = 1 << 16;
 
 const NO_GROUP: u32 = u32::MAX;
@@ -26,12 +26,12 @@ const NO_GROUP: u32 = u32::MAX;
 pub(crate) struct Frames {
     /// Group of each drawn vertex, or [`NO_GROUP`].
     group_of: Vec<u32>,
-    /// Mean gradient of each group; `None` where it is the identity or no face has an area.
+    /// Mean gradient of each group; `None` if it is the identity or no face has an area.
     gradients: Vec<Option<DMat3>>,
 }
 
 impl Frames {
-    /// The frames between a rest shape and new positions (one per drawn vertex), grouped by the rest normals given.
+    /// The frames between the rest shape and new positions (one per drawn vertex), grouped by the given rest normals.
     pub fn of(drawn: &Drawn, positions: &[DVec3], normals: &[DVec3], course: &Course<'_>) -> Result<Self, Cancelled> {
         let (of_groups, course) = course.split(0.4);
         let (group_of, group_count) = group(drawn, positions, normals, &of_groups)?;
@@ -76,8 +76,8 @@ impl Frames {
         Ok(Self { group_of, gradients })
     }
 
-    /// The gradient at a drawn vertex, in world space; `None` where the vertex did not move, its surroundings did not
-    /// turn or stretch, or no face around it has an area. Then its normal and tangent stay as stored.
+    /// The gradient at a drawn vertex, in world space. It is `None` if the vertex did not move, its surroundings
+    /// neither turned nor stretched, or no face around it has an area. Its normal and tangent then stay as stored.
     pub fn gradient(&self, vertex: DrawnVertex) -> Option<DMat3> {
         match self.group_of[vertex.index()] {
             NO_GROUP => None,
@@ -85,14 +85,15 @@ impl Frames {
         }
     }
 
-    /// A drawn vertex's world-space normal after the deformation, of the length it had.
+    /// A drawn vertex's world-space normal after the deformation, with its length kept.
     pub fn carry_normal(&self, vertex: DrawnVertex, normal: DVec3) -> DVec3 {
         self.gradient(vertex)
             .map_or(normal, |gradient| carried_normal(gradient, normal))
     }
 }
 
-/// `normal` carried by the inverse transpose of `gradient`, of the length it had; itself where that has no direction.
+/// `normal` carried by the inverse transpose of `gradient`, with its length kept. A normal that would have no direction
+/// is returned unchanged.
 pub(crate) fn carried_normal(gradient: DMat3, normal: DVec3) -> DVec3 {
     // The cofactor matrix is det(F) F⁻ᵀ: the same direction without a division, and defined for a singular F.
     let [x, y, z] = [gradient.x_axis, gradient.y_axis, gradient.z_axis];
@@ -104,8 +105,8 @@ pub(crate) fn carried_normal(gradient: DMat3, normal: DVec3) -> DVec3 {
     }
 }
 
-/// `tangent` carried by `gradient`, of the length it had, and at the angle it had to its normal (a right one in any
-/// sound file), which `new_normal` replaces; itself where that has no direction.
+/// `tangent` carried by `gradient`, with its length kept and at its old angle to the normal (a right angle in any sound
+/// file), which `new_normal` replaces. A tangent that would have no direction is returned unchanged.
 pub(crate) fn carried_tangent(gradient: DMat3, normal: DVec3, new_normal: DVec3, tangent: DVec3) -> DVec3 {
     let (Some(old_up), Some(up)) = (normal.try_normalize(), new_normal.try_normalize()) else {
         return (gradient * tangent)
@@ -121,7 +122,7 @@ pub(crate) fn carried_tangent(gradient: DMat3, normal: DVec3, new_normal: DVec3,
     }
 }
 
-/// The mean gradient, unless it is the identity or not a number.
+/// The mean gradient, unless it is the identity or not finite.
 fn turning(mean: DMat3) -> Option<DMat3> {
     let off = (mean - DMat3::IDENTITY)
         .to_cols_array()
@@ -130,8 +131,9 @@ fn turning(mean: DMat3) -> Option<DMat3> {
     (mean.is_finite() && off > UNTURNED).then_some(mean)
 }
 
-/// Numbers the groups of moved twins by their first vertex, so that neighbours' sums stand near each other: numbered as
-/// the hashes fall, every sum would miss the cache. Sorting by a hash instead of filling a table keeps it parallel.
+/// Groups the moved twins and numbers the groups by their first vertex, so that neighbours' sums are near each other in
+/// memory; numbered in the order of the hashes, every sum would miss the cache. Sorting by a hash can run in parallel,
+/// filling a hash table can't.
 fn group(
     drawn: &Drawn,
     positions: &[DVec3],
@@ -139,7 +141,7 @@ fn group(
     course: &Course<'_>,
 ) -> Result<(Vec<u32>, usize), Cancelled> {
     course.reach(0, 4)?;
-    // Adding zero makes 0 of -0, which exporters mix across a seam.
+    // Adding zero turns -0 into 0, since exporters mix the two across a seam.
     let bits = |x: f64| (x + 0.0).to_bits();
     let key = |v: usize| {
         let [a, b, c] = drawn.positions[v].to_array().map(bits);
@@ -154,7 +156,7 @@ fn group(
     course.reach(1, 4)?;
     moved.par_sort_unstable();
     course.reach(2, 4)?;
-    // First the lowest twin of each, which is itself where it has none.
+    // First, the lowest twin of each vertex, which is the vertex itself if it has none.
     let mut group_of = vec![NO_GROUP; positions.len()];
     for run in moved.chunk_by(|a, b| a.0 == b.0) {
         for (k, &(_, v)) in run.iter().enumerate() {
@@ -165,7 +167,7 @@ fn group(
         }
     }
     course.reach(3, 4)?;
-    // A twin is never above, so its number is known already.
+    // A twin never has a higher index, so its group is already numbered.
     let mut group_count = 0;
     for v in 0..group_of.len() {
         if group_of[v] == v as u32 {

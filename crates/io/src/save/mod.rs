@@ -1,4 +1,4 @@
-//! What a save asks for and what it gives.
+//! The input and the output of a save.
 
 pub(crate) mod bits;
 pub(crate) mod course;
@@ -11,18 +11,18 @@ use pliant_mesh::Drawn;
 
 use crate::Format;
 
-/// What is to be saved, and as what.
+/// What to save, and as what.
 #[derive(Clone, Copy, Debug)]
 pub struct Save<'a> {
-    /// What [`read`](crate::read) gave with the scene.
+    /// The drawn set that [`read`](crate::read) returned with the scene.
     pub drawn: &'a Drawn,
-    /// The new world position of each drawn vertex. A vertex moved where this is not bit-equal to `drawn.positions`.
+    /// The new world position of each drawn vertex. A vertex moved if it is not bit-equal to `drawn.positions`.
     pub positions: &'a [DVec3],
-    /// The kind of OUT.
+    /// The format of OUT.
     pub format: Format,
     /// OUT's file name, without a folder.
     pub name: &'a str,
-    /// Where OUT goes, which decides what its neighbours are called and whether they come along.
+    /// Where OUT goes, which decides how its neighbours are named and whether they are copied.
     pub placement: Placement,
 }
 
@@ -31,7 +31,7 @@ pub struct Save<'a> {
 pub struct MorphTarget<'a> {
     /// Its name.
     pub name: &'a str,
-    /// How far it is applied by default, usually 1 (the edited shape shows) or 0 (the one before).
+    /// How far it is applied by default, usually 1 (shows the edited shape) or 0 (shows the shape before the edit).
     pub weight: f64,
 }
 
@@ -40,28 +40,28 @@ pub struct MorphTarget<'a> {
 pub enum Placement {
     /// OUT is the file that was read.
     SameFile,
-    /// OUT has another name in the same folder: neighbours that change get names of their own.
+    /// OUT has another name in the same folder: neighbours that change get new names.
     SameFolder,
-    /// OUT goes to another folder: its neighbours are brought along.
+    /// OUT goes to another folder: its neighbours are copied there.
     OtherFolder,
 }
 
 /// The files that make up a saved scene.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Saved {
-    /// OUT first, then the neighbours that have to be written, each under a name of its own.
+    /// OUT first, then the neighbours to write, each under its own name.
     pub files: Vec<OutputFile>,
-    /// What the target could not hold, or what did not follow the edit, each as a sentence.
+    /// What the format could not hold, or what did not follow the edit, each as a sentence.
     pub warnings: Vec<String>,
-    /// The drawn triangle that was read behind each one that OUT draws, in OUT's order; `None` where they are all
-    /// there, in their old order.
+    /// For each triangle that OUT draws, in OUT's order, the drawn triangle it came from. `None` if all of them are
+    /// there in their old order.
     pub triangles: Option<Vec<u32>>,
 }
 
-/// A file to be written.
+/// A file to write.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct OutputFile {
-    /// Its path relative to OUT's folder, with `/` between folders; it never leaves that folder.
+    /// Its path relative to OUT's folder, with `/` between folders. It never leaves that folder.
     pub name: String,
     /// What it is to OUT.
     pub role: Role,
@@ -69,7 +69,7 @@ pub struct OutputFile {
     pub bytes: Vec<u8>,
 }
 
-/// What a written file is.
+/// What a written file is for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Role {
     /// OUT itself.
@@ -83,7 +83,7 @@ pub enum Role {
 }
 
 impl Saved {
-    /// A save of one file.
+    /// A save that consists of one file.
     pub(crate) fn alone(name: &str, bytes: Vec<u8>, warnings: Vec<String>) -> Self {
         let file = OutputFile {
             name: name.to_owned(),
@@ -98,8 +98,8 @@ impl Saved {
     }
 }
 
-/// What neighbours made for an OUT of this name are called: its name without the extension and without what a URI, a
-/// material library or another system would read otherwise (a backslash is a folder there, `c:` a drive).
+/// The stem that OUT's new neighbours are named by: OUT's name without the extension, and without characters that a
+/// URI, a material library or another system would read differently (a backslash is a folder there, `c:` a drive).
 pub(crate) fn own_stem(out: &str) -> String {
     let stem = out.rsplit_once('.').map_or(out, |(stem, _)| stem);
     let is_drive = stem.as_bytes().get(1) == Some(&b':');

@@ -1,4 +1,4 @@
-//! Which vertices moved, and where to.
+//! Which vertices moved, and to where.
 
 use std::sync::OnceLock;
 
@@ -23,8 +23,8 @@ pub(crate) fn check_single(position: DVec3, file_vertex: FileVertex) -> Result<(
 
 /// The rest shape and the new one, over the drawn vertices.
 ///
-/// A vertex moved exactly where its new position is not bit-equal to its rest position; every moved vertex's new
-/// position is finite in single precision, whatever kind of file it goes to: nearly every reader keeps no more.
+/// A vertex moved if its new position is not bit-equal to its rest position. Every moved vertex's new position is
+/// finite in single precision, whatever the format, because nearly every reader keeps no more than that.
 pub(crate) struct Moved<'a> {
     pub drawn: &'a Drawn,
     /// New world positions, one per drawn vertex.
@@ -68,8 +68,8 @@ impl<'a> Moved<'a> {
         !bit_equal(self.drawn.positions[v], self.positions[v])
     }
 
-    /// The new world position of each *file* vertex that moved, `None` for the others. For kinds without nodes, where
-    /// every drawn vertex of a file vertex stands at the same place; the first moved one counts.
+    /// The new world position of each *file* vertex that moved, `None` for the others. This is for formats without
+    /// nodes, where all drawn vertices of a file vertex are at the same place; the first moved one counts.
     pub fn of_file(&self) -> &[Option<DVec3>] {
         self.of_file.get_or_init(|| {
             let mut out = vec![None; self.drawn.file_vertex_count];
@@ -85,8 +85,8 @@ impl<'a> Moved<'a> {
         })
     }
 
-    /// The local frames that carry normals and tangents along, given each drawn vertex's world-space rest normal
-    /// (any length; zero where it has none).
+    /// The local frames that carry normals and tangents along. `normals` holds each drawn vertex's world-space rest
+    /// normal (any length; zero if it has none).
     pub fn frames(&self, normals: &[DVec3], course: &Course<'_>) -> Result<Frames, Cancelled> {
         Frames::of(self.drawn, self.positions, normals, course)
     }

@@ -1,13 +1,14 @@
-//! Another name for a neighbour that a save is to write.
+//! Renames a neighbour before a save writes it.
 
 use crate::save::{Role, Saved};
 use crate::{Format, SaveError, gltf, obj, quoted};
 
 impl Saved {
-    /// Calls the neighbour at `place` among the files `name`, in the texts that name it as well.
+    /// Renames the neighbour at index `place` of the files to `name`, and replaces its name in the files that refer to
+    /// it.
     ///
     /// # Errors
-    /// [`SaveError::CannotHold`] where a text names it in a way that can't be told apart from others.
+    /// [`SaveError::CannotHold`] if a file refers to it in a way that can't be told apart from other references.
     pub fn rename(&mut self, place: usize, name: &str, format: Format) -> Result<(), SaveError> {
         let old = self.files[place].name.clone();
         let is_named = match self.files[place].role {

@@ -1,4 +1,4 @@
-//! Whether a file that was read back shows what was to be saved.
+//! Checks that a file that was read back shows what was meant to be saved.
 
 use std::ops::Range;
 
@@ -11,16 +11,16 @@ use crate::scene::{Scene, SceneAndDrawn, Stored};
 use crate::{Format, MorphTarget, Save};
 
 impl Scene {
-    /// Compares `back`, which was read from the bytes of a save of this scene, with what `save` asked for; in words
-    /// what differs. `triangles` is the save's own [`triangles`](crate::Saved::triangles), and with `morph` the edit
-    /// shows as far as the target's weight.
+    /// Compares `back`, which was read from the bytes of a save of this scene, with what `save` asked for. `triangles`
+    /// is the save's own [`triangles`](crate::Saved::triangles). With `morph` the edit shows in proportion to the
+    /// target's weight.
     ///
-    /// A save in the file's own kind keeps its vertices and their order, so each of them is compared. Another kind may
-    /// number them anew: there every corner of every face is. Positions are taken as the kind stores them: in glTF to
-    /// a few roundings to f32 in the node's space, elsewhere to the bit.
+    /// A save in the file's own format keeps its vertices and their order, so each vertex is compared. Another format
+    /// may renumber them, so there every corner of every face is compared. Positions are compared in the format's own
+    /// precision: for glTF to a few roundings to f32 in the node's space, elsewhere to the bit.
     ///
     /// # Errors
-    /// The first thing that differs.
+    /// The first difference, in words.
     pub fn check_read_back(
         &self,
         save: &Save<'_>,
@@ -85,11 +85,11 @@ impl Scene {
     }
 }
 
-/// How the kind of a file that was read back stores positions.
+/// How the format of a file that was read back stores positions.
 enum Precision<'a> {
-    /// Ranges of drawn vertices, ascending, and how far each coordinate of theirs may be off.
+    /// Ranges of drawn vertices, ascending, and how far each of their coordinates may be off.
     Within(Vec<(Range<u32>, DVec3)>),
-    /// As the nearest number of a type, by axis.
+    /// Each coordinate as the nearest number of its type, which may depend on the axis.
     Nearest(&'a Scene),
 }
 
@@ -101,7 +101,7 @@ impl<'a> Precision<'a> {
         }
     }
 
-    /// Whether drawn vertex `v`, which is `found`, is `wanted` as stored.
+    /// Whether drawn vertex `v`, read back at `found`, is `wanted` as the format stores it.
     fn holds(&self, v: usize, found: DVec3, wanted: DVec3) -> bool {
         let lanes = found.to_array().into_iter().zip(wanted.to_array());
         match self {
@@ -118,7 +118,7 @@ impl<'a> Precision<'a> {
     }
 }
 
-/// Equality in which a NaN equals itself.
+/// Equality in which NaN equals NaN.
 fn is_equal(a: f64, b: f64) -> bool {
     a == b || (a.is_nan() && b.is_nan())
 }
@@ -131,7 +131,7 @@ fn same_count(what: &str, found: usize, wanted: usize) -> Result<(), String> {
     }
 }
 
-/// Compares drawn vertices of `back`, each with the position that it is to have.
+/// Compares drawn vertices of `back`, each with the position it should have.
 fn each(
     mut wanted: impl Iterator<Item = (usize, DVec3)>,
     back: &SceneAndDrawn,
@@ -148,7 +148,7 @@ fn each(
     }
 }
 
-/// Where each file vertex is to stand: at its first drawn vertex that moved, or at rest.
+/// Where each file vertex should be: where its first moved drawn vertex is, or at rest.
 fn of_file_vertices(drawn: &Drawn, wanted: impl Fn(usize) -> DVec3) -> Vec<DVec3> {
     let mut out: Vec<Option<DVec3>> = vec![None; drawn.file_vertex_count];
     let mut has_moved = vec![false; drawn.file_vertex_count];

@@ -1,4 +1,4 @@
-//! What differs between two files, as data and in words.
+//! Differences between two files, as data and in words.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ use crate::{Appearance, Material, quoted};
 pub struct Difference {
     /// Where: "mesh 0, primitive 1, POSITION".
     pub place: String,
-    /// What.
+    /// What differs.
     pub what: What,
 }
 
@@ -20,11 +20,11 @@ pub struct Difference {
 pub enum What {
     /// Numbers of a list of elements, such as an attribute.
     Elements {
-        /// The elements that differ, ascending.
+        /// The elements that differ, in ascending order.
         elements: Vec<u32>,
-        /// How many there are in all.
+        /// How many elements there are in all.
         of: usize,
-        /// The largest difference of two numbers; infinite where one of them is not finite.
+        /// The largest difference between two numbers; infinite if one of them is not finite.
         largest: f64,
     },
     /// An accessor's min or max.
@@ -54,14 +54,14 @@ pub enum What {
     OnlyInFirst,
     /// The first file lacks it.
     OnlyInSecond,
-    /// Bytes that are taken as they are, such as an image's.
+    /// Bytes that are not interpreted, such as an image's.
     Bytes {
         /// The first byte that differs.
         at: usize,
     },
 }
 
-/// The longest text of a value that is told.
+/// Longer texts of values are shortened to this many characters.
 const LONGEST_VALUE: usize = 60;
 
 impl fmt::Display for Difference {
@@ -108,7 +108,7 @@ impl fmt::Display for Difference {
     }
 }
 
-/// Elements of two lists of one length that differ in their bits; `None` where there are none.
+/// Elements of two lists of equal length that differ in their bits; `None` if there are none.
 pub(crate) fn of_elements<const N: usize>(
     a: impl ExactSizeIterator<Item = [f64; N]>,
     b: impl Iterator<Item = [f64; N]>,
@@ -127,7 +127,7 @@ pub(crate) fn of_elements<const N: usize>(
     (!elements.is_empty()).then_some(What::Elements { elements, of, largest })
 }
 
-/// The largest difference of two numbers at one place; infinite where it is none.
+/// The largest difference between two numbers at the same place; infinite if it is not a number.
 fn farthest<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     let apart = |lane: usize| {
         let apart = (a[lane] - b[lane]).abs();
@@ -150,7 +150,7 @@ pub(crate) fn of_bytes(a: &[u8], b: &[u8]) -> Option<Difference> {
     })
 }
 
-/// What differs between what two files show.
+/// The differences between what two files show.
 pub(crate) fn of_shapes((a, a_looks): (&Drawn, &Appearance), (b, b_looks): (&Drawn, &Appearance)) -> Vec<Difference> {
     let mut out = Vec::new();
     let mut say = |place: &str, what: Option<What>| {

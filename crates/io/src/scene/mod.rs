@@ -1,9 +1,9 @@
-//! A file as stored, whatever its kind, and the one place where kinds are told apart.
+//! A file as stored, whatever its format, and the one place where formats are told apart.
 //!
-//! Each kind is one module with the same face: `read(&Source) -> Result<(Stored, Drawn), ReadError>`; `Stored::{notes,
-//! summary, appearance, write}`, where `write(&Moved, &Course)` gives the file back with only the moved vertices'
-//! numbers changed, and warnings (it is called only when something moved); and `write_new(&NewMesh, &Course)`, which
-//! makes a file of that kind from any other.
+//! Each format is one module with the same interface: `read(&Source) -> Result<(Stored, Drawn), ReadError>`;
+//! `Stored::{notes, summary, appearance, write}`, where `write(&Moved, &Course)` returns the file with only the moved
+//! vertices' numbers changed, and warnings (it is called only if something moved); and `write_new(&NewMesh, &Course)`,
+//! which converts a mesh of any other format.
 
 mod check;
 pub(crate) mod difference;
@@ -26,7 +26,7 @@ use crate::scene::summary::Summary;
 use crate::source::{Resolver, Source};
 use crate::{Appearance, Bytes, Format, ReadError, SaveError, gltf, obj, off, ply, stl};
 
-/// What [`read`] gives.
+/// What [`read`] returns.
 #[derive(Debug)]
 pub struct SceneAndDrawn {
     /// The file as stored.
@@ -35,7 +35,7 @@ pub struct SceneAndDrawn {
     pub drawn: Drawn,
 }
 
-/// A file as stored, nothing thrown away.
+/// A file as stored, with nothing thrown away.
 #[derive(Debug)]
 pub struct Scene {
     format: Format,
@@ -52,7 +52,7 @@ pub(crate) enum Stored {
     Off(off::Stored),
 }
 
-/// Reads a file of the given kind. `name` is used in messages only; `resolver` is asked for neighbours.
+/// Reads a file of the given format. `name` is used in messages only; `resolver` reads the neighbours.
 pub fn read(
     bytes: Vec<u8>,
     format: Format,
@@ -100,7 +100,7 @@ pub fn read(
     })
 }
 
-/// A saved file's own neighbours.
+/// Resolves a saved file's own neighbours.
 impl Resolver for Saved {
     fn read(&self, uri: &str) -> Result<Bytes, String> {
         let file = self.files.iter().find(|file| file.name == uri);
@@ -112,12 +112,12 @@ impl Resolver for Saved {
 }
 
 impl Scene {
-    /// The kind that was read.
+    /// The format that was read.
     pub fn format(&self) -> Format {
         self.format
     }
 
-    /// What a person should know about how the file was read (a node left out, an image missing), as sentences.
+    /// What a person should know about how the file was read (a node left out, an image missing), in sentences.
     pub fn notes(&self) -> &[String] {
         match &self.stored {
             Stored::Gltf(stored) => stored.notes(),
@@ -139,8 +139,8 @@ impl Scene {
         }
     }
 
-    /// What the file tells apart: the triangles that one node shows in one material. One object, or none, where the
-    /// file's kind knows no nodes.
+    /// The file's objects: the triangles that one node or group shows in one material. Empty for PLY, STL and OFF,
+    /// which have none.
     pub fn objects(&self) -> Vec<Object> {
         match &self.stored {
             Stored::Gltf(stored) => stored.objects(),
@@ -149,7 +149,7 @@ impl Scene {
         }
     }
 
-    /// How the scene looks at rest; decoded from the stored bytes at each call.
+    /// How the scene looks at rest. Each call decodes it from the stored bytes.
     pub fn appearance(&self) -> Appearance {
         match &self.stored {
             Stored::Gltf(stored) => stored.appearance(),
@@ -160,10 +160,10 @@ impl Scene {
         }
     }
 
-    /// The file as `save` asks for it. Nothing moved and the same kind: the very bytes that were read.
+    /// The file as `save` asks for it. If nothing moved and the format is the same, these are the bytes that were read.
     ///
     /// # Errors
-    /// What can't be held; [`SaveError::Cancelled`] soon after `cancel` is raised.
+    /// What the format can't hold; [`SaveError::Cancelled`] soon after `cancel` is raised.
     pub fn save(&self, save: &Save<'_>, progress: &Progress, cancel: &Cancel) -> Result<Saved, SaveError> {
         let saved = self.save_parted(save, Parting::ByName, &Course::new(progress, cancel))?;
         progress.set(1.0);
@@ -211,11 +211,12 @@ impl Scene {
         }
     }
 
-    /// The file with the edit as a morph target: the shape stays, and the way to `save.positions` is added to each
-    /// edited mesh. Only glTF holds such; a file of another kind is written as glTF first, its vertices as they are.
+    /// The file with the edit as a morph target: the shape stays, and the displacements to `save.positions` are added
+    /// to each edited mesh. Only glTF has morph targets, so a file of another format is converted to glTF first, with
+    /// its vertices at rest.
     ///
     /// # Errors
-    /// As [`Self::save`].
+    /// Same as [`Self::save`].
     pub fn save_as_morph(
         &self,
         save: &Save<'_>,
@@ -241,7 +242,7 @@ impl Scene {
         if let Stored::Gltf(stored) = &self.stored {
             return stored.save_as_morph(save, &moved, target, course);
         }
-        // Joined, the written vertices are the drawn ones.
+        // With `Parting::Joined` the written vertices are the drawn ones.
         let at_rest = Save {
             positions: &save.drawn.positions,
             ..*save
@@ -263,7 +264,7 @@ impl Scene {
         if written.drawn.positions.len() != save.positions.len() {
             return Err(fault("a shape whose vertices are not all written".to_owned()));
         }
-        // Its positions were rounded to f32; the way is taken from there.
+        // The written positions were rounded to f32, so the displacements are applied to those.
         let ways = save.drawn.positions.iter().zip(save.positions);
         let positions: Vec<DVec3> = (written.drawn.positions.iter().zip(ways))
             .map(|(&written, (&rest, &new))| {
@@ -289,7 +290,7 @@ impl Scene {
         Ok(saved)
     }
 
-    /// A warning about what moves a scene, which no kind but glTF holds.
+    /// A warning about skins, animations and morph targets, which only glTF holds.
     fn motion_lost(&self, format: Format) -> Option<String> {
         let summary = self.summary();
         let motion = [
@@ -300,9 +301,10 @@ impl Scene {
         lost(&format.to_string(), &motion)
     }
 
-    /// What differs between this file and another, given what [`read`] gave with each; nothing where they hold the
-    /// same. Two glTF are compared part by part, whatever their containers and wherever their numbers stand; others by
-    /// what they show, and, where they are of one kind, by whether anything beside the shape differs.
+    /// What differs between this file and another, given the drawn set that [`read`] returned with each; empty if they
+    /// hold the same. Two glTF files are compared part by part, whatever their containers and wherever their numbers
+    /// are stored. Other files are compared by what they show, and two of the same format also by whether anything
+    /// besides the shape differs.
     pub fn differences(&self, drawn: &Drawn, other: &Self, other_drawn: &Drawn) -> Vec<Difference> {
         if self.format == other.format
             && self.bytes == other.bytes
@@ -315,10 +317,10 @@ impl Scene {
         }
         let shown = |scene: &Self| (scene.appearance(), scene.summary());
         let mut out = difference::of_shapes((drawn, &shown(self).0), (other_drawn, &shown(other).0));
-        // An STL's normals follow its shape, rounded from more digits than it keeps.
+        // An STL's normals follow from its shape, but were rounded from more digits than the file keeps.
         let is_comparable = self.format == other.format && self.format != Format::Stl;
         if is_comparable && drawn.positions.len() == other_drawn.positions.len() {
-            // With the other's shape this file would be the other, if nothing else differs.
+            // If nothing else differs, this file saved with the other's shape is the other file.
             let save = Save {
                 drawn,
                 positions: &other_drawn.positions,
@@ -333,23 +335,23 @@ impl Scene {
         out
     }
 
-    /// The file in its own kind.
+    /// The file in its own format.
     pub(crate) fn stored(&self) -> &Stored {
         &self.stored
     }
 
-    /// The number nearest to `value` that the file's kind stores for a coordinate of the given axis. glTF stores them
-    /// in the space of nodes, so that it has none.
+    /// `value` rounded to what the file's format stores for a coordinate of the given axis. glTF stores coordinates in
+    /// a node's space, where no such number exists, so `value` is returned unchanged.
     pub(crate) fn nearest_stored(&self, axis: usize, value: f64) -> f64 {
         match &self.stored {
             Stored::Ply(stored) => stored.nearest(axis, value),
-            // f32: STL holds nothing finer, and where its text is finer it holds the value itself.
+            // f32: binary STL holds nothing finer. Ascii STL may, and then stores the value itself.
             Stored::Stl(_) => f64::from(value as f32),
             Stored::Gltf(_) | Stored::Obj(_) | Stored::Off(_) => value,
         }
     }
 
-    /// The file's own polygons over drawn vertices, where it has any that are not triangles.
+    /// The file's own polygons over drawn vertices, if any of them is not a triangle.
     pub(crate) fn polygons(&self) -> Option<Polygons> {
         match &self.stored {
             Stored::Gltf(_) | Stored::Stl(_) => None,

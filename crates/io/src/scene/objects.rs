@@ -1,4 +1,4 @@
-//! What a file tells apart, gathered from the runs of triangles in which it stands.
+//! The objects of a file, gathered from its runs of triangles.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -6,16 +6,16 @@ use std::ops::Range;
 
 use pliant_mesh::Object;
 
-/// The most characters of a name that every run of triangles gets a copy of: as many as a person would read. The file
-/// keeps it all.
+/// The longest name, in characters, that each run of triangles gets a copy of: as much as a person would read. The file
+/// keeps the whole name.
 const LONGEST_NAME: usize = 120;
 
-/// A name as it is shown.
+/// A name shortened for display.
 pub(crate) fn short_name(name: &str) -> String {
     name.chars().take(LONGEST_NAME).collect()
 }
 
-/// A run of triangles: what tells it apart from others, and how that is called.
+/// A run of triangles with its key and its names.
 pub(crate) struct TriangleRun<Key> {
     /// Runs with equal keys are one object.
     pub(crate) key: Key,
@@ -27,7 +27,7 @@ pub(crate) struct TriangleRun<Key> {
     pub(crate) triangles: Range<u32>,
 }
 
-/// The objects in the order in which the runs first name them; runs without triangles make none.
+/// The objects, in the order in which the runs first mention them. Runs without triangles make no object.
 pub(crate) fn gathered<Key: Eq + Hash>(runs: impl Iterator<Item = TriangleRun<Key>>) -> Vec<Object> {
     let mut known: HashMap<Key, usize> = HashMap::new();
     let mut objects: Vec<Object> = Vec::new();

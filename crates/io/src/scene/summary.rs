@@ -1,4 +1,4 @@
-//! What a file holds, in numbers.
+//! What a file holds, in counts.
 
 use serde::Serialize;
 
@@ -17,7 +17,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Of a file whose triangles are one mesh.
+    /// The summary of a file whose triangles are one mesh.
     pub(crate) fn of_one_mesh(triangle_count: usize) -> Self {
         let meshes = usize::from(triangle_count > 0);
         Self {

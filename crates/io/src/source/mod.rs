@@ -1,4 +1,4 @@
-//! What a format's reader gets: a file's bytes, and the way to its neighbours.
+//! The input of a format's reader: a file's bytes and access to its neighbours.
 
 pub(crate) mod notes;
 
@@ -8,17 +8,17 @@ use pliant_mesh::{Cancel, Cancelled, Progress};
 
 use crate::{Bytes, Format, ReadError};
 
-/// Gives the bytes of a file's neighbours.
+/// Reads the bytes of a file's neighbours.
 pub trait Resolver {
-    /// The bytes of the neighbour at `uri`, a percent-decoded path with `/` between folders, relative to the file's
-    /// own folder. A file may name the same neighbour many times and in several spellings, and keeps what it is given
-    /// each time: share them. On failure: why, in words.
+    /// Returns the bytes of the neighbour at `uri`, a percent-decoded path with `/` between folders, relative to the
+    /// file's own folder. A file may refer to the same neighbour many times and in several spellings, and keeps every
+    /// result, so share them. The error says why it failed, in words.
     fn read(&self, uri: &str) -> Result<Bytes, String>;
 }
 
-/// What a format's reader gets.
+/// The input of a format's reader.
 pub(crate) struct Source<'a> {
-    /// The file. A reader may keep a clone and point into it.
+    /// The file. A reader may keep a clone and refer to ranges of it.
     pub bytes: &'a Arc<Vec<u8>>,
     /// The file's name, for messages.
     pub name: &'a str,
@@ -28,18 +28,18 @@ pub(crate) struct Source<'a> {
     pub cancel: &'a Cancel,
 }
 
-/// Bytes of a text between two looks at whether it is still wanted: some thousand numbers.
+/// Bytes of a text between two checks for cancelling: a few thousand numbers.
 const BYTES_BETWEEN_LOOKS: usize = 1 << 15;
 
-/// Where in the bytes a reader looked last whether its result is still wanted.
+/// Where in the bytes a reader last checked for cancelling.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Looks {
     next: usize,
 }
 
 impl Source<'_> {
-    /// Tells how far a reader is that has come to byte `at`, and looks whether its result is still wanted, now and
-    /// then. Bytes are what counts, since a line, a face or a record may be as long as the file.
+    /// Now and then reports the progress of a reader that has come to byte `at`, and checks for cancelling. It counts
+    /// bytes, because a line, a face or a record may be as long as the file.
     #[inline]
     pub fn pass(&self, looks: &mut Looks, at: usize) -> Result<(), Cancelled> {
         if at >= looks.next {
@@ -50,7 +50,7 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// A [`ReadError::Malformed`] of this file.
+    /// A [`ReadError::Malformed`] for this file.
     pub fn malformed(&self, format: Format, reason: impl Into<String>) -> ReadError {
         ReadError::Malformed {
             name: self.name.to_owned(),

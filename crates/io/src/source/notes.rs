@@ -1,16 +1,17 @@
-//! What a person should know of how a file was read: sentences, of which a broken file could give a million.
+//! What a person should know about how a file was read: sentences, kept few because a broken file could cause a
+//! million.
 
-/// How many sentences of a kind are kept; the others are counted.
+/// How many sentences of each kind are kept; the rest are only counted.
 const MOST_OF_A_KIND: usize = 12;
 
-/// Sentences by kind.
+/// Sentences, grouped by kind.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Notes {
     kinds: Vec<(&'static str, Vec<String>, usize)>,
 }
 
 impl Notes {
-    /// Adds a sentence, where there is one, of a kind that is named in the plural.
+    /// Adds a sentence, if there is one. `kind` is what it is about, in the plural.
     pub fn add(&mut self, kind: &'static str, sentence: Option<String>) {
         let Some(sentence) = sentence else { return };
         let known = self.kinds.iter().position(|(other, ..)| *other == kind);
@@ -26,7 +27,7 @@ impl Notes {
         }
     }
 
-    /// All of them, and how many of each kind are not told.
+    /// All sentences, then how many more of each kind were left out.
     pub fn sentences(self) -> Vec<String> {
         let mut out = Vec::new();
         for (kind, sentences, further) in self.kinds {

@@ -11,9 +11,9 @@ use crate::source::{Looks, Source};
 use crate::text::{Cursor, Splice, excerpt, malformed_at, push_f32, push_f64};
 use crate::{Format, ReadError};
 
-/// The corners in order, and the byte of each facet's keyword.
+/// The corners in order, and the byte position of each facet's keyword.
 ///
-/// Keywords may be in any case and on any line. A file that ends within its last solid is taken for whole.
+/// Keywords may be in any case and on any line. A file that ends within its last solid is accepted.
 pub(super) fn read(source: &Source<'_>) -> Result<(Vec<DVec3>, Vec<usize>), ReadError> {
     let mut cursor = Cursor::new(source.bytes, 0);
     let (mut corners, mut facets, mut looks) = (Vec::new(), Vec::new(), Looks::default());
@@ -35,7 +35,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<(Vec<DVec3>, Vec<usize>), Read
                 });
             }
         } else if word.eq_ignore_ascii_case(b"solid") || word.eq_ignore_ascii_case(b"endsolid") {
-            // A name, which may be any text.
+            // A name, which can be any text.
             cursor.next_line();
         } else {
             return Err(unexpected(source, at, word, "facet"));
@@ -89,14 +89,14 @@ fn facet(source: &Source<'_>, cursor: &mut Cursor<'_>) -> Result<[DVec3; 3], Rea
     Ok(corners)
 }
 
-/// The bytes with the moved corners and their facets' normals changed.
+/// The bytes with the numbers of moved corners and of their facets' normals replaced.
 pub(super) fn patched(
     bytes: &[u8],
     facets: &[usize],
     moved: &Moved<'_>,
     course: &Course<'_>,
 ) -> Result<Vec<u8>, Cancelled> {
-    // Everyone reads ascii STL as f32; only where that would round visibly is more written.
+    // Readers take ascii STL as f32, so more digits are written only if f32 would round visibly.
     let is_finer = coarse_in_f32(moved.positions).is_some();
     let push = |out: &mut Vec<u8>, value: f64| {
         if is_finer {
@@ -119,7 +119,7 @@ pub(super) fn patched(
         while slot < 12 && !cursor.is_done() {
             cursor.skip_space();
             let start = cursor.at();
-            // The keywords between the numbers are none, however numbers are spelt.
+            // The keywords between the numbers never parse as numbers.
             let Some(old) = cursor.real() else {
                 cursor.word();
                 continue;

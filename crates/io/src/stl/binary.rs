@@ -1,4 +1,4 @@
-//! Binary STL: 80 bytes of header, a count, and 50 bytes a facet, little-endian.
+//! Binary STL: an 80-byte header, a count, and 50 bytes per facet, little-endian.
 
 use glam::{DVec3, Vec3};
 use pliant_mesh::Cancelled;
@@ -12,7 +12,7 @@ use crate::{Format, ReadError};
 /// Bytes before the first facet.
 const HEADER: usize = 84;
 
-/// Bytes of a facet: the normal, three corners and two attribute bytes.
+/// Bytes per facet: the normal, three corners and two attribute bytes.
 const FACET: usize = 50;
 
 fn stored_count(bytes: &[u8]) -> Option<u64> {
@@ -20,12 +20,12 @@ fn stored_count(bytes: &[u8]) -> Option<u64> {
     Some(u64::from(u32::from_le_bytes(count)))
 }
 
-/// Whether the bytes are those of a binary file to the last one.
+/// Whether the length is exactly that of a binary file with its facet count.
 pub(super) fn has_exact_length(bytes: &[u8]) -> bool {
     stored_count(bytes).is_some_and(|count| HEADER as u64 + count * FACET as u64 == bytes.len() as u64)
 }
 
-/// The corners in order. Bytes behind the facets are noted and kept.
+/// The corners in order. Bytes after the facets are noted and kept.
 pub(super) fn read(source: &Source<'_>, notes: &mut Vec<String>) -> Result<Vec<DVec3>, ReadError> {
     let bytes: &[u8] = source.bytes;
     let Some(count) = stored_count(bytes) else {
@@ -69,13 +69,13 @@ fn vector(bytes: &[u8]) -> Vec3 {
 }
 
 fn put(out: &mut [u8], vector: DVec3) {
-    // f32: the format's own numbers.
+    // f32 is what the format stores.
     for (target, number) in out.chunks_exact_mut(4).zip(vector.as_vec3().to_array()) {
         target.copy_from_slice(&number.to_le_bytes());
     }
 }
 
-/// The bytes with the moved corners and their facets' normals changed.
+/// The bytes with the moved corners and their facets' normals replaced.
 pub(super) fn patched(
     bytes: &[u8],
     facet_count: usize,

@@ -1,7 +1,7 @@
-//! STL, binary and ascii: three corners a facet, each a file vertex of its own; welding joins them.
+//! STL, binary and ascii: three corners per facet, each its own file vertex; welding joins them.
 //!
-//! Saving changes the moved corners' numbers and the normals of their facets, and no other byte: headers, attribute
-//! bytes, solids' names and white space stay.
+//! Saving replaces the moved corners' numbers and the normals of their facets and no other byte: headers, attribute
+//! bytes, names of solids and white space stay.
 
 mod ascii;
 mod binary;
@@ -32,15 +32,15 @@ pub(crate) struct Stored {
 #[derive(Debug)]
 enum Layout {
     Binary,
-    /// The byte of each facet's `facet` keyword.
+    /// The byte position of each facet's `facet` keyword.
     Ascii(Vec<usize>),
 }
 
 /// Reads an STL file of either kind.
 ///
-/// Binary files that begin with "solid" exist, and so do ascii files of any length: a file is binary when its length
-/// is that of its facet count, ascii when it isn't and begins with "solid", and else binary with something behind the
-/// facets.
+/// Some binary files begin with "solid", and an ascii file can have any length. So a file is binary if its length
+/// matches its facet count exactly; otherwise ascii if it begins with "solid"; otherwise binary with extra bytes after
+/// the facets.
 pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
     let bytes: &[u8] = source.bytes;
     let mut notes = Vec::new();
@@ -83,12 +83,12 @@ impl Stored {
         Summary::of_one_mesh(self.facet_count)
     }
 
-    /// No normals: a facet's own would show every triangle of a scan.
+    /// No normals are taken from the file: with facet normals every triangle of a scan would show.
     pub(crate) fn appearance(&self) -> Appearance {
         Appearance::plain(self.facet_count as u32)
     }
 
-    /// The file with the moved corners' numbers and their facets' normals changed, and warnings.
+    /// The file with the moved corners and their facets' normals replaced, and warnings.
     pub(crate) fn write(&self, moved: &Moved<'_>, course: &Course<'_>) -> Result<(Vec<u8>, Vec<String>), SaveError> {
         let bytes = match &self.layout {
             Layout::Binary => binary::patched(&self.bytes, self.facet_count, moved, course)?,
@@ -98,12 +98,12 @@ impl Stored {
     }
 }
 
-/// A facet's unit normal by its corners' winding; zero where it has no area, as STL says of unknown normals.
+/// A facet's unit normal by the winding of its corners; zero if it has no area, as STL writes unknown normals.
 fn facet_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or_zero()
 }
 
-/// The facets with a moved corner, in rising order: their number, their corners as they now stand, and which moved.
+/// The facets with a moved corner, ascending: their number, their new corners, and which corners moved.
 fn changed_facets<'a>(moved: &'a Moved<'_>) -> impl Iterator<Item = (usize, [DVec3; 3], [bool; 3])> + 'a {
     moved
         .of_file()

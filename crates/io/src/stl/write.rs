@@ -1,4 +1,4 @@
-//! A new binary STL file from any other kind.
+//! Writes a new binary STL file from a mesh of any other format.
 
 use crate::SaveError;
 use crate::convert::NewMesh;
@@ -8,11 +8,11 @@ use crate::save::course::Course;
 
 use super::facet_normal;
 
-/// Writes a mesh's triangles as binary STL, which holds their corners and nothing else.
+/// Writes a mesh's triangles as binary STL, which holds only their corners.
 pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved, SaveError> {
     let look = &mesh.appearance;
     let mut out = Vec::with_capacity(84 + 50 * mesh.triangles.len());
-    // Not "solid", by which ascii files are told.
+    // Not "solid", because readers recognise ascii files by it.
     out.extend_from_slice(b"Pliant");
     out.resize(80, b' ');
     out.extend_from_slice(&(mesh.triangles.len() as u32).to_le_bytes());
@@ -20,7 +20,7 @@ pub(crate) fn write_new(mesh: &NewMesh<'_>, course: &Course<'_>) -> Result<Saved
         course.pass(place, mesh.triangles.len())?;
         let corners = triangle.map(|corner| mesh.positions[corner.index()]);
         let mut push = |vector: glam::DVec3| {
-            // f32: the format's own numbers.
+            // f32 is what the format stores.
             vector
                 .as_vec3()
                 .to_array()

@@ -1,7 +1,7 @@
-//! Text files read and changed in place: a cursor over bytes that knows where it stands, numbers as they are written,
-//! and a splice that replaces some spans and copies everything between them.
+//! Text files read and edited in place: a cursor over bytes, numbers as they are written, and a splice that replaces
+//! some spans and copies everything between them.
 //!
-//! Bytes, not strings: scans carry comments and names in every encoding, and none of that is ours to judge.
+//! Works on bytes, not strings: scans contain comments and names in any encoding, and those are kept as they are.
 
 mod number;
 mod splice;
@@ -13,10 +13,10 @@ use number::parse_real;
 pub(crate) use number::{push_f32, push_f64};
 pub(crate) use splice::Splice;
 
-/// A place in a text file that moves forward.
+/// A position in a text file that moves forward.
 ///
-/// Line ends are `\n`, `\r\n` and (old files) a bare `\r`. Methods that don't find what they look for leave the place
-/// where it was.
+/// Line ends are `\n`, `\r\n` and (in old files) a bare `\r`. A method that doesn't find what it looks for leaves the
+/// cursor where it was.
 #[derive(Clone, Debug)]
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
@@ -24,7 +24,7 @@ pub(crate) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// A cursor at byte `at`, which may be the end but not beyond it.
+    /// A cursor at byte `at`, which is at most the length of `bytes`.
     pub(crate) fn new(bytes: &'a [u8], at: usize) -> Self {
         Self {
             bytes,
@@ -32,37 +32,37 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Where the cursor stands, in bytes from the file's start.
+    /// The cursor's position, in bytes from the start of the file.
     #[inline]
     pub(crate) fn at(&self) -> usize {
         self.at
     }
 
-    /// How many bytes lie ahead.
+    /// How many bytes are left.
     #[inline]
     pub(crate) fn left(&self) -> usize {
         self.bytes.len() - self.at
     }
 
-    /// The byte ahead, if any.
+    /// The next byte, if any.
     #[inline]
     pub(crate) fn peek(&self) -> Option<u8> {
         self.bytes.get(self.at).copied()
     }
 
-    /// Whether nothing is left.
+    /// Whether the cursor is at the end.
     #[inline]
     pub(crate) fn is_done(&self) -> bool {
         self.at >= self.bytes.len()
     }
 
-    /// Steps over one byte, whatever it is.
+    /// Skips one byte, whatever it is.
     #[inline]
     pub(crate) fn step(&mut self) {
         self.at = (self.at + 1).min(self.bytes.len());
     }
 
-    /// Whether the line has nothing more to say here: its end, the file's, or a comment's `#`.
+    /// Whether the line has no more content: the cursor is at its end, the file's end, or a comment's `#`.
     #[inline]
     pub(crate) fn is_at_line_end(&self) -> bool {
         matches!(self.peek(), None | Some(b'\n' | b'\r' | b'#'))
@@ -76,7 +76,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Skips spaces and tabs, and line ends with a backslash before them (OBJ's continued lines).
+    /// Skips spaces, tabs, and line ends preceded by a backslash (OBJ's continued lines).
     #[inline]
     pub(crate) fn skip_blanks_continued(&mut self) {
         loop {
@@ -92,7 +92,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Skips white space, line ends included.
+    /// Skips white space, including line ends.
     #[inline]
     pub(crate) fn skip_space(&mut self) {
         while let Some(b' ' | b'\t'..=b'\r') = self.peek() {
@@ -111,7 +111,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Goes behind the next line end.
+    /// Moves past the next line end.
     pub(crate) fn next_line(&mut self) {
         let rest = &self.bytes[self.at..];
         match rest.iter().position(|&byte| byte == b'\n' || byte == b'\r') {
@@ -121,7 +121,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// The rest of the line without its end, and goes there.
+    /// Returns the rest of the line without its end, and moves past it.
     pub(crate) fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
         let end = rest
@@ -132,7 +132,7 @@ impl<'a> Cursor<'a> {
         &rest[..end]
     }
 
-    /// The bytes up to the next white space (none when the cursor stands on some), and goes there.
+    /// Returns the bytes up to the next white space (none if the cursor is on white space), and moves past them.
     pub(crate) fn word(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
         let end = rest
@@ -143,7 +143,7 @@ impl<'a> Cursor<'a> {
         &rest[..end]
     }
 
-    /// A whole number with an optional sign; it ends where its digits do. `None` without digits or beyond ±10¹⁸.
+    /// An integer with an optional sign; it ends with its digits. `None` without digits or beyond ±10¹⁸.
     #[inline]
     pub(crate) fn integer(&mut self) -> Option<i64> {
         let mut at = self.at;
@@ -167,7 +167,7 @@ impl<'a> Cursor<'a> {
         Some(if negative { -value } else { value })
     }
 
-    /// A whole number that is a word of its own: white space, a comment or the file's end follows.
+    /// An integer followed by white space, a comment or the end of the file.
     pub(crate) fn whole(&mut self) -> Option<i64> {
         let mut ahead = self.clone();
         let number = ahead.integer()?;
@@ -178,8 +178,8 @@ impl<'a> Cursor<'a> {
         Some(number)
     }
 
-    /// A real number, correctly rounded, that ends at white space, a comment or a backslash. `nan` and `inf` are
-    /// numbers in all their spellings.
+    /// A real number, correctly rounded, followed by white space, a comment, a backslash or the end of the file. All
+    /// spellings of `nan` and `inf` are numbers.
     #[inline]
     pub(crate) fn real(&mut self) -> Option<f64> {
         let mut at = self.at;
@@ -205,10 +205,10 @@ impl<'a> Cursor<'a> {
             decimals = at - first_decimal;
             digits += decimals;
         }
-        // Up to here exact: both the mantissa and the power of ten are f64, so one division rounds once.
+        // Within the limits below the mantissa and the power of ten are exact in f64, so one division rounds once.
         let ends = match self.bytes.get(at) {
             None | Some(b' ' | b'\t'..=b'\r' | b'\\') => true,
-            // A comment, but for `1.#QNAN`.
+            // A comment, except in `1.#QNAN`.
             Some(b'#') => digits > 0 && self.bytes[at - 1] != b'.',
             _ => false,
         };
@@ -220,7 +220,7 @@ impl<'a> Cursor<'a> {
         self.real_of_word()
     }
 
-    /// A real number in any other spelling: exponents, many digits, `nan`, `inf`, `1.#IND`.
+    /// A real number in any other notation: exponents, many digits, `nan`, `inf`, `1.#IND`.
     fn real_of_word(&mut self) -> Option<f64> {
         let mut ahead = self.clone();
         let word = ahead.word();
@@ -228,7 +228,7 @@ impl<'a> Cursor<'a> {
             self.at = ahead.at;
             return Some(value);
         }
-        // A comment or a continuation right behind the number.
+        // A comment or a continuation may follow the number directly.
         let end = word.iter().position(|byte| matches!(byte, b'#' | b'\\'))?;
         let value = parse_real(&word[..end])?;
         self.at += end;
@@ -247,7 +247,7 @@ pub(crate) fn malformed_at(source: &Source<'_>, format: Format, at: usize, reaso
     source.malformed(format, format!("line {}: {reason}", line_of(source.bytes, at)))
 }
 
-/// The line that byte `at` stands on, counted from 1.
+/// The line that contains byte `at`, counted from 1.
 pub(crate) fn line_of(bytes: &[u8], at: usize) -> usize {
     let before = &bytes[..at.min(bytes.len())];
     let breaks = |(index, &byte): (usize, &u8)| match byte {
@@ -258,7 +258,7 @@ pub(crate) fn line_of(bytes: &[u8], at: usize) -> usize {
     1 + before.iter().enumerate().filter(|&pair| breaks(pair)).count()
 }
 
-/// Bytes of a file as text for a sentence: lossy, and no longer than a person would read.
+/// Bytes of a file as text for a message: decoded lossily, and shortened to what a person would read.
 pub(crate) fn excerpt(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(160)]);
     let blank = |letter: char| if letter.is_control() { ' ' } else { letter };

@@ -1,10 +1,10 @@
-//! Numbers of text files: how they are spelled, read and written.
+//! Numbers in text files: parsing and printing.
 
 use std::io::Write;
 
-/// A word as a real number; C's printed specials (`-nan(ind)`, `1.#INF`) included.
+/// Parses a word as a real number, including C's printed specials (`-nan(ind)`, `1.#INF`).
 pub(super) fn parse_real(word: &[u8]) -> Option<f64> {
-    // The longest exact decimal of an f64 has fewer than 1100 characters: longer words aren't numbers of ours.
+    // The longest exact decimal of an f64 has fewer than 1100 characters, so a longer word is not accepted as a number.
     if word.len() > 2000 {
         return None;
     }
@@ -48,7 +48,7 @@ pub(crate) fn push_f32(out: &mut Vec<u8>, value: f32) {
     };
 }
 
-/// The spelling of a number that isn't finite, which every reader that takes such numbers knows.
+/// The spelling of a number that isn't finite, understood by every reader that accepts such numbers.
 fn non_finite(value: f64) -> &'static str {
     if value.is_nan() {
         "nan"

@@ -1,8 +1,8 @@
-//! A copy of a text in which some spans are replaced.
+//! A copy of a text with some spans replaced.
 
 use std::ops::Range;
 
-/// A copy of a file with some spans replaced, given in rising order.
+/// A copy of a file with some spans replaced, which are given in ascending order.
 #[derive(Debug)]
 pub(crate) struct Splice<'a> {
     source: &'a [u8],
@@ -11,7 +11,7 @@ pub(crate) struct Splice<'a> {
 }
 
 impl<'a> Splice<'a> {
-    /// A copy of `source` without changes so far.
+    /// A copy of `source` with no changes yet.
     pub(crate) fn new(source: &'a [u8]) -> Self {
         Self {
             source,
@@ -20,7 +20,7 @@ impl<'a> Splice<'a> {
         }
     }
 
-    /// Puts what `write` appends in the place of `span`, which stands behind all spans replaced so far.
+    /// Replaces `span`, which lies after all spans replaced so far, with what `write` appends.
     pub(crate) fn replace(&mut self, span: Range<usize>, write: impl FnOnce(&mut Vec<u8>)) {
         debug_assert!(self.copied <= span.start && span.start <= span.end && span.end <= self.source.len());
         self.out.extend_from_slice(&self.source[self.copied..span.start]);
