@@ -1,5 +1,5 @@
-//! What a new method must bring is its folder and its line in `METHODS`: `identity`, which is compiled for tests,
-//! brings no more, and is in the help, the edit format, the panel and the palette, and works.
+//! A new method needs only its folder and its line in `METHODS`. `identity`, which is compiled for tests, has no more
+//! than that, and appears in the help, the edit format, the panel and the palette, and works.
 
 #![allow(
     clippy::unwrap_used,
@@ -102,7 +102,7 @@ fn an_edit_names_it_and_its_options_and_moves_the_handles_alone() {
             .zip(&whole)
             .all(|(half, whole)| half.abs_diff_eq(*whole * 0.5, 1e-12))
     );
-    // By its name, with its defaults, in place of the edit's.
+    // Named on the command line it replaces the edit's method, with its default options.
     let named = moved(&by(json!({ "name": "bilaplacian" })), &["--method", "identity"]);
     assert!(named == whole);
 
@@ -120,7 +120,7 @@ fn an_edit_names_it_and_its_options_and_moves_the_handles_alone() {
         folder.apply(&file, &by(method), &out, &[]).refused(1, &words);
     }
 
-    // What it takes no notice of is said, with the methods that do.
+    // A warning says what the method ignores, and which methods do not.
     let mut soft = by(json!({ "name": "identity" }));
     soft["handles"][0]["soft"] = json!(1);
     soft["stiffness"] = json!([{ "select": "all", "value": 10 }]);
@@ -158,7 +158,7 @@ fn the_palette_and_the_panel_have_it() {
     settle(&mut harness);
     assert_eq!(harness.state().editor().document().method().name(), "identity");
 
-    // Its sentence stands in the panel, and below that a widget for its option.
+    // The panel shows its sentence, and a widget for its option below.
     harness.get_by_label("Moves the handles and leaves the rest where it is.");
     harness.get_by_label("Options").click();
     harness.run_steps(8);

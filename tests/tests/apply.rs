@@ -1,4 +1,4 @@
-//! What an edit does to a surface: handles arrive, what is fixed stays, the rest follows, whatever the file.
+//! What an edit does to a surface, for every kind of file: handles arrive, fixed vertices stay, and the rest follows.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -28,7 +28,7 @@ fn handle(select: &Value, transform: &Value) -> Value {
     json!({ "select": select, "transform": transform })
 }
 
-/// The file's vertices in the lowest and highest 5% of the longest axis of what triangles use.
+/// The file vertices in the lowest and highest 5% of the used vertices along the longest axis.
 fn ends(loaded: &Loaded) -> [Vec<usize>; 2] {
     let drawn = loaded.model.rest();
     let used = || {
@@ -133,7 +133,7 @@ fn the_surveys_scenes_meet_their_constraints() {
     }
 }
 
-/// Loose parts that nothing holds go with what they sit on: no triangle edge of a translated helmet tears away.
+/// Loose parts that nothing holds follow what they touch: no triangle edge of a translated helmet is torn.
 #[test]
 fn loose_parts_of_real_models_travel_with_the_surface() {
     for name in ["gltf/DamagedHelmet.glb", "gltf/FlightHelmet/FlightHelmet.gltf"] {
@@ -184,7 +184,7 @@ fn a_translation_of_the_only_handle_moves_every_shape_as_a_whole() {
                     "{name}: vertex {v} went {}",
                     *b - *a
                 ),
-                // What no triangle uses, or is no number, stays as the file has it.
+                // Vertices that no triangle uses or that are not finite stay as the file has them.
                 None => assert_eq!(
                     a.to_array().map(f64::to_bits),
                     b.to_array().map(f64::to_bits),
@@ -224,7 +224,7 @@ fn a_handle_wins_over_fixed_and_fixed_over_the_region() {
     for (p, moved) in bar.positions.iter().zip(&moved) {
         assert_eq!(*moved, (p.x - min) / (max - min) >= 0.8, "{p}");
     }
-    // And without `fixed` what lies outside of the region stays, while the rest of it follows.
+    // Without `fixed`, everything outside the region stays, and the rest of the region follows.
     edit["fixed"] = json!("none");
     let after = bent(&bar, &edit);
     for (p, q) in bar.positions.iter().zip(&after) {
@@ -274,10 +274,10 @@ fn welded_twins_go_together_whichever_of_them_is_named() {
     }
 }
 
-/// Whether a selector is to select the file's vertex of this number.
+/// Whether a selector should select the file vertex with this number.
 type Test = Box<dyn Fn(usize) -> bool>;
 
-/// The selectors as they meet the file: each one moves what it says and, the region being empty, nothing else.
+/// Every kind of selector moves the vertices that it describes and, because the region is empty, nothing else.
 #[test]
 fn selectors_select_what_they_say() {
     let sheet = shapes::grid(4, 6);

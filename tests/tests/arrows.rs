@@ -1,5 +1,5 @@
-//! The arrows between the crates are those of `crates/README.md`, and what its "Invariant:" lines call absent is
-//! absent. Metadata tells what a crate is linked with; the sources tell what it uses of the standard library.
+//! The dependencies between the crates are those that `crates/README.md` draws, and its "Invariant:" lines hold.
+//! Cargo's metadata tells what a crate is linked with; its sources tell what it uses of the standard library.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,7 +8,7 @@ use std::path::Path;
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand};
 use pliant_tests::sources::{self, Source};
 
-/// Who may name whom; `tests` and `xtask` are exempt.
+/// Which crate may depend on which others; `tests` and `xtask` are exempt.
 const ARROWS: &[(&str, &[&str])] = &[
     ("pliant-mesh", &[]),
     ("pliant-io", &["pliant-mesh"]),
@@ -27,7 +27,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// What a crate must not be linked with, not even through others (names begin with these).
+/// What a crate must not be linked with, even indirectly (names that begin with these).
 const NEVER_LINKED: &[(&str, &[&str])] = &[
     ("pliant-mesh", &["wgpu", "naga", "egui", "eframe", "winit", "serde"]),
     ("pliant-deform", &["wgpu", "naga", "egui", "eframe", "winit", "serde"]),
@@ -36,13 +36,13 @@ const NEVER_LINKED: &[(&str, &[&str])] = &[
     ("pliant-editor", &["wgpu", "naga", "egui", "eframe", "winit", "gltf"]),
 ];
 
-/// What a crate must not ask for by itself.
+/// What a crate must not depend on directly.
 const NEVER_NAMED: &[(&str, &[&str])] = &[
     ("pliant-mesh", &["log", "tracing"]),
     ("pliant-deform", &["log", "tracing"]),
 ];
 
-/// What the sources of a crate must not name outside of unit tests: paths that begin so.
+/// Paths that the sources of a crate must not name outside unit tests (those that begin with these).
 const NEVER_WRITTEN: &[(&str, &[&str])] = &[
     ("mesh", OUTSIDE_WORLD),
     ("deform", OUTSIDE_WORLD),
@@ -64,7 +64,7 @@ const NEVER_WRITTEN: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// The clock, threads, files, and all else that makes a result depend on more than its inputs.
+/// The clock, threads, files, and everything else that makes a result depend on more than its inputs.
 const OUTSIDE_WORLD: &[&str] = &[
     "std::time",
     "std::thread",
@@ -75,7 +75,7 @@ const OUTSIDE_WORLD: &[&str] = &[
     "std::process",
 ];
 
-/// Words that make a global, in the two crates that have none.
+/// Keywords that declare a global, which two crates must not have.
 const GLOBALS: &[&str] = &["static", "thread_local"];
 
 fn workspace() -> Metadata {
@@ -90,7 +90,7 @@ fn workspace() -> Metadata {
         .lines()
         .find_map(|line| line.strip_prefix("host: "))
         .expect("rustc names its host");
-    // What this host builds lies in the registry already; other systems' crates may not.
+    // Offline, because the registry holds what this host builds but perhaps not other systems' crates.
     MetadataCommand::new()
         .manifest_path(Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.toml"))
         .other_options(["--locked", "--offline", "--filter-platform", host].map(str::to_owned))
@@ -98,7 +98,7 @@ fn workspace() -> Metadata {
         .expect("cargo metadata runs")
 }
 
-/// The crates that `name` asks for by itself, outside its tests.
+/// The direct dependencies of `name`, without those of its tests.
 fn asked_for(metadata: &Metadata, name: &str) -> BTreeSet<String> {
     let package = metadata
         .packages
@@ -113,7 +113,7 @@ fn asked_for(metadata: &Metadata, name: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// All crates that `name` is linked with: normal dependencies, theirs, and so on.
+/// All crates that `name` is linked with: its normal dependencies and theirs, recursively.
 fn linked_with(metadata: &Metadata, name: &str) -> BTreeSet<String> {
     let names: BTreeMap<_, _> = metadata
         .packages

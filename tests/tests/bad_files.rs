@@ -1,4 +1,4 @@
-//! Broken, empty and odd files: each is read or refused by one line, and none crashes the program.
+//! Broken, empty and odd files: each is read, or refused in one line, and none crashes the program.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -7,7 +7,7 @@ use std::fs;
 use pliant_tests::{Folder, bend, data, extension, open, run};
 use serde_json::json;
 
-/// `info` and `apply` of a file end with status 0, or with 1 and one line; what is refused leaves no OUT.
+/// `info` and `apply` of a file end with status 0, or with status 1 and one line; a refused file leaves no OUT.
 #[track_caller]
 fn assert_read_or_refused(path: &std::path::Path) {
     let folder = Folder::new();
@@ -36,7 +36,7 @@ fn every_bad_file_is_read_or_refused_by_one_line() {
     }
 }
 
-/// Files cut short and with single bytes changed, by a fixed sequence: the shortest of each kind.
+/// The shortest file of each kind, truncated and with single bytes changed, in a fixed sequence.
 #[test]
 fn damaged_files_are_read_or_refused_by_one_line() {
     let folder = Folder::new();

@@ -1,39 +1,39 @@
-//! No file of a crate needs, through others, itself: whoever reads a file needs only those below it.
+//! No file of a crate depends on itself through other files: to understand a file one reads only those below it.
 //!
-//! The paths that a file names (`crate::…`, `super::…`, `self::…`, in `use` lines and elsewhere) are followed to the
-//! file that defines what they name: through folders' `mod.rs` and through what those hand on by `pub use`. Unit tests
-//! and comments are left out. Crates that are not in [`STRICT`] are held to a little less.
+//! The paths that a file names (`crate::…`, `super::…`, `self::…`, in `use` lines and elsewhere) are resolved to the
+//! file that defines the item, through folders' `mod.rs` and their `pub use` re-exports. Unit tests and comments are
+//! left out. Crates that are not in [`STRICT`] are checked a little less strictly.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test may panic")]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// The crates whose every arrow counts. In the others the crate's root is a face that every file may look at, and a
-/// folder's own file (`mod.rs`) is one with the files below it.
+/// The crates in which every dependency counts. In the others any file may use the names that the crate's root exports,
+/// and a folder's own file (`mod.rs`) counts as one with the files below it.
 const STRICT: &[&str] = &["editor"];
 
-/// Which arrows count.
+/// Which dependencies count.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Counted {
-    /// All.
+    /// All of them.
     All,
-    /// Neither names that the crate's root hands on, nor arrows to a folder's own file from below.
+    /// All except names that the crate's root re-exports and dependencies on a folder's own file from below.
     BesideFolders,
 }
 
-/// A module: its file, and the names that it takes from elsewhere.
+/// A module: its file, and the names that it uses from elsewhere.
 #[derive(Debug, Default)]
 struct Module {
     file: PathBuf,
-    /// For each name that a `use` brings in, the path behind it.
+    /// For each name that a `use` imports, its full path.
     imports: BTreeMap<String, Vec<String>>,
-    /// Every path that the code names outside of `use` lines and in private ones.
+    /// Every path in the code outside `use` lines, and those in private `use` lines.
     paths: Vec<Vec<String>>,
-    /// Every word outside of `use` lines.
+    /// Every word outside `use` lines.
     words: BTreeSet<String>,
 }
 
-/// The modules of a crate by their paths; the crate's root has the empty one.
+/// The modules of a crate by path; the crate's root has the empty path.
 type Modules = BTreeMap<Vec<String>, Module>;
 
 #[test]
@@ -67,7 +67,7 @@ fn no_file_needs_itself_through_others() {
     assert!(found.is_empty(), "circles of files:\n{}", found.join("\n"));
 }
 
-/// The scan itself: what it must see in a made-up crate, and what it must not.
+/// Tests the scan itself: what it must find in a made-up crate, and what it must not find.
 #[test]
 fn the_scan_sees_grouped_paths_and_follows_what_is_handed_on() {
     let mut modules = Modules::new();
@@ -120,7 +120,7 @@ fn modules_of(source: &Path) -> Modules {
                 let text = std::fs::read_to_string(&path).unwrap();
                 let within = path.strip_prefix(source).unwrap().with_extension("");
                 let mut name: Vec<String> = within.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
-                // A binary beside a library is a crate of its own that names the library from outside.
+                // A binary beside a library is a crate of its own, which uses the library from outside.
                 if name == ["main"] && source.join("lib.rs").exists() {
                     continue;
                 }
@@ -178,7 +178,7 @@ fn next_use(code: &str) -> Option<usize> {
     })
 }
 
-/// The paths of a `use` tree, each with the name that it is known by.
+/// The paths of a `use` tree, each with the name it is imported as.
 fn expanded(tree: &str) -> Vec<(Vec<String>, String)> {
     let tree = tree.trim();
     if let Some(open) = tree.find('{') {
@@ -216,7 +216,7 @@ fn expanded(tree: &str) -> Vec<(Vec<String>, String)> {
     vec![(path, name)]
 }
 
-/// Every `crate::…` and `super::…` path within code.
+/// Every `crate::…` and `super::…` path in the code.
 fn paths_in(code: &str) -> Vec<Vec<String>> {
     let is_word = |letter: char| letter.is_alphanumeric() || letter == '_';
     let mut paths = Vec::new();
@@ -234,7 +234,7 @@ fn paths_in(code: &str) -> Vec<Vec<String>> {
     paths
 }
 
-/// The path from the crate's root; a path into another crate keeps its first segment, which no module has.
+/// The path from the crate's root. A path into another crate keeps its first segment, which no module has.
 fn absolute(path: &[String], own: &[String]) -> Vec<String> {
     let mut absolute = own.to_vec();
     for (place, segment) in path.iter().enumerate() {
@@ -253,7 +253,7 @@ fn absolute(path: &[String], own: &[String]) -> Vec<String> {
     absolute
 }
 
-/// The file that defines what a path names, if that is one of the crate's.
+/// The file that defines what a path names, if it is one of the crate's files.
 fn definer<'a>(modules: &'a Modules, path: &[String], counted: Counted, depth: usize) -> Option<&'a Path> {
     if depth == 0 {
         return None;
@@ -273,14 +273,14 @@ fn definer<'a>(modules: &'a Modules, path: &[String], counted: Counted, depth: u
             let whole: Vec<String> = behind.iter().chain(&path[place + 1..]).cloned().collect();
             return definer(modules, &whole, counted, depth - 1);
         }
-        // A word that the module never writes is another crate's, or made by a macro.
+        // A word that the module never contains comes from another crate or from a macro.
         let is_own = segment == "*" || module.words.contains(segment);
         return is_own.then_some(module.file.as_path());
     }
     modules.get(&at).map(|module| module.file.as_path())
 }
 
-/// Which file needs which others.
+/// Which file depends on which others.
 fn arrows(modules: &Modules, counted: Counted) -> BTreeMap<PathBuf, BTreeSet<PathBuf>> {
     let mut arrows: BTreeMap<PathBuf, BTreeSet<PathBuf>> = BTreeMap::new();
     for (own, module) in modules {
@@ -290,7 +290,7 @@ fn arrows(modules: &Modules, counted: Counted) -> BTreeMap<PathBuf, BTreeSet<Pat
             .filter(|(name, _)| module.words.contains(*name))
             .map(|(_, path)| path);
         for path in module.paths.iter().chain(used) {
-            // Naming a child's folder is not needing it.
+            // Naming a child module is no dependency on it.
             let is_module = modules.contains_key(path);
             match definer(modules, path, counted, 8) {
                 Some(file) if file != module.file && !(is_module && path.starts_with(own)) => {
@@ -308,7 +308,7 @@ fn arrows(modules: &Modules, counted: Counted) -> BTreeMap<PathBuf, BTreeSet<Pat
     arrows
 }
 
-/// The groups of files that reach each other, each in order.
+/// The groups of files that reach each other, each in sorted order.
 fn circles(arrows: &BTreeMap<PathBuf, BTreeSet<PathBuf>>) -> Vec<Vec<PathBuf>> {
     let reached = |start: &PathBuf| {
         let (mut seen, mut stack) = (BTreeSet::new(), vec![start.clone()]);
@@ -332,7 +332,7 @@ fn circles(arrows: &BTreeMap<PathBuf, BTreeSet<PathBuf>>) -> Vec<Vec<PathBuf>> {
     circles.into_iter().collect()
 }
 
-/// A circle in words: each of its files with those of the circle that it names.
+/// A circle in words: each of its files with the others of the circle that it depends on.
 fn told(circle: &[PathBuf], arrows: &BTreeMap<PathBuf, BTreeSet<PathBuf>>, crates: &Path) -> String {
     let short = |file: &PathBuf| file.strip_prefix(crates).unwrap_or(file).display().to_string();
     let lines = circle.iter().map(|file| {
@@ -346,7 +346,7 @@ fn told(circle: &[PathBuf], arrows: &BTreeMap<PathBuf, BTreeSet<PathBuf>>, crate
     format!("{} files:\n{}", circle.len(), lines.collect::<Vec<_>>().join("\n"))
 }
 
-/// The code with every comment and every text literal blanked.
+/// The code with every comment and every string literal blanked.
 fn without_comments_and_texts(text: &str) -> String {
     let mut code = String::with_capacity(text.len());
     let letters: Vec<char> = text.chars().collect();
@@ -373,7 +373,7 @@ fn without_comments_and_texts(text: &str) -> String {
                 }
                 at += 1;
             }
-            // A quote as a character would open a text.
+            // A quote in a character literal would otherwise open a string.
             '\'' if next == Some('"') => at += 3,
             '\'' if next == Some('\\') => at += 4,
             letter => {

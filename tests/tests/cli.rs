@@ -1,4 +1,4 @@
-//! The command line: exit statuses, refusals of one line that name the culprit, and OUT untouched by them.
+//! The command line: exit statuses, one-line refusals that name the culprit, and an OUT that refusals leave untouched.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -50,7 +50,7 @@ fn info_speaks_to_people_and_to_programs() {
     assert_eq!(json["findings"]["boundary_loops"]["count"], 1);
 }
 
-/// Each of these edits is refused with status 1 and one line that has the words; OUT keeps its bytes.
+/// Each of these edits is refused with status 1 and one line that contains the words; OUT keeps its bytes.
 #[test]
 fn what_the_edit_format_does_not_have_is_refused_by_name() {
     let folder = Folder::new();
@@ -273,13 +273,13 @@ fn what_can_not_be_written_is_named_and_leaves_nothing() {
     folder
         .apply(&file, &edit, &folder.at("folder.off"), &[])
         .refused(1, &["folder.off", "is a folder"]);
-    // A report that can't be written takes OUT along.
+    // If the report can't be written, neither is OUT.
     let report = folder.at("missing/report.json");
     let out = folder.at("out.off");
     folder
         .apply(&file, &edit, &out, &["--report", report.to_str().unwrap()])
         .refused(1, &["report.json"]);
-    // Who took the right to write away from a file meant it.
+    // A file that was made read-only on purpose is not replaced.
     let kept = folder.write("kept.off", "as it was");
     let mut rights = fs::metadata(&kept).unwrap().permissions();
     rights.set_readonly(true);

@@ -1,4 +1,4 @@
-//! `pliant diff` and an edit saved as a morph target, from the command line.
+//! `pliant diff`, and saving an edit as a morph target, from the command line.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -1,6 +1,6 @@
-//! Drags by chance over every scan, by ARAP and PriMo: always finite, the handles met, no step raising the energy.
+//! Random drags over every scan by ARAP and PriMo: always finite, handles at their targets, no step raising the energy.
 //!
-//! `cargo run --release -p pliant-tests --example drags -- 1000` goes on from here, with the frames' times.
+//! `cargo run --release -p pliant-tests --example drags -- 1000` runs more of them and prints the frames' times.
 
 use pliant_tests::trials::{Outcome, Trial, scans};
 
@@ -19,6 +19,6 @@ fn sixty_drags_end_in_a_sound_shape_or_in_a_refusal_with_a_place() {
             Outcome::Refused(sentence) => refused.push(format!("{} {:?}: {sentence}", subject.name, trial.method)),
         }
     }
-    // Refusing everything is no way to pass.
+    // Refusing every drag must not pass.
     assert!(count == 0 || bent > 40, "{bent} {refused:#?}");
 }

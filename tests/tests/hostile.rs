@@ -1,8 +1,8 @@
-//! A few hundred hostile cases: a folder with a broken model, edit or project, links and strangers, the program's
-//! commands on it, and the laws that hold whatever the folder holds.
+//! A few hundred hostile cases: a folder with a broken model, edit or project, with links and unrelated files; the
+//! program's commands run on it, and the laws that hold whatever the folder contains.
 //!
-//! `cargo run --release -p pliant-tests --example hostile -- 0 100000` goes on from here, under limits of memory and
-//! time, which a test can't have.
+//! `cargo run --release -p pliant-tests --example hostile -- 0 100000` runs more of them under limits of memory and
+//! time, which a test can't set.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -10,10 +10,11 @@ use std::collections::BTreeMap;
 
 use pliant_tests::hostile::{Case, Kind, Law, Size, Unmetered, exercise, listen_for_panics};
 
-/// How many cases of each kind but the drawn one.
+/// How many cases of each kind except the rendered one.
 const CASES: u64 = 50;
 
-/// How many are drawn: opening a graphics device takes as long as many saves. Without one they are refused in words.
+/// How many cases are rendered: fewer, because opening a graphics device takes as long as many saves. Without a device
+/// they are refused in words.
 const DRAWN: u64 = 8;
 
 #[test]
@@ -38,6 +39,6 @@ fn three_hundred_hostile_cases_lose_nothing_and_are_refused_in_words() {
     std::env::set_current_dir(here).unwrap();
     drop(std::panic::take_hook());
     assert!(broken.is_empty(), "{broken:#?}");
-    // Cases that are all refused, or none of them, would try nothing.
+    // If all cases were refused, or none, the test would check nothing.
     assert!(done > 300 && refused > 50, "{done} done and {refused} refused");
 }

@@ -1,4 +1,4 @@
-//! An edit that moves nothing gives the file's own bytes back, and files become other kinds without being moved.
+//! An edit that moves nothing gives back the file's own bytes, and converting a file moves no vertex.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -60,7 +60,7 @@ fn a_file_may_be_replaced_by_itself_edited() {
     assert_eq!(folder.names(), ["mesh.off"]);
 }
 
-/// What each kind becomes as each other kind: the same triangles at the same places, to the precision of f32.
+/// Every format converted to every other: the same triangles at the same positions, to the precision of f32.
 #[test]
 fn every_kind_becomes_every_other_kind_in_place() {
     let kinds = ["glb", "gltf", "obj", "ply", "stl", "off"];

@@ -1,7 +1,8 @@
-//! One small picture for every mark that the editor lays over the surface, compared with the one that was looked at and
-//! kept: rims of regions, the brush's ring, gizmos, legends. Skipped by name where no graphics device exists.
+//! One small picture of each mark that the editor draws over the surface, compared with a reference that a person has
+//! checked: rims of regions, the brush's ring, gizmos, legends. Skipped by name if there is no graphics device.
 //!
-//! `PLIANT_KEEP_PICTURES=1 cargo test -p pliant-tests --test marks` keeps the present ones; look at them.
+//! `PLIANT_KEEP_PICTURES=1 cargo test -p pliant-tests --test marks` makes the current pictures the references; look at
+//! them.
 
 #![allow(
     clippy::unwrap_used,
@@ -26,12 +27,12 @@ use pliant_io::Appearance;
 use pliant_mesh::{Cancel, Model, Progress, WeldOptions, shapes};
 use pliant_render::{Frame, Headless, Image, Renderer, Samples};
 
-/// The view in points, and how many pixels of the picture a point is.
+/// The view's size in points, and the picture's pixels per point.
 const VIEWPORT_PX: DVec2 = DVec2::new(480.0, 360.0);
 const PIXELS_PER_POINT: f64 = 0.5;
 const CENTRE_PX: DVec2 = DVec2::new(240.0, 180.0);
 
-/// The program with a ball open, seen from the front, and what draws it.
+/// The program with a ball open, seen from the front, and its renderer.
 struct Stage {
     editor: Editor,
     jobs: InlineExecutor,
@@ -96,7 +97,7 @@ impl Stage {
         self.drain();
     }
 
-    /// A ball with a handle at its middle and nothing else marked: the pointer is away.
+    /// A ball with a handle in the middle and no other marks: the pointer is away.
     fn with_handle(radius_px: f64) -> Option<Self> {
         let mut stage = Self::open()?;
         stage.command(Command::SetBrushRadius(radius_px));
@@ -172,7 +173,7 @@ fn the_brush_s_ring_lies_on_the_surface() {
     let Some(mut stage) = Stage::open() else { return };
     stage.command(Command::SetTool(ToolMode::PaintHandle));
     stage.command(Command::SetBrushRadius(60.0));
-    // Towards the ball's side, where the ring leans with the surface.
+    // Near the ball's silhouette, where the ring tilts with the surface.
     stage.point_at(CENTRE_PX + DVec2::new(70.0, -40.0));
     stage.compare("brush-ring");
 }
@@ -183,7 +184,7 @@ fn every_gizmo() {
         return;
     };
     stage.command(Command::View(NamedView::ThreeQuarter));
-    // With a brush in hand it is faded.
+    // It is faded while a brush is active.
     stage.command(Command::SetTool(ToolMode::Select));
     for (mode, name) in [
         (GizmoMode::Move, "gizmo-move"),
@@ -193,7 +194,7 @@ fn every_gizmo() {
         stage.command(Command::SetGizmo(mode));
         stage.compare(name);
     }
-    // Under the pointer a part is brighter: here the square that moves in a plane.
+    // The part under the pointer is brighter: here the square that moves in a plane.
     stage.command(Command::SetGizmo(GizmoMode::Move));
     let square = stage
         .editor

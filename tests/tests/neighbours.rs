@@ -1,4 +1,4 @@
-//! A `.gltf` and its buffers and images on disk: brought along, kept apart, or refused.
+//! A `.gltf` with its buffers and images on disk: copied, kept apart, or refused.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -14,7 +14,7 @@ fn shift() -> Value {
     bend(&json!({ "translation": [0, 0, 1] }))
 }
 
-/// `scan.gltf` with its buffer, in the folder `source` of a new folder.
+/// `scan.gltf` with its buffer, in the subfolder `source` of a new folder.
 fn gltf_in_a_folder() -> (Folder, PathBuf) {
     let folder = Folder::new();
     fs::create_dir(folder.at("source")).unwrap();
@@ -130,7 +130,7 @@ fn a_missing_neighbour_is_named() {
         .refused(1, &["scan.gltf", &uri]);
 }
 
-/// Packed and unpacked again a file with many images has what it had.
+/// A file with many images is unchanged after packing and unpacking.
 #[test]
 fn a_real_gltf_is_packed_and_unpacked() {
     let Some(helmet) = datum("gltf/FlightHelmet/FlightHelmet.gltf") else {

@@ -22,7 +22,7 @@ fn apply(file: &Path, edit: &Path, output: &Path) -> Ended {
     ])
 }
 
-/// An editor with the bar open and its end a handle, from an edit.
+/// An editor with the bar open and one end of it a handle, from an edit.
 fn editor(loaded: &Loaded) -> (Editor, InlineExecutor) {
     let jobs = InlineExecutor::new();
     let mut editor = Editor::new(Box::new(jobs.clone()));
@@ -98,7 +98,7 @@ fn a_project_bends_its_mesh_to_the_shape_that_was_on_the_screen_with_what_was_ap
         .fold(0.0, f64::max);
     assert!((farthest - rest.length()).abs() < 0.2, "both bends are in it");
 
-    // At rest, and nothing applied: the file's own bytes.
+    // At rest and with nothing applied, the save is the file's own bytes.
     let (fresh, _) = self::editor(&loaded);
     let mesh = MeshReference {
         name: None,

@@ -1,4 +1,4 @@
-//! Laws on every scan: translations, bases, units, far places, stiffness.
+//! Laws on every scan: translations, handle bases, units, distance from the origin, stiffness.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -8,8 +8,7 @@ use pliant_mesh::{Cancel, Model, Progress, Surface};
 use pliant_tests::largest_distance;
 use pliant_tests::trials::scans;
 
-/// What is solved on a scan: its ends along the longest axis the handles, with or without a band around its middle
-/// fixed.
+/// A problem on a scan: its two ends along the longest axis are handles, and a band around its middle may be fixed.
 struct Setting<'a> {
     model: &'a Model,
     surface: Surface,
@@ -90,7 +89,7 @@ fn translations_and_bases_agree_with_solves_on_every_scan() {
             let worst = moved.iter().map(|d| d.distance(shift)).fold(0.0, f64::max);
             assert!(worst < 1e-9 * shift.length(), "{name}: a translation is {worst:e} off");
         }
-        // In f64 the bases are the solves of single columns: their sum is the solve of the whole.
+        // In f64 each basis is the solve of a single column: their sum is the solve of the whole.
         let targets = [
             turned(centre, 0.9, DVec3::X * 0.2 * size),
             turned(centre, -0.5, DVec3::Y * 0.1 * size),
@@ -102,7 +101,7 @@ fn translations_and_bases_agree_with_solves_on_every_scan() {
             for column in 0..4 {
                 let mut alone = [DAffine3::IDENTITY; 2];
                 let change = targets[handle].matrix3 - DMat3::IDENTITY;
-                // A column of the linear part acts about the centre, so that its part of the shift is small.
+                // A column of the linear part acts about the centre, so its part of the shift is small.
                 let part = if column < 3 {
                     let mut columns = [DVec3::ZERO; 3];
                     columns[column] = change.col(column);
@@ -125,7 +124,7 @@ fn translations_and_bases_agree_with_solves_on_every_scan() {
         }
         let apart = largest_distance(&sum, &whole);
         assert!(apart < 1e-9 * largest, "{name}: columns are {:e} off", apart / largest);
-        // As they are stored they have the digits of f32.
+        // Stored bases have the precision of f32.
         let apart = largest_distance(&step(&mut free, &targets), &whole);
         assert!(apart < 1e-6 * largest, "{name}: bases are {:e} off", apart / largest);
     }
@@ -143,7 +142,7 @@ fn units_and_place_do_not_matter_on_any_scan() {
             turned(centre, -0.5, DVec3::Y * 0.1 * size),
         ];
         let here = step(&mut setting.bind(), &targets);
-        // Millimetres, kilometres, and a hundred diagonals away.
+        // Millimetres, kilometres, and a hundred diagonals from the origin.
         for (scale, offset) in [
             (1e-3, DVec3::ZERO),
             (1e6, DVec3::ZERO),
@@ -191,7 +190,8 @@ fn a_stiffer_band_bends_less_on_every_scan() {
                 .map(|d| d.to_array())
                 .collect();
             let bent = |v: usize| plain.row(v, &d).iter().map(|x| x * x).sum::<f64>() * plain.inverse_areas()[v];
-            // Where it meets what is softer it bends by the contrast itself.
+            // Only well inside the stiff band: at its border, next to softer material, the contrast itself bends the
+            // surface.
             (0..d.len()).filter(|&v| from_middle[v] < 0.1).map(bent).sum::<f64>()
         });
         assert!(bends.windows(2).all(|pair| pair[1] < pair[0]), "{name}: {bends:?}");

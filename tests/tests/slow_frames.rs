@@ -1,5 +1,5 @@
-//! What happens within one slow frame goes to whoever had the pointer and the keys when it happened; a field's Escape
-//! takes back what was typed. Skipped by name where no graphics device exists at all.
+//! Input that arrives within one slow frame goes to the widget that had the pointer and the keyboard at that moment,
+//! and Escape in a field reverts what was typed. Skipped by name if there is no graphics device at all.
 
 #![allow(
     clippy::unwrap_used,
@@ -15,7 +15,7 @@ use glam::DVec3;
 use pliant_editor::ToolMode;
 use window_rig::Session;
 
-/// A key that goes down and up, with what it types.
+/// Presses and releases a key that types a text.
 fn typed(key: Key, text: &str) -> Vec<Event> {
     let stroke = |pressed| Event::Key {
         key,
@@ -44,7 +44,7 @@ fn what_a_field_takes_is_no_shortcut_however_slow_the_frames_are() {
     let view = session.harness.state().editor().view();
     assert_eq!((view.tool, view.camera_revision), before, "and nobody else did");
 
-    // What comes after Enter is a shortcut again, in the same slow frame too.
+    // A key after Enter is a shortcut again, even within the same slow frame.
     session.click_into("Move");
     session.in_one_frame([typed(Key::Num0, "0"), typed(Key::Enter, ""), typed(Key::Num2, "2")].concat());
     assert_eq!(session.translation().x, 0.0);
@@ -66,7 +66,7 @@ fn escape_in_a_number_field_takes_the_typed_number_back() {
             }
         }
         assert_eq!(session.translation(), DVec3::ZERO);
-        // Neither later: who looks into the field again and leaves it has typed nothing.
+        // Nor does it later: focusing the field and leaving it again types nothing.
         session.click_into("Move");
         session.in_one_frame(typed(Key::Enter, ""));
         assert_eq!(session.translation(), DVec3::ZERO);
@@ -79,7 +79,7 @@ fn a_click_and_what_is_typed_into_the_palette_after_it_may_come_in_one_frame() {
     let Some(mut session) = Session::with_handle() else {
         return;
     };
-    // Widening the region follows the pointer; the click keeps it, and only then the palette opens.
+    // Resizing the region follows the pointer; the click confirms it, and only then does the palette open.
     session.key(Key::E, Modifiers::NONE);
     let at = session.harness.state().view_rect().center();
     session.pointer(at, None);

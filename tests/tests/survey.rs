@@ -1,5 +1,5 @@
-//! The survey's scenes against another implementation: weights from dot and cross products, a triplet matrix, faer's
-//! own ordering and Cholesky factor.
+//! The survey's scenes against an independent implementation: weights from dot and cross products, a triplet matrix,
+//! and faer's own ordering and Cholesky factor.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -16,7 +16,7 @@ use pliant_editor::Beginning;
 use pliant_mesh::DrawnVertex;
 use pliant_tests::{Folder, assets, datum, extension, largest_distance, open};
 
-/// Each scene's mesh and edit: those that ship with the program, and the survey's own files where they are there.
+/// Each scene's mesh and edit: those that ship with the program, and the survey's own files if they are present.
 fn scenes() -> Vec<(PathBuf, PathBuf)> {
     let with_edit = |mesh: PathBuf| (mesh.clone(), mesh.with_extension("edit.json"));
     ["plane", "cylinder", "bar", "cactus"]
@@ -58,7 +58,7 @@ fn operators(positions: &[DVec3], faces: &[[usize; 3]]) -> (Vec<Vec<(usize, f64)
     (rows, areas)
 }
 
-/// New positions by L M⁻¹ L d = 0, with displacements prescribed where the roles say so.
+/// New positions by L M⁻¹ L d = 0, with displacements prescribed for the roles that have them.
 fn solve(positions: &[DVec3], faces: &[[usize; 3]], roles: &[Role], targets: &[DAffine3]) -> Vec<DVec3> {
     let held: Vec<Option<DVec3>> = roles
         .iter()
@@ -118,7 +118,7 @@ fn the_scenes_come_out_as_another_implementation_has_them() {
         let bent = bent(&folder, &mesh, &edit);
         let diagonal = model.bounds().unwrap().diagonal();
         let apart = largest_distance(&bent, &expected) / diagonal;
-        // Only rounding and the digits of the file tell the two apart.
+        // Only rounding and the file's digits separate the two.
         assert!(apart < 1e-5, "{}: {apart:e} of the diagonal", mesh.display());
         let moved = largest_distance(&bent, &model.rest_positions());
         assert!(moved > 0.1 * diagonal, "{} was bent", mesh.display());

@@ -1,4 +1,4 @@
-//! The same input gives the same bytes whatever the number of threads.
+//! The same input gives the same bytes on any number of threads.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

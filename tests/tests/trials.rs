@@ -1,6 +1,6 @@
-//! The first of the seeded trials on every scan: options, methods and handles by chance.
+//! The first of the seeded trials on every scan: random options, methods and handles.
 //!
-//! `cargo run --release -p pliant-tests --example trials -- 1000` goes on from here.
+//! `cargo run --release -p pliant-tests --example trials -- 1000` runs more of them.
 
 use pliant_tests::trials::{Outcome, Trial, scans};
 
@@ -13,7 +13,7 @@ fn sixty_trials_end_in_a_sound_shape_or_in_a_refusal_with_a_place() {
         let subject = &mut subjects[(seed % count) as usize];
         let trial = Trial::new(seed, &subject.model);
         match trial.run(subject) {
-            // A handful of vertices between a patch and its region would try nothing.
+            // A trial that solves only a handful of vertices would check nothing.
             Outcome::Bent { solved_count, .. } => {
                 let share = solved_count as f64 / subject.model.surface.positions.len() as f64;
                 bent += u32::from(solved_count > 100 || share > 0.1);
@@ -21,6 +21,6 @@ fn sixty_trials_end_in_a_sound_shape_or_in_a_refusal_with_a_place() {
             Outcome::Refused(sentence) => refused.push(format!("{} {:?}: {sentence}", subject.name, trial.method)),
         }
     }
-    // Refusing everything, or solving next to nothing, is no way to pass.
+    // Refusing every trial, or solving almost nothing, must not pass.
     assert!(count == 0 || bent > 30, "{bent} {refused:#?}");
 }

@@ -1,5 +1,5 @@
-//! What the view says of a shape: the triangle under a pixel is the one that a ray meets, on deformed scans; and what
-//! `pliant render` writes. Skipped by name where no graphics device exists.
+//! What the view shows of a shape: the triangle under a pixel is the one that a ray hits, on deformed scans; and the
+//! pictures that `pliant render` writes. Skipped by name if there is no graphics device.
 
 #![allow(
     clippy::unwrap_used,
@@ -45,7 +45,7 @@ fn bent(model: &Model) -> Vec<DVec3> {
 /// Which triangle each pixel shows.
 fn ids(renderer: &mut Renderer, model: &Model, displacements: &[DVec3], camera: &Camera) -> Vec<Option<u32>> {
     let drawing = Drawing::new(model, pliant_io::Appearance::default());
-    // The boxes of chunks come from the shape at rest and are moved along, as in the window.
+    // As in the window, the chunks' boxes come from the rest shape and move with the displacements.
     let rest = vec![DVec3::ZERO; displacements.len()];
     let mut surface = drawing.upload(renderer, &drawing.pose(model, &rest)).unwrap();
     surface
@@ -99,7 +99,7 @@ fn the_triangle_under_ten_thousand_pixels_is_the_one_that_a_ray_meets() {
         camera.look_from(NamedView::NAMES[number % NamedView::NAMES.len()].1);
         camera.frame(&moved, size_px);
         let ids = ids(&mut renderer, model, &displacements, &camera);
-        // A fixed walk over the pixels that comes by each once.
+        // A fixed walk over the pixels that visits each one once.
         let (mut asked, mut beside) = (0, 0);
         let mut pixel = 12_345_u64;
         while asked < pixels_each {
@@ -119,7 +119,7 @@ fn the_triangle_under_ten_thousand_pixels_is_the_one_that_a_ray_meets() {
             if met(DVec2::ZERO) == Some(seen) {
                 continue;
             }
-            // The device snaps corners to 1/256 of a pixel: beside an edge either triangle is right.
+            // The device snaps corners to 1/256 of a pixel, so close to an edge either triangle is right.
             let near = [-1.0, 1.0]
                 .iter()
                 .flat_map(|s| [DVec2::X * *s, DVec2::Y * *s, DVec2::new(*s, 1.0), DVec2::new(*s, -1.0)]);
@@ -132,7 +132,7 @@ fn the_triangle_under_ten_thousand_pixels_is_the_one_that_a_ray_meets() {
             );
             beside += 1;
         }
-        // Where triangles are about as large as pixels, few lie that near to an edge.
+        // Few pixels are that close to an edge, even though triangles are about as large as pixels.
         assert!(
             10 * beside < asked,
             "{}: {beside} of {asked} lie beside an edge",
@@ -147,7 +147,7 @@ fn picture(path: &Path) -> image::RgbaImage {
     image::open(path).unwrap().into_rgba8()
 }
 
-/// `pliant render` of the creature with its edit, with more arguments.
+/// `pliant render` of the creature with its edit and further arguments.
 fn rendered(folder: &Folder, name: &str, arguments: &[&str]) -> image::RgbaImage {
     let output = folder.at(name);
     let mut line = vec!["render".to_owned(), assets().join("creature.glb").display().to_string()];
@@ -257,6 +257,6 @@ fn images_that_a_picture_does_not_show_are_told() {
         said.lines().count() == 1 && said.contains("skin.png") && said.contains("is not shown"),
         "{said:?}"
     );
-    // What shows no image has none to leave out.
+    // A shading that shows no image leaves none out.
     assert_eq!(told("clay"), "");
 }

@@ -1,5 +1,5 @@
-//! The whole application without a window: a session from opening to saving, by pointer and keys, on a software
-//! device. Skipped by name where no graphics device exists at all.
+//! The whole application without a window: a session from opening to saving, by pointer and keyboard, on a software
+//! device. Skipped by name if there is no graphics device at all.
 
 #![allow(
     clippy::unwrap_used,
@@ -25,8 +25,8 @@ use pliant_editor::{BrushMetric, Command, Reach, Shading, ToolMode};
 use pliant_tests::{Folder, assets, open, run};
 use window_rig::Session;
 
-/// How far two descents to one minimum may end from each other, in diagonals: the window's, which followed the hand,
-/// and the command line's from the rest shape.
+/// How far apart, in diagonals, two descents to one minimum may end: the window's, which followed the pointer, and the
+/// command line's, which started at the rest shape.
 const DESCENDED: f64 = 1e-3;
 
 fn moved(shape: &[DVec3]) -> usize {
@@ -43,7 +43,7 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     assert!(count > 10_000, "the sample is a scan's size");
     assert_eq!(session.harness.state().editor().document().handles().len(), 0);
 
-    // Paint a handle on the highest part: its region comes along, and nothing moves.
+    // Paint a handle on the highest part: it gets its region, and nothing moves.
     let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
     let from = top + vec2(0.0, 6.0);
     session.stroke(from, from + vec2(0.0, 10.0));
@@ -61,8 +61,8 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     );
     assert_eq!(moved(&session.shape()), 0);
 
-    // Drag it by G, X, a number, Enter. A handle that goes farther than its region is wide has several minima, and the
-    // one it finds depends on its way: this one stays well within.
+    // Drag it by G, X, a number, Enter. If a handle goes farther than its region is wide there are several minima, and
+    // the path decides which is found: this drag stays well below that.
     let id = session.harness.state().editor().view().handles[0].id;
     session
         .harness
@@ -93,7 +93,7 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
         "what is held still stays"
     );
 
-    // And by the pointer, with G and a click.
+    // Then by the pointer, with G and a click.
     session.key(Key::G, Modifiers::NONE);
     let start = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
     session.pointer(start, None);
@@ -111,7 +111,7 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     let shown = session.harness.state().shown_displacements().unwrap().to_vec();
     assert_eq!(shown, dragged);
 
-    // Undo and redo come back to the bit.
+    // Undo and redo restore the same bits.
     session.key(Key::Z, Modifiers::COMMAND);
     session.settle();
     assert_eq!(session.shape(), typed);
@@ -124,7 +124,7 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
     }
     assert_eq!(session.shape(), dragged);
 
-    // Save, and compare with the command line's answer to the same edit: another way to the same minimum.
+    // Save, and compare with the command line's result for the same edit, which reaches the same minimum another way.
     let folder = Folder::new();
     let saved = folder.path().join("saved.glb");
     session.harness.state_mut().save_to(saved.clone(), KeepOriginal::No);
@@ -149,7 +149,7 @@ fn a_session_from_opening_to_saving_gives_what_the_command_line_gives() {
         );
     }
 
-    // Reopen: the file is what was on the screen.
+    // Reopen: the file has what was on the screen.
     let before: Vec<DVec3> = {
         let editor = session.harness.state().editor();
         let mut positions = Vec::new();
@@ -211,7 +211,7 @@ fn nothing_is_drawn_or_solved_while_nothing_happens() {
     let before = revisions(&session);
     let drawings = session.harness.state().drawings();
     std::thread::sleep(Duration::from_millis(400));
-    // The one smoother picture of a resting view is drawn, and then no more.
+    // A resting view draws one smoother picture, and then no more.
     session.harness.run_steps(3);
     let rested = session.harness.state().drawings();
     assert!(rested <= drawings + 1);
@@ -254,7 +254,7 @@ fn a_project_comes_back_as_it_was_though_its_mesh_was_saved_over() {
     }
     session.settle();
     assert!(moved(&session.shape()) > 0);
-    // Twice over the source: what was read stands nowhere then but as the kept original.
+    // Save over the source twice: after that, what was read exists only as the backup of the original.
     for _ in 0..2 {
         session.harness.state_mut().save_to(mesh.clone(), KeepOriginal::Yes);
         session.settle();
@@ -281,7 +281,7 @@ fn a_project_comes_back_as_it_was_though_its_mesh_was_saved_over() {
     );
 }
 
-/// Everything in one go: what is undone comes back, what is redone too, and what is saved is what is opened.
+/// Everything in one session: undo and redo restore the shape, and the saved file reopens as what was saved.
 #[test]
 fn a_whole_session_undone_redone_saved_and_opened_again_is_the_same_document_by_its_hash() {
     let Some(mut session) = Session::begin() else { return };
@@ -294,7 +294,7 @@ fn a_whole_session_undone_redone_saved_and_opened_again_is_the_same_document_by_
     let top = session.point_of(|positions| *positions.iter().max_by(|a, b| a.y.total_cmp(&b.y)).unwrap());
     let side = session.point_of(|positions| *positions.iter().max_by(|a, b| a.x.total_cmp(&b.x)).unwrap());
 
-    // Two handles, the region of the first widened by distance along the surface.
+    // Two handles; the first one's region is widened by distance along the surface.
     command(&mut session, Command::SetBrushMetric(BrushMetric::Surface));
     command(&mut session, Command::SetBrushRadius(16.0));
     session.stroke(top + vec2(0.0, 8.0), top + vec2(3.0, 12.0));
@@ -303,12 +303,12 @@ fn a_whole_session_undone_redone_saved_and_opened_again_is_the_same_document_by_
     command(&mut session, Command::NewHandle);
     session.stroke(side + vec2(-10.0, 0.0), side + vec2(-14.0, 2.0));
     assert_eq!(session.harness.state().editor().document().handles().len(), 2);
-    // Stiffness beside them.
+    // Paint stiffness too.
     command(&mut session, Command::SetTool(ToolMode::PaintStiffness));
     session.stroke(top + vec2(0.0, 40.0), top + vec2(10.0, 60.0));
     assert!(session.harness.state().editor().document().stiffness().is_some());
 
-    // A drag with each method: the handles stay, the shapes differ.
+    // The same drag with each method: the handle's target is the same, the shapes differ.
     command(&mut session, Command::SelectHandle(one));
     for key in [Key::R, Key::Z, Key::Num4, Key::Num0, Key::Enter] {
         session.key(key, Modifiers::NONE);
@@ -361,7 +361,7 @@ fn a_whole_session_undone_redone_saved_and_opened_again_is_the_same_document_by_
     assert_eq!(hash(&session), last, "opened again");
 }
 
-/// Two views side by side: one drag, two methods, and closing the second leaves the first as it was.
+/// Two views side by side: one drag by two methods; closing the second leaves the first unchanged.
 #[test]
 fn two_methods_are_compared_on_the_same_drag() {
     let Some(mut session) = Session::begin() else { return };
@@ -467,7 +467,7 @@ fn a_lost_graphics_device_is_opened_again_and_the_document_is_as_it_was() {
     });
 }
 
-/// The threads that jobs share, every one of them kept busy until this is dropped.
+/// Keeps every thread that jobs share busy until it is dropped.
 struct Crowd {
     gate: Arc<(Mutex<bool>, Condvar)>,
     jobs: Option<JoinHandle<()>>,
@@ -478,7 +478,7 @@ impl Crowd {
         let gate = Arc::new((Mutex::new(false), Condvar::new()));
         let present = Arc::new(AtomicUsize::new(0));
         let (its_gate, its_present) = (Arc::clone(&gate), Arc::clone(&present));
-        // From a thread that is no window's.
+        // From a thread that belongs to no window.
         let jobs = std::thread::spawn(move || {
             rayon::broadcast(|_| {
                 its_present.fetch_add(1, Ordering::SeqCst);
@@ -511,8 +511,8 @@ impl Drop for Crowd {
     }
 }
 
-/// While every thread that jobs share is taken, the window shows regions, rims and colours all the same: none of its
-/// loops stands in line with jobs. What would wait for ever is let go after two minutes, and the test fails.
+/// While jobs occupy every shared thread, the window still shows regions, rims and colours: none of its loops queues
+/// behind jobs. If it would wait forever, the threads are released after two minutes and the test fails.
 #[test]
 fn the_windows_loops_wait_for_no_job() {
     let Some(mut session) = Session::begin() else { return };
@@ -566,22 +566,22 @@ fn escape_closes_the_window_on_top_and_then_means_the_editor_again() {
     }
     let (of_log, of_keys) = ("Copy all", "The program's own keys");
     assert!(has(&session, of_log) && has(&session, of_keys));
-    // The palette comes first.
+    // The palette closes first.
     session.palette("log");
     session.key(Key::Escape, Modifiers::NONE);
     assert!(has(&session, of_log) && has(&session, of_keys));
-    // Then a key that is awaited.
+    // Then the wait for a key.
     session.harness.get_by_label("Key of Undo").click();
     session.harness.run_steps(2);
     session.key(Key::Escape, Modifiers::NONE);
     assert!(has(&session, of_log) && has(&session, of_keys));
-    // Then what a tool is doing.
+    // Then the tool's current action.
     session.key(Key::G, Modifiers::NONE);
     assert!(session.harness.state().editor().is_acting());
     session.key(Key::Escape, Modifiers::NONE);
     assert!(!session.harness.state().editor().is_acting());
     assert!(has(&session, of_log) && has(&session, of_keys));
-    // Then the windows, the one that was touched last first.
+    // Then the windows, the one used last first.
     session.key(Key::Escape, Modifiers::NONE);
     assert!(has(&session, of_log) && !has(&session, of_keys));
     session.key(Key::Escape, Modifiers::NONE);

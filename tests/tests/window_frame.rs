@@ -1,6 +1,6 @@
-//! What surrounds the model in the window: bars that are laid out anew, messages that push nothing, hints that end,
-//! what is remembered, what can be recovered, and materials whose images are still to come. Skipped by name where no
-//! graphics device exists at all.
+//! What surrounds the model in the window: toolbars that are laid out again, messages that shift nothing, hints that
+//! end, remembered settings, recovery, and materials whose images are still loading. Skipped by name if there is no
+//! graphics device at all.
 
 #![allow(
     clippy::unwrap_used,
@@ -30,7 +30,7 @@ fn places(folder: &Folder) -> AppDirectories {
     }
 }
 
-/// Lets frames pass until `is_done`.
+/// Runs frames until `is_done`.
 #[track_caller]
 fn wait_until(session: &mut Session, is_done: impl Fn(&mut Session) -> bool) {
     let start = Instant::now();
@@ -57,7 +57,7 @@ fn bend(session: &mut Session) {
     session.settle();
 }
 
-/// Where the button stands whose name is this.
+/// Where the button with this name is.
 fn place_of(session: &Session, label: &str) -> Rect {
     session
         .harness
@@ -66,8 +66,8 @@ fn place_of(session: &Session, label: &str) -> Rect {
         .rect()
 }
 
-/// Narrow enough that the tools need a second row, and wide again: after the frames that the window asks for itself,
-/// every tool stands above the view.
+/// After the window narrows, so that the tools need a second row, and widens again, every tool is above the view as
+/// soon as the frames that the window itself requests have run.
 #[test]
 fn bars_are_laid_out_anew_after_a_resize_without_any_input() {
     let Some(mut session) = Session::begin() else { return };
@@ -87,7 +87,7 @@ fn bars_are_laid_out_anew_after_a_resize_without_any_input() {
     }
 }
 
-/// A sentence about a file comes over the view, and the view stays where it is.
+/// A message about a file appears over the view, and the view does not move.
 #[test]
 fn a_message_does_not_move_the_view() {
     let Some(mut session) = Session::begin() else { return };
@@ -107,7 +107,7 @@ fn a_message_does_not_move_the_view() {
     assert_eq!(session.harness.state().headline(), None);
 }
 
-/// The third hint says to save. It goes when that was done, and so it is in the next session.
+/// The third hint says to save. It goes away once that is done, and stays away in the next session.
 #[test]
 fn the_last_hint_goes_once_the_bent_model_was_saved() {
     let folder = Folder::new();
@@ -129,7 +129,7 @@ fn the_last_hint_goes_once_the_bent_model_was_saved() {
     assert!(again.harness.query_by_label("1 of 3").is_none());
 }
 
-/// A window that fills the screen does so the next time.
+/// A window that fills the screen does so again the next time.
 #[test]
 fn a_maximised_window_is_remembered() {
     let folder = Folder::new();
@@ -149,7 +149,7 @@ fn a_maximised_window_is_remembered() {
     }
 }
 
-/// What a session left is called by the model's name, and what happens to it is called by its name.
+/// What a session left behind is listed by the model's name, and messages about it use that name.
 #[test]
 fn a_recovery_names_its_file() {
     let folder = Folder::new();
@@ -167,7 +167,7 @@ fn a_recovery_names_its_file() {
             .find(|path| path.extension().is_some_and(|extension| extension == "pliant"))
     };
     wait_until(&mut session, |_| kept().is_some());
-    // As a session that was killed would leave it: nobody holds its lock.
+    // As a session that was killed would leave it: nothing holds its lock.
     fs::copy(kept().unwrap(), folder.at("recovery/session-0-0.pliant")).unwrap();
     drop(session);
     let mut session = Session::begin_in(Source::Sample, places(&folder)).unwrap();
@@ -178,7 +178,7 @@ fn a_recovery_names_its_file() {
     assert!(session.harness.query_by_label("ball of clay.off").is_none());
 }
 
-/// Which axis is up belongs to the file; another one shows all of the model again.
+/// Which axis is up belongs to the file; changing it frames the whole model again.
 #[test]
 fn z_up_frames_the_model_and_ends_with_the_file() {
     let Some(mut session) = Session::begin() else { return };
@@ -208,7 +208,7 @@ fn z_up_frames_the_model_and_ends_with_the_file() {
     assert!(is_all_in_view(&session));
 }
 
-/// Where a file's images are still to come, its clay is seen, not its materials without them.
+/// While a file's images are loading, the view shows clay, not the materials without their images.
 #[test]
 fn clay_is_seen_until_the_textures_are_there() {
     let folder = Folder::new();
@@ -249,7 +249,7 @@ fn clay_is_seen_until_the_textures_are_there() {
     assert!(red > 2 * green && red > 2 * blue, "{red} {green} {blue}");
 }
 
-/// A file that says nothing of colours is grey in the material view: its brightest places keep their form.
+/// A file without colours is grey in the material view: its brightest places keep their shading.
 #[test]
 fn what_has_no_material_is_not_overexposed() {
     let folder = Folder::new();
@@ -276,7 +276,7 @@ fn what_has_no_material_is_not_overexposed() {
         .collect();
     brightness.sort_unstable();
     let [middle, high] = [brightness.len() / 2, brightness.len() * 9 / 10].map(|place| brightness[place]);
-    // White of the same ball is 239 and 245.
+    // In white, the same ball has 239 and 245.
     assert!(
         middle < 220 && high < 235,
         "{middle} in the middle, {high} in the brightest tenth"
