@@ -1,5 +1,5 @@
-//! The rig of the whole-program tests: it runs the program inside of the test, keeps its files in a folder of their
-//! own, and finds the data that may lie beside the project. Its verbs: `run`, `apply`, `open`, `write_mesh`.
+//! The harness of the whole-program tests: it runs the program inside the test, keeps each test's files in a temporary
+//! folder, and finds the data that may be beside the project. Its verbs: `run`, `apply`, `open`, `write_mesh`.
 
 #![allow(
     clippy::unwrap_used,
@@ -26,7 +26,7 @@ use pliant_app::watch::Watch;
 use pliant_mesh::{Drawn, WeldOptions};
 use serde_json::{Value, json};
 
-/// What the program said and how it ended.
+/// What the program printed, and its exit status.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Ended {
     pub status: u8,
@@ -56,14 +56,14 @@ pub fn run<S: Into<OsString>>(arguments: impl IntoIterator<Item = S>) -> Ended {
 }
 
 impl Ended {
-    /// Status 0 and not a word on standard error.
+    /// Asserts status 0 and nothing on standard error.
     #[track_caller]
     pub fn done(self) -> Self {
         assert_eq!((self.status, &*self.err), (0, ""), "{self:?}");
         self
     }
 
-    /// The given status and one line on standard error, which has all of `words` in it.
+    /// Asserts the given status, and one line on standard error that contains all of `words`.
     #[track_caller]
     pub fn refused(self, status: u8, words: &[&str]) -> Self {
         assert_eq!(self.status, status, "{self:?}");
@@ -80,7 +80,7 @@ impl Ended {
     }
 }
 
-/// A folder for a test's files, gone at its end.
+/// A folder for a test's files, removed when it is dropped.
 pub struct Folder(tempfile::TempDir);
 
 impl Default for Folder {
@@ -108,7 +108,7 @@ impl Folder {
         path
     }
 
-    /// The names of all that is in the folder, sorted.
+    /// The names of everything in the folder, sorted.
     pub fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(self.path()).unwrap();
         let mut names: Vec<String> = entries
@@ -118,7 +118,7 @@ impl Folder {
         names
     }
 
-    /// A mesh as an OFF file with every digit of its positions.
+    /// Writes a mesh as an OFF file with every digit of its positions.
     pub fn write_mesh(&self, name: &str, drawn: &Drawn) -> PathBuf {
         let mut text = format!("OFF\n{} {} 0\n", drawn.positions.len(), drawn.triangles.len());
         for p in &drawn.positions {
@@ -142,22 +142,22 @@ impl Folder {
     }
 }
 
-/// Reads and welds a file as the program does.
+/// Reads and welds a file like the program does.
 pub fn open(path: &Path) -> Loaded {
     try_open(path).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// As [`open`], for a file that may be refused.
+/// Like [`open`], for a file that may be refused.
 pub fn try_open(path: &Path) -> Result<Loaded, pliant_app::AppError> {
     engine::load(path, &WeldOptions::default(), &Watch::default())
 }
 
-/// An edit with no more than its method.
+/// An edit that contains only its method.
 pub fn bare_edit() -> Value {
     json!({ "version": 1, "method": { "name": "bilaplacian" } })
 }
 
-/// The edit that every mesh takes: the lower end of its longest axis is held, the upper one is moved by `transform`.
+/// The edit that works for every mesh: the lower end of its longest axis is fixed, and `transform` moves the upper end.
 pub fn bend(transform: &Value) -> Value {
     json!({
         "version": 1, "method": { "name": "bilaplacian" },
@@ -169,7 +169,7 @@ pub fn bend(transform: &Value) -> Value {
     })
 }
 
-/// The largest distance between vertices of the same number.
+/// The largest distance between vertices with the same index.
 pub fn largest_distance(a: &[DVec3], b: &[DVec3]) -> f64 {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
@@ -184,8 +184,8 @@ pub fn diagonal(positions: &[DVec3]) -> f64 {
     }
 }
 
-/// The files of the data folders `folders` beside the project that are of a kind the program reads, sorted. Where the
-/// folder is missing the list is empty, and standard error says which tests that skips.
+/// The files in `folders` of the data beside the project that the program can read, sorted. If a folder is missing, the
+/// list is empty and standard error says which tests are skipped.
 pub fn data(folders: &[&str]) -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
     let mut files = Vec::new();
@@ -200,7 +200,7 @@ pub fn data(folders: &[&str]) -> Vec<PathBuf> {
     files
 }
 
-/// One file of the data folder, or `None` and a word on standard error.
+/// One file of the data folder. If it is missing, `None` and a message on standard error.
 pub fn datum(name: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../shared/data")
@@ -211,7 +211,7 @@ pub fn datum(name: &str) -> Option<PathBuf> {
     path.exists().then_some(path)
 }
 
-/// The folder of the samples that ship with the program.
+/// The folder with the samples that ship with the program.
 pub fn assets() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets")
 }

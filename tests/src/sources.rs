@@ -1,7 +1,7 @@
-//! The crates' sources as tokens: which paths a file names, wherever they stand, tests apart.
+//! The crates' sources as tokens: which paths a file names outside tests.
 //!
-//! Tokens rather than lines: a path in a grouped `use`, behind a unit test's module or inside of a macro's call is
-//! found like any other, and comments and strings are none.
+//! Scanning tokens rather than lines finds a path in a grouped `use`, after a unit test's module or inside a macro call
+//! like any other, and ignores comments and strings.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 #[derive(Clone, Debug)]
 pub struct Source {
     pub file: PathBuf,
-    /// Every path that it names outside of tests, grouped `use`s spelled out: `["std", "fs"]`. A name on its own is a
+    /// Every path that it names outside tests, with grouped `use`s expanded: `["std", "fs"]`. A name on its own is a
     /// path of one segment.
     pub paths: Vec<Vec<String>>,
 }
@@ -45,10 +45,10 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// The paths that a source text names outside of items marked `#[cfg(test)]`.
+/// The paths that a source text names outside items marked `#[cfg(test)]`.
 ///
 /// # Panics
-/// Where the text is no Rust.
+/// If the text is not Rust.
 pub fn paths(text: &str) -> Vec<Vec<String>> {
     let tokens = TokenStream::from_str(text).unwrap_or_else(|error| panic!("no Rust: {error}"));
     let mut paths = Vec::new();
@@ -65,7 +65,7 @@ fn walk(tokens: TokenStream, paths: &mut Vec<Vec<String>>) {
             continue;
         }
         match &tokens[at] {
-            // A lifetime is no name.
+            // A lifetime is not a name.
             TokenTree::Punct(punct) if punct.as_char() == '\'' => at += 2,
             TokenTree::Ident(_) => at = path_from(&tokens, at, &[], paths),
             TokenTree::Group(group) => {
@@ -77,7 +77,7 @@ fn walk(tokens: TokenStream, paths: &mut Vec<Vec<String>>) {
     }
 }
 
-/// Reads the path that begins at `at`, behind `prefix`, and gives where it ends.
+/// Reads the path that begins at `at`, appends it to `prefix`, and returns the position after it.
 fn path_from(tokens: &[TokenTree], mut at: usize, prefix: &[String], paths: &mut Vec<Vec<String>>) -> usize {
     let mut path = prefix.to_vec();
     while let Some(TokenTree::Ident(segment)) = tokens.get(at) {
@@ -109,7 +109,7 @@ fn is_path_separator(tokens: &[TokenTree], at: usize) -> bool {
     is_joint && is_colon(tokens.get(at)) && is_colon(tokens.get(at + 1))
 }
 
-/// Whether `#[cfg(test)]` stands at `at`.
+/// Whether there is a `#[cfg(test)]` at `at`.
 fn is_test_attribute(tokens: &[TokenTree], at: usize) -> bool {
     let Some([TokenTree::Punct(hash), TokenTree::Group(attribute)]) = tokens.get(at..at + 2) else {
         return false;
@@ -117,7 +117,7 @@ fn is_test_attribute(tokens: &[TokenTree], at: usize) -> bool {
     hash.as_char() == '#' && attribute.stream().to_string().replace(' ', "") == "cfg(test)"
 }
 
-/// Behind the item whose attributes begin at `at`: behind its first braces or its semicolon.
+/// The position after the item whose attributes begin at `at`: after its first braces or its semicolon.
 fn end_of_item(tokens: &[TokenTree], at: usize) -> usize {
     let is_end = |token: &TokenTree| match token {
         TokenTree::Group(group) => group.delimiter() == Delimiter::Brace,

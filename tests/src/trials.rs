@@ -1,7 +1,6 @@
-//! Seeded trials of everything that a problem can ask for, on any mesh: options, roles, stiffness, transforms by
-//! chance.
+//! Seeded random trials of everything that a problem can ask for, on any mesh: options, roles, stiffness, transforms.
 //!
-//! A trial ends in one of two ways: a shape that is finite and meets its constraints, or a refusal that names a vertex.
+//! A trial ends with a shape that is finite and meets its constraints, or with a refusal that names a vertex.
 
 use std::collections::BTreeMap;
 
@@ -12,24 +11,24 @@ use pliant_deform::{
 };
 use pliant_mesh::{Cancel, Model, Progress};
 
-/// Steps that a method may take towards its targets; nonlinear ones need not converge in them.
+/// The most steps towards the targets; nonlinear methods need not converge in them.
 const STEPS: u32 = 12;
 
-/// Frames of a drag, and the steps that a method takes in each.
+/// Frames of a drag, and the steps of the method in each.
 const DRAG_FRAMES: u32 = 10;
 const DRAG_STEPS: u32 = 3;
 
 /// How a trial ended.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Outcome {
-    /// A shape with all that is asked of it.
+    /// A shape that meets all requirements.
     Bent {
-        /// Whether its system had to be regularised, which is said.
+        /// Whether its system had to be regularised, which is reported.
         regularised: Regularised,
         /// How many vertices were solved for.
         solved_count: usize,
     },
-    /// A refusal in words, which names a vertex.
+    /// A refusal in words that names a vertex.
     Refused(String),
 }
 
@@ -40,7 +39,7 @@ pub enum Regularised {
     Yes,
 }
 
-/// A mesh with the orderings that its trials have needed.
+/// A mesh with the orderings that its trials have needed so far.
 pub struct Subject {
     pub name: String,
     pub model: std::sync::Arc<Model>,
@@ -65,7 +64,7 @@ impl Subject {
     }
 }
 
-/// Every mesh of the folder of scans.
+/// Every mesh in the folder of scans.
 pub fn scans() -> Vec<Subject> {
     let Some(folder) = crate::datum("scans") else {
         return Vec::new();
@@ -84,7 +83,7 @@ pub fn scans() -> Vec<Subject> {
         .collect()
 }
 
-/// What a trial is on a mesh: everything but the mesh.
+/// Everything about a trial except the mesh.
 #[derive(Clone, Debug)]
 pub struct Trial {
     pub method: Method,
@@ -97,12 +96,12 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// The trial number `seed` on `model`; always the same.
+    /// Trial number `seed` on `model`, which is always the same.
     pub fn new(seed: u64, model: &Model) -> Self {
         Self::with(seed, model, None)
     }
 
-    /// The same with another method, and its options by chance, where `name` is one's.
+    /// The same trial with the method called `name`, if one is given. Options of ARAP and PriMo are random.
     pub fn with(seed: u64, model: &Model, name: Option<&str>) -> Self {
         let chance = &mut Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x5DEE_CE66);
         let count = model.surface.positions.len();
@@ -128,7 +127,7 @@ impl Trial {
                 }
             }
         };
-        // A region of its own, mostly, as a person would have it, and a few patches that are held.
+        // A free region as a person would paint it, in most trials, and a few patches that are fixed.
         if chance.share() < 0.8 {
             let radius = chance.between(0.02, 0.35);
             let region = ball(chance, radius);
@@ -138,7 +137,7 @@ impl Trial {
             let radius = chance.between(0.0, 0.2);
             assign(&mut roles, Role::Fixed, &ball(chance, radius));
         }
-        // Handles stand where something may move, so that something is to be solved for.
+        // Handles are placed where vertices are free, so that there is something to solve for.
         let wanted = 1 + chance.below(3) as u16;
         for handle in 0..wanted {
             let free: Vec<usize> = (0..count).filter(|&vertex| roles[vertex] == Role::Free).collect();
@@ -158,7 +157,7 @@ impl Trial {
                 &around(model.surface.positions[centre], radius),
             );
         }
-        // A handle that a later one has covered goes.
+        // A handle that a later one covers completely is dropped.
         let mut numbers: Vec<Option<u16>> = vec![None; usize::from(wanted)];
         let mut next = 0;
         for role in &mut roles {
@@ -215,14 +214,14 @@ impl Trial {
         }
     }
 
-    /// Binds and steps to where the handles go; panics where neither a sound shape nor a refusal that names a vertex
-    /// comes of it.
+    /// Binds and steps to the handles' targets. Panics unless the result is a sound shape or a refusal that names a
+    /// vertex.
     pub fn run(&self, subject: &mut Subject) -> Outcome {
         self.go(subject, &[1.0], STEPS, &mut |_| {})
     }
 
-    /// Binds and follows the handles on their way, a few steps a frame; panics as [`Trial::run`] does, or where a step
-    /// raises the energy. Calls `drawn` with each frame's number as soon as the frame has its shape.
+    /// Binds and follows the handles along their paths, a few steps per frame. Panics as [`Trial::run`] does, and if a
+    /// step raises the energy. Calls `drawn` with each frame's number as soon as the frame has its shape.
     pub fn drag(&self, subject: &mut Subject, drawn: &mut dyn FnMut(usize)) -> Outcome {
         let way: Vec<f64> = (0..=DRAG_FRAMES)
             .map(|frame| f64::from(frame) / f64::from(DRAG_FRAMES))
@@ -325,7 +324,7 @@ impl Trial {
 fn method(chance: &mut Chance) -> Method {
     let share = chance.share();
     if share > 0.7 {
-        // Any other method for surfaces, with its defaults.
+        // Any other surface method, with its default options.
         let others = METHODS[1..].iter().map(|declaration| (declaration.default)());
         let others: Vec<Method> = others.filter(|method| method.needs() != Needs::Points).collect();
         return others[chance.below(others.len())].clone();
@@ -357,8 +356,8 @@ fn method(chance: &mut Chance) -> Method {
     Method::from(options)
 }
 
-/// Where a handle goes: scaled and turned about a centre, by up to nearly half a turn, and shifted by up to the model's
-/// size; now and then mirrored, shrunk to nothing or blown up.
+/// A handle's target: scaled and rotated about a centre by up to nearly half a turn, and translated by up to the
+/// model's size; sometimes mirrored, shrunk to nothing or enlarged greatly.
 #[derive(Clone, Debug)]
 struct Aim {
     centre: DVec3,
@@ -391,7 +390,7 @@ impl Aim {
         }
     }
 
-    /// The transform after this share of the way, from rest at 0 to the aim at 1.
+    /// The transform at a share of the path, from rest at 0 to the target at 1.
     fn at(&self, share: f64) -> DAffine3 {
         DAffine3::from_translation(self.centre + self.shift * share)
             * DAffine3::from_scale_rotation_translation(
@@ -403,7 +402,7 @@ impl Aim {
     }
 }
 
-/// Numbers that look like chance (Steele, Lea & Flood 2014, splitmix64) and are the same everywhere.
+/// Pseudorandom numbers (Steele, Lea & Flood 2014, splitmix64), the same on every machine.
 pub struct Chance(pub u64);
 
 impl Chance {
@@ -415,7 +414,7 @@ impl Chance {
         z ^ (z >> 31)
     }
 
-    /// From 0 to below 1.
+    /// Uniform in [0, 1).
     pub fn share(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
@@ -424,17 +423,17 @@ impl Chance {
         low + self.share() * (high - low)
     }
 
-    /// From 0 to below `count`, which is not 0.
+    /// Uniform in 0..`count`, which must not be 0.
     pub fn below(&mut self, count: usize) -> usize {
         (self.bits() % count as u64) as usize
     }
 
-    /// Whether one of `count` equal chances came up.
+    /// True with probability 1/`count`.
     pub fn one_in(&mut self, count: usize) -> bool {
         self.below(count) == 0
     }
 
-    /// One element of a list that is not empty.
+    /// A random element of a list that is not empty.
     pub fn of<'a, T>(&mut self, list: &'a [T]) -> &'a T {
         &list[self.below(list.len())]
     }

@@ -1,4 +1,4 @@
-//! Mutations of a file's bytes: bits, words, lines, lengths, and the JSON inside of a container.
+//! Mutations of a file's bytes: bits, words, lines, lengths, and the JSON inside a container.
 
 use super::json_text;
 use crate::trials::Chance;
@@ -39,7 +39,7 @@ const WORDS_OF_TEXT: [&str; 18] = [
     "\u{1b}[31mred",
 ];
 
-/// One change that knows how the file is built, or now and then a plain one.
+/// One random change that depends on how the file is built, or now and then a plain one.
 pub fn mutate(bytes: &mut Vec<u8>, chance: &mut Chance) {
     if bytes.is_empty() {
         return;
@@ -57,7 +57,7 @@ pub fn mutate(bytes: &mut Vec<u8>, chance: &mut Chance) {
     }
 }
 
-/// Bits, bytes, pieces left out and repeated.
+/// Changes bits and bytes, and removes or repeats pieces.
 pub fn plain(bytes: &mut Vec<u8>, chance: &mut Chance) {
     if bytes.is_empty() {
         return;
@@ -77,7 +77,7 @@ pub fn plain(bytes: &mut Vec<u8>, chance: &mut Chance) {
     }
 }
 
-/// A number of 32 bits becomes a strange one, in either byte order.
+/// Replaces a number of 32 bits by an unusual one, in either byte order.
 fn words(bytes: &mut [u8], chance: &mut Chance) {
     if bytes.len() < 4 {
         return;
@@ -92,7 +92,7 @@ fn words(bytes: &mut [u8], chance: &mut Chance) {
     bytes[at..at + 4].copy_from_slice(&word);
 }
 
-/// Lines swapped, repeated, left out; words of text replaced.
+/// Swaps, repeats or removes lines, and replaces words of text.
 fn lines(bytes: &mut Vec<u8>, chance: &mut Chance) {
     let mut lines: Vec<Vec<u8>> = bytes
         .split_inclusive(|&byte| byte == b'\n')
@@ -121,12 +121,12 @@ fn lines(bytes: &mut Vec<u8>, chance: &mut Chance) {
     *bytes = lines.concat();
 }
 
-/// A change of a GLB's JSON; the lengths follow.
+/// Changes a GLB's JSON and updates the lengths.
 fn glb_json(bytes: &mut Vec<u8>, chance: &mut Chance) {
     with_glb_json(bytes, |text| json_text::mutate(text, chance));
 }
 
-/// Lets `change` change a GLB's JSON, and puts the lengths right. What is no GLB stays as it is.
+/// Changes a GLB's JSON by `change` and updates the lengths. Bytes that are no GLB stay unchanged.
 pub fn with_glb_json(bytes: &mut Vec<u8>, change: impl FnOnce(&mut Vec<u8>)) {
     let Some(length) = word(bytes, 12) else { return };
     let Some(text) = bytes.get(20..length.saturating_add(20)) else {
@@ -142,7 +142,7 @@ pub fn with_glb_json(bytes: &mut Vec<u8>, change: impl FnOnce(&mut Vec<u8>)) {
     bytes[8..12].copy_from_slice(&total.to_le_bytes());
 }
 
-/// A GLB's lengths and kinds of chunks.
+/// Changes the lengths and types of a GLB's chunks.
 fn container(bytes: &mut Vec<u8>, chance: &mut Chance) {
     let bin = word(bytes, 12).map_or(20, |length| length.saturating_add(20));
     let places = [4, 8, 12, 16, bin, bin.saturating_add(4)];
@@ -160,7 +160,7 @@ fn container(bytes: &mut Vec<u8>, chance: &mut Chance) {
     bytes[at..at + 4].copy_from_slice(&new.to_le_bytes());
 }
 
-/// Numbers in a GLB's binary chunk.
+/// Changes numbers in a GLB's binary chunk.
 fn bin(bytes: &mut [u8], chance: &mut Chance) {
     let start = word(bytes, 12).map_or(0, |length| length.saturating_add(28).min(bytes.len()));
     words(&mut bytes[start..], chance);

@@ -1,5 +1,5 @@
-//! A case: what stands in a folder, and what the program is asked to do there. It is a description and nothing else, so
-//! that a number alone makes it again anywhere.
+//! A case: the contents of a folder, and what the program is asked to do there. It is only a description, so its number
+//! alone reproduces it anywhere.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -20,7 +20,7 @@ pub enum Kind {
     Link,
     Mesh,
     File,
-    /// A broken file that is drawn.
+    /// A broken file that is rendered.
     Render,
 }
 
@@ -57,11 +57,11 @@ impl Kind {
 pub enum Size {
     /// Up to a few hundred triangles.
     Small,
-    /// Mostly thousands of triangles, now and then a hundred thousand.
+    /// Usually thousands of triangles, sometimes a hundred thousand.
     Full,
 }
 
-/// What stands at a place in the folder.
+/// What is at a path in the folder.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Entry {
     File(Vec<u8>),
@@ -69,32 +69,32 @@ pub enum Entry {
     Folder,
     /// A symbolic link; `@ROOT@` in it is the case's folder.
     Link(OsString),
-    /// Another name for what stands at that place.
+    /// A hard link to what is at that path.
     Hard(PathBuf),
     Fifo,
     Socket,
 }
 
-/// A folder and a command. Entries' places are relative to the case's folder, the command's paths to `work` in it.
+/// A folder and a command. Entries' paths are relative to the case's folder, the command's paths to `work` in it.
 #[derive(Clone, Debug)]
 pub struct Case {
     pub seed: u64,
     pub kind: Kind,
-    /// What kind of mesh or file it is about, for the table.
+    /// What kind of mesh or file it uses, for the table of results.
     pub class: String,
     pub entries: BTreeMap<PathBuf, Entry>,
     pub input: PathBuf,
     pub edit: PathBuf,
     pub output: PathBuf,
     pub report: Option<PathBuf>,
-    /// Further arguments of `pliant apply`, or of `pliant render`.
+    /// Further arguments of `pliant apply` or `pliant render`.
     pub more: Vec<OsString>,
-    /// How many changes by chance its base went through, those that are left out among them.
+    /// How many random changes were made to its base, including those that were left out.
     pub mutation_count: usize,
 }
 
 impl Case {
-    /// The case of a number. `without` are changes by chance that are left out, by their place in the row.
+    /// The case with a given number. `without` has the indices of random changes to leave out.
     pub fn new(seed: u64, kind: Kind, size: Size, without: &[usize]) -> Self {
         let chance = &mut Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ kind as u64);
         let model = match kind {
@@ -118,7 +118,7 @@ impl Case {
         case
     }
 
-    /// How many bytes the files hold that the program is given.
+    /// The total size in bytes of the files that the program is given.
     pub fn byte_count(&self) -> usize {
         let files = self.entries.values().map(|entry| match entry {
             Entry::File(bytes) | Entry::ReadOnly(bytes) => bytes.len(),
@@ -127,7 +127,7 @@ impl Case {
         files.sum()
     }
 
-    /// A sound model with a sound edit, and the command with arguments by chance.
+    /// A sound model with a sound edit, and the command with random arguments.
     fn of(seed: u64, kind: Kind, model: Model, chance: &mut Chance) -> Self {
         let mut entries = BTreeMap::new();
         for folder in ["work/sub", "outside", "target"] {
@@ -220,7 +220,7 @@ fn project_of(model: &Model, chance: &mut Chance) -> Vec<u8> {
     project.to_string().into_bytes()
 }
 
-/// Where the result goes: beside the input, in its place, into another folder, as another format.
+/// Where the result goes: beside the input, over it, into another folder, or to another format.
 fn output(input: &std::path::Path, extension: &str, chance: &mut Chance) -> PathBuf {
     let other = *chance.of(&["glb", "gltf", "obj", "ply", "stl", "off"]);
     let extension = if chance.one_in(3) { other } else { extension };
@@ -234,7 +234,7 @@ fn output(input: &std::path::Path, extension: &str, chance: &mut Chance) -> Path
     }
 }
 
-/// Further arguments. A large mesh keeps its edit's method, whose iterations are few.
+/// Further arguments. A large mesh keeps its edit's method, which has few iterations.
 fn more(kind: Kind, chance: &mut Chance) -> Vec<OsString> {
     let mut words: Vec<OsString> = Vec::new();
     if kind != Kind::Mesh && chance.one_in(3) {

@@ -1,11 +1,11 @@
-//! Edits by chance, sound ones: every method with its options, every kind of selector and transform.
+//! Random edits, all sound: every method with its options, every kind of selector and transform.
 
 use pliant_deform::{METHODS, OptionKind};
 use serde_json::{Map, Value, json};
 
 use crate::trials::Chance;
 
-/// The edit that most meshes take: one end held, the other moved.
+/// The edit of most meshes: one end is fixed, the other moved.
 pub fn plain(chance: &mut Chance) -> Value {
     json!({
         "version": 1, "method": method(chance),
@@ -17,8 +17,8 @@ pub fn plain(chance: &mut Chance) -> Value {
     })
 }
 
-/// The same with few iterations: on a large mesh their number is the person's, and what is bound before them the
-/// program's.
+/// The same with few iterations. On a large mesh the person answers for the number of iterations, the program only for
+/// the time to bind.
 pub fn short(chance: &mut Chance) -> Value {
     let mut edit = plain(chance);
     let declaration = METHODS.iter().find(|method| edit["method"]["name"] == method.name);
@@ -29,7 +29,7 @@ pub fn short(chance: &mut Chance) -> Value {
     edit
 }
 
-/// An edit with all that the format has, by chance.
+/// An edit that uses everything the format has, at random.
 pub fn rich(vertices: usize, chance: &mut Chance) -> Value {
     let mut edit = plain(chance);
     if chance.one_in(2) {
@@ -59,7 +59,7 @@ pub fn rich(vertices: usize, chance: &mut Chance) -> Value {
     edit
 }
 
-/// A method with options by chance, each within its range.
+/// A method with random options, each within its range.
 pub fn method(chance: &mut Chance) -> Value {
     let method = *chance.of(METHODS);
     let mut members = Map::new();
@@ -71,7 +71,7 @@ pub fn method(chance: &mut Chance) -> Value {
         let value = match option.kind {
             OptionKind::Number { range: [low, high], .. } => {
                 let even = chance.between(0.0, 1.0);
-                // Most ranges go over powers of ten.
+                // Most ranges cover several powers of ten.
                 json!(*chance.of(&[
                     low,
                     high,

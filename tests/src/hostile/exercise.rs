@@ -1,4 +1,4 @@
-//! A case's run: the folder is made, the commands are given, and every law is looked at.
+//! Runs a case: makes the folder, runs the commands, and checks every law.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -16,20 +16,20 @@ use super::tree::{Tree, lay, look, place_of, with_root};
 use crate::trials::Chance;
 use crate::{Ended, run};
 
-/// What a command took.
+/// The resources that a command used.
 #[derive(Clone, Copy, PartialEq, Default, Debug)]
 pub struct Used {
     /// The most memory held at once, in bytes.
     pub peak: u64,
-    /// The processor's time, of all threads.
+    /// Processor time of all threads.
     pub cpu_ms: u64,
 }
 
 /// Measures commands.
 pub trait Meter {
-    /// A command begins; it is handed its words.
+    /// Called before a command runs, with its words.
     fn begin(&mut self, words: &[OsString]);
-    /// What it took since.
+    /// Returns what the command used.
     fn end(&mut self) -> Used;
 }
 
@@ -43,24 +43,24 @@ impl Meter for Unmetered {
     }
 }
 
-/// The limits of a command: 2 GB, 10 s, and 20 s where something is bound.
+/// The limits of a command: 2 GB and 10 s, or 20 s if something is bound.
 const MEMORY: u64 = 2 << 30;
 const SECONDS: u64 = 10;
 const BINDING_SECONDS: u64 = 20;
 
-/// What came of a case.
+/// The result of a case.
 #[derive(Clone, Default, Debug)]
 pub struct Exercised {
     pub done: usize,
     pub refused: usize,
     pub violations: Vec<Violation>,
-    /// The most that any of its commands took, each for itself.
+    /// The largest values of any of its commands, each maximum taken separately.
     pub worst: Used,
 }
 
 static PANIC: Mutex<String> = Mutex::new(String::new());
 
-/// Keeps where and why a panic happened, for the violation that tells it, and keeps it from standard error.
+/// Records where and why a panic happened, for the report of the violation, and keeps it off standard error.
 pub fn listen_for_panics() {
     std::panic::set_hook(Box::new(|panic| {
         *PANIC.lock().unwrap_or_else(PoisonError::into_inner) = panic.to_string().replace('\n', " ");
@@ -73,7 +73,7 @@ pub(super) struct Runner<'a> {
 }
 
 impl Runner<'_> {
-    /// Gives a command in the present folder. `None` where it panicked.
+    /// Runs a command in the current folder. `None` if it panicked.
     pub(super) fn run(&mut self, words: &[OsString]) -> Option<Ended> {
         self.meter.begin(words);
         let ended = catch_unwind(AssertUnwindSafe(|| run(words.iter().cloned())));
@@ -101,7 +101,7 @@ impl Runner<'_> {
         Some(ended)
     }
 
-    /// Gives a command that only reads.
+    /// Runs a command that only reads.
     fn look(&mut self, words: &[OsString], root: &Path, tree: &Tree) -> Option<Ended> {
         let ended = self.run(words)?;
         self.untouched(root, tree, "a command that reads");
@@ -118,8 +118,8 @@ impl Runner<'_> {
     }
 }
 
-/// Puts a case through the program's commands in new folders below `scratch`, an empty folder that `lay` fills. The
-/// process's own folder is the case's meanwhile.
+/// Runs a case through the program's commands in new folders below `scratch`, an empty folder. Meanwhile the process's
+/// current folder is the case's.
 pub fn exercise(case: &Case, scratch: &Path, meter: &mut dyn Meter) -> Exercised {
     let scratch = std::fs::canonicalize(scratch).unwrap();
     let mut runner = Runner {
@@ -184,7 +184,7 @@ fn whole(case: &Case, scratch: &Path, runner: &mut Runner<'_>) {
     }
 }
 
-/// Makes a case's folder and goes into it.
+/// Makes a case's folder and changes into it.
 fn enter(case: &Case, root: &Path) {
     std::fs::create_dir_all(root).unwrap();
     lay(case, root);
@@ -223,8 +223,8 @@ fn apply_words(case: &Case, output: &Path, root: &Path, threads: Option<&str>) -
     words
 }
 
-/// The same command in another folder of the same content, whose path is as long: messages tell places in texts that
-/// hold it.
+/// Runs the same command in another folder with the same content. Its path has the same length, because messages
+/// contain byte positions within texts that contain the path.
 fn again(case: &Case, first: &Ended, after: Option<&Tree>, scratch: &Path, runner: &mut Runner<'_>) {
     let root = scratch.join("twin");
     enter(case, &root);
@@ -240,7 +240,7 @@ fn again(case: &Case, first: &Ended, after: Option<&Tree>, scratch: &Path, runne
             .push(violation(Law::Again, shortened(&format!("{one:?} and then {two:?}"))));
     } else if let Some(after) = after {
         let tree = look(&root);
-        // Reports tell times, and links of the whole path lead to either folder.
+        // Reports contain times, and links with an absolute path lead into one of the two folders.
         let report = case.report.as_ref();
         let report = report.and_then(|report| place_of(&root.join("work").join(with_root(report, &root))));
         let differs = laws::changed(after, &tree).into_iter().find(|place| {
@@ -271,14 +271,14 @@ fn names_root(bytes: &[u8]) -> bool {
     bytes.windows(6).any(|window| window == b"@ROOT@")
 }
 
-/// What `pliant info` tells of a file; `None` where it is refused.
+/// What `pliant info` says about a file; `None` if the file is refused.
 fn told(path: &Path, root: &Path, tree: &Tree, runner: &mut Runner<'_>) -> Option<Value> {
     let words = ["info".into(), "--json".into(), "--".into(), path.as_os_str().to_owned()];
     let ended = runner.look(&words, root, tree).filter(|ended| ended.status == 0)?;
     serde_json::from_str(&ended.out).ok()
 }
 
-/// The result can be read, and has what was drawn.
+/// Checks that the result can be read and has everything that was drawn.
 fn reads_back(old: Option<&Value>, output: &Path, root: &Path, tree: &Tree, runner: &mut Runner<'_>) {
     let Some(new) = told(output, root, tree, runner) else {
         runner
@@ -294,7 +294,7 @@ fn reads_back(old: Option<&Value>, output: &Path, root: &Path, tree: &Tree, runn
             .push(violation(Law::ReadsBack, "what can't be read was bent"));
         return;
     };
-    // A glTF can't hold numbers that are not finite, and leaves out what has one.
+    // A glTF can't hold numbers that are not finite, so it leaves out the triangles that have one.
     let is_finite = old["findings"]["non_finite_vertices"]["count"] == 0;
     let mut members = if is_finite { vec!["drawn_triangles"] } else { Vec::new() };
     if old["format"] == new["format"] {
@@ -311,7 +311,7 @@ fn reads_back(old: Option<&Value>, output: &Path, root: &Path, tree: &Tree, runn
     }
 }
 
-/// Models that are not the result show what they did.
+/// Checks that models other than the result show what they showed before.
 fn strangers(models: &BTreeMap<PathBuf, Shape>, places: &Places, runner: &mut Runner<'_>) {
     for (path, old) in models {
         let place = place_of(path);
@@ -339,7 +339,7 @@ fn same_file(a: &Path, b: Option<&Path>) -> bool {
     b.is_some_and(|b| identity(a).is_some() && identity(a) == identity(b))
 }
 
-/// The same command with a result of another format gives the same shape.
+/// Checks that the same command with a result in another format gives the same shape.
 fn same_shape(case: &Case, output: &Path, scratch: &Path, runner: &mut Runner<'_>, chance: &mut Chance) {
     let root = scratch.join("shape");
     enter(case, &root);
@@ -350,7 +350,7 @@ fn same_shape(case: &Case, output: &Path, scratch: &Path, runner: &mut Runner<'_
     if ended.status != 0 {
         return;
     }
-    // A glTF leaves out triangles whose numbers are not finite.
+    // A glTF leaves out triangles with numbers that are not finite.
     let finite = |path: &Path| {
         let mut shape = shape(path)?;
         shape.retain(|corners| corners.iter().all(|p| p.is_finite()));
@@ -367,7 +367,8 @@ fn same_shape(case: &Case, output: &Path, scratch: &Path, runner: &mut Runner<'_
         runner.result.violations.push(violation(Law::SameShape, what));
         return;
     }
-    // A reader cuts a bent polygon by its bent shape, a triangle format holds what was drawn before the bend.
+    // A reader triangulates a bent polygon by its bent shape, while a triangle format holds the triangles from before
+    // the bend.
     let is_cut_anew = shapes::may_hold_polygons(&input) && [output, &second].into_iter().any(shapes::may_hold_polygons);
     let compare = if is_cut_anew {
         shapes::stray_corner

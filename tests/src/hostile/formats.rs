@@ -1,18 +1,18 @@
-//! A mesh as a file of each format that has no neighbours, or one library of materials.
+//! Writes a mesh in each format that has no neighbours, or only a material library.
 
 use std::fmt::Write as _;
 
 use super::meshes::Soup;
 use crate::trials::Chance;
 
-/// An OBJ. It names the library `library` and an image from there.
+/// An OBJ that names the material library `library`, and a material from it.
 pub fn obj(soup: &Soup, library: &str, chance: &mut Chance) -> Vec<u8> {
     let mut text = format!("# made by chance\nmtllib {library}\no part\n");
     for [x, y, z] in &soup.positions {
         writeln!(text, "v {x:?} {y:?} {z:?}").unwrap();
     }
     text += "vt 0 0\nvt 1 0\nvn 0 0 1\nusemtl skin\n";
-    // Polygons and negative numbers are as good as triangles.
+    // Polygons and negative indices are as valid as triangles.
     let backwards = chance.one_in(3);
     let count = soup.positions.len() as i64;
     for (i, triangle) in soup.triangles.iter().enumerate() {
@@ -36,12 +36,12 @@ pub fn obj(soup: &Soup, library: &str, chance: &mut Chance) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// A library of materials for [`obj`].
+/// A material library for [`obj`].
 pub fn mtl(image: &str) -> Vec<u8> {
     format!("newmtl skin\nKd 0.8 0.4 0.2\nmap_Kd {image}\nnewmtl other\nKd 1 1 1\nd 0.5\n").into_bytes()
 }
 
-/// An OFF.
+/// The mesh as OFF.
 pub fn off(soup: &Soup) -> Vec<u8> {
     let mut text = format!("OFF\n{} {} 0\n", soup.positions.len(), soup.triangles.len());
     for [x, y, z] in &soup.positions {
@@ -53,7 +53,7 @@ pub fn off(soup: &Soup) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// A PLY, as text or in either byte order, in single or double precision.
+/// The mesh as PLY, as text or in either byte order, in single or double precision.
 pub fn ply(soup: &Soup, chance: &mut Chance) -> Vec<u8> {
     let encoding = *chance.of(&["ascii", "binary_little_endian", "binary_big_endian"]);
     let number = *chance.of(&["float", "double"]);
@@ -91,7 +91,7 @@ pub fn ply(soup: &Soup, chance: &mut Chance) -> Vec<u8> {
     bytes
 }
 
-/// An STL, as text or binary.
+/// The mesh as STL, as text or binary.
 pub fn stl(soup: &Soup, chance: &mut Chance) -> Vec<u8> {
     let corners = |triangle: &[u32; 3]| triangle.map(|corner| soup.positions[corner as usize].map(|n| n as f32));
     if chance.one_in(2) {

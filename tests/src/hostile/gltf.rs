@@ -1,4 +1,4 @@
-//! A mesh as a glTF, its bytes spread over buffers by chance: accessors with strides and of several kinds, several
+//! A mesh as glTF, its bytes spread randomly over buffers: accessors with strides and of several types, several
 //! primitives, nodes that share a mesh, morph targets, materials with images.
 
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::meshes::Soup;
 use crate::trials::Chance;
 
-/// A glTF before it is a file: its JSON, whose buffers and images have no addresses yet, and their bytes.
+/// A glTF before it is a file: its JSON, whose buffers and images have no URIs yet, and their bytes.
 #[derive(Clone, Debug)]
 pub struct Gltf {
     pub json: Value,
@@ -14,7 +14,7 @@ pub struct Gltf {
     pub images: Vec<Vec<u8>>,
 }
 
-/// A glTF of a mesh with at most `buffers` buffers. Beyond the positions everything is up to chance.
+/// A glTF of a mesh, with at most `buffers` buffers. Everything except the positions is random.
 pub fn gltf(soup: &Soup, buffers: usize, image: &[u8], chance: &mut Chance) -> Gltf {
     let mut gltf = Gltf {
         json: json!({
@@ -64,9 +64,9 @@ pub fn gltf(soup: &Soup, buffers: usize, image: &[u8], chance: &mut Chance) -> G
 }
 
 impl Gltf {
-    /// A view of new bytes in one of the buffers, aligned to four.
+    /// Adds a view of new bytes to one of the buffers, aligned to four bytes.
     fn view(&mut self, bytes: &[u8], chance: &mut Chance) -> usize {
-        // A buffer comes into use after the one before it, so that none stays empty between two others.
+        // A buffer is used only after the one before it, so that no empty one is left between two others.
         let used = self.buffers.iter().filter(|buffer| !buffer.is_empty()).count();
         let buffer = chance.below(self.buffers.len().min(used + 1));
         let at = self.buffers[buffer].len().next_multiple_of(4);
@@ -76,7 +76,7 @@ impl Gltf {
         push(&mut self.json["bufferViews"], view)
     }
 
-    /// An accessor of vectors, tightly packed or with a stride.
+    /// Adds an accessor of vectors, tightly packed or with a stride.
     fn vectors(&mut self, vectors: &[[f64; 3]], chance: &mut Chance) -> usize {
         let padding = 4 * (chance.below(3) * chance.below(2));
         let mut bytes = Vec::with_capacity(vectors.len() * (12 + padding));
@@ -100,7 +100,7 @@ impl Gltf {
         )
     }
 
-    /// An accessor of indices, of the smallest kind or a larger one.
+    /// Adds an accessor of indices, of the smallest type that holds them or a larger one.
     fn indices(&mut self, indices: &[u32], chance: &mut Chance) -> usize {
         let most = indices.iter().max().copied().unwrap_or(0);
         let (kind, bytes): (u32, Vec<u8>) = if most < 255 && chance.one_in(2) {
@@ -120,7 +120,7 @@ impl Gltf {
         )
     }
 
-    /// A material with an image of its own.
+    /// Adds a material with its own image.
     fn material(&mut self, image: &[u8]) -> usize {
         let number = self.images.len();
         self.images.push(image.to_vec());
@@ -139,13 +139,13 @@ impl Gltf {
         )
     }
 
-    /// The file as a GLB: the first buffer is its chunk. Whatever else it has must have an address.
+    /// The file as a GLB whose first buffer is the binary chunk. Other buffers and images must have URIs.
     pub fn glb(&self) -> Vec<u8> {
         glb(self.json.to_string().as_bytes(), &self.buffers[0])
     }
 }
 
-/// A GLB of its two chunks.
+/// A GLB of the two chunks.
 pub fn glb(text: &[u8], bin: &[u8]) -> Vec<u8> {
     let mut out = b"glTF\x02\0\0\0\0\0\0\0".to_vec();
     for (kind, content, padding) in [(b"JSON", text, b' '), (b"BIN\0", bin, 0)] {

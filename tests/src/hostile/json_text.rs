@@ -1,13 +1,13 @@
 //! Mutations of JSON text that know its structure: values replaced, moved, nested and removed, members repeated and
-//! renamed, numbers at the ends of their ranges. They work on text, since a tree of values can hold neither a member
-//! twice nor a number like `1e999`.
+//! renamed, numbers at the ends of their ranges. They work on text, because a tree of values can hold neither a
+//! repeated member nor a number like `1e999`.
 
 use std::ops::Range;
 
 use super::names;
 use crate::trials::Chance;
 
-/// Numbers that a range may forget.
+/// Numbers that a range check may miss.
 const NUMBERS: [&str; 26] = [
     "0",
     "-0.0",
@@ -60,10 +60,10 @@ const VALUES: [&str; 20] = [
     "-Infinity",
 ];
 
-/// Where things stand in a JSON text.
+/// Where the parts of a JSON text are.
 #[derive(Default, Debug)]
 struct Places {
-    /// Every value but the outermost.
+    /// Every value except the outermost.
     values: Vec<Range<usize>>,
     /// Every member, from its key's quote to its value's end.
     members: Vec<Range<usize>>,
@@ -73,7 +73,7 @@ struct Places {
     keys: Vec<Range<usize>>,
 }
 
-/// One change of a JSON text. A text in which nothing can be found stays as it is.
+/// Makes one change to a JSON text. A text without anything to change stays as it is.
 pub fn mutate(text: &mut Vec<u8>, chance: &mut Chance) {
     let places = places(text);
     if places.values.is_empty() {
@@ -106,7 +106,7 @@ pub fn mutate(text: &mut Vec<u8>, chance: &mut Chance) {
         5 if !places.members.is_empty() => remove(text, chance.of(&places.members).clone()),
         6 if !places.elements.is_empty() => remove(text, chance.of(&places.elements).clone()),
         7 | 8 if !places.members.is_empty() => {
-            // A member twice, with its own value or with another's.
+            // Repeats a member, with its own value or with another's.
             let member = chance.of(&places.members).clone();
             let mut copy = text[member.clone()].to_vec();
             if chance.one_in(2) {
@@ -149,7 +149,7 @@ pub fn mutate(text: &mut Vec<u8>, chance: &mut Chance) {
     }
 }
 
-/// Replaces the value of every member of this name whose turn comes, by chance.
+/// Replaces the values of all members with this name, or of a random half of them.
 pub fn set_some(text: &mut Vec<u8>, key: &str, new: &mut dyn FnMut(&mut Chance) -> Vec<u8>, chance: &mut Chance) {
     let quoted_key = quoted(key);
     let places = places(text);
@@ -170,7 +170,7 @@ pub fn set_some(text: &mut Vec<u8>, key: &str, new: &mut dyn FnMut(&mut Chance) 
     }
 }
 
-/// The texts that members of this name have, wherever they stand and however deep.
+/// The string values of all members with this name, at any depth.
 pub fn texts_of(text: &[u8], key: &str) -> Vec<String> {
     let quoted_key = quoted(key);
     let places = places(text);
@@ -190,7 +190,7 @@ pub fn quoted(text: &str) -> Vec<u8> {
     serde_json::Value::from(text).to_string().into_bytes()
 }
 
-/// Another number in place of one: near it, opposite, or at the end of some range.
+/// A number to replace another: near it, its opposite, or at the end of some range.
 fn number(old: &[u8], chance: &mut Chance) -> Vec<u8> {
     let old = std::str::from_utf8(old).unwrap_or("0");
     let near = |by: i64| old.parse::<i64>().map(|number| number.wrapping_add(by).to_string());
@@ -205,7 +205,7 @@ fn number(old: &[u8], chance: &mut Chance) -> Vec<u8> {
     .into_bytes()
 }
 
-/// Takes out a member or an element with one comma beside it.
+/// Removes a member or an element together with one comma beside it.
 fn remove(text: &mut Vec<u8>, place: Range<usize>) {
     let after = text[place.end..].iter().position(|byte| !byte.is_ascii_whitespace());
     let before = text[..place.start].iter().rposition(|byte| !byte.is_ascii_whitespace());
@@ -216,10 +216,10 @@ fn remove(text: &mut Vec<u8>, place: Range<usize>) {
     }
 }
 
-/// Walks a text that is JSON or was; where it is broken beyond reading, the walk ends.
+/// Scans a text that is JSON or was; the scan ends where the text can't be read any more.
 fn places(text: &[u8]) -> Places {
     let mut places = Places::default();
-    // Open lists and objects: where they began, and the member or element that is under way.
+    // Open lists and objects: where each began, and the member or element that is not complete yet.
     let mut open: Vec<(usize, Option<usize>)> = Vec::new();
     let mut at = 0;
     while at < text.len() {
@@ -238,7 +238,8 @@ fn places(text: &[u8]) -> Places {
                 let after = end + text[end..].iter().take_while(|byte| byte.is_ascii_whitespace()).count();
                 if text.get(after) == Some(&b':') {
                     places.keys.push(at..end);
-                    // Its member ends with its value; until then this holds the place, so that both lists run along.
+                    // The member ends with its value. Until then this is a placeholder, which keeps the two lists the
+                    // same length.
                     places.members.push(at..end);
                     let member = places.members.len() - 1;
                     if let Some((_, under_way)) = open.last_mut() {
@@ -266,7 +267,7 @@ fn places(text: &[u8]) -> Places {
     places
 }
 
-/// Notes a value that ended.
+/// Records a value that ended.
 fn close(places: &mut Places, text: &[u8], open: &mut [(usize, Option<usize>)], value: Range<usize>) {
     let Some((parent, under_way)) = open.last_mut() else {
         return;
@@ -279,7 +280,7 @@ fn close(places: &mut Places, text: &[u8], open: &mut [(usize, Option<usize>)], 
     places.values.push(value);
 }
 
-/// Behind the closing quote of the string that begins at `start`.
+/// The position after the closing quote of the string that begins at `start`.
 fn string_end(text: &[u8], start: usize) -> usize {
     let mut at = start + 1;
     while at < text.len() {

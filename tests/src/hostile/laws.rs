@@ -1,4 +1,4 @@
-//! What holds after every command, whatever the folder held.
+//! What holds after every command, whatever the folder contained.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -16,37 +16,37 @@ pub enum Law {
     NoPanic,
     /// No command ends the process by running out of memory or stack, or by a signal.
     NoDeath,
-    /// A command ends within its time.
+    /// A command ends within its time limit.
     InTime,
-    /// A command gets by with 2 GB.
+    /// A command uses at most 2 GB.
     InMemory,
     /// The status is 0, 1 or 2.
     Status,
-    /// A refusal is one line of at most 1000 characters, without control characters; success says nothing there.
+    /// A refusal is one line of at most 1000 characters, without control characters; success prints nothing there.
     OneLine,
-    /// Standard output has no control characters but line ends.
+    /// Standard output has no control characters except line ends.
     PlainOutput,
-    /// A refusal and a command that only reads leave every file as it was.
+    /// A refusal, and a command that only reads, leave every file unchanged.
     Untouched,
     /// A save changes the result, its own neighbours and the report, and nothing else.
     OnlyItsOwn,
-    /// No file or result is given up for the report, no input for the result.
+    /// The report replaces no file that was read and no result, and the result replaces no other input.
     NothingGivenUp,
-    /// Every other model in the folder still shows the shape that it had.
+    /// Every other model in the folder still shows the same shape.
     Strangers,
-    /// A link in the result's place stays a link.
+    /// A link where the result goes stays a link.
     LinkStays,
-    /// A replaced file keeps its rights.
+    /// A replaced file keeps its permissions.
     Rights,
-    /// Nothing temporary is left.
+    /// No temporary file is left.
     NothingLeft,
     /// The result can be read, and has as many vertices and triangles as were drawn.
     ReadsBack,
-    /// The report is JSON with all of its members.
+    /// The report is JSON with all its members.
     Report,
-    /// The same command on the same folder gives the same, on any number of threads.
+    /// The same command on the same folder gives the same result on any number of threads.
     Again,
-    /// Another format gets the same shape.
+    /// A result in another format has the same shape.
     SameShape,
 }
 
@@ -57,14 +57,14 @@ pub struct Violation {
     pub what: String,
 }
 
-/// The most characters that a refusal may have.
+/// The longest refusal, in characters.
 const LONGEST_LINE: usize = 1000;
 
 pub fn violation(law: Law, what: impl Into<String>) -> Violation {
     Violation { law, what: what.into() }
 }
 
-/// What a command says.
+/// Checks what a command prints.
 pub fn of_words(ended: &Ended, found: &mut Vec<Violation>) {
     if ended.status > 2 {
         found.push(violation(Law::Status, format!("status {}", ended.status)));
@@ -90,7 +90,7 @@ pub fn of_words(ended: &Ended, found: &mut Vec<Violation>) {
     }
 }
 
-/// A text cut after 300 characters.
+/// A text shortened to 300 characters.
 pub fn shortened(text: &str) -> String {
     text.chars().take(300).collect()
 }
@@ -105,19 +105,19 @@ pub fn changed(before: &Tree, after: &Tree) -> Vec<PathBuf> {
         .collect()
 }
 
-/// The paths that a save speaks of, each where it leads to.
+/// The paths that a save refers to, each with its links resolved.
 #[derive(Clone, Default, Debug)]
 pub struct Places {
     pub output: Option<PathBuf>,
     pub report: Option<PathBuf>,
-    /// The input, the edit, and what the input names.
+    /// The input, the edit, and the files that the input names.
     pub inputs: BTreeSet<PathBuf>,
-    /// What stood in the result's place, through a link as well, named these.
+    /// The files named by what was at the result's path, even through a link.
     pub old_neighbours: BTreeSet<PathBuf>,
 }
 
 impl Places {
-    /// Looks before the save. All paths begin with the case's folder.
+    /// Collects the paths before the save. All of them begin with the case's folder.
     pub fn before(input: &Path, edit: &Path, output: &Path, report: Option<&Path>) -> Self {
         let mut inputs = neighbours_of(input);
         inputs.extend([input, edit].into_iter().filter_map(place_of));
@@ -130,7 +130,7 @@ impl Places {
     }
 }
 
-/// Judges what a successful save changed. `root` is the case's folder, without links in its path.
+/// Checks what a successful save changed. `root` is the case's folder, with no links in its path.
 pub fn of_save(root: &Path, before: &Tree, after: &Tree, places: &Places, found: &mut Vec<Violation>) {
     let within = |path: &PathBuf| path.strip_prefix(root).ok().map(Path::to_owned);
     let output = places.output.as_ref().and_then(within);
@@ -141,7 +141,7 @@ pub fn of_save(root: &Path, before: &Tree, after: &Tree, places: &Places, found:
         .iter()
         .filter_map(|path| identity(before, &within(path)))
         .collect();
-    // An output that is a file which was read is a loss, unless a result stands in its input's place.
+    // Overwriting a file that was read loses it, except when the result replaces its own input.
     if identity(before, &report).is_some_and(|id| input_files.contains(&id)) {
         found.push(violation(
             Law::NothingGivenUp,
@@ -198,7 +198,7 @@ pub fn of_save(root: &Path, before: &Tree, after: &Tree, places: &Places, found:
                 found.push(violation(Law::NothingLeft, format!("the folder {place:?}")));
             }
         } else if was.is_some_and(|node| own_files.contains(&node.identity)) && is.is_some() {
-            // Another name of a file that is the save's own.
+            // Another name of one of the save's own files.
         } else {
             found.push(violation(Law::OnlyItsOwn, described(&place, was, is)));
         }
@@ -214,7 +214,7 @@ fn described(place: &Path, was: Option<&Node>, is: Option<&Node>) -> String {
     format!("{place:?} {what}")
 }
 
-/// The report's members, each number finite: JSON has no others.
+/// Checks the report's members. Its numbers are finite, because JSON has no others.
 pub fn of_report(text: &str, found: &mut Vec<Violation>) {
     let report: Value = match serde_json::from_str(text) {
         Ok(report) => report,

@@ -1,4 +1,4 @@
-//! Links, pipes, folders and odd names where files are expected, and results that are to stand where something stands.
+//! Links, pipes, folders and odd names where files are expected, and results whose path is already taken.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use super::case::{Case, Entry};
 use super::{models, names};
 use crate::trials::Chance;
 
-/// One odd thing about a place that the command reads or writes.
+/// Makes one odd change to a path that the command reads or writes.
 pub fn mutate(case: &mut Case, chance: &mut Chance) {
     match chance.below(6) {
         0 => odd_output(case, chance),
@@ -16,7 +16,7 @@ pub fn mutate(case: &mut Case, chance: &mut Chance) {
     }
 }
 
-/// Something that is no plain file, where a file is read or written.
+/// Puts something that is not a plain file where a file is read or written.
 fn odd_place(case: &mut Case, chance: &mut Chance) {
     let mut places: Vec<PathBuf> = case
         .entries
@@ -77,7 +77,7 @@ fn odd_place(case: &mut Case, chance: &mut Chance) {
     }
 }
 
-/// A result under a name that is hard to handle, or in the place of something else.
+/// Gives the result a name that is hard to handle, or the path of something else.
 fn odd_output(case: &mut Case, chance: &mut Chance) {
     let extension = models::extension(&case.input);
     case.output = match chance.below(5) {
@@ -88,7 +88,7 @@ fn odd_output(case: &mut Case, chance: &mut Chance) {
     };
 }
 
-/// A report in the place of something that is read or written, or under an odd name.
+/// Gives the report the path of something that is read or written, or an odd name.
 fn odd_report(case: &mut Case, chance: &mut Chance) {
     let output = case.output.clone();
     case.report = Some(match chance.below(6) {
@@ -100,7 +100,7 @@ fn odd_report(case: &mut Case, chance: &mut Chance) {
     });
 }
 
-/// A place where something stands, as a path from `work`, in one of several spellings.
+/// The path of something that exists, relative to `work`, in one of several spellings.
 fn existing(case: &Case, chance: &mut Chance) -> PathBuf {
     let places: Vec<&PathBuf> = case.entries.keys().collect();
     let place = *chance.of(&places);
@@ -114,7 +114,7 @@ fn existing(case: &Case, chance: &mut Chance) -> PathBuf {
     }
 }
 
-/// The input under a name that is hard to handle.
+/// Gives the input a name that is hard to handle.
 fn rename_input(case: &mut Case, chance: &mut Chance) {
     let extension = models::extension(&case.input);
     let new = PathBuf::from(names::odd_name(&extension, chance));

@@ -37,7 +37,7 @@ pub enum Class {
 }
 
 impl Class {
-    /// Those that every solver must bend.
+    /// The classes that every solver must bend.
     pub const SOUND: [Self; 3] = [Self::Sheet, Self::Ball, Self::Parts];
     pub const ALL: [Self; 19] = [
         Self::Sheet,
@@ -62,7 +62,7 @@ impl Class {
     ];
 }
 
-/// A mesh of a class, of about so many triangles.
+/// A mesh of a class, with about this many triangles.
 pub fn mesh(class: Class, triangles: usize, chance: &mut Chance) -> Soup {
     let n = triangles.max(2);
     let side = ((n / 2) as f64).sqrt().ceil() as u32;
@@ -83,7 +83,7 @@ pub fn mesh(class: Class, triangles: usize, chance: &mut Chance) -> Soup {
     soup
 }
 
-/// Gives a sound mesh what its class is named for.
+/// Gives a sound mesh the fault that its class is named for.
 fn spoil(soup: &mut Soup, class: Class, chance: &mut Chance) {
     let scale = |soup: &mut Soup, factor: f64| {
         soup.positions.iter_mut().flatten().for_each(|number| *number *= factor);
@@ -179,7 +179,7 @@ fn ball(n: u32) -> Soup {
     soup
 }
 
-/// Several sheets and balls apart from each other.
+/// Several separate sheets and balls.
 fn parts(triangles: usize, chance: &mut Chance) -> Soup {
     let count = 2 + chance.below(5);
     let mut soup = Soup::default();
@@ -200,7 +200,7 @@ fn parts(triangles: usize, chance: &mut Chance) -> Soup {
     soup
 }
 
-/// One vertex that n triangles share.
+/// One vertex shared by n triangles.
 fn fan(n: u32) -> Soup {
     let mut soup = Soup::default();
     soup.positions.push([0.0; 3]);
@@ -213,7 +213,7 @@ fn fan(n: u32) -> Soup {
     soup
 }
 
-/// Closed cones with many sides, one above the other: the apexes have thousands of neighbours each.
+/// Closed cones with many sides, one above another: each apex has thousands of neighbours.
 fn cones(triangles: u32, count: u32) -> Soup {
     let n = (triangles / count / 2).max(3);
     let mut soup = Soup::default();
@@ -258,7 +258,7 @@ fn loose(n: u32) -> Soup {
     soup
 }
 
-/// Triangles between vertices by chance: nothing about it is a surface.
+/// Triangles between random vertices: not a surface at all.
 fn tangle(n: usize, chance: &mut Chance) -> Soup {
     let count = (n / (1 + chance.below(8))).max(4);
     let mut soup = Soup::default();

@@ -1,5 +1,5 @@
-//! The models that cases begin from: made ones of every format and class, and those of the readers' corpus, compressed
-//! ones among them.
+//! The models that cases start from: generated ones of every format and class, and those of the readers' corpus,
+//! including compressed ones.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,18 +12,18 @@ use super::meshes::{self, Class, Soup};
 use super::{formats, gltf};
 use crate::trials::Chance;
 
-/// A model with its neighbours, all of them below `work`.
+/// A model with its neighbours, all below `work`.
 #[derive(Clone, Debug)]
 pub struct Model {
     pub entries: Vec<(PathBuf, Entry)>,
     /// Relative to `work`.
     pub input: PathBuf,
-    /// About how many vertices it has.
+    /// Roughly how many vertices it has.
     pub vertices: usize,
     pub class: String,
 }
 
-/// The largest file of the data beside the project that is taken into the corpus.
+/// The largest file, in bytes, that is taken from the data beside the project into the corpus.
 const LARGEST: u64 = 130_000;
 
 /// A small sound mesh of any format, or a file of the corpus.
@@ -62,7 +62,7 @@ pub fn any(chance: &mut Chance) -> Model {
     made(&soup, format, format.to_owned(), chance)
 }
 
-/// A mesh that is hard to solve on.
+/// A mesh that is hard to solve.
 pub fn hard(size: Size, chance: &mut Chance) -> Model {
     let class = *chance.of(&Class::ALL);
     let most = match size {
@@ -136,7 +136,7 @@ pub fn made(soup: &Soup, format: &str, class: String, chance: &mut Chance) -> Mo
     }
 }
 
-/// A file of the corpus, under the name `in`.
+/// A file of the corpus, renamed to `in`.
 fn kept(chance: &mut Chance) -> Model {
     let (path, files) = chance.of(corpus());
     let extension = extension(path);
@@ -155,7 +155,7 @@ fn kept(chance: &mut Chance) -> Model {
 
 type Sound = (PathBuf, BTreeMap<PathBuf, Vec<u8>>);
 
-/// Every model of the readers' corpus, and the small ones of the data beside the project, each with its neighbours.
+/// Every model of the readers' corpus and the small ones of the data beside the project, with their neighbours.
 fn corpus() -> &'static [Sound] {
     static CORPUS: OnceLock<Vec<Sound>> = OnceLock::new();
     CORPUS.get_or_init(|| {

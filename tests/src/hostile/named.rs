@@ -1,4 +1,4 @@
-//! Where the files stand that a model names: a glTF's or GLB's buffers and images, an OBJ's libraries and textures.
+//! The paths of the files that a model names: a glTF's or GLB's buffers and images, an OBJ's libraries and textures.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -9,17 +9,17 @@ use std::path::{Path, PathBuf};
 use super::json_text;
 use super::tree::place_of;
 
-/// The places of a model's neighbours. Where the model is a link, each neighbour may stand in the folder the link leads
+/// The paths of a model's neighbours. If the model is a link, each neighbour may be in the folder that the link leads
 /// to or in the link's own.
 ///
-/// Anything a reader may take for a name counts: a file that is broken elsewhere may be read.
+/// Everything that a reader may take for a name counts, because a file that is broken elsewhere may still be read.
 pub fn neighbours_of(path: &Path) -> BTreeSet<PathBuf> {
     let mut folders = vec![path.with_file_name("")];
     folders.extend(place_of(path).map(|place| place.with_file_name("")));
     let Some(bytes) = read(path) else {
         return BTreeSet::new();
     };
-    // What is behind a link may be called anything.
+    // The target of a link may have any extension.
     let of_obj = of_obj(&bytes, &folders).into_iter().map(OsString::from);
     let names: BTreeSet<OsString> = of_gltf(&bytes).into_iter().chain(of_obj).collect();
     let pairs = folders.iter().flat_map(|folder| {
@@ -36,18 +36,19 @@ fn read(path: &Path) -> Option<Vec<u8>> {
     is_plain.then(|| fs::read(path).ok()).flatten()
 }
 
-/// An OBJ's libraries, and the textures that each of these names: beside the library as the OBJ spells its path,
-/// whatever links the library lies behind, or by their bare names beside the OBJ, as paths from another computer.
+/// An OBJ's libraries, and the textures that each library names. A texture is looked up relative to the library's path
+/// as the OBJ spells it, even if links lead to the library, or by its bare name beside the OBJ, in case its path comes
+/// from another computer.
 fn of_obj(text: &[u8], folders: &[PathBuf]) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
     for library in rests(text, |word| word == "mtllib") {
-        // The whole line is one name, or each word is one.
+        // The whole line may be one name, or each word may be one.
         let libraries = [&*library].into_iter().chain(library.split_whitespace());
         for library in libraries.map(path_of) {
             let beside = library.rfind('/').map_or("", |end| &library[..=end]);
             let texts = folders.iter().filter_map(|folder| read(&folder.join(&library)));
             for texture in texts.flat_map(|text| rests(&text, |word| word.starts_with("map_"))) {
-                // Options stand before a texture's name.
+                // Options come before a texture's name.
                 let last = texture.rsplit(' ').next().unwrap_or(&texture);
                 for texture in [&*texture, last].map(path_of) {
                     let bare = texture.rsplit('/').next().unwrap_or(&texture);
@@ -60,7 +61,7 @@ fn of_obj(text: &[u8], folders: &[PathBuf]) -> BTreeSet<String> {
     names
 }
 
-/// What follows a keyword on each of its lines.
+/// The rest of each line that begins with a wanted keyword.
 fn rests(text: &[u8], is_wanted: impl Fn(&str) -> bool) -> Vec<String> {
     let text = String::from_utf8_lossy(text);
     let lines = text.split(['\n', '\r']);
@@ -76,7 +77,7 @@ fn path_of(name: &str) -> String {
     name.trim().trim_matches('"').replace('\\', "/")
 }
 
-/// The URIs of a glTF or a GLB, with backslashes taken for slashes as well.
+/// The URIs of a glTF or a GLB, also with backslashes read as slashes.
 fn of_gltf(bytes: &[u8]) -> BTreeSet<OsString> {
     let text = if bytes.starts_with(b"glTF") {
         let length = bytes
@@ -100,8 +101,8 @@ fn slashed(path: &[u8]) -> Vec<u8> {
     path.iter().map(slash).collect()
 }
 
-/// A path without the steps `.` and `..`, as far as it can go without them: a URI's are taken out of its text
-/// (RFC 3986, 5.2.4), whatever stands on the disk.
+/// A path with its `.` and `..` segments removed as far as possible: a URI's are removed from its text (RFC 3986,
+/// 5.2.4), whatever is on the disk.
 fn without_dots(path: &[u8]) -> Vec<u8> {
     let mut steps: Vec<&[u8]> = Vec::new();
     for step in path.split(|byte| *byte == b'/') {
@@ -115,7 +116,7 @@ fn without_dots(path: &[u8]) -> Vec<u8> {
     steps.join(&b'/')
 }
 
-/// A URI without its percent signs. A name's bytes need not be UTF-8.
+/// A URI with its percent escapes decoded. The bytes of a name need not be UTF-8.
 fn decoded(uri: &str) -> Vec<u8> {
     let bytes = uri.as_bytes();
     let mut out = Vec::new();

@@ -1,12 +1,12 @@
-//! Names that are hard to handle: control characters, spaces, colons, bytes that are no text, great lengths, paths in
-//! other spellings, addresses of things that are not files.
+//! Names that are hard to handle: control characters, spaces, colons, bytes that are not text, great lengths, other
+//! spellings of paths, URIs of things that are not files.
 
 use std::ffi::OsString;
 use std::os::unix::ffi::OsStringExt as _;
 
 use crate::trials::Chance;
 
-/// A text that a file may quote at a person, or name something by.
+/// A text that a file may contain and a message may quote, or that a file may use as a name.
 pub fn odd_text(chance: &mut Chance) -> String {
     match chance.below(16) {
         0 => "\u{1b}[31mred\u{1b}[0m".to_owned(),
@@ -28,7 +28,7 @@ pub fn odd_text(chance: &mut Chance) -> String {
     }
 }
 
-/// Another spelling of a neighbour's path, which may or may not be the same place.
+/// Another spelling of a neighbour's path, which may or may not lead to the same file.
 pub fn respelled(path: &str, chance: &mut Chance) -> String {
     match chance.below(16) {
         0 => format!("./{path}"),
@@ -50,7 +50,7 @@ pub fn respelled(path: &str, chance: &mut Chance) -> String {
     }
 }
 
-/// A name for a file that is written, of the given extension.
+/// A name for an output file, with the given extension.
 pub fn odd_name(extension: &str, chance: &mut Chance) -> OsString {
     let stem: Vec<u8> = match chance.below(14) {
         0 => b"\xff\xfe".to_vec(),

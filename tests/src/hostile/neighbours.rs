@@ -1,5 +1,5 @@
-//! What can be odd about the files that a model names: their spelling, two names for one place, strangers that name the
-//! same place, files that are missing, short or elsewhere.
+//! Odd things about the files that a model names: their spelling, two names for one file, other models that name the
+//! same file, files that are missing, short or elsewhere.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ use super::case::{Case, Entry};
 use super::{bytes, gltf, json_text, meshes, names};
 use crate::trials::Chance;
 
-/// One change of a case's neighbours.
+/// Makes one change to a case's neighbours.
 pub fn mutate(case: &mut Case, chance: &mut Chance) {
     match chance.below(9) {
         0 | 1 => respell(case, chance),
@@ -41,7 +41,7 @@ pub fn mutate(case: &mut Case, chance: &mut Chance) {
     }
 }
 
-/// Changes the input's JSON, in a GLB as well.
+/// Changes the input's JSON, also inside a GLB.
 fn change_json(case: &mut Case, change: impl FnOnce(&mut Vec<u8>, &mut Chance), chance: &mut Chance) {
     let place = PathBuf::from("work").join(&case.input);
     match case.entries.get_mut(&place) {
@@ -51,7 +51,7 @@ fn change_json(case: &mut Case, change: impl FnOnce(&mut Vec<u8>, &mut Chance), 
     }
 }
 
-/// Writes addresses in another way.
+/// Spells URIs in another way.
 fn respell(case: &mut Case, chance: &mut Chance) {
     let named = ["in.bin", "in1.bin", "sub/in2.bin", "skin.png"];
     let set = |text: &mut Vec<u8>, chance: &mut Chance| {
@@ -79,7 +79,7 @@ fn respell(case: &mut Case, chance: &mut Chance) {
     }
 }
 
-/// A second buffer that is the first one's file under another spelling; half of the views look into it.
+/// Adds a second buffer that is the first one's file in another spelling; half of the views use it.
 fn one_place_twice(case: &mut Case, chance: &mut Chance) {
     let twice = |text: &mut Vec<u8>, chance: &mut Chance| {
         let Ok(mut json) = serde_json::from_slice::<Value>(text) else {
@@ -105,7 +105,7 @@ fn one_place_twice(case: &mut Case, chance: &mut Chance) {
     change_json(case, twice, chance);
 }
 
-/// Another model, which names a place that the save may want.
+/// Adds another model, which names a path that the save may use.
 fn stranger(case: &mut Case, chance: &mut Chance) {
     let folder = *chance.of(&["work", "work", "target", "work/sub"]);
     let stem = *chance.of(&["other", "out", "in", "scene"]);
@@ -116,7 +116,7 @@ fn stranger(case: &mut Case, chance: &mut Chance) {
     }
     let place = PathBuf::from(folder).join(buffer);
     if case.entries.contains_key(&place) {
-        // It shares the place: the input's own text under another name.
+        // It shares the neighbour: it is a copy of the input under another name.
         let input = PathBuf::from("work").join(&case.input);
         if let Some(Entry::File(text)) = case.entries.get(&input).cloned() {
             case.entries.insert(model, Entry::File(text));
@@ -143,7 +143,7 @@ fn stranger(case: &mut Case, chance: &mut Chance) {
         .insert(model, Entry::File(made.json.to_string().into_bytes()));
 }
 
-/// Moves a neighbour out of the folder; the model names it there.
+/// Moves a neighbour out of the folder; the model names it at its new path.
 fn outside(case: &mut Case, chance: &mut Chance) {
     let neighbours = neighbours(case);
     if neighbours.is_empty() {
@@ -174,7 +174,7 @@ fn outside(case: &mut Case, chance: &mut Chance) {
     );
 }
 
-/// The places of the input's neighbours.
+/// The paths of the input's neighbours.
 fn neighbours(case: &Case) -> Vec<PathBuf> {
     let is_one = |place: &&PathBuf| {
         let name = place.to_string_lossy();

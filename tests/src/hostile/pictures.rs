@@ -1,4 +1,4 @@
-//! Hostile files drawn: `pliant render` gives one picture of the size that was asked for, or one sentence.
+//! Rendering hostile files: `pliant render` gives one picture of the requested size, or one sentence.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -12,17 +12,17 @@ use super::named::neighbours_of;
 use super::tree::{look, place_of, with_root};
 use crate::trials::Chance;
 
-/// Width and height in pixels: small, and no multiple of anything.
+/// Width and height in pixels: small, and multiples of nothing special.
 const SIZE: [u32; 2] = [97, 61];
 
-/// Where a picture goes: mostly beside the model, sometimes in the place of what the model may need.
+/// Where a picture goes: usually beside the model, sometimes over a file that the model may need.
 pub fn output(chance: &mut Chance) -> PathBuf {
     let free = "picture.png";
     let places = [free, free, free, free, "skin.png", "../target/picture.png", "sub/p.png"];
     (*chance.of(&places)).into()
 }
 
-/// What of `pliant render` is asked for.
+/// Random arguments of `pliant render`.
 pub fn more(chance: &mut Chance) -> Vec<OsString> {
     let shadings = [
         "clay",
@@ -43,7 +43,7 @@ pub fn more(chance: &mut Chance) -> Vec<OsString> {
     words
 }
 
-/// Draws a case that lies in `root`.
+/// Renders a case whose folder is `root`.
 pub(super) fn draw(case: &Case, root: &Path, runner: &mut Runner<'_>) {
     let before = look(root);
     let at = |path: &Path| root.join("work").join(path);
@@ -79,7 +79,7 @@ pub(super) fn draw(case: &Case, root: &Path, runner: &mut Runner<'_>) {
     }
 }
 
-/// Whether a file is a whole PNG of [`SIZE`]: its first chunk tells the size, its last one ends it.
+/// Whether a file is a complete PNG of [`SIZE`]: its first chunk has the size, and its last chunk ends it.
 fn is_picture(bytes: &[u8]) -> bool {
     let size = SIZE.map(u32::to_be_bytes);
     bytes.starts_with(b"\x89PNG\r\n\x1a\n")

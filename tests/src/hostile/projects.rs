@@ -1,4 +1,4 @@
-//! Projects by chance for a mesh, sound ones.
+//! Random projects for a mesh, all sound.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::edits;
 use crate::trials::Chance;
 
-/// A project on the mesh of this hash, which has so many drawn vertices.
+/// A project for the mesh with this hash and number of drawn vertices.
 pub fn project(hash: &str, path: &str, drawn: usize, chance: &mut Chance) -> Value {
     let last = drawn.saturating_sub(1);
     let (first, second) = (drawn / 4, drawn / 2);
@@ -66,7 +66,7 @@ pub fn project(hash: &str, path: &str, drawn: usize, chance: &mut Chance) -> Val
     project
 }
 
-/// A field of `numbers` numbers a vertex over a run of vertices, now and then with a number that it may not have.
+/// A field of `numbers` numbers per vertex over a range of vertices, sometimes with a number that is not allowed.
 fn field(first: usize, last: usize, numbers: usize, chance: &mut Chance) -> Value {
     let mut values: Vec<f64> = (first..=last).flat_map(|_| vec![0.25; numbers]).collect();
     if chance.one_in(4) {

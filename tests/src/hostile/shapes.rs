@@ -1,4 +1,4 @@
-//! What models show, and whether two show the same.
+//! The shapes that models show, and whether two are the same.
 
 use std::collections::BTreeMap;
 use std::panic::catch_unwind;
@@ -11,13 +11,13 @@ use super::case::Case;
 /// The corners of a model's triangles.
 pub type Shape = Vec<[DVec3; 3]>;
 
-/// Whether two shapes are the same to the bit: no number equals one that is none.
+/// Whether two shapes are the same to the bit, so that a NaN equals itself.
 pub fn is_same(a: &Shape, b: &Shape) -> bool {
     let bits = |p: &DVec3| p.to_array().map(f64::to_bits);
     a.as_flattened().iter().map(bits).eq(b.as_flattened().iter().map(bits))
 }
 
-/// A model's shape, or `None` where it can't be read.
+/// A model's shape, or `None` if it can't be read.
 pub fn shape(path: &Path) -> Option<Shape> {
     let opened = catch_unwind(|| pliant_app::engine::open(path, &Default::default()).ok()).ok()??;
     let drawn = opened.drawn;
@@ -25,15 +25,15 @@ pub fn shape(path: &Path) -> Option<Shape> {
     Some(drawn.triangles.iter().map(corners).collect())
 }
 
-/// Every model of a folder that shows something.
+/// The shape of every model in a folder that shows something.
 pub fn of_folder(case: &Case, root: &Path) -> BTreeMap<PathBuf, Shape> {
     let is_model = |place: &&PathBuf| pliant_io::Format::of_name(&place.to_string_lossy()).is_ok();
     let paths = case.entries.keys().filter(is_model).map(|place| root.join(place));
     paths.filter_map(|path| Some((path.clone(), shape(&path)?))).collect()
 }
 
-/// Whether a file may have faces of more than three corners. Of an OBJ and an OFF the lines tell, continued ones
-/// aside; a PLY may always.
+/// Whether a file may have faces with more than three corners. The lines of an OBJ or an OFF tell, apart from continued
+/// ones; a PLY may always have them.
 pub fn may_hold_polygons(path: &Path) -> bool {
     let kind = crate::extension(path).to_lowercase();
     let text = || String::from_utf8_lossy(&std::fs::read(path).unwrap_or_default()).into_owned();
@@ -51,8 +51,8 @@ pub fn may_hold_polygons(path: &Path) -> bool {
     }
 }
 
-/// Two coordinates of triangles' middles that should be equal and are farther apart. Formats order triangles in their
-/// own ways, so the coordinates are compared sorted, axis by axis.
+/// Two coordinates of triangles' centres that should be equal but differ by more than the tolerance. Formats order
+/// triangles differently, so the coordinates are sorted and compared axis by axis.
 pub fn farthest(one: &Shape, two: &Shape, tolerance: f64) -> Option<(f64, f64)> {
     let sorted = |shape: &Shape, axis: usize| {
         let mut middles: Vec<f64> = shape.iter().map(|t| (t[0] + t[1] + t[2])[axis] / 3.0).collect();
@@ -65,7 +65,7 @@ pub fn farthest(one: &Shape, two: &Shape, tolerance: f64) -> Option<(f64, f64)> 
     })
 }
 
-/// A coordinate of a corner of either shape that no corner of the other one has, and the nearest there.
+/// A coordinate of a corner in one shape that no corner of the other has, and the nearest one there.
 pub fn stray_corner(one: &Shape, two: &Shape, tolerance: f64) -> Option<(f64, f64)> {
     let sorted = |shape: &Shape, axis: usize| {
         let mut corners: Vec<f64> = shape.as_flattened().iter().map(|p| p[axis]).collect();

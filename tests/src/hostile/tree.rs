@@ -1,4 +1,4 @@
-//! A case's folder on disk: laying it out, and what stands in it before and after a command.
+//! A case's folder on disk: writing it, and recording what is in it before and after a command.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -11,18 +11,18 @@ use std::process::Command;
 
 use super::case::{Case, Entry};
 
-/// What stands at a path.
+/// What is at a path.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum What {
-    /// Its length and a digest of its bytes.
+    /// The file's length and a digest of its bytes.
     File(u64, u64),
     Folder,
     Link(PathBuf),
-    /// A pipe, a socket, a device.
+    /// A pipe, a socket or a device.
     Other,
 }
 
-/// A path's content, its rights, and which file it is.
+/// A path's content, its permissions, and which file it is.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Node {
     pub what: What,
@@ -30,10 +30,10 @@ pub struct Node {
     pub identity: (u64, u64),
 }
 
-/// Everything below a folder, by its path from there.
+/// Everything below a folder, by path relative to the folder.
 pub type Tree = BTreeMap<PathBuf, Node>;
 
-/// Makes a case's folder. What the file system doesn't take (a name that is too long) is left out.
+/// Writes a case's folder. Whatever the file system rejects (a name that is too long) is left out.
 pub fn lay(case: &Case, root: &Path) {
     let mut hard = Vec::new();
     for (place, entry) in &case.entries {
@@ -55,7 +55,7 @@ pub fn lay(case: &Case, root: &Path) {
             Entry::Socket => std::os::unix::net::UnixListener::bind(&path).map(|_| ()),
         };
     }
-    // What they name is there now.
+    // The files that they link to exist now.
     for (other, path) in hard {
         let _ = fs::hard_link(root.join(other), path);
     }
@@ -66,7 +66,7 @@ pub fn with_root(path: &Path, root: &Path) -> PathBuf {
     std::ffi::OsString::from_vec(replaced(path.as_os_str().as_bytes(), root)).into()
 }
 
-/// A text with `@ROOT@` replaced. Other files stay as they are: their lengths stand in them.
+/// A text with `@ROOT@` replaced. Other files stay unchanged, because they contain their own lengths.
 fn rooted(bytes: &[u8], root: &Path) -> Vec<u8> {
     if bytes.starts_with(b"{") || bytes.starts_with(b"newmtl") {
         replaced(bytes, root)
@@ -88,7 +88,7 @@ fn replaced(bytes: &[u8], root: &Path) -> Vec<u8> {
     out
 }
 
-/// Looks at everything below a folder. Links are not followed, and nothing but plain files is opened.
+/// Records everything below a folder. It follows no links and opens only plain files.
 pub fn look(root: &Path) -> Tree {
     let mut tree = Tree::new();
     let _ = walk(root, Path::new(""), &mut tree);
@@ -123,7 +123,7 @@ fn walk(root: &Path, folder: &Path, tree: &mut Tree) -> io::Result<()> {
     Ok(())
 }
 
-/// Where a path leads, through links to files that need not be there. `None` for a path that leads nowhere.
+/// Where a path leads after following links, whether or not a file is there. `None` for a path that leads nowhere.
 pub fn place_of(path: &Path) -> Option<PathBuf> {
     let mut path = path.to_owned();
     for _ in 0..40 {

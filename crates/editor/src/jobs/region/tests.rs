@@ -10,7 +10,7 @@ use super::{FileContacts, Region, RegionInput};
 use crate::Reach;
 use crate::document::{HandleId, Paint, Tips};
 
-/// A sheet over the unit square whose vertices within `radius` of its middle are a handle.
+/// A sheet over the unit square with a handle: the vertices within `radius` of its middle.
 fn sheet_with_disc(radius: f64, reach: Reach) -> RegionInput {
     let drawn = shapes::grid(60, 60);
     let model = Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap();
@@ -76,7 +76,7 @@ fn a_reach_of_nothing_frees_nothing_and_paint_wins_over_reach() {
     }
 }
 
-/// A long mesh on which what lies around the share `at` of its length is a handle that reaches a tenth of the length.
+/// A long mesh with a handle around the share `at` of its length, which reaches a tenth of the length.
 fn cut_at(drawn: Drawn, at: f64) -> (RegionInput, Vec<f64>) {
     let model = Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap();
     let bounds = model.bounds().unwrap();
@@ -177,7 +177,7 @@ fn a_tip_that_was_told_what_to_do_does_it() {
     }
 }
 
-/// A cube of this edge whose lowest face's middle is `foot`.
+/// A cube with the given edge length whose lowest face is centred at `foot`.
 fn cube(edge: f64, foot: DVec3) -> Drawn {
     let to_foot = DAffine3::from_translation(DVec3::new(-1.0, -1.0, 0.0));
     let place = DAffine3::from_translation(foot) * DAffine3::from_scale(DVec3::splat(0.5 * edge)) * to_foot;
