@@ -3,6 +3,7 @@
 mod joining;
 mod morton;
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::findings::finding::{collect, sort_out};
@@ -67,14 +68,7 @@ pub(crate) fn weld(
     drop(uses);
     let Some(bounds) = bounds_of(members.par_iter().map(|&v| drawn_positions[v as usize])) else {
         findings.non_finite_triangles = collect(corners.len(), |_| true);
-        let nowhere = vec![NONE; drawn_positions.len()];
-        let drawn = DrawnSet::new(drawn_positions, nowhere, &[], file_vertices);
-        return Ok(Welded {
-            surface: Surface::default(),
-            drawn: drawn.with_triangles(corners, Vec::new()),
-            components: Components::default(),
-            findings,
-        });
+        return Ok(without_surface(drawn_positions, corners, file_vertices, findings));
     };
     let tolerance = options
         .tolerance
@@ -115,13 +109,7 @@ pub(crate) fn weld(
         positions.len(),
         &mut findings.duplicate_triangles,
     );
-    let mut first_file_vertex = vec![FileVertex(u32::MAX); positions.len()];
-    for (surface_vertex, file_vertex) in drawn.surface_vertices().zip(drawn.file_vertices()) {
-        if let Some(surface_vertex) = surface_vertex {
-            let first = &mut first_file_vertex[surface_vertex.index()];
-            *first = file_vertex.min(*first);
-        }
-    }
+    let first_file_vertex = first_file_vertices(&drawn, positions.len());
     let surface = Surface { positions, triangles };
     findings.zero_area_triangles = collect(surface.triangles.len(), |t| is_without_area(surface.corners(t)))
         .renamed(|t| triangle_of_surface[t as usize]);
@@ -132,6 +120,30 @@ pub(crate) fn weld(
         surface,
         findings,
     })
+}
+
+/// The result for a mesh without a usable triangle: its drawn set, and an empty surface.
+fn without_surface(positions: Vec<DVec3>, corners: Corners, file_vertices: FileVertices, findings: Findings) -> Welded {
+    let nowhere = vec![NONE; positions.len()];
+    let drawn = DrawnSet::new(positions, nowhere, &[], file_vertices);
+    Welded {
+        surface: Surface::default(),
+        drawn: drawn.with_triangles(corners, Vec::new()),
+        components: Components::default(),
+        findings,
+    }
+}
+
+/// The lowest file vertex of each of `count` surface vertices.
+fn first_file_vertices(drawn: &DrawnSet, count: usize) -> Vec<FileVertex> {
+    let mut first_file_vertex = vec![FileVertex(u32::MAX); count];
+    for (surface_vertex, file_vertex) in drawn.surface_vertices().zip(drawn.file_vertices()) {
+        if let Some(surface_vertex) = surface_vertex {
+            let first = &mut first_file_vertex[surface_vertex.index()];
+            *first = file_vertex.min(*first);
+        }
+    }
+    first_file_vertex
 }
 
 fn has_unusable_corner(corners: [u32; 3]) -> bool {
