@@ -189,6 +189,44 @@ pub(crate) fn plan_accessors<'a>(
     changes: &'a [InstanceChange],
     course: &Course<'_>,
 ) -> Result<BTreeMap<usize, AccessorPlan<'a>>, Cancelled> {
+    let mut versions = versions_of_accessors(meshes, copies, changes, course)?;
+    versions.retain(|_, versions| versions.iter().any(|version| !version.change.is_empty()));
+    let elsewhere = used_elsewhere(document, meshes);
+    let plans = versions
+        .into_iter()
+        .filter_map(|(accessor, mut versions)| {
+            if elsewhere.contains(&accessor) && versions.iter().all(|version| !version.change.is_empty()) {
+                let semantic = versions.first()?.semantic;
+                versions.push(AccessorVersion {
+                    change: &UNCHANGED,
+                    semantic,
+                    used_by: Vec::new(),
+                });
+            }
+            let own = versions
+                .iter()
+                .position(|version| version.change.is_empty())
+                .unwrap_or(0);
+            let in_place = versions.remove(own);
+            Some((
+                accessor,
+                AccessorPlan {
+                    in_place,
+                    copies: versions,
+                },
+            ))
+        })
+        .collect();
+    Ok(plans)
+}
+
+/// Every version of each accessor that the copies' attributes use, with the attributes that use it.
+fn versions_of_accessors<'a>(
+    meshes: &[Vec<Primitive>],
+    copies: &[MeshCopy],
+    changes: &'a [InstanceChange],
+    course: &Course<'_>,
+) -> Result<BTreeMap<usize, Vec<AccessorVersion<'a>>>, Cancelled> {
     let hashes = hashes(changes);
     let mut versions: BTreeMap<usize, Vec<AccessorVersion<'a>>> = BTreeMap::new();
     // For each accessor and hash, which of the accessor's versions have it.
@@ -196,21 +234,13 @@ pub(crate) fn plan_accessors<'a>(
     for (copy, of_copy) in copies.iter().enumerate() {
         course.reach(0, 1)?;
         let primitives = &meshes[of_copy.mesh];
-        // Primitives that are not drawn follow a drawn one that names the same accessor.
-        let mut leader: HashMap<(usize, usize), usize> = HashMap::new();
-        for (instance, named) in of_copy.instances.iter().zip(primitives) {
-            for (place, semantic) in Semantic::ALL.into_iter().enumerate() {
-                if let (Some(instance), Some(accessor)) = (instance, semantic.accessor(named)) {
-                    leader.entry((place, accessor)).or_insert(*instance);
-                }
-            }
-        }
+        let leaders = leaders(primitives, of_copy);
         for (primitive, named) in primitives.iter().enumerate() {
             for (place, semantic) in Semantic::ALL.into_iter().enumerate() {
                 let Some(accessor) = semantic.accessor(named) else {
                     continue;
                 };
-                let instance = of_copy.instances[primitive].or_else(|| leader.get(&(place, accessor)).copied());
+                let instance = of_copy.instances[primitive].or_else(|| leaders.get(&(place, accessor)).copied());
                 let (change, hash) = instance.map_or((&UNCHANGED, UNCHANGED_HASH), |instance| {
                     let change = changes[instance].of(semantic);
                     let hash = if change.is_empty() {
@@ -245,34 +275,21 @@ pub(crate) fn plan_accessors<'a>(
             }
         }
     }
-    versions.retain(|_, versions| versions.iter().any(|version| !version.change.is_empty()));
-    let elsewhere = used_elsewhere(document, meshes);
-    let plans = versions
-        .into_iter()
-        .filter_map(|(accessor, mut versions)| {
-            if elsewhere.contains(&accessor) && versions.iter().all(|version| !version.change.is_empty()) {
-                let semantic = versions.first()?.semantic;
-                versions.push(AccessorVersion {
-                    change: &UNCHANGED,
-                    semantic,
-                    used_by: Vec::new(),
-                });
+    Ok(versions)
+}
+
+/// For each place in [`Semantic::ALL`] and accessor, the instance of the first drawn primitive that uses it there.
+/// Primitives that are not drawn and use it too follow that instance.
+fn leaders(primitives: &[Primitive], copy: &MeshCopy) -> HashMap<(usize, usize), usize> {
+    let mut leaders: HashMap<(usize, usize), usize> = HashMap::new();
+    for (instance, named) in copy.instances.iter().zip(primitives) {
+        for (place, semantic) in Semantic::ALL.into_iter().enumerate() {
+            if let (Some(instance), Some(accessor)) = (instance, semantic.accessor(named)) {
+                leaders.entry((place, accessor)).or_insert(*instance);
             }
-            let own = versions
-                .iter()
-                .position(|version| version.change.is_empty())
-                .unwrap_or(0);
-            let in_place = versions.remove(own);
-            Some((
-                accessor,
-                AccessorPlan {
-                    in_place,
-                    copies: versions,
-                },
-            ))
-        })
-        .collect();
-    Ok(plans)
+        }
+    }
+    leaders
 }
 
 /// Stands for the hash of what does not change.

@@ -58,26 +58,8 @@ pub(crate) fn in_its_kind(document: &Document, patched: Patched<'_>, save: &Save
     match save.placement {
         Placement::OtherFolder => bring_images(document, json, &image_uris, &mut gathered, &mut edits, &mut warnings)?,
         Placement::SameFile => {
-            // An unchanged buffer that shared a file with a changed one gets a file of its own.
-            let buffers = document.buffers.iter().zip(&patched.buffers).zip(&buffer_uris);
-            let buffers = buffers.filter_map(|((buffer, bytes), at)| match (buffer, bytes) {
-                (Buffer::Neighbour { path, .. }, Cow::Borrowed(bytes)) => Some((Role::Buffer, path, *bytes, at)),
-                _ => None,
-            });
-            let images = document.images.iter().zip(&image_uris);
-            let images = images.filter_map(|(image, at)| match image {
-                ImageFile::Neighbour { path, bytes } => Some((Role::Image, path, bytes.as_deref()?, at)),
-                _ => None,
-            });
-            for (role, path, bytes, at) in buffers.chain(images) {
-                let Some(name) = uri::inside(path).filter(|name| gathered.differs(name, bytes)) else {
-                    continue;
-                };
-                let name = gathered.add(name, role, bytes);
-                if let Some(at) = at {
-                    edits.replace(json.span(*at), uri::json_uri(&name));
-                }
-            }
+            let uris = [&buffer_uris[..], &image_uris[..]];
+            separate_shared(document, &patched.buffers, json, uris, &mut gathered, &mut edits);
         }
         Placement::SameFolder => {}
     }
@@ -86,22 +68,11 @@ pub(crate) fn in_its_kind(document: &Document, patched: Patched<'_>, save: &Save
     } else {
         Cow::Owned(edits.apply(json.text(), 0..json.text().len()))
     };
-    let bytes = match &document.container {
-        _ if is_unchanged && edits.is_empty() => document.file.to_vec(),
-        Some(instances) => {
-            let bin = document
-                .buffers
-                .iter()
-                .position(|buffer| matches!(buffer, Buffer::Bin(_)));
-            let bin = bin.map(|buffer| &patched.buffers[buffer][..]);
-            // A BIN chunk that no buffer is stays as it is.
-            let bin = bin.or_else(|| instances.bin.clone().map(|range| &document.file[range]));
-            let further = &document.file[instances.further_chunks.clone()];
-            let trailing = &document.file[instances.trailing.clone()];
-            container::join(container::without_padding(&text), bin, further, trailing)
-                .ok_or(SaveError::TooLarge { format: save.format })?
-        }
-        None => with_mark(document, &text),
+    let bytes = if is_unchanged && edits.is_empty() {
+        document.file.to_vec()
+    } else {
+        let bytes = contained(document, &text, &patched.buffers);
+        bytes.ok_or(SaveError::TooLarge { format: save.format })?
     };
     Ok(saved(save, bytes, gathered.files, warnings))
 }
@@ -169,6 +140,24 @@ pub(crate) fn reparsed(text: &[u8]) -> Result<Json, SaveError> {
     })
 }
 
+/// The text in the container of the file that was read, with its BIN chunk taken from `buffers`; `None` if that is too
+/// large for a GLB.
+fn contained(document: &Document, text: &[u8], buffers: &[Cow<'_, [u8]>]) -> Option<Vec<u8>> {
+    let Some(instances) = &document.container else {
+        return Some(with_mark(document, text));
+    };
+    let bin = document
+        .buffers
+        .iter()
+        .position(|buffer| matches!(buffer, Buffer::Bin(_)));
+    let bin = bin.map(|buffer| &buffers[buffer][..]);
+    // A BIN chunk that no buffer uses stays as it is.
+    let bin = bin.or_else(|| instances.bin.clone().map(|range| &document.file[range]));
+    let further = &document.file[instances.further_chunks.clone()];
+    let trailing = &document.file[instances.trailing.clone()];
+    container::join(container::without_padding(text), bin, further, trailing)
+}
+
 fn with_mark(document: &Document, text: &[u8]) -> Vec<u8> {
     let mark: &[u8] = if document.has_mark { b"\xef\xbb\xbf" } else { b"" };
     [mark, text].concat()
@@ -176,6 +165,37 @@ fn with_mark(document: &Document, text: &[u8]) -> Vec<u8> {
 
 fn inside(path: &str) -> Result<String, SaveError> {
     uri::inside(path).ok_or_else(|| SaveError::NeighbourOutside { uri: path.to_owned() })
+}
+
+/// Writes a file of its own for each unchanged buffer and image that shared a file with a changed buffer. `uris` are the
+/// places of the buffers' and the images' URIs in the text.
+fn separate_shared(
+    document: &Document,
+    buffers: &[Cow<'_, [u8]>],
+    json: &Json,
+    uris: [&[Option<At>]; 2],
+    gathered: &mut Gathered,
+    edits: &mut Edits,
+) {
+    let buffers = document.buffers.iter().zip(buffers).zip(uris[0]);
+    let buffers = buffers.filter_map(|((buffer, bytes), at)| match (buffer, bytes) {
+        (Buffer::Neighbour { path, .. }, Cow::Borrowed(bytes)) => Some((Role::Buffer, path, *bytes, at)),
+        _ => None,
+    });
+    let images = document.images.iter().zip(uris[1]);
+    let images = images.filter_map(|(image, at)| match image {
+        ImageFile::Neighbour { path, bytes } => Some((Role::Image, path, bytes.as_deref()?, at)),
+        _ => None,
+    });
+    for (role, path, bytes, at) in buffers.chain(images) {
+        let Some(name) = uri::inside(path).filter(|name| gathered.differs(name, bytes)) else {
+            continue;
+        };
+        let name = gathered.add(name, role, bytes);
+        if let Some(at) = at {
+            edits.replace(json.span(*at), uri::json_uri(&name));
+        }
+    }
 }
 
 /// The images beside the file, to be written beside OUT.

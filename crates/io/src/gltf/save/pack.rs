@@ -4,7 +4,6 @@ use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
-use crate::SaveError;
 use crate::gltf::document::container::{self, without_padding};
 use crate::gltf::document::json::{At, Edits, Json};
 use crate::gltf::document::{Buffer, Document, ImageFile};
@@ -15,46 +14,102 @@ use crate::images::decode::mime_type;
 use crate::images::decodes;
 use crate::quote::quoted;
 use crate::save::{Save, Saved};
+use crate::{Bytes, SaveError};
 
 /// The GLB of a `.gltf`. Images whose bytes are missing or of no kind that glTF knows keep their address.
 pub(crate) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>) -> Result<Saved, SaveError> {
     let json = reparsed(&patched.text)?;
     let mut warnings = patched.warnings;
     let mut edits = Edits::default();
-    let mut bin: Vec<u8> = Vec::new();
-    let mut homes = Vec::new();
-    let mut placeholders = Vec::new();
-    // Where bytes that several name are packed: once.
-    let mut packed: HashMap<(usize, Range<usize>), usize> = HashMap::new();
+    let mut chunk = Chunk::default();
     refuse_unused(document, save)?;
-    for (buffer, bytes) in document.buffers.iter().zip(&patched.buffers) {
+    let homes = pack_buffers(document, &patched.buffers, &mut chunk, &mut warnings);
+    move_views(&json, &homes, &mut edits);
+    let views = pack_images(document, &json, &mut chunk, &mut edits, &mut warnings);
+    append_section(&json, "bufferViews", &views, &mut edits);
+    let is_placeholder = |&buffer: &usize| matches!(homes[buffer], Home::Placeholder(_));
+    let placeholders: Vec<usize> = (0..homes.len()).filter(is_placeholder).collect();
+    set_buffers(&json, chunk.bytes.len(), &placeholders, &mut edits);
+    let text = edits.apply(json.text(), 0..json.text().len());
+    let bin = (!chunk.bytes.is_empty() || !document.buffers.is_empty()).then_some(&chunk.bytes[..]);
+    let bytes = container::join(without_padding(&text), bin, &[], &[]);
+    let bytes = bytes.ok_or(SaveError::TooLarge { format: save.format })?;
+    Ok(saved(save, bytes, Vec::new(), warnings))
+}
+
+/// The BIN chunk that is being filled.
+#[derive(Default)]
+struct Chunk {
+    bytes: Vec<u8>,
+    /// Where bytes that several buffers or images share were packed.
+    start_of: HashMap<(usize, Range<usize>), usize>,
+}
+
+impl Chunk {
+    /// Appends bytes at the next multiple of four and returns where they begin.
+    fn append(&mut self, bytes: &[u8]) -> usize {
+        let start = self.bytes.len().next_multiple_of(4);
+        self.bytes.resize(start, 0);
+        self.bytes.extend_from_slice(bytes);
+        start
+    }
+
+    /// Like [`Self::append`], but once only for bytes that are shared.
+    fn append_shared(&mut self, bytes: &Bytes) -> usize {
+        if let Some(&start) = self.start_of.get(&bytes.place()) {
+            return start;
+        }
+        let start = self.append(bytes);
+        self.start_of.insert(bytes.place(), start);
+        start
+    }
+}
+
+/// Packs the file's buffers. Returns where each of them goes.
+fn pack_buffers(
+    document: &Document,
+    buffers: &[Cow<'_, [u8]>],
+    chunk: &mut Chunk,
+    warnings: &mut Vec<String>,
+) -> Vec<Home> {
+    let mut homes = Vec::new();
+    let mut placeholder_count = 0;
+    for (buffer, bytes) in document.buffers.iter().zip(buffers) {
         homes.push(match buffer {
             Buffer::Decoded(_) => break,
             // The fallback buffer of compressed bytes stays a buffer without bytes.
             Buffer::Absent => {
-                placeholders.push(homes.len());
-                Home::Placeholder(placeholders.len())
+                placeholder_count += 1;
+                Home::Placeholder(placeholder_count)
             }
             Buffer::Neighbour { path, bytes: own } => {
                 if uri::inside(path).is_none() {
                     warnings.push(format!("{} {FROM_OUTSIDE}", quoted(path)));
                 }
-                match bytes {
-                    Cow::Borrowed(_) => {
-                        Home::Packed(*packed.entry(own.place()).or_insert_with(|| append(&mut bin, bytes)))
-                    }
-                    Cow::Owned(_) => Home::Packed(append(&mut bin, bytes)),
-                }
+                Home::Packed(match bytes {
+                    Cow::Borrowed(_) => chunk.append_shared(own),
+                    Cow::Owned(_) => chunk.append(bytes),
+                })
             }
-            _ => Home::Packed(append(&mut bin, bytes)),
+            _ => Home::Packed(chunk.append(bytes)),
         });
     }
-    move_views(&json, &homes, &mut edits);
+    homes
+}
+
+/// Packs the images and makes each refer to a new buffer view. Returns the views, as JSON.
+fn pack_images(
+    document: &Document,
+    json: &Json,
+    chunk: &mut Chunk,
+    edits: &mut Edits,
+    warnings: &mut Vec<String>,
+) -> Vec<String> {
     let mut views: Vec<String> = Vec::new();
+    let view_count = elements(json, "bufferViews").len();
     let mut sound: HashMap<(usize, Range<usize>), bool> = HashMap::new();
-    let view_count = elements(&json, "bufferViews").len();
     let mut view_of: HashMap<(usize, Range<usize>), usize> = HashMap::new();
-    for (number, at) in elements(&json, "images").into_iter().enumerate() {
+    for (number, at) in elements(json, "images").into_iter().enumerate() {
         let told = json.member(at, "mimeType").and_then(|at| json.string(at));
         let bytes = match &document.images[number] {
             ImageFile::Data(bytes) | ImageFile::Neighbour { bytes: Some(bytes), .. } => bytes,
@@ -87,7 +142,7 @@ pub(crate) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
             continue;
         };
         let view = *view_of.entry(bytes.place()).or_insert_with(|| {
-            let start = *packed.entry(bytes.place()).or_insert_with(|| append(&mut bin, bytes));
+            let start = chunk.append_shared(bytes);
             let length = bytes.len();
             views.push(format!(
                 "{{\"buffer\":0,\"byteOffset\":{start},\"byteLength\":{length}}}"
@@ -102,13 +157,7 @@ pub(crate) fn packed(document: &Document, patched: Patched<'_>, save: &Save<'_>)
         edits.replace(json.span(key), "\"bufferView\"");
         edits.replace(json.span(value), format!("{view}{mime}"));
     }
-    append_section(&json, "bufferViews", &views, &mut edits);
-    set_buffers(&json, bin.len(), &placeholders, &mut edits);
-    let text = edits.apply(json.text(), 0..json.text().len());
-    let bin = (!bin.is_empty() || !document.buffers.is_empty()).then_some(&bin[..]);
-    let bytes = container::join(without_padding(&text), bin, &[], &[]);
-    let bytes = bytes.ok_or(SaveError::TooLarge { format: save.format })?;
-    Ok(saved(save, bytes, Vec::new(), warnings))
+    views
 }
 
 /// Refuses a buffer outside the file's folder that no accessor reads: a file from a stranger may name anything there,
@@ -154,14 +203,6 @@ fn refuse_unused(document: &Document, save: &Save<'_>) -> Result<(), SaveError> 
         }
     }
     Ok(())
-}
-
-/// Appends bytes at the next multiple of four and returns where they begin.
-fn append(bin: &mut Vec<u8>, bytes: &[u8]) -> usize {
-    let start = bin.len().next_multiple_of(4);
-    bin.resize(start, 0);
-    bin.extend_from_slice(bytes);
-    start
 }
 
 /// Where a buffer goes.

@@ -27,25 +27,19 @@ pub(super) fn read_faces(
     walk: &mut Walk<'_>,
     records: &mut Records,
 ) -> Result<(), ReadError> {
-    let list = corner_list(element);
-    let mut strange = None;
-    // Most faces are triangles; the count was held against the bytes that are left.
+    // Most faces are triangles. The count was checked against the bytes that are left.
     records.face_ends.reserve_exact(element.count as usize);
     records
         .corners
         .reserve_exact((3 * element.count).min(walk.left()) as usize);
-    read_all(source, element, walk, |walk| {
+    CornerLists::read_all(source, element, walk, |lists, walk| {
         let first = records.corners.len();
         let corners = &mut records.corners;
-        let take = |property, value| {
-            if Some(property) == list {
-                corners.push(corner(value).unwrap_or_else(|| {
-                    strange.get_or_insert(value);
-                    u32::MAX
-                }));
-            }
-        };
-        read_record(element, walk, || !source.cancel.is_cancelled(), |_, _| (), take)?;
+        lists.read(walk, |value| {
+            let corner = corner(value);
+            corners.push(corner.unwrap_or(u32::MAX));
+            corner.is_some()
+        })?;
         if records.corners.len() - first < 3 {
             records.corners.truncate(first);
             records.left_out += 1;
@@ -53,13 +47,7 @@ pub(super) fn read_faces(
             records.face_ends.push(u32::try_from(records.corners.len()).ok()?);
         }
         Some(())
-    })?;
-    strange.map_or(Ok(()), |value| Err(no_corner(source, value)))
-}
-
-fn no_corner(source: &Source<'_>, value: f64) -> ReadError {
-    let reason = format!("a face names the vertex {value}, which can't exist: correct the face");
-    source.malformed(Format::Ply, reason)
+    })
 }
 
 /// Strips: each corner makes a triangle with the two before it, every other one turned; a negative number ends one.
@@ -69,31 +57,71 @@ pub(super) fn read_strips(
     walk: &mut Walk<'_>,
     records: &mut Records,
 ) -> Result<(), ReadError> {
-    let list = corner_list(element);
-    let mut strange = None;
-    read_all(source, element, walk, |walk| {
+    CornerLists::read_all(source, element, walk, |lists, walk| {
         let mut strip = Strip::default();
         let Records { corners, face_ends, .. } = records;
-        let take = |property, value: f64| {
-            if Some(property) != list {
-                return;
-            }
+        lists.read(walk, |value| {
             if value < 0.0 {
                 strip = Strip::default();
-            } else if let Some(corner) = corner(value) {
-                // Repeated corners only carry the strip on.
-                if let Some(triangle) = strip.next(corner) {
-                    corners.extend(triangle);
-                    face_ends.push(corners.len() as u32);
-                }
-            } else {
+                return true;
+            }
+            let corner = corner(value);
+            // Repeated corners only carry the strip on.
+            if let Some(triangle) = corner.and_then(|corner| strip.next(corner)) {
+                corners.extend(triangle);
+                face_ends.push(corners.len() as u32);
+            }
+            corner.is_some()
+        })?;
+        u32::try_from(records.corners.len()).ok().map(|_| ())
+    })
+}
+
+/// Reads the lists of corner numbers of an element's records.
+struct CornerLists<'a> {
+    source: &'a Source<'a>,
+    element: &'a Element,
+    /// The property that is the list.
+    list: Option<usize>,
+    /// The first number that can't be a corner.
+    strange: Option<f64>,
+}
+
+impl<'a> CornerLists<'a> {
+    /// Reads every record by `read_one`, which reads one list by [`Self::read`].
+    ///
+    /// # Errors
+    /// Records that are cut short; the first number that can't be a corner.
+    fn read_all(
+        source: &'a Source<'a>,
+        element: &'a Element,
+        walk: &mut Walk<'_>,
+        mut read_one: impl FnMut(&mut Self, &mut Walk<'_>) -> Option<()>,
+    ) -> Result<(), ReadError> {
+        let mut lists = Self {
+            source,
+            element,
+            list: corner_list(element),
+            strange: None,
+        };
+        read_all(source, element, walk, |walk| read_one(&mut lists, walk))?;
+        lists.strange.map_or(Ok(()), |value| {
+            let reason = format!("a face names the vertex {value}, which can't exist: correct the face");
+            Err(source.malformed(Format::Ply, reason))
+        })
+    }
+
+    /// Reads one record. `take` gets each number of its list and returns whether that can be one.
+    fn read(&mut self, walk: &mut Walk<'_>, mut take: impl FnMut(f64) -> bool) -> Option<()> {
+        let Self { list, strange, .. } = self;
+        let take = |property, value| {
+            if Some(property) == *list && !take(value) {
                 strange.get_or_insert(value);
             }
         };
-        read_record(element, walk, || !source.cancel.is_cancelled(), |_, _| (), take)?;
-        u32::try_from(records.corners.len()).ok().map(|_| ())
-    })?;
-    strange.map_or(Ok(()), |value| Err(no_corner(source, value)))
+        let is_wanted = || !self.source.cancel.is_cancelled();
+        read_record(self.element, walk, is_wanted, |_, _| (), take)
+    }
 }
 
 /// The last two corners of a strip.

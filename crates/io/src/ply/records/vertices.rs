@@ -49,63 +49,117 @@ pub(super) fn read_vertices(
         );
         return Err(source.malformed(Format::Ply, reason));
     }
-    let has = |span: std::ops::Range<usize>| columns[span].iter().all(Option::is_some);
-    let (has_normals, has_colours, has_uvs) = (has(3..6), has(6..9), has(10..12));
-    // Colours are counted by their type: bytes to 255, 16 bits to 65535, floating point to 1.
-    let colour_scale = columns[6].map_or(1.0, |red| match element.properties[red].kind {
-        Kind::Scalar(scalar) => scalar.integer_range().map_or(1.0, |[_, most]| most.recip()),
-        Kind::List { .. } => 1.0,
-    });
-    // The count was held against the bytes that are left.
-    let count = element.count as usize;
-    records.positions.reserve_exact(count);
-    records.normals.reserve_exact(if has_normals { count } else { 0 });
-    records.colours.reserve_exact(if has_colours { count } else { 0 });
-    records.uvs.reserve_exact(if has_uvs { count } else { 0 });
-    let mut take = |values: &[f64; COLUMN_NAMES.len()]| {
+    let mut vertices = Vertices::reserved(element, records);
+    let places = match element.stride().filter(|_| header.encoding != Encoding::Ascii) {
+        Some(stride) => read_strided(source, header, element, stride, walk, &mut vertices)?,
+        None => read_each(source, element, walk, &mut vertices)?,
+    };
+    records.places = places;
+    Ok(())
+}
+
+/// The values of a vertex's columns; the value of a column that the file doesn't have is not read.
+type Values = [f64; COLUMN_NAMES.len()];
+
+/// The records that vertices are appended to, and what the file has of each vertex.
+struct Vertices<'a> {
+    records: &'a mut Records,
+    has_normals: bool,
+    has_colours: bool,
+    has_alpha: bool,
+    has_uvs: bool,
+    /// Takes a stored colour to the range from 0 to 1.
+    colour_scale: f64,
+}
+
+impl<'a> Vertices<'a> {
+    /// Reserves room for all vertices of the element in `records`, whose columns are known.
+    fn reserved(element: &Element, records: &'a mut Records) -> Self {
+        let columns = records.columns;
+        let has = |span: std::ops::Range<usize>| columns[span].iter().all(Option::is_some);
+        let (has_normals, has_colours, has_uvs) = (has(3..6), has(6..9), has(10..12));
+        // Colours are counted by their type: bytes to 255, 16 bits to 65535, floating point to 1.
+        let colour_scale = columns[6].map_or(1.0, |red| match element.properties[red].kind {
+            Kind::Scalar(scalar) => scalar.integer_range().map_or(1.0, |[_, most]| most.recip()),
+            Kind::List { .. } => 1.0,
+        });
+        // The count was checked against the bytes that are left.
+        let count = element.count as usize;
+        records.positions.reserve_exact(count);
+        records.normals.reserve_exact(if has_normals { count } else { 0 });
+        records.colours.reserve_exact(if has_colours { count } else { 0 });
+        records.uvs.reserve_exact(if has_uvs { count } else { 0 });
+        Self {
+            records,
+            has_normals,
+            has_colours,
+            has_alpha: columns[9].is_some(),
+            has_uvs,
+            colour_scale,
+        }
+    }
+
+    fn push(&mut self, values: &Values) {
+        let records = &mut *self.records;
         records.positions.push(DVec3::new(values[0], values[1], values[2]));
-        if has_normals {
+        if self.has_normals {
             records.normals.push([3, 4, 5].map(|slot: usize| values[slot] as f32));
         }
-        if has_colours {
-            let alpha = if columns[9].is_some() {
-                values[9] * colour_scale
+        if self.has_colours {
+            let alpha = if self.has_alpha {
+                values[9] * self.colour_scale
             } else {
                 1.0
             };
-            let [r, g, b] = [6, 7, 8].map(|slot: usize| (values[slot] * colour_scale) as f32);
+            let [r, g, b] = [6, 7, 8].map(|slot: usize| (values[slot] * self.colour_scale) as f32);
             records.colours.push([r, g, b, alpha as f32]);
         }
-        if has_uvs {
+        if self.has_uvs {
             records.uvs.push([values[10] as f32, values[11] as f32]);
         }
-    };
-    let mut values = [0.0; COLUMN_NAMES.len()];
-    if header.encoding != Encoding::Ascii
-        && let Some(stride) = element.stride()
-    {
-        let wanted = wanted_offsets(element, &columns);
-        let first = walk.at();
-        for vertex in 0..element.count as usize {
-            if vertex.is_multiple_of(1 << 13) {
-                source.cancel.check()?;
-            }
-            for &(slot, offset, scalar) in &wanted {
-                values[slot] = decode(source.bytes, first + vertex * stride + offset, scalar, header.encoding)
-                    .ok_or_else(|| cut_short(source, element, vertex as u64, source.bytes.len()))?;
-            }
-            take(&values);
-        }
-        walk.skip(stride * element.count as usize);
-        records.places = Places::Strided { first, stride };
-        return Ok(());
     }
+}
+
+/// Reads binary records that are all of `stride` bytes.
+fn read_strided(
+    source: &Source<'_>,
+    header: &Header,
+    element: &Element,
+    stride: usize,
+    walk: &mut Walk<'_>,
+    vertices: &mut Vertices<'_>,
+) -> Result<Places, ReadError> {
+    let wanted = wanted_offsets(element, &vertices.records.columns);
+    let first = walk.at();
+    let mut values: Values = Default::default();
+    for vertex in 0..element.count as usize {
+        if vertex.is_multiple_of(1 << 13) {
+            source.cancel.check()?;
+        }
+        for &(slot, offset, scalar) in &wanted {
+            values[slot] = decode(source.bytes, first + vertex * stride + offset, scalar, header.encoding)
+                .ok_or_else(|| cut_short(source, element, vertex as u64, source.bytes.len()))?;
+        }
+        vertices.push(&values);
+    }
+    walk.skip(stride * element.count as usize);
+    Ok(Places::Strided { first, stride })
+}
+
+/// Reads records whose lengths differ: text, or records with lists.
+fn read_each(
+    source: &Source<'_>,
+    element: &Element,
+    walk: &mut Walk<'_>,
+    vertices: &mut Vertices<'_>,
+) -> Result<Places, ReadError> {
     let mut slots = vec![COLUMN_NAMES.len(); element.properties.len()];
-    for (slot, property) in columns.iter().enumerate() {
+    for (slot, property) in vertices.records.columns.iter().enumerate() {
         if let Some(property) = property {
             slots[*property] = slot;
         }
     }
+    let mut values: Values = Default::default();
     let mut starts = Vec::new();
     read_all(source, element, walk, |walk| {
         starts.push(walk.at());
@@ -115,11 +169,10 @@ pub(super) fn read_vertices(
             }
         };
         read_record(element, walk, || !source.cancel.is_cancelled(), keep, |_, _| ())?;
-        take(&values);
+        vertices.push(&values);
         Some(())
     })?;
-    records.places = Places::Each(starts);
-    Ok(())
+    Ok(Places::Each(starts))
 }
 
 /// Column, offset within a binary record and type of what is read of a vertex.
