@@ -4,7 +4,7 @@ use super::shaders::Shader;
 use super::vertex_layouts::{
     OVERLAY_LINE_BUFFER, OVERLAY_TRIANGLE_BUFFER, SHAPE_BUFFERS, SURFACE_LINE_BUFFER, material_buffers,
 };
-use super::{Alpha, ID_FORMAT, Pipeline, Visibility};
+use super::{Alpha, ID_FORMAT, MaterialAttributes, Pipeline, Visibility};
 use crate::{Samples, Target};
 
 /// The state in which pipelines differ.
@@ -32,70 +32,22 @@ const BLENDED: wgpu::ColorTargetState = wgpu::ColorTargetState {
 
 impl PipelineDescription {
     pub(super) fn of(pipeline: Pipeline) -> Self {
-        let opaque = |fragment_entry| Self {
-            shader: Shader::Surface,
-            vertex_entry: "vs_surface",
-            fragment_entry,
-            buffers: SHAPE_BUFFERS.to_vec(),
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            depth_compare: wgpu::CompareFunction::Greater,
-            writes_depth: true,
-            colour: OPAQUE,
-        };
-        // Drawn over or behind surfaces, without writing depth.
-        let blended = |shader, vertex_entry, fragment_entry| Self {
-            shader,
-            vertex_entry,
-            buffers: Vec::new(),
-            depth_compare: wgpu::CompareFunction::GreaterEqual,
-            writes_depth: false,
-            colour: BLENDED,
-            ..opaque(fragment_entry)
-        };
-        // Drawn once per visibility, with opposite depth tests.
-        let twice = |shader, vertex_entry, buffer, topology, visibility| {
-            let (fragment_entry, depth_compare) = match visibility {
-                Visibility::Visible => ("fs_visible", wgpu::CompareFunction::GreaterEqual),
-                Visibility::Hidden => ("fs_hidden", wgpu::CompareFunction::Less),
-            };
-            Self {
-                buffers: vec![Some(buffer)],
-                topology,
-                depth_compare,
-                ..blended(shader, vertex_entry, fragment_entry)
-            }
-        };
         let (triangles, strip) = (
             wgpu::PrimitiveTopology::TriangleList,
             wgpu::PrimitiveTopology::TriangleStrip,
         );
         match pipeline {
-            Pipeline::Matcap => opaque("fs_matcap"),
-            Pipeline::Painted => opaque("fs_painted"),
-            Pipeline::Zebra => opaque("fs_zebra"),
-            Pipeline::Normals => opaque("fs_normals"),
-            Pipeline::Material(alpha, attributes) => {
-                let fragment_entry = match alpha {
-                    Alpha::Opaque => "fs_material_opaque",
-                    Alpha::Mask => "fs_material_mask",
-                    Alpha::Blend => "fs_material_blend",
-                };
-                let is_blended = alpha == Alpha::Blend;
-                Self {
-                    shader: Shader::Material,
-                    vertex_entry: "vs_material",
-                    buffers: material_buffers(attributes).to_vec(),
-                    writes_depth: !is_blended,
-                    colour: if is_blended { BLENDED } else { OPAQUE },
-                    ..opaque(fragment_entry)
-                }
-            }
+            Pipeline::Matcap => Self::opaque("fs_matcap"),
+            Pipeline::Painted => Self::opaque("fs_painted"),
+            Pipeline::Zebra => Self::opaque("fs_zebra"),
+            Pipeline::Normals => Self::opaque("fs_normals"),
+            Pipeline::Material(alpha, attributes) => Self::of_material(alpha, attributes),
             Pipeline::Wireframe => Self {
                 buffers: SHAPE_BUFFERS[..1].to_vec(),
                 topology: wgpu::PrimitiveTopology::LineList,
-                ..blended(Shader::Wireframe, "vs_wireframe", "fs_wireframe")
+                ..Self::blended(Shader::Wireframe, "vs_wireframe", "fs_wireframe")
             },
-            Pipeline::SurfaceLines(visibility) => twice(
+            Pipeline::SurfaceLines(visibility) => Self::with_visibility(
                 Shader::SurfaceLine,
                 "vs_surface_line",
                 SURFACE_LINE_BUFFER,
@@ -104,20 +56,20 @@ impl PipelineDescription {
             ),
             Pipeline::Background => Self {
                 colour: OPAQUE,
-                ..blended(Shader::Background, "vs_background", "fs_background")
+                ..Self::blended(Shader::Background, "vs_background", "fs_background")
             },
             Pipeline::Grid => Self {
                 topology: strip,
-                ..blended(Shader::Grid, "vs_grid", "fs_grid")
+                ..Self::blended(Shader::Grid, "vs_grid", "fs_grid")
             },
-            Pipeline::OverlayTriangles(visibility) => twice(
+            Pipeline::OverlayTriangles(visibility) => Self::with_visibility(
                 Shader::OverlayTriangle,
                 "vs_overlay_triangle",
                 OVERLAY_TRIANGLE_BUFFER,
                 triangles,
                 visibility,
             ),
-            Pipeline::OverlayLines(visibility) => twice(
+            Pipeline::OverlayLines(visibility) => Self::with_visibility(
                 Shader::OverlayLine,
                 "vs_overlay_line",
                 OVERLAY_LINE_BUFFER,
@@ -132,8 +84,72 @@ impl PipelineDescription {
                     format: ID_FORMAT,
                     ..OPAQUE
                 },
-                ..opaque("fs_id")
+                ..Self::opaque("fs_id")
             },
+        }
+    }
+
+    /// Draws the surface, with the fragments nearest to the eye.
+    fn opaque(fragment_entry: &'static str) -> Self {
+        Self {
+            shader: Shader::Surface,
+            vertex_entry: "vs_surface",
+            fragment_entry,
+            buffers: SHAPE_BUFFERS.to_vec(),
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            depth_compare: wgpu::CompareFunction::Greater,
+            writes_depth: true,
+            colour: OPAQUE,
+        }
+    }
+
+    fn of_material(alpha: Alpha, attributes: MaterialAttributes) -> Self {
+        let fragment_entry = match alpha {
+            Alpha::Opaque => "fs_material_opaque",
+            Alpha::Mask => "fs_material_mask",
+            Alpha::Blend => "fs_material_blend",
+        };
+        let is_blended = alpha == Alpha::Blend;
+        Self {
+            shader: Shader::Material,
+            vertex_entry: "vs_material",
+            buffers: material_buffers(attributes).to_vec(),
+            writes_depth: !is_blended,
+            colour: if is_blended { BLENDED } else { OPAQUE },
+            ..Self::opaque(fragment_entry)
+        }
+    }
+
+    /// Draws over or behind surfaces, without writing depth.
+    fn blended(shader: Shader, vertex_entry: &'static str, fragment_entry: &'static str) -> Self {
+        Self {
+            shader,
+            vertex_entry,
+            buffers: Vec::new(),
+            depth_compare: wgpu::CompareFunction::GreaterEqual,
+            writes_depth: false,
+            colour: BLENDED,
+            ..Self::opaque(fragment_entry)
+        }
+    }
+
+    /// Draws marks that are visible or those that are hidden, which have opposite depth tests and fragment shaders.
+    fn with_visibility(
+        shader: Shader,
+        vertex_entry: &'static str,
+        buffer: wgpu::VertexBufferLayout<'static>,
+        topology: wgpu::PrimitiveTopology,
+        visibility: Visibility,
+    ) -> Self {
+        let (fragment_entry, depth_compare) = match visibility {
+            Visibility::Visible => ("fs_visible", wgpu::CompareFunction::GreaterEqual),
+            Visibility::Hidden => ("fs_hidden", wgpu::CompareFunction::Less),
+        };
+        Self {
+            buffers: vec![Some(buffer)],
+            topology,
+            depth_compare,
+            ..Self::blended(shader, vertex_entry, fragment_entry)
         }
     }
 
