@@ -4,8 +4,12 @@
 //! Drawn vertices are the file's own order, so that a project stays readable when welding changes; twins that were
 //! welded share one value, which stands at the lowest of them.
 
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use glam::DVec3;
 use pliant_mesh::{DrawnVertex, Model, SurfaceVertex};
 use serde::{Deserialize, Serialize};
 
@@ -52,7 +56,7 @@ impl Field {
     ///
     /// # Errors
     /// A vertex that the file does not have, too many or too few numbers, or one that is not finite.
-    pub(crate) fn read<const N: usize>(
+    fn read<const N: usize>(
         &self,
         name: &str,
         model: &Model,
@@ -89,6 +93,47 @@ impl Field {
                 None => Ok(()),
             }
         })
+    }
+
+    /// One number for each surface vertex, `default` where none is stored.
+    ///
+    /// # Errors
+    /// As [`Self::read`], and a number outside of `range`.
+    pub(super) fn numbers(
+        &self,
+        name: &str,
+        model: &Model,
+        default: f64,
+        range: RangeInclusive<f64>,
+    ) -> Result<Arc<Vec<f64>>, EditError> {
+        let mut numbers = vec![default; model.surface.positions.len()];
+        let mut refused = None;
+        self.read(name, model, |vertex, [value]| {
+            if !range.contains(&value) {
+                refused = Some(value);
+            }
+            numbers[vertex.index()] = value;
+        })?;
+        match refused {
+            Some(value) => Err(EditError::Project(format!(
+                "`{name}` has {value}, and goes from {} to {}: save it again",
+                range.start(),
+                range.end()
+            ))),
+            None => Ok(Arc::new(numbers)),
+        }
+    }
+
+    /// A displacement for each surface vertex, zero where none is stored.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub(super) fn displacements(&self, name: &str, model: &Model) -> Result<Arc<Vec<DVec3>>, EditError> {
+        let mut displacements = vec![DVec3::ZERO; model.surface.positions.len()];
+        self.read(name, model, |vertex, value| {
+            displacements[vertex.index()] = DVec3::from_array(value);
+        })?;
+        Ok(Arc::new(displacements))
     }
 }
 

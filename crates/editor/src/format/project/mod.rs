@@ -12,12 +12,11 @@ mod kept;
 mod objects;
 
 use std::collections::BTreeMap;
-use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_deform::{CONTINUITY_RANGE, Method};
-use pliant_mesh::{Cancel, Model, SurfaceVertex};
+use pliant_mesh::{Cancel, Model};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -286,6 +285,37 @@ impl Project {
                 .map(|(part, loose)| (*part, (*loose).into()))
                 .collect(),
         );
+        self.read_paint_and_handles(model, &mut document)?;
+        document.next_handle = self.next_handle;
+        document.access = Arc::new(access(&self.objects, self.isolated, model)?);
+        let stiffness = self.stiffness.as_ref();
+        document.stiffness = stiffness
+            .map(|field| field.numbers("stiffness", model, 1.0, STIFFNESS_RANGE))
+            .transpose()?;
+        let (continuity, highest) = (self.continuity.as_ref(), *CONTINUITY_RANGE.end());
+        document.continuity = continuity
+            .map(|field| field.numbers("continuity", model, highest, CONTINUITY_RANGE))
+            .transpose()?;
+        document.applied = self.applied;
+        if let Some(rest) = &self.rest {
+            document.applied = true;
+            document.rest = rest.displacements("rest", model)?;
+        }
+        if let Some(shape) = &self.shape {
+            document.from_rest = shape.displacements("shape", model)?;
+        }
+        if let Some(kept) = &self.kept {
+            let shape = match &kept.shape {
+                Some(shape) => shape.displacements("kept: shape", model)?,
+                None => Arc::new(vec![DVec3::ZERO; model.surface.positions.len()]),
+            };
+            document.kept = Some(Arc::new(kept.kept(shape)));
+        }
+        document.settled = self.settled || !document.handles.iter().any(Handle::is_displaced);
+        Ok(document.into())
+    }
+
+    fn read_paint_and_handles(&self, model: &Model, document: &mut Content) -> Result<(), EditError> {
         let paint = Arc::make_mut(&mut document.paint);
         let mut put = |ranges: &Ranges, name: &str, value: Paint| {
             for_each_drawn(ranges, name, model, |vertex| {
@@ -313,54 +343,7 @@ impl Project {
             )?;
             document.handles.push(stored.handle()?);
         }
-        document.next_handle = self.next_handle;
-        document.access = Arc::new(access(&self.objects, self.isolated, model)?);
-        let count = model.surface.positions.len();
-        let numbers = |field: &Option<Field>, name: &str, default: f64, range: RangeInclusive<f64>| {
-            let Some(field) = field else { return Ok(None) };
-            let mut numbers = vec![default; count];
-            let mut refused = None;
-            field.read(name, model, |vertex, [value]| {
-                if !range.contains(&value) {
-                    refused = Some(value);
-                }
-                numbers[vertex.index()] = value;
-            })?;
-            match refused {
-                Some(value) => Err(EditError::Project(format!(
-                    "`{name}` has {value}, and goes from {} to {}: save it again",
-                    range.start(),
-                    range.end()
-                ))),
-                None => Ok(Some(Arc::new(numbers))),
-            }
-        };
-        document.stiffness = numbers(&self.stiffness, "stiffness", 1.0, STIFFNESS_RANGE)?;
-        let highest = *CONTINUITY_RANGE.end();
-        document.continuity = numbers(&self.continuity, "continuity", highest, CONTINUITY_RANGE)?;
-        let displacements = |field: &Option<Field>, name: &str| -> Result<Option<Arc<Vec<DVec3>>>, EditError> {
-            let Some(field) = field else { return Ok(None) };
-            let mut displacements = vec![DVec3::ZERO; count];
-            field.read(name, model, |vertex: SurfaceVertex, value| {
-                displacements[vertex.index()] = DVec3::from_array(value);
-            })?;
-            Ok(Some(Arc::new(displacements)))
-        };
-        document.applied = self.applied;
-        if let Some(rest) = displacements(&self.rest, "rest")? {
-            document.applied = true;
-            document.rest = rest;
-        }
-        if let Some(shape) = displacements(&self.shape, "shape")? {
-            document.from_rest = shape;
-        }
-        if let Some(kept) = &self.kept {
-            let shape = displacements(&kept.shape, "kept: shape")?;
-            let shape = shape.unwrap_or_else(|| Arc::new(vec![DVec3::ZERO; count]));
-            document.kept = Some(Arc::new(kept.kept(shape)));
-        }
-        document.settled = self.settled || !document.handles.iter().any(Handle::is_displaced);
-        Ok(document.into())
+        Ok(())
     }
 
     /// What the solver needs: the document's regions, from its own rest shape.
