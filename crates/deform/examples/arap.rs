@@ -11,9 +11,9 @@ mod common;
 use std::path::Path;
 use std::time::Instant;
 
-use common::{edit, median, ms, name, read, timed};
+use common::{edit, median, ms, name, one_handle, read, timed};
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_deform::{Arap, ArapEnergy, Bound, Constraints, Loose, Method, Problem, Step};
+use pliant_deform::{Arap, ArapEnergy, Bound, Method, Step};
 use pliant_mesh::{Cancel, Model, Progress};
 
 /// A frame of a drag, in milliseconds.
@@ -46,17 +46,7 @@ fn measure(file: &Path, threads: usize, energy: ArapEnergy, reach: Option<&Strin
     let exact = Method::from(options(energy, 1e-10));
     let (order_ms, ordering) = timed(|| exact.ordering(&model.topology, &progress, &cancel).unwrap());
     let bind = |method: &Method| {
-        let problem = Problem {
-            surface: &model.surface,
-            topology: &model.topology,
-            roles: &roles,
-            handle_count: 1,
-            stiffness: &stiffness,
-            loose: Loose::Rest,
-            constraints: Constraints::default(),
-            method,
-            revision: 0,
-        };
+        let problem = one_handle(&model, &roles, &stiffness, method);
         problem.bind(ordering.as_ref(), &progress, &cancel).unwrap()
     };
     let (bind_ms, mut bound) = timed(|| bind(&Method::from(options(energy, Arap::default().tolerance))));

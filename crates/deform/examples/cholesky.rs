@@ -10,7 +10,7 @@ mod common;
 
 use std::path::Path;
 
-use common::{forget_peak, median, name, peak_mb, peers_edit, read, timed};
+use common::{forget_peak, median, name, one_handle, peak_mb, peers_edit, read, timed};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::prelude::Mat;
@@ -19,7 +19,7 @@ use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, SymmetricOrdering, 
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Par, Side};
 use pliant_deform::stages::{Matrix, Operator};
-use pliant_deform::{Bilaplacian, Constraints, Loose, Method, Problem};
+use pliant_deform::{Bilaplacian, Method};
 use pliant_mesh::{Cancel, Progress};
 
 fn main() {
@@ -75,17 +75,8 @@ fn system(file: &Path) -> (Operator, Matrix) {
     let options = Bilaplacian::default();
     let method = Method::from(options.clone());
     let ordering = method.ordering(&model.topology, &progress, &cancel).unwrap().unwrap();
-    let problem = Problem {
-        surface: &model.surface,
-        topology: &model.topology,
-        roles: &roles,
-        handle_count: 1,
-        stiffness: &vec![1.0; roles.len()],
-        constraints: Constraints::default(),
-        loose: Loose::Rest,
-        method: &method,
-        revision: 0,
-    };
+    let stiffness = vec![1.0; roles.len()];
+    let problem = one_handle(&model, &roles, &stiffness, &method);
     let operator = Operator::of(&problem, &options, &ordering).unwrap();
     let matrix = operator.assemble().unwrap();
     (operator, matrix)

@@ -11,10 +11,10 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use common::{median, ms, name, peak_mb, peers_edit, read, stroke};
+use common::{median, ms, name, one_handle, peak_mb, peers_edit, read, stroke};
 use glam::DVec3;
 use pliant_deform::stages::Operator;
-use pliant_deform::{Bilaplacian, Constraints, Loose, Method, Ordering, Problem};
+use pliant_deform::{Bilaplacian, Method, Ordering};
 use pliant_mesh::{Cancel, Progress, vertex_normals};
 use rayon::prelude::*;
 
@@ -40,17 +40,7 @@ fn measure(file: &Path, threads: usize, clock: fn() -> f64) {
     let stiffness = vec![1.0; count];
     let method = Method::default();
     let (progress, cancel) = (Progress::new(), Cancel::new());
-    let problem = |roles| Problem {
-        surface: &model.surface,
-        topology: &model.topology,
-        roles,
-        handle_count: 1,
-        stiffness: &stiffness,
-        constraints: Constraints::default(),
-        loose: Loose::Rest,
-        method: &method,
-        revision: 0,
-    };
+    let problem = |roles| one_handle(&model, roles, &stiffness, &method);
     let times = if count > 500_000 { 3 } else { 5 };
     let order = || Ordering::of(&model.topology, 2, &progress, &cancel).unwrap();
     let (order_ms, ordering) = watch.of(times, order);

@@ -11,9 +11,9 @@ mod common;
 use std::path::Path;
 use std::time::Instant;
 
-use common::{edit, ms, name, read};
+use common::{edit, ms, name, one_handle, read};
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_deform::{Bound, Constraints, Loose, Method, Primo, Problem};
+use pliant_deform::{Bound, Method, Primo};
 use pliant_mesh::{Cancel, Progress};
 
 fn main() {
@@ -39,17 +39,7 @@ fn measure(scene: &Path, threads: usize, thickness: f64) {
         options.thickness = thickness;
         options.max_iterations = 2000;
         let method = Method::from(options);
-        let problem = Problem {
-            surface: &model.surface,
-            topology: &model.topology,
-            roles: &roles,
-            handle_count: 1,
-            stiffness: &stiffness,
-            constraints: Constraints::default(),
-            loose: Loose::Rest,
-            method: &method,
-            revision: 0,
-        };
+        let problem = one_handle(&model, &roles, &stiffness, &method);
         let start = Instant::now();
         (problem.bind(None, &progress, &cancel).unwrap(), ms(start))
     };

@@ -12,9 +12,9 @@ mod common;
 use std::path::Path;
 use std::time::Instant;
 
-use common::{ms, name, peak_mb, peers_edit, read, stroke};
+use common::{ms, name, one_handle, peak_mb, peers_edit, read, stroke};
 use pliant_deform::stages::Operator;
-use pliant_deform::{Bilaplacian, BilaplacianOrder, Constraints, Loose, Method, Problem, TriangulationKind};
+use pliant_deform::{Bilaplacian, BilaplacianOrder, Method, TriangulationKind};
 use pliant_mesh::{Cancel, Progress};
 
 fn main() {
@@ -39,17 +39,7 @@ fn main() {
     let stroked = stroke(&model, &roles);
     let stiffness = vec![1.0; roles.len()];
     let (progress, cancel) = (Progress::new(), Cancel::new());
-    let problem = |roles| Problem {
-        surface: &model.surface,
-        topology: &model.topology,
-        roles,
-        handle_count: 1,
-        stiffness: &stiffness,
-        constraints: Constraints::default(),
-        loose: Loose::Rest,
-        method: &method,
-        revision: 0,
-    };
+    let problem = |roles| one_handle(&model, roles, &stiffness, &method);
     if times == "work" {
         let power_ordering = method.ordering(&model.topology, &progress, &cancel).unwrap().unwrap();
         let options = method.options::<Bilaplacian>().unwrap();

@@ -7,9 +7,9 @@ mod common;
 
 use std::path::Path;
 
-use common::{median, name, peers_edit, read, timed};
+use common::{median, name, one_handle, peers_edit, read, timed};
 use glam::DVec3;
-use pliant_deform::{Arap, ArapEnergy, Constraints, Loose, Method, Problem};
+use pliant_deform::{Arap, ArapEnergy, Method, Problem};
 use pliant_mesh::{Cancel, Progress};
 
 /// Steps that are timed, behind the first, which also starts.
@@ -35,17 +35,8 @@ fn measure(file: &Path, threads: usize, method: &Method) {
     let (roles, target) = peers_edit(&model);
     let (progress, cancel) = (Progress::new(), Cancel::new());
     let (order_ms, ordering) = timed(|| method.ordering(&model.topology, &progress, &cancel).unwrap());
-    let problem = Problem {
-        surface: &model.surface,
-        topology: &model.topology,
-        roles: &roles,
-        handle_count: 1,
-        stiffness: &vec![1.0; roles.len()],
-        constraints: Constraints::default(),
-        loose: Loose::Rest,
-        method,
-        revision: 0,
-    };
+    let stiffness = vec![1.0; roles.len()];
+    let problem = one_handle(&model, &roles, &stiffness, method);
     let (bind_ms, mut bound) = timed(|| problem.bind(ordering.as_ref(), &progress, &cancel).unwrap());
     // Peers' steps are at full resolution: a coarse level that leads would be beside the point.
     if let Some(mut options) = method.options::<Arap>().cloned() {

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::{DAffine3, DMat3, DVec3};
-use pliant_deform::Role;
+use pliant_deform::{Constraints, Loose, Method, Problem, Role};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, WeldOptions};
 
 /// The mesh of an OFF file of triangles.
@@ -26,6 +26,21 @@ pub fn read(off: &Path) -> Model {
         .collect();
     let drawn = Drawn::once(positions, triangles);
     Model::weld(drawn, &WeldOptions::default(), &Progress::new(), &Cancel::new()).unwrap()
+}
+
+/// A problem with one handle, and defaults for what is not given.
+pub fn one_handle<'a>(model: &'a Model, roles: &'a [Role], stiffness: &'a [f64], method: &'a Method) -> Problem<'a> {
+    Problem {
+        surface: &model.surface,
+        topology: &model.topology,
+        roles,
+        handle_count: 1,
+        stiffness,
+        constraints: Constraints::default(),
+        loose: Loose::Rest,
+        method,
+        revision: 0,
+    }
 }
 
 /// What a mesh's file is called.

@@ -141,17 +141,7 @@ impl PrimoSolver {
             let corner = surface.triangles[prisms.faces[prism] as usize][0];
             (topology.component(corner), corner)
         };
-        let refused = |error| match error {
-            FactorError::Pivot(prism) => {
-                let (component, SurfaceVertex(vertex)) = component(prism);
-                BindError::NotPositiveDefinite { component, vertex }
-            }
-            FactorError::Budget(limit) => BindError::budget(partition.free_count, limit),
-            FactorError::Memory => BindError::OutOfMemory {
-                free_count: partition.free_count,
-            },
-            FactorError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
-        };
+        let refused = |error| bind_error(error, partition.free_count, component);
         let unheld = |prism: usize| !partition.held[component(prism).0 as usize];
         let springs = Springs::of(&joints, partition.budget, cancel).map_err(refused)?;
         let weights = springs.weights(&joints, handles.len(), unheld);
@@ -230,6 +220,20 @@ impl PrimoSolver {
             return (true, energy);
         }
         (self.state == State::Converged, self.relative(energy))
+    }
+}
+
+/// What a factorisation's error means for a problem with `free_count` free vertices. `component` gives a prism's
+/// component and a vertex of it.
+fn bind_error(error: FactorError, free_count: usize, component: impl Fn(usize) -> (u32, SurfaceVertex)) -> BindError {
+    match error {
+        FactorError::Pivot(prism) => {
+            let (component, SurfaceVertex(vertex)) = component(prism);
+            BindError::NotPositiveDefinite { component, vertex }
+        }
+        FactorError::Budget(limit) => BindError::budget(free_count, limit),
+        FactorError::Memory => BindError::OutOfMemory { free_count },
+        FactorError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
     }
 }
 

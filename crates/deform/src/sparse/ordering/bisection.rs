@@ -168,7 +168,10 @@ impl WeightedGraph {
     fn improve(&self, sides: &mut [bool], mut near: Vec<u32>, rounds: usize) -> f64 {
         let total = self.total();
         let balance = |inside: u64| inside.min(total - inside) as f64 / total as f64;
-        let weight = |v: u32| u64::from(self.weights[v as usize]);
+        let after_move = |inside: u64, sides: &[bool], v: usize| {
+            let weight = u64::from(self.weights[v]);
+            if sides[v] { inside - weight } else { inside + weight }
+        };
         let mut inside: u64 = sides
             .iter()
             .zip(&self.weights)
@@ -179,20 +182,7 @@ impl WeightedGraph {
         let mut round_of_move = vec![0_u8; self.weights.len()];
         let mut moves: Vec<u32> = Vec::new();
         for round in 1.. {
-            let mut cut = 0_i64;
-            heap.clear();
-            for &v in &near {
-                let (mut same, mut across) = (0_i64, 0_i64);
-                for &(u, weight) in self.row(v as usize) {
-                    let same_side = sides[u as usize] == sides[v as usize];
-                    *(if same_side { &mut same } else { &mut across }) += i64::from(weight);
-                }
-                cut += across;
-                if across > 0 {
-                    heap.push((across - same, Reverse(v)));
-                }
-            }
-            cut /= 2;
+            let mut cut = self.gather_at_cut(sides, &near, &mut heap);
             let before = cost_of(cut, balance(inside), total as f64);
             let (mut best, mut best_moves) = (before, 0);
             moves.clear();
@@ -201,11 +191,7 @@ impl WeightedGraph {
                 if round_of_move[vertex] == round || gain != self.gain(sides, vertex) {
                     continue;
                 }
-                let then = if sides[vertex] {
-                    inside - weight(v)
-                } else {
-                    inside + weight(v)
-                };
+                let then = after_move(inside, sides, vertex);
                 if balance(then) < LEAST_SHARE && balance(then) <= balance(inside) {
                     continue;
                 }
@@ -227,11 +213,7 @@ impl WeightedGraph {
                 }
             }
             for &v in &moves[best_moves..] {
-                inside = if sides[v as usize] {
-                    inside - weight(v)
-                } else {
-                    inside + weight(v)
-                };
+                inside = after_move(inside, sides, v as usize);
                 sides[v as usize] = !sides[v as usize];
             }
             if best >= before || usize::from(round) >= rounds {
@@ -248,6 +230,26 @@ impl WeightedGraph {
             near.dedup();
         }
         f64::INFINITY
+    }
+
+    /// Fills `heap` with those of the vertices `near` that are at the cut, each with what moving it across gains.
+    /// Returns the cut's weight.
+    fn gather_at_cut(&self, sides: &[bool], near: &[u32], heap: &mut BinaryHeap<(i64, Reverse<u32>)>) -> i64 {
+        heap.clear();
+        let mut cut = 0;
+        for &v in near {
+            let (mut same, mut across) = (0, 0);
+            for &(u, weight) in self.row(v as usize) {
+                let same_side = sides[u as usize] == sides[v as usize];
+                *(if same_side { &mut same } else { &mut across }) += i64::from(weight);
+            }
+            cut += across;
+            if across > 0 {
+                heap.push((across - same, Reverse(v)));
+            }
+        }
+        // Both ends of each edge have counted it.
+        cut / 2
     }
 
     /// By how much moving a vertex across shortens the cut.
