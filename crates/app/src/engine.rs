@@ -8,7 +8,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
-use pliant_deform::{BindError, Bound, Method, Ordering, SolveError};
+use pliant_deform::{BindError, Bound, Method, Ordering, SolveError, Step};
 use pliant_editor::{Beginning, Setup};
 use pliant_io::MorphTarget;
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
@@ -123,35 +123,15 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
         output: apply.output,
         beside: report_to.as_ref().map(|report| ("--report", report)),
     };
-    let mut saved = saving::stage(&loaded, &save, staging, &progress, &watch.cancel)?;
+    let saved = saving::stage(&loaded, &save, staging, &progress, &watch.cancel)?;
     let save_ms = ms_since(start);
 
-    let distortion = pliant_mesh::Distortion::of(&model.surface, &model.topology, &solution.surface_positions);
-    let mut warnings = loaded.scene.notes().to_vec();
-    warnings.extend(solution.warnings);
-    warnings.append(&mut saved.warnings);
-    let report = Report {
-        method: setup.method.name().to_owned(),
-        vertices: model.drawn.file_vertex_count(),
-        welded_vertices: model.surface.positions.len(),
-        free_vertices: solution.free_vertices,
+    let times = FileTimes {
         load_ms,
-        order_ms: solution.order_ms,
-        bind_ms: solution.bind_ms,
         save_ms,
         check_ms: saved.check_ms,
-        frames: solution.frames,
-        iterations: solution.iterations,
-        converged: solution.converged,
-        energy: solution.energy,
-        distortion: Distortion {
-            edge_stretch_mean: finite_or(distortion.edge_stretch_mean, 1.0),
-            edge_stretch_max: finite_or(distortion.edge_stretch_max, f64::MAX),
-            flipped_faces: distortion.flipped_faces,
-            volume_ratio: finite_or(distortion.volume_ratio, 1.0),
-        },
-        warnings,
     };
+    let report = report(&loaded, &setup, solution, times, saved.warnings);
     let mut staged = saved.staged;
     if let Some(to) = report_to {
         let text = report.to_json();
@@ -166,6 +146,43 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     }
     staged.commit()?;
     Ok(report)
+}
+
+/// How long the files took.
+struct FileTimes {
+    load_ms: f64,
+    save_ms: f64,
+    check_ms: f64,
+}
+
+fn report(loaded: &Loaded, setup: &Setup, solution: Solution, times: FileTimes, saved_warnings: Vec<String>) -> Report {
+    let model = &loaded.model;
+    let distortion = pliant_mesh::Distortion::of(&model.surface, &model.topology, &solution.surface_positions);
+    let mut warnings = loaded.scene.notes().to_vec();
+    warnings.extend(solution.warnings);
+    warnings.extend(saved_warnings);
+    Report {
+        method: setup.method.name().to_owned(),
+        vertices: model.drawn.file_vertex_count(),
+        welded_vertices: model.surface.positions.len(),
+        free_vertices: solution.free_vertices,
+        load_ms: times.load_ms,
+        order_ms: solution.order_ms,
+        bind_ms: solution.bind_ms,
+        save_ms: times.save_ms,
+        check_ms: times.check_ms,
+        frames: solution.frames,
+        iterations: solution.iterations,
+        converged: solution.converged,
+        energy: solution.energy,
+        distortion: Distortion {
+            edge_stretch_mean: finite_or(distortion.edge_stretch_mean, 1.0),
+            edge_stretch_max: finite_or(distortion.edge_stretch_max, f64::MAX),
+            flipped_faces: distortion.flipped_faces,
+            volume_ratio: finite_or(distortion.volume_ratio, 1.0),
+        },
+        warnings,
+    }
 }
 
 /// What came of the frames.
@@ -219,6 +236,39 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
     )?;
     let bind_ms = ms_since(start);
 
+    let bent = bend(apply, model, setup, &mut bound, watch)?;
+    Ok(Solution {
+        positions: bent.positions,
+        surface_positions: bent.surface_positions,
+        free_vertices: bound.free_count(),
+        order_ms,
+        bind_ms,
+        frames: bent.frames,
+        iterations: bent.iterations,
+        converged: bent.last.converged,
+        energy: Energy {
+            // Every method's energy is 0 at rest.
+            rest: 0.0,
+            r#final: finite_or(bent.last.energy, f64::MAX),
+        },
+        warnings: bound.warnings().to_vec(),
+    })
+}
+
+/// The shape after the last frame, and what the frames took.
+struct Bent {
+    /// Of each drawn vertex, in world space.
+    positions: Vec<DVec3>,
+    /// Of each surface vertex, in world space.
+    surface_positions: Vec<DVec3>,
+    frames: FrameTimes,
+    /// Mean iterations per frame.
+    iterations: f64,
+    last: Step,
+}
+
+/// Takes the handles to their targets frame by frame.
+fn bend(apply: &Apply<'_>, model: &Model, setup: &Setup, bound: &mut Bound, watch: &Watch) -> Result<Bent, AppError> {
     let refuse = |error: SolveError| AppError::Solve {
         file: apply.file.to_owned(),
         source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
@@ -231,7 +281,7 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
     let mut normals = Vec::new();
     let (mut solve_ms, mut normals_ms) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let mut surface_positions = model.surface.positions.clone();
-    let (mut iterations, mut last) = (0_u64, pliant_deform::Step::default());
+    let (mut iterations, mut last) = (0_u64, Step::default());
     for frame in 1..=count {
         if watch.cancel.is_cancelled() {
             return Err(AppError::Interrupted);
@@ -272,20 +322,11 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
         normals_ms.push(ms_since(start));
         progress.set(frame as f32 / count as f32);
     }
-    Ok(Solution {
+    Ok(Bent {
         positions,
         surface_positions,
-        free_vertices: bound.free_count(),
-        order_ms,
-        bind_ms,
         frames: FrameTimes::of(&mut solve_ms, &mut normals_ms),
         iterations: iterations as f64 / count.max(1) as f64,
-        converged: last.converged,
-        energy: Energy {
-            // Every method's energy is 0 at rest.
-            rest: 0.0,
-            r#final: finite_or(last.energy, f64::MAX),
-        },
-        warnings: bound.warnings().to_vec(),
+        last,
     })
 }

@@ -82,13 +82,7 @@ impl Input {
         attention: Attention,
         out: &mut Vec<Event>,
     ) {
-        let pointer = |position: egui::Pos2, modifiers: egui::Modifiers| {
-            let relative = position - attention.rect.min;
-            Pointer {
-                position_px: DVec2::new(f64::from(relative.x), f64::from(relative.y)),
-                modifiers: held_modifiers(modifiers),
-            }
-        };
+        let pointer = |position, modifiers| attention.pointer_at(position, modifiers);
         let over = attention.pointer_over || attention.follows_pointer || !self.held.is_empty();
         match *event {
             egui::Event::PointerMoved(position) if over => {
@@ -125,15 +119,9 @@ impl Input {
             egui::Event::MouseWheel {
                 unit, delta, modifiers, ..
             } if attention.pointer_over => {
-                let lines = f64::from(delta.y)
-                    * match unit {
-                        MouseWheelUnit::Point => 1.0 / POINTS_PER_LINE,
-                        MouseWheelUnit::Line => 1.0,
-                        MouseWheelUnit::Page => 10.0,
-                    };
                 out.push(Event::Wheel {
                     pointer: pointer(attention.pointer, modifiers),
-                    lines,
+                    lines: f64::from(delta.y) * lines_of(unit),
                 });
             }
             egui::Event::Zoom(factor) if attention.pointer_over => {
@@ -150,18 +138,40 @@ impl Input {
                 modifiers,
                 ..
             } if attention.keys => {
-                let digit = physical_key.or(Some(key)).and_then(digit_of);
-                let is_numpads = digit.is_some() && self.numpad.front().copied() == digit;
-                let numpad = digit.filter(|_| is_numpads).map(Key::Numpad);
-                if is_numpads {
-                    self.numpad.pop_front();
-                }
+                let numpad = self.take_numpad(physical_key.unwrap_or(key));
                 if let Some(key) = numpad.or_else(|| key_of(key)) {
                     out.push(Event::Key(key, held_modifiers(modifiers)));
                 }
             }
             _ => {}
         }
+    }
+
+    /// The key as one of the numeric pad, if that is where its digit went down.
+    fn take_numpad(&mut self, physical_key: egui::Key) -> Option<Key> {
+        let digit = digit_of(physical_key).filter(|digit| self.numpad.front() == Some(digit))?;
+        self.numpad.pop_front();
+        Some(Key::Numpad(digit))
+    }
+}
+
+impl Attention {
+    /// The editor's pointer at a position in the window, in points.
+    fn pointer_at(&self, position: egui::Pos2, modifiers: egui::Modifiers) -> Pointer {
+        let relative = position - self.rect.min;
+        Pointer {
+            position_px: DVec2::new(f64::from(relative.x), f64::from(relative.y)),
+            modifiers: held_modifiers(modifiers),
+        }
+    }
+}
+
+/// Lines that one unit of a wheel scrolls.
+fn lines_of(unit: MouseWheelUnit) -> f64 {
+    match unit {
+        MouseWheelUnit::Point => 1.0 / POINTS_PER_LINE,
+        MouseWheelUnit::Line => 1.0,
+        MouseWheelUnit::Page => 10.0,
     }
 }
 

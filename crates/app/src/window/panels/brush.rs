@@ -30,68 +30,73 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         .num_columns(2)
         .spacing([8.0, 4.0])
         .show(ui, |ui| match view.stroke_shape {
-            StrokeShape::Brush => {
-                let label = ui.label("Radius");
-                let mut radius_px = view.brush_radius_px;
-                let slider = number_field(ui, &mut radius_px, |ui, radius_px| {
-                    let slider = Slider::new(radius_px, 4.0..=200.0).suffix(" px").fixed_decimals(0);
-                    ui.add(slider.update_while_editing(false))
-                });
-                let slider = slider
-                    .labelled_by(label.id)
-                    .on_hover_text("[ and ] make it smaller and larger.");
-                if slider.changed() {
-                    commands.push(Command::SetBrushRadius(radius_px));
-                }
-                ui.end_row();
-                ui.label("Measured");
-                const METRICS: [(BrushMetric, &str, &str); 3] = [
-                    (
-                        BrushMetric::Screen,
-                        "as seen",
-                        "What the disc on the screen covers and faces you.",
-                    ),
-                    (
-                        BrushMetric::Surface,
-                        "along surface",
-                        "What is near along the surface: into folds and round edges, seen or not.",
-                    ),
-                    (
-                        BrushMetric::Through,
-                        "through",
-                        "Everything that the disc on the screen covers, however far behind.",
-                    ),
-                ];
-                if let Some(metric) = choices(ui, view.brush_metric, &METRICS) {
-                    commands.push(Command::SetBrushMetric(metric));
-                }
-                ui.end_row();
-            }
-            StrokeShape::Lasso | StrokeShape::Box => {
-                ui.label("Takes");
-                const DEPTHS: [(Depth, &str, &str); 2] = [
-                    (
-                        Depth::Visible,
-                        "what is seen",
-                        "Only what faces you and is hidden by nothing.",
-                    ),
-                    (
-                        Depth::Through,
-                        "all through",
-                        "Everything inside, to the back of the model.",
-                    ),
-                ];
-                if let Some(depth) = choices(ui, view.depth, &DEPTHS) {
-                    commands.push(Command::SetDepth(depth));
-                }
-                ui.end_row();
-            }
+            StrokeShape::Brush => brush_rows(ui, view.brush_radius_px, view.brush_metric, commands),
+            StrokeShape::Lasso | StrokeShape::Box => depth_row(ui, view.depth, commands),
             StrokeShape::Component => {}
         });
     if view.tool == ToolMode::PaintStiffness {
         ui.add_space(4.0);
         stiffness(ui, editor, &view.stiffness_brush, view.pressure, commands);
     }
+}
+
+/// The brush's radius, and how distance from its centre is measured.
+fn brush_rows(ui: &mut egui::Ui, mut radius_px: f64, metric: BrushMetric, commands: &mut Outbox) {
+    let label = ui.label("Radius");
+    let slider = number_field(ui, &mut radius_px, |ui, radius_px| {
+        let slider = Slider::new(radius_px, 4.0..=200.0).suffix(" px").fixed_decimals(0);
+        ui.add(slider.update_while_editing(false))
+    });
+    let slider = slider
+        .labelled_by(label.id)
+        .on_hover_text("[ and ] make it smaller and larger.");
+    if slider.changed() {
+        commands.push(Command::SetBrushRadius(radius_px));
+    }
+    ui.end_row();
+    ui.label("Measured");
+    const METRICS: [(BrushMetric, &str, &str); 3] = [
+        (
+            BrushMetric::Screen,
+            "as seen",
+            "What the disc on the screen covers and faces you.",
+        ),
+        (
+            BrushMetric::Surface,
+            "along surface",
+            "What is near along the surface: into folds and round edges, seen or not.",
+        ),
+        (
+            BrushMetric::Through,
+            "through",
+            "Everything that the disc on the screen covers, however far behind.",
+        ),
+    ];
+    if let Some(metric) = choices(ui, metric, &METRICS) {
+        commands.push(Command::SetBrushMetric(metric));
+    }
+    ui.end_row();
+}
+
+/// How far a lasso or a box reaches into the model.
+fn depth_row(ui: &mut egui::Ui, depth: Depth, commands: &mut Outbox) {
+    ui.label("Takes");
+    const DEPTHS: [(Depth, &str, &str); 2] = [
+        (
+            Depth::Visible,
+            "what is seen",
+            "Only what faces you and is hidden by nothing.",
+        ),
+        (
+            Depth::Through,
+            "all through",
+            "Everything inside, to the back of the model.",
+        ),
+    ];
+    if let Some(depth) = choices(ui, depth, &DEPTHS) {
+        commands.push(Command::SetDepth(depth));
+    }
+    ui.end_row();
 }
 
 fn stiffness(ui: &mut egui::Ui, editor: &Editor, brush: &StiffnessBrush, pressure: Option<f64>, commands: &mut Outbox) {
