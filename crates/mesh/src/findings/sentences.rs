@@ -57,73 +57,41 @@ struct Wording {
 impl Wording {
     /// The wording of a kind; `None` for the kinds whose sentence says more than that.
     fn of(kind: FindingKind) -> Option<Self> {
-        let vertices = ["vertex", "vertices"];
-        let triangles = ["triangle", "triangles"];
-        let edges = ["edge", "edges"];
-        let (nouns, at, predicates) = match kind {
-            FindingKind::NonFiniteVertices => (
-                vertices,
-                "",
-                [
-                    "has a position that is not a finite number and was set aside",
-                    "have positions that are not finite numbers and were set aside",
-                ],
-            ),
-            FindingKind::NonFiniteTriangles => (
-                triangles,
-                "",
-                [
-                    "uses such a vertex and was left out",
-                    "use such vertices and were left out",
-                ],
-            ),
-            FindingKind::UnreferencedVertices => (
-                vertices,
-                "",
-                [
-                    "is used by no triangle and keeps its place",
-                    "are used by no triangle and keep their places",
-                ],
-            ),
-            FindingKind::CollapsedTriangles => (
-                triangles,
-                "",
-                [
-                    "has two corners in one place and was left out",
-                    "have two corners in one place and were left out",
-                ],
-            ),
-            FindingKind::ZeroAreaTriangles => (triangles, "", ["has no area", "have no area"]),
-            FindingKind::DuplicateTriangles => (
-                triangles,
-                "",
-                [
-                    "repeats an earlier one and was left out",
-                    "repeat earlier ones and were left out",
-                ],
-            ),
-            FindingKind::NonManifoldEdges => (
-                edges,
-                AT_VERTEX,
-                ["has more than two triangles", "have more than two triangles"],
-            ),
-            FindingKind::NonManifoldVertices => (
-                vertices,
-                "",
-                [
-                    "joins parts that share nothing else there",
-                    "join parts that share nothing else there",
-                ],
-            ),
-            FindingKind::MisorientedEdges => (
-                edges,
-                AT_VERTEX,
-                [
-                    "lies between triangles that disagree about which side is outside",
-                    "lie between triangles that disagree about which side is outside",
-                ],
-            ),
-            FindingKind::InsideOutComponents => (
+        let of_vertices = |predicates| Self::new(["vertex", "vertices"], "", predicates);
+        let of_triangles = |predicates| Self::new(["triangle", "triangles"], "", predicates);
+        let of_edges = |predicates| Self::new(["edge", "edges"], AT_VERTEX, predicates);
+        Some(match kind {
+            FindingKind::NonFiniteVertices => of_vertices([
+                "has a position that is not a finite number and was set aside",
+                "have positions that are not finite numbers and were set aside",
+            ]),
+            FindingKind::NonFiniteTriangles => of_triangles([
+                "uses such a vertex and was left out",
+                "use such vertices and were left out",
+            ]),
+            FindingKind::UnreferencedVertices => of_vertices([
+                "is used by no triangle and keeps its place",
+                "are used by no triangle and keep their places",
+            ]),
+            FindingKind::CollapsedTriangles => of_triangles([
+                "has two corners in one place and was left out",
+                "have two corners in one place and were left out",
+            ]),
+            FindingKind::ZeroAreaTriangles => of_triangles(["has no area", "have no area"]),
+            FindingKind::DuplicateTriangles => of_triangles([
+                "repeats an earlier one and was left out",
+                "repeat earlier ones and were left out",
+            ]),
+            FindingKind::NonManifoldEdges => of_edges(["has more than two triangles", "have more than two triangles"]),
+            FindingKind::NonManifoldVertices => of_vertices([
+                "joins parts that share nothing else there",
+                "join parts that share nothing else there",
+            ]),
+            FindingKind::MisorientedEdges => of_edges([
+                "lies between triangles that disagree about which side is outside",
+                "lie between triangles that disagree about which side is outside",
+            ]),
+            FindingKind::InsideOutComponents => Self::new(
                 ["closed part", "closed parts"],
                 AT_VERTEX,
                 [
@@ -131,7 +99,7 @@ impl Wording {
                     "are inside out: their triangles face inwards",
                 ],
             ),
-            FindingKind::LooseBits => (
+            FindingKind::LooseBits => Self::new(
                 ["loose bit", "loose bits"],
                 AT_VERTEX,
                 [
@@ -140,8 +108,11 @@ impl Wording {
                 ],
             ),
             FindingKind::BoundaryEdges | FindingKind::BoundaryLoops | FindingKind::Components => return None,
-        };
-        Some(Self { nouns, at, predicates })
+        })
+    }
+
+    fn new(nouns: [&'static str; 2], at: &'static str, predicates: [&'static str; 2]) -> Self {
+        Self { nouns, at, predicates }
     }
 }
 
