@@ -117,58 +117,8 @@ impl Trial {
             options.thickness = 10_f64.powf(chance.between(-3.0, 0.0));
             method = options.into();
         }
-        let around = |centre: DVec3, radius: f64| move |p: DVec3| p.distance(centre) <= radius * diagonal;
-        let ball = |chance: &mut Chance, radius: f64| around(model.surface.positions[chance.below(count)], radius);
-        let mut roles = vec![Role::Free; count];
-        let assign = |roles: &mut [Role], role: Role, within: &dyn Fn(DVec3) -> bool| {
-            for (own, &position) in roles.iter_mut().zip(&model.surface.positions) {
-                if within(position) {
-                    *own = role;
-                }
-            }
-        };
-        // A free region as a person would paint it, in most trials, and a few patches that are fixed.
-        if chance.share() < 0.8 {
-            let radius = chance.between(0.02, 0.35);
-            let region = ball(chance, radius);
-            assign(&mut roles, Role::Fixed, &|p| !region(p));
-        }
-        for _ in 0..chance.below(3) {
-            let radius = chance.between(0.0, 0.2);
-            assign(&mut roles, Role::Fixed, &ball(chance, radius));
-        }
-        // Handles are placed where vertices are free, so that there is something to solve for.
-        let wanted = 1 + chance.below(3) as u16;
-        for handle in 0..wanted {
-            let free: Vec<usize> = (0..count).filter(|&vertex| roles[vertex] == Role::Free).collect();
-            let centre = if free.is_empty() {
-                chance.below(count)
-            } else {
-                free[chance.below(free.len())]
-            };
-            let radius = if chance.share() < 0.2 {
-                0.0
-            } else {
-                chance.between(0.005, 0.1)
-            };
-            assign(
-                &mut roles,
-                Role::Handle(handle),
-                &around(model.surface.positions[centre], radius),
-            );
-        }
-        // A handle that a later one covers completely is dropped.
-        let mut numbers: Vec<Option<u16>> = vec![None; usize::from(wanted)];
-        let mut next = 0;
-        for role in &mut roles {
-            if let Role::Handle(handle) = role {
-                let number = numbers[usize::from(*handle)].get_or_insert_with(|| {
-                    next += 1;
-                    next - 1
-                });
-                *role = Role::Handle(*number);
-            }
-        }
+        let ball = |chance: &mut Chance, radius: f64| around(model, diagonal, chance.below(count), radius);
+        let (roles, handle_count) = random_roles(model, diagonal, chance);
         let mut stiffness = vec![1.0; count];
         if chance.share() < 0.4 {
             for _ in 0..1 + chance.below(3) {
@@ -181,7 +131,7 @@ impl Trial {
                 }
             }
         }
-        let soft = (0..next)
+        let soft = (0..handle_count)
             .map(|_| (chance.share() < 0.25).then(|| 10_f64.powf(chance.between(-4.0, 5.0))))
             .collect();
         let mut continuity = Vec::new();
@@ -198,7 +148,7 @@ impl Trial {
                 .collect();
         }
         let centre = model.bounds().unwrap().centre();
-        let aims = (0..next).map(|_| Aim::new(chance, centre, diagonal)).collect();
+        let aims = (0..handle_count).map(|_| Aim::new(chance, centre, diagonal)).collect();
         Self {
             method,
             roles,
@@ -319,6 +269,74 @@ impl Trial {
             }
         }
     }
+}
+
+/// Whether a position is within `radius` diagonals of a vertex.
+fn around(model: &Model, diagonal: f64, centre: usize, radius: f64) -> impl Fn(DVec3) -> bool + use<> {
+    let centre = model.surface.positions[centre];
+    move |p: DVec3| p.distance(centre) <= radius * diagonal
+}
+
+/// The role of each vertex, and how many handles there are.
+fn random_roles(model: &Model, diagonal: f64, chance: &mut Chance) -> (Vec<Role>, u16) {
+    let count = model.surface.positions.len();
+    let ball = |chance: &mut Chance, radius: f64| around(model, diagonal, chance.below(count), radius);
+    let mut roles = vec![Role::Free; count];
+    let assign = |roles: &mut [Role], role: Role, within: &dyn Fn(DVec3) -> bool| {
+        for (own, &position) in roles.iter_mut().zip(&model.surface.positions) {
+            if within(position) {
+                *own = role;
+            }
+        }
+    };
+    // A free region as a person would paint it, in most trials, and a few patches that are fixed.
+    if chance.share() < 0.8 {
+        let radius = chance.between(0.02, 0.35);
+        let region = ball(chance, radius);
+        assign(&mut roles, Role::Fixed, &|p| !region(p));
+    }
+    for _ in 0..chance.below(3) {
+        let radius = chance.between(0.0, 0.2);
+        assign(&mut roles, Role::Fixed, &ball(chance, radius));
+    }
+    // Handles are placed where vertices are free, so that there is something to solve for.
+    let wanted = 1 + chance.below(3) as u16;
+    for handle in 0..wanted {
+        let free: Vec<usize> = (0..count).filter(|&vertex| roles[vertex] == Role::Free).collect();
+        let centre = if free.is_empty() {
+            chance.below(count)
+        } else {
+            free[chance.below(free.len())]
+        };
+        let radius = if chance.share() < 0.2 {
+            0.0
+        } else {
+            chance.between(0.005, 0.1)
+        };
+        assign(
+            &mut roles,
+            Role::Handle(handle),
+            &around(model, diagonal, centre, radius),
+        );
+    }
+    let handle_count = without_covered(&mut roles, wanted);
+    (roles, handle_count)
+}
+
+/// Numbers anew those of `count` handles that no later one covers completely, and returns how many they are.
+fn without_covered(roles: &mut [Role], count: u16) -> u16 {
+    let mut numbers: Vec<Option<u16>> = vec![None; usize::from(count)];
+    let mut next = 0;
+    for role in roles {
+        if let Role::Handle(handle) = role {
+            let number = numbers[usize::from(*handle)].get_or_insert_with(|| {
+                next += 1;
+                next - 1
+            });
+            *role = Role::Handle(*number);
+        }
+    }
+    next
 }
 
 fn method(chance: &mut Chance) -> Method {
