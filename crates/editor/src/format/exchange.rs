@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use pliant_deform::{CONTINUITY_RANGE, Role};
 use pliant_mesh::Model;
 
@@ -120,8 +121,8 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
         let transform = without_pivot(handle.transform);
         document.handles.push(Handle {
             turn_deg: match transform {
-                HandleTransform::Trs { rotation, .. } => followed(glam::DVec3::ZERO, rotation),
-                HandleTransform::Matrix(_) => glam::DVec3::ZERO,
+                HandleTransform::Trs { rotation, .. } => followed(DVec3::ZERO, rotation),
+                HandleTransform::Matrix(_) => DVec3::ZERO,
             },
             transform,
             pivot: handle.pivot,
@@ -149,6 +150,16 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
 
 /// The transform without a pivot of its own: within a document the handle has it.
 pub(crate) fn without_pivot(transform: HandleTransform) -> HandleTransform {
+    pivoted(transform, None)
+}
+
+/// The handle's transform with the handle's pivot.
+pub(crate) fn with_pivot(handle: &Handle) -> HandleTransform {
+    pivoted(handle.transform, Some(handle.pivot))
+}
+
+/// A matrix has no pivot and stays as it is.
+fn pivoted(transform: HandleTransform, pivot: Option<DVec3>) -> HandleTransform {
     match transform {
         HandleTransform::Trs {
             translation,
@@ -159,26 +170,9 @@ pub(crate) fn without_pivot(transform: HandleTransform) -> HandleTransform {
             translation,
             rotation,
             scale,
-            pivot: None,
+            pivot,
         },
         HandleTransform::Matrix(_) => transform,
-    }
-}
-
-pub(crate) fn with_pivot(handle: &Handle) -> HandleTransform {
-    match handle.transform {
-        HandleTransform::Trs {
-            translation,
-            rotation,
-            scale,
-            ..
-        } => HandleTransform::Trs {
-            translation,
-            rotation,
-            scale,
-            pivot: Some(handle.pivot),
-        },
-        HandleTransform::Matrix(_) => handle.transform,
     }
 }
 
