@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pliant_editor::{Camera, Editor, Event, InlineExecutor, JobKind, Look, NamedView, Projection, Shading, UpAxis};
-use pliant_mesh::{Model, WeldOptions};
-use pliant_render::{Background, Frame, Headless, RenderError, Samples, SurfaceLine};
+use pliant_mesh::{Cancel, Model, WeldOptions};
+use pliant_render::{Background, Frame, Headless, RenderError, Renderer, Samples, Surface, SurfaceLine};
 
 use super::apply::read_edit;
 use super::arguments::{self, PictureSize, ProjectionName, RenderArguments, Up, View};
 use super::{Console, on_threads, print};
-use crate::drawing::{self, Drawing, Scale};
+use crate::drawing::{self, Drawing, Pose, Scale};
 use crate::engine::{self, Loaded};
 use crate::files::Destination;
 use crate::watch::Watch;
@@ -112,27 +112,8 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
     let mut renderer = Headless::new()
         .map_err(|error| AppError::System(error.to_string()))?
         .renderer;
-    let refuse = |error: RenderError| AppError::System(error.to_string());
-    let mut surface = drawing.upload(&renderer, &pose).map_err(refuse)?;
     let look = look(arguments);
-    let scale = drawing::field(look.shading).map(|field| (field, Scale::of(field, model)));
-    let colours = match &scale {
-        Some((field, scale)) => {
-            drawing::colours(*field, scale, model, &shape.displacements, shape.stiffness.as_deref())
-        }
-        None => shape.region_colours,
-    };
-    let colours = drawing::drawn_colours(model, &colours);
-    surface.update_regions(&renderer, &colours).map_err(refuse)?;
-    surface.update_lines(&renderer, &shape.outlines).map_err(refuse)?;
-    let mut notes = Vec::new();
-    if look.shading == Shading::Material {
-        let decoded = drawing.materials.decode(&watch.cancel);
-        let decoded = decoded.map_err(|_| AppError::Interrupted)?;
-        let materials = decoded.upload(&renderer).map_err(refuse)?;
-        surface.set_materials(materials).map_err(refuse)?;
-        notes = decoded.notes;
-    }
+    let Uploaded { surface, scale, notes } = upload(&renderer, &drawing, &pose, model, shape, &look, &watch.cancel)?;
     progress.set(0.3);
 
     let PictureSize { width, height } = arguments.size;
@@ -145,7 +126,7 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
         style.background = Background::Transparent;
     }
     let legend = match &scale {
-        Some((_, scale)) => Some(legend::picture(&renderer, scale, pixels_per_point).map_err(refuse)?),
+        Some(scale) => Some(legend::picture(&renderer, scale, pixels_per_point).map_err(refuse)?),
         None => None,
     };
     let low = match camera.up {
@@ -180,6 +161,50 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
         progress.set(0.3 + 0.7 * (number + 1) as f32 / count as f32);
     }
     Ok(Pictures { pngs, notes })
+}
+
+/// What is on the device.
+struct Uploaded {
+    surface: Surface,
+    /// What the surface's colours stand for, if they are a field's.
+    scale: Option<Scale>,
+    /// What of the file's materials can't be shown, a sentence each.
+    notes: Vec<String>,
+}
+
+/// Uploads the surface with the shape's lines, and with what `look` shows on it: regions, a field, or the materials.
+fn upload(
+    renderer: &Renderer,
+    drawing: &Drawing,
+    pose: &Pose,
+    model: &Model,
+    shape: Shape,
+    look: &Look,
+    cancel: &Cancel,
+) -> Result<Uploaded, AppError> {
+    let mut surface = drawing.upload(renderer, pose).map_err(refuse)?;
+    let field = drawing::field(look.shading);
+    let scale = field.map(|field| Scale::of(field, model));
+    let colours = match field.zip(scale.as_ref()) {
+        Some((field, scale)) => drawing::colours(field, scale, model, &shape.displacements, shape.stiffness.as_deref()),
+        None => shape.region_colours,
+    };
+    let colours = drawing::drawn_colours(model, &colours);
+    surface.update_regions(renderer, &colours).map_err(refuse)?;
+    surface.update_lines(renderer, &shape.outlines).map_err(refuse)?;
+    let mut notes = Vec::new();
+    if look.shading == Shading::Material {
+        let decoded = drawing.materials.decode(cancel);
+        let decoded = decoded.map_err(|_| AppError::Interrupted)?;
+        let materials = decoded.upload(renderer).map_err(refuse)?;
+        surface.set_materials(materials).map_err(refuse)?;
+        notes = decoded.notes;
+    }
+    Ok(Uploaded { surface, scale, notes })
+}
+
+fn refuse(error: RenderError) -> AppError {
+    AppError::System(error.to_string())
 }
 
 /// Where the eye of the first picture is: it sees all of the rest shape, whatever the edit does, so that before and
