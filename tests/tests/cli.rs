@@ -33,6 +33,43 @@ fn wrong_arguments_have_status_2() {
     run(apply.into_iter().chain(["o.ply", "--method", "magic"])).refused(2, &["magic", "bilaplacian"]);
     run(apply.into_iter().chain(["o.doc"])).refused(2, &["o.doc", ".glb"]);
     run(apply.into_iter().chain(["o.ply", "--report", "o.ply"])).refused(2, &["--report", "--output"]);
+    let compare = ["compare", "a.ply", "--edit", "e.json", "--output", "o.png", "--methods"];
+    run(compare.into_iter().chain(["arap,magic"])).refused(2, &["--methods", "magic", "bilaplacian"]);
+    run(compare.into_iter().chain(["arap,primo,arap"])).refused(2, &["arap", "twice"]);
+    run(compare.into_iter().chain(["arap", "--report", "o.png"])).refused(2, &["--report", "--output"]);
+    run([
+        "compare",
+        "a.ply",
+        "--edit",
+        "e.json",
+        "--output",
+        "o.jpg",
+        "--methods",
+        "arap",
+    ])
+    .refused(2, &["o.jpg", ".png"]);
+}
+
+/// Where every method refuses the edit there is no sheet, and the refusal says why.
+#[test]
+fn a_comparison_of_methods_that_all_refuse_is_refused() {
+    let folder = Folder::new();
+    let file = folder.write_mesh("mesh.off", &shapes::icosphere(2));
+    let mut wrong = bend(&json!({}));
+    wrong["handles"][0]["select"] = json!({ "vertices": [999_999] });
+    let edit = folder.write("edit.json", &wrong.to_string());
+    let out = folder.at("sheet.png");
+    let line = [
+        "compare".as_ref(),
+        file.as_os_str(),
+        "--edit".as_ref(),
+        edit.as_os_str(),
+        "--methods=arap,primo".as_ref(),
+        "--output".as_ref(),
+        out.as_os_str(),
+    ];
+    run(line).refused(1, &["999999"]);
+    assert!(!out.exists());
 }
 
 #[test]

@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 use pliant_app::drawing::{self, Drawing, Field, Scale};
-use pliant_app::legend;
+use pliant_app::{legend, painting};
 use pliant_editor::{
     Button, Command, Editor, Event, GizmoMode, GizmoPart, HandleId, InlineExecutor, Modifiers, NamedView, Pointer,
     Reach, Shading, ToolMode,
@@ -250,7 +250,7 @@ fn legends() {
         };
         let scale = Scale::of(field, &stage.model);
         let legend = legend::picture(&stage.renderer, &scale, 0.6).unwrap();
-        legend::composite(&mut image, &legend, 3);
+        painting::composite(&mut image, &legend, [3; 2]);
         compare(&stage.renderer, name, &image);
     }
 }

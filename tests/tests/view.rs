@@ -166,6 +166,57 @@ fn rendered(folder: &Folder, name: &str, arguments: &[&str]) -> image::RgbaImage
     }
 }
 
+/// A sheet has a cell for each method, equal where the methods are the same and different where they are not, and its
+/// report tells what `apply` would.
+#[test]
+fn a_comparison_shows_each_method_beside_the_others_and_tells_what_apply_does() {
+    let Some(_) = renderer() else { return };
+    let folder = Folder::new();
+    let (sheet, report) = (folder.at("sheet.png"), folder.at("report.json"));
+    let [file, edit] = ["creature.glb", "creature.edit.json"].map(|name| assets().join(name));
+    let compare = |methods: &str| {
+        let line = ["compare", "--methods", methods, "--size", "480x200", "--output"].map(std::ffi::OsString::from);
+        let rest = [
+            sheet.clone(),
+            "--report".into(),
+            report.clone(),
+            "--edit".into(),
+            edit.clone(),
+            file.clone(),
+        ];
+        run(line.into_iter().chain(rest.map(Into::into))).done();
+        let told: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&report).unwrap()).unwrap();
+        (picture(&sheet), told)
+    };
+    let (picture, told) = compare("bilaplacian,arap");
+    assert_eq!(picture.dimensions(), (480, 200));
+    let cell = |number: u32| image::imageops::crop_imm(&picture, 240 * number, 0, 240, 150).to_image();
+    assert!(cell(0) != cell(1));
+    let bent = folder.at("bent.glb");
+    let words = ["apply", "--method", "arap", "--edit"]
+        .map(std::ffi::OsString::from)
+        .into_iter();
+    let applied = folder.at("applied.json");
+    let rest = [
+        edit.clone(),
+        "--output".into(),
+        bent,
+        "--report".into(),
+        applied.clone(),
+        file.clone(),
+    ];
+    run(words.chain(rest.map(Into::into))).done();
+    let applied: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(applied).unwrap()).unwrap();
+    for member in ["distortion", "energy", "iterations", "free_vertices", "converged"] {
+        assert_eq!(told["methods"]["arap"][member], applied[member], "{member}");
+    }
+    let errors = ["bilaplacian", "arap"].map(|name| told["methods"][name]["detail_error_of_best"].as_f64().unwrap());
+    assert!(
+        errors.contains(&1.0) && errors.iter().all(|error| *error >= 1.0),
+        "{errors:?}"
+    );
+}
+
 #[test]
 fn every_shading_gives_a_picture_of_its_own() {
     let Some(_) = renderer() else { return };

@@ -109,7 +109,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     let solution = if apply.edit.changes_nothing() {
         Solution::at_rest(model, &setup)
     } else {
-        solve(apply, model, &setup, watch)?
+        solve(apply.file, apply.frames, model, &setup, watch)?
     };
     if watch.cancel.is_cancelled() {
         return Err(AppError::Interrupted);
@@ -148,7 +148,43 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     Ok(report)
 }
 
+/// Solves an edit, whose setup this is, on a file that is read, and reports on it; nothing is saved.
+///
+/// # Errors
+/// Any refusal of the binding or of the result, naming `file`.
+pub fn solved(
+    file: &Path,
+    edit: &Beginning,
+    frames: Option<usize>,
+    loaded: &Loaded,
+    setup: &Setup,
+    watch: &Watch,
+) -> Result<Solved, AppError> {
+    let solution = if edit.changes_nothing() {
+        Solution::at_rest(&loaded.model, setup)
+    } else {
+        solve(file, frames, &loaded.model, setup, watch)?
+    };
+    if watch.cancel.is_cancelled() {
+        return Err(AppError::Interrupted);
+    }
+    Ok(Solved {
+        surface_positions: solution.surface_positions.clone(),
+        report: report(loaded, setup, solution, FileTimes::default(), Vec::new()),
+    })
+}
+
+/// A shape and what is to be told of it.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// Of each surface vertex, in world space.
+    pub surface_positions: Vec<DVec3>,
+    /// Its report, without times of files.
+    pub report: Report,
+}
+
 /// How long the files took.
+#[derive(Default)]
 struct FileTimes {
     load_ms: f64,
     save_ms: f64,
@@ -219,15 +255,21 @@ impl Solution {
     }
 }
 
-fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Result<Solution, AppError> {
+fn solve(
+    file: &Path,
+    frames: Option<usize>,
+    model: &Model,
+    setup: &Setup,
+    watch: &Watch,
+) -> Result<Solution, AppError> {
     let start = Instant::now();
     let checked = setup.problem(model).check_tables(memory::budget());
-    checked.map_err(|error| refused(apply.file, model, error))?;
+    checked.map_err(|error| refused(file, model, error))?;
     let ordering = order(model, &setup.method, &watch.begin("ordering"), &watch.cancel)?;
     let order_ms = ms_since(start);
     let start = Instant::now();
     let mut bound = bind(
-        apply.file,
+        file,
         model,
         setup,
         ordering.as_ref(),
@@ -236,7 +278,7 @@ fn solve(apply: &Apply<'_>, model: &Model, setup: &Setup, watch: &Watch) -> Resu
     )?;
     let bind_ms = ms_since(start);
 
-    let bent = bend(apply, model, setup, &mut bound, watch)?;
+    let bent = bend(file, frames.unwrap_or(1), model, setup, &mut bound, watch)?;
     Ok(Solution {
         positions: bent.positions,
         surface_positions: bent.surface_positions,
@@ -268,13 +310,19 @@ struct Bent {
 }
 
 /// Takes the handles to their targets frame by frame.
-fn bend(apply: &Apply<'_>, model: &Model, setup: &Setup, bound: &mut Bound, watch: &Watch) -> Result<Bent, AppError> {
+fn bend(
+    file: &Path,
+    count: usize,
+    model: &Model,
+    setup: &Setup,
+    bound: &mut Bound,
+    watch: &Watch,
+) -> Result<Bent, AppError> {
     let refuse = |error: SolveError| AppError::Solve {
-        file: apply.file.to_owned(),
+        file: file.to_owned(),
         source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
     };
     let progress = watch.begin("bending");
-    let count = apply.frames.unwrap_or(1);
     let mut displacements = vec![DVec3::ZERO; model.surface.positions.len()];
     let mut from_file = Vec::new();
     let mut positions = Vec::new();

@@ -24,7 +24,8 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     } = arguments;
     let output_name = output.to_string_lossy();
     Format::of_name(&output_name).map_err(|error| AppError::Arguments(format!("--output: {error}")))?;
-    let method = method.as_deref().map(method_named).transpose()?;
+    let method = method.as_deref();
+    let method = method.map(|name| method_named("--method", name)).transpose()?;
     files::refuse_shared(("--output", output), [("--edit", &**edit_path)])?;
     if let Some(report) = report {
         let others = [("FILE", &**file), ("--edit", edit_path), ("--output", output)];
@@ -68,9 +69,10 @@ pub(super) fn read_edit(path: &Path) -> Result<Beginning, AppError> {
     })
 }
 
-fn method_named(name: &str) -> Result<Method, AppError> {
+/// The method of this name, given to `option`.
+pub(super) fn method_named(option: &str, name: &str) -> Result<Method, AppError> {
     Method::from_name(name).ok_or_else(|| {
         let names: Vec<&str> = METHODS.iter().map(|declaration| declaration.name).collect();
-        AppError::Arguments(format!("--method {name} is not known: use one of {}", names.join(", ")))
+        AppError::Arguments(format!("{option} {name} is not known: use one of {}", names.join(", ")))
     })
 }

@@ -34,6 +34,8 @@ pub(crate) enum Command {
     Apply(ApplyArguments),
     /// Draw a file as a picture
     Render(RenderArguments),
+    /// Draw one edit by several methods into one picture, with their figures
+    Compare(CompareArguments),
     /// Say in words what differs between two files
     Diff(DiffArguments),
 }
@@ -85,6 +87,43 @@ pub(crate) struct ApplyArguments {
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
     /// How many threads to use (at most four a core); without it, all cores. The result is the same whatever their
+    /// number
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=65_536))]
+    pub threads: Option<usize>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct CompareArguments {
+    /// The file to bend: glb, gltf, obj, ply, stl or off
+    pub file: PathBuf,
+    /// The edit
+    #[arg(long, value_name = "EDIT.json")]
+    pub edit: PathBuf,
+    /// The methods to compare, with their defaults; the edit's own method keeps its options
+    #[arg(long, value_name = "NAME", value_delimiter = ',', required = true, num_args = 1)]
+    pub methods: Vec<String>,
+    /// The picture to write: a cell for each method
+    #[arg(long, value_name = "SHEET.png")]
+    pub output: PathBuf,
+    /// Where to write each method's report
+    #[arg(long, value_name = "REPORT.json")]
+    pub report: Option<PathBuf>,
+    /// Replay the edit as a drag of N frames (1 to 100000) instead of one solve
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=100_000))]
+    pub frames: Option<usize>,
+    /// The picture's size in pixels
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1600x1000")]
+    pub size: PictureSize,
+    /// The axis that points up
+    #[arg(long, value_enum, default_value = "y")]
+    pub up: Up,
+    /// From where to look
+    #[arg(long, value_enum, default_value = "three-quarter")]
+    pub view: View,
+    /// How to colour the surface
+    #[arg(long, value_enum, default_value = "clay")]
+    pub shading: Shading,
+    /// How many threads to use (at most four a core); without it, all cores. The shapes are the same whatever their
     /// number
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=65_536))]
     pub threads: Option<usize>,

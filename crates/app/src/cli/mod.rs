@@ -2,6 +2,7 @@
 
 mod apply;
 mod arguments;
+mod compare;
 mod diff;
 mod info;
 mod interrupt;
@@ -57,6 +58,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Info(arguments)) => info::run(&arguments, console),
             Some(Command::Apply(arguments)) => apply::run(&arguments, console),
             Some(Command::Render(arguments)) => render::run(&arguments, console),
+            Some(Command::Compare(arguments)) => compare::run(&arguments, console),
             Some(Command::Diff(arguments)) => diff::run(&arguments, console),
             None => crate::window::run(arguments.file),
         },

@@ -1,11 +1,13 @@
 //! `pliant render`: a picture of a file, at rest or with an edit applied, as the window shows it.
 
 use std::f64::consts::TAU;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use pliant_editor::{Camera, Editor, Event, InlineExecutor, JobKind, Look, NamedView, Projection, Shading, UpAxis};
+use pliant_editor::{
+    Beginning, Camera, Editor, Event, InlineExecutor, JobKind, Look, NamedView, Projection, Shading, UpAxis,
+};
 use pliant_mesh::{Cancel, Model, WeldOptions};
 use pliant_render::{Background, Frame, Headless, RenderError, Renderer, Samples, Surface, SurfaceLine};
 
@@ -16,19 +18,10 @@ use crate::drawing::{self, Drawing, Pose, Scale};
 use crate::engine::{self, Loaded};
 use crate::files::Destination;
 use crate::watch::Watch;
-use crate::{AppError, files, legend, picture_file};
+use crate::{AppError, files, legend, painting, picture_file};
 
 pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Result<(), AppError> {
-    let output = &arguments.output;
-    if !output
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
-    {
-        let output = files::shown(output);
-        return Err(AppError::Arguments(format!(
-            "--output {output} is no .png: pictures are written as PNG"
-        )));
-    }
+    check_png(&arguments.output)?;
     let watch = &console.watch;
     let paths = paths(arguments);
     let given = [("FILE", &*arguments.file)].into_iter();
@@ -46,6 +39,18 @@ pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Res
     console.staging.stage(files)?.commit()?;
     let lines: String = notes.iter().map(|note| format!("note: {note}\n")).collect();
     print(console.out, &lines)
+}
+
+/// Refuses a name that is no picture's.
+pub(super) fn check_png(output: &Path) -> Result<(), AppError> {
+    let extension = output.extension();
+    if extension.is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        return Ok(());
+    }
+    let output = files::shown(output);
+    Err(AppError::Arguments(format!(
+        "--output {output} is no .png: pictures are written as PNG"
+    )))
 }
 
 /// What is drawn.
@@ -71,7 +76,21 @@ fn paths(arguments: &RenderArguments) -> Vec<PathBuf> {
 
 /// How the arguments want the surface shown.
 fn look(arguments: &RenderArguments) -> Look {
-    let shading = match arguments.shading {
+    Look {
+        shading: shading(arguments.shading),
+        clay: arguments.clay,
+        flat: arguments.flat,
+        wireframe: arguments.wireframe,
+        borders: arguments.borders,
+        regions: arguments.shading == arguments::Shading::Regions,
+        outlines: arguments.outlines || arguments.shading == arguments::Shading::Regions,
+        grid: arguments.grid,
+    }
+}
+
+/// The editor's shading for that of the arguments.
+pub(super) fn shading(shading: arguments::Shading) -> Shading {
+    match shading {
         arguments::Shading::Clay | arguments::Shading::Regions => Shading::Clay,
         arguments::Shading::Material => Shading::Material,
         arguments::Shading::Stiffness => Shading::Stiffness,
@@ -80,16 +99,6 @@ fn look(arguments: &RenderArguments) -> Look {
         arguments::Shading::Curvature => Shading::Curvature,
         arguments::Shading::Zebra => Shading::Zebra,
         arguments::Shading::Normals => Shading::Normals,
-    };
-    Look {
-        shading,
-        clay: arguments.clay,
-        flat: arguments.flat,
-        wireframe: arguments.wireframe,
-        borders: arguments.borders,
-        regions: arguments.shading == arguments::Shading::Regions,
-        outlines: arguments.outlines || arguments.shading == arguments::Shading::Regions,
-        grid: arguments.grid,
     }
 }
 
@@ -103,7 +112,13 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
     let Some(bounds) = model.bounds().filter(|_| !model.surface.triangles.is_empty()) else {
         return Err(AppError::NoTriangles(arguments.file.clone()));
     };
-    let shape = shape(arguments, &loaded, watch)?;
+    let edit = arguments
+        .edit
+        .as_deref()
+        .map(|path| resolved(path, model))
+        .transpose()?;
+    let posed = if edit.is_some() { Posed::Bent } else { Posed::AtRest };
+    let shape = Shape::of(&arguments.file, &loaded, edit, posed, watch)?;
     let progress = watch.begin("drawing");
     let drawing = Drawing::new(model, loaded.scene.appearance());
     let pose = drawing.pose(model, &shape.displacements);
@@ -113,7 +128,7 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
         .map_err(|error| AppError::System(error.to_string()))?
         .renderer;
     let look = look(arguments);
-    let Uploaded { surface, scale, notes } = upload(&renderer, &drawing, &pose, model, shape, &look, &watch.cancel)?;
+    let Uploaded { surface, scale, notes } = upload(&renderer, &drawing, &pose, model, &shape, &look, &watch.cancel)?;
     progress.set(0.3);
 
     let PictureSize { width, height } = arguments.size;
@@ -155,7 +170,7 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
             .draw_to_image([width, height], Samples::Four, &frame)
             .map_err(refuse)?;
         if let Some(legend) = &legend {
-            legend::composite(&mut image, legend, height / 50);
+            painting::composite(&mut image, legend, [height / 50; 2]);
         }
         pngs.push(picture_file::png(image)?);
         progress.set(0.3 + 0.7 * (number + 1) as f32 / count as f32);
@@ -164,21 +179,21 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
 }
 
 /// What is on the device.
-struct Uploaded {
-    surface: Surface,
+pub(super) struct Uploaded {
+    pub surface: Surface,
     /// What the surface's colours stand for, if they are a field's.
-    scale: Option<Scale>,
+    pub scale: Option<Scale>,
     /// What of the file's materials can't be shown, a sentence each.
-    notes: Vec<String>,
+    pub notes: Vec<String>,
 }
 
 /// Uploads the surface with the shape's lines, and with what `look` shows on it: regions, a field, or the materials.
-fn upload(
+pub(super) fn upload(
     renderer: &Renderer,
     drawing: &Drawing,
     pose: &Pose,
     model: &Model,
-    shape: Shape,
+    shape: &Shape,
     look: &Look,
     cancel: &Cancel,
 ) -> Result<Uploaded, AppError> {
@@ -187,7 +202,7 @@ fn upload(
     let scale = field.map(|field| Scale::of(field, model));
     let colours = match field.zip(scale.as_ref()) {
         Some((field, scale)) => drawing::colours(field, scale, model, &shape.displacements, shape.stiffness.as_deref()),
-        None => shape.region_colours,
+        None => shape.region_colours.clone(),
     };
     let colours = drawing::drawn_colours(model, &colours);
     surface.update_regions(renderer, &colours).map_err(refuse)?;
@@ -203,90 +218,111 @@ fn upload(
     Ok(Uploaded { surface, scale, notes })
 }
 
-fn refuse(error: RenderError) -> AppError {
+pub(super) fn refuse(error: RenderError) -> AppError {
     AppError::System(error.to_string())
 }
 
 /// Where the eye of the first picture is: it sees all of the rest shape, whatever the edit does, so that before and
 /// after compare. `diagonal` is the model's.
 fn camera(arguments: &RenderArguments, model: &Model, diagonal: f64, size_px: DVec2) -> Camera {
-    let mut camera = Camera {
-        up: up(arguments.up),
-        scale: diagonal,
-        projection: match arguments.projection {
-            ProjectionName::Perspective => Projection::Perspective,
-            ProjectionName::Orthographic => Projection::Orthographic,
-        },
-        ..Camera::default()
+    let mut camera = looking(arguments.up, arguments.view, diagonal);
+    camera.projection = match arguments.projection {
+        ProjectionName::Perspective => Projection::Perspective,
+        ProjectionName::Orthographic => Projection::Orthographic,
     };
-    camera.look_from(view(arguments.view));
     camera.frame(&model.surface.positions, size_px);
     camera.distance *= ROOM_FOR_THE_EDIT;
+    camera
+}
+
+/// A camera that looks from this side at a model of this diagonal.
+pub(super) fn looking(up_axis: Up, from: View, diagonal: f64) -> Camera {
+    let mut camera = Camera {
+        up: up(up_axis),
+        scale: diagonal,
+        ..Camera::default()
+    };
+    camera.look_from(view(from));
     camera
 }
 
 /// How much farther away the eye is than for the rest shape alone, so that the bent shape is seen whole, too.
 const ROOM_FOR_THE_EDIT: f64 = 1.2;
 
+/// Reads an edit that fits the model, with the same refusals as `apply`: the editor itself would accept any edit.
+pub(super) fn resolved(path: &Path, model: &Model) -> Result<Beginning, AppError> {
+    let edit = read_edit(path)?;
+    edit.resolve(model).map_err(|source| AppError::Edit {
+        edit: path.to_owned(),
+        source,
+    })?;
+    Ok(edit)
+}
+
 /// What is drawn.
-struct Shape {
-    displacements: Arc<Vec<DVec3>>,
+pub(super) struct Shape {
+    pub displacements: Arc<Vec<DVec3>>,
     region_colours: Vec<[u8; 4]>,
     outlines: Vec<SurfaceLine>,
     stiffness: Option<Vec<f64>>,
 }
 
-/// The shape and the regions that the window shows when it has opened the file with the edit and come to rest.
-fn shape(arguments: &RenderArguments, loaded: &Loaded, watch: &Watch) -> Result<Shape, AppError> {
-    let edit = arguments.edit.as_deref().map(read_edit).transpose()?;
-    if let (Some(edit), Some(path)) = (&edit, &arguments.edit) {
-        // The same refusals as `apply`; the editor itself would accept such an edit.
-        edit.resolve(&loaded.model).map_err(|source| AppError::Edit {
-            edit: path.clone(),
-            source,
-        })?;
-    }
-    let is_bent = edit.is_some();
-    let progress = watch.begin("bending");
-    let executor = InlineExecutor::new();
-    let mut editor = Editor::new(Box::new(executor.clone()));
-    editor.handle(Event::Opened {
-        model: Arc::clone(&loaded.model),
-        name: String::new(),
-        beginning: edit,
-    });
-    while let Some(kind) = executor.waiting().first().copied() {
-        if watch.cancel.is_cancelled() {
-            return Err(AppError::Interrupted);
+/// Which shape of an edit is asked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Posed {
+    /// The file's, with the edit's regions; nothing is solved.
+    AtRest,
+    /// The edit's.
+    Bent,
+}
+
+impl Shape {
+    /// The shape and the regions that the window shows when it has opened the file with the edit and come to rest.
+    pub fn of(
+        file: &Path,
+        loaded: &Loaded,
+        edit: Option<Beginning>,
+        posed: Posed,
+        watch: &Watch,
+    ) -> Result<Self, AppError> {
+        let progress = watch.begin("bending");
+        let executor = InlineExecutor::new();
+        let mut editor = Editor::new(Box::new(executor.clone()));
+        editor.handle(Event::Opened {
+            model: Arc::clone(&loaded.model),
+            name: String::new(),
+            beginning: edit,
+        });
+        while let Some(kind) = executor.waiting().first().copied() {
+            if watch.cancel.is_cancelled() {
+                return Err(AppError::Interrupted);
+            }
+            let Some(job) = executor.take(kind) else { break };
+            // A picture needs no hierarchy for rays, and a shape at rest no solver: without an ordering nothing is bound.
+            let is_needed = match kind {
+                JobKind::Pick => false,
+                JobKind::Order => posed == Posed::Bent,
+                _ => true,
+            };
+            if is_needed {
+                editor.handle(Event::JobDone(job.run()));
+            }
         }
-        let Some(job) = executor.take(kind) else { break };
-        // A picture needs no hierarchy for rays, and a shape at rest no solver.
-        let is_needed = match kind {
-            JobKind::Pick => false,
-            JobKind::Order => is_bent,
-            _ => true,
-        };
-        if is_needed {
-            editor.handle(Event::JobDone(job.run()));
+        progress.set(1.0);
+        let seen = editor.view();
+        if let Some(problem) = seen.problem {
+            return Err(AppError::System(format!("{}: {problem}", files::shown(file))));
         }
+        let displacements = Arc::clone(seen.displacements);
+        let mut region_colours = Vec::new();
+        editor.region_colours(&mut region_colours);
+        Ok(Self {
+            displacements,
+            region_colours,
+            outlines: drawing::outlines(&editor, &loaded.model),
+            stiffness: editor.document().stiffness().map(<[f64]>::to_vec),
+        })
     }
-    progress.set(1.0);
-    let seen = editor.view();
-    if let Some(problem) = seen.problem {
-        return Err(AppError::System(format!(
-            "{}: {problem}",
-            files::shown(&arguments.file)
-        )));
-    }
-    let displacements = Arc::clone(seen.displacements);
-    let mut region_colours = Vec::new();
-    editor.region_colours(&mut region_colours);
-    Ok(Shape {
-        displacements,
-        region_colours,
-        outlines: drawing::outlines(&editor, &loaded.model),
-        stiffness: editor.document().stiffness().map(<[f64]>::to_vec),
-    })
 }
 
 fn up(up: Up) -> UpAxis {

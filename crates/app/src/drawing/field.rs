@@ -1,7 +1,7 @@
 //! Scalar fields on the surface as colours: deformation from the rest shape, curvature, stiffness.
 
 use glam::DVec3;
-use pliant_mesh::{Model, SurfaceVertex, cotangents, edge_lengths, face_area, mixed_corner_areas};
+use pliant_mesh::{Model, SurfaceVertex, face_area, mean_curvatures};
 use rayon::prelude::*;
 
 /// A scalar field on the surface.
@@ -161,7 +161,10 @@ pub fn colours(
                 .map(|v| colour(ratio(v)))
                 .collect()
         }
-        Field::Curvature => mean_curvatures(model, &moved).into_par_iter().map(colour).collect(),
+        Field::Curvature => mean_curvatures(&model.surface, &model.topology, &moved)
+            .into_par_iter()
+            .map(colour)
+            .collect(),
     }
 }
 
@@ -181,50 +184,9 @@ fn stretch(model: &Model, moved: &[DVec3], v: SurfaceVertex) -> f64 {
     worst
 }
 
-/// Mean curvature of each vertex by the cotangent formula ([MDSB03], eq. 8), in 1/unit; 0 at the boundary and where the
-/// area is zero.
-fn mean_curvatures(model: &Model, positions: &[DVec3]) -> Vec<f64> {
-    let triangles = &model.surface.triangles;
-    let faces: Vec<([f64; 3], [f64; 3], DVec3)> = triangles
-        .par_iter()
-        .map(|triangle| {
-            let corners = triangle.map(|corner| positions[corner.index()]);
-            let lengths = edge_lengths(corners);
-            let [a, b, c] = corners;
-            (cotangents(lengths), mixed_corner_areas(lengths), (b - a).cross(c - a))
-        })
-        .collect();
-    (0..positions.len() as u32)
-        .into_par_iter()
-        .map(|v| {
-            let v = SurfaceVertex(v);
-            if model.topology.is_boundary_vertex(v) {
-                return 0.0;
-            }
-            let (mut pull, mut area, mut normal) = (DVec3::ZERO, 0.0, DVec3::ZERO);
-            for face in model.topology.faces(v, triangles) {
-                let corners = triangles[face as usize];
-                let (cotangents, areas, doubled) = &faces[face as usize];
-                let Some(at) = corners.iter().position(|&corner| corner == v) else {
-                    continue;
-                };
-                let (next, last) = ((at + 1) % 3, (at + 2) % 3);
-                let here = positions[v.index()];
-                // The edge to one corner is opposite the other.
-                pull += cotangents[last] * (here - positions[corners[next].index()]);
-                pull += cotangents[next] * (here - positions[corners[last].index()]);
-                area += areas[at];
-                normal += *doubled;
-            }
-            let curvature = 0.25 * pull.dot(normal.normalize_or_zero()) / area;
-            if curvature.is_finite() { curvature } else { 0.0 }
-        })
-        .collect()
-}
-
 /// The 95th percentile of the absolute mean curvature at rest, rounded up to 1, 2 or 5 times a power of ten.
 fn usual_curvature(model: &Model) -> f64 {
-    let mut sizes: Vec<f64> = mean_curvatures(model, &model.surface.positions)
+    let mut sizes: Vec<f64> = mean_curvatures(&model.surface, &model.topology, &model.surface.positions)
         .into_iter()
         .map(f64::abs)
         .collect();
@@ -267,7 +229,7 @@ mod tests {
     #[test]
     fn a_sphere_curves_by_one_over_its_radius_everywhere() {
         let model = sphere(4.0, 4);
-        for curvature in mean_curvatures(&model, &model.surface.positions) {
+        for curvature in mean_curvatures(&model.surface, &model.topology, &model.surface.positions) {
             assert!((curvature - 0.25).abs() < 0.01, "{curvature}");
         }
         assert_eq!(usual_curvature(&model), 0.5);

@@ -47,6 +47,14 @@ impl Beginning {
         }
     }
 
+    /// The name of its method.
+    pub fn method_name(&self) -> &str {
+        match self {
+            Self::Edit(edit) => edit.method.name(),
+            Self::Project(project) => project.method_name(),
+        }
+    }
+
     /// Chooses another method.
     pub fn set_method(&mut self, method: pliant_deform::Method) {
         match self {

@@ -4,6 +4,7 @@
 //! no positions.
 
 mod areas;
+mod curvature;
 mod distortion;
 mod gradient;
 mod normals;
@@ -13,6 +14,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 pub use areas::{face_areas, mixed_corner_areas, mixed_voronoi_areas, signed_volume};
+pub use curvature::mean_curvatures;
 pub use distortion::Distortion;
 pub use gradient::face_gradient;
 pub use normals::vertex_normals;

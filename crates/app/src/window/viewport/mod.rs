@@ -25,6 +25,7 @@ use pliant_render::{
 
 use crate::drawing::{self, Drawing, Field, Scale};
 use crate::legend;
+use crate::painting;
 use crate::window::threads::message::{Ground, PictureKind, Posed};
 use crate::window::widgets::drawn_key::DrawnKey;
 use coarseness::Coarseness;
@@ -390,7 +391,7 @@ impl Viewport {
         let mut image = renderer.draw_to_image(size_px, Samples::Four, &frame)?;
         if let Some(scale) = self.scale() {
             let legend = legend::picture(&renderer, scale, pixels_per_point)?;
-            legend::composite(&mut image, &legend, (14.0 * pixels_per_point) as u32);
+            painting::composite(&mut image, &legend, [(14.0 * pixels_per_point) as u32; 2]);
         }
         Ok(Some(image))
     }

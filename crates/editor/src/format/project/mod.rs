@@ -247,6 +247,11 @@ impl Project {
         self.camera.map(StoredCamera::camera).filter(Camera::is_usable)
     }
 
+    /// The name of its method; empty where it has none that can be read.
+    pub(crate) fn method_name(&self) -> &str {
+        self.method["name"].as_str().unwrap_or_default()
+    }
+
     pub(crate) fn set_method(&mut self, method: &Method) {
         self.method = method_to_value(method);
         // The shape is another method's.

@@ -1,0 +1,294 @@
+//! `pliant compare`: one edit by several methods, in one picture and as data.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use pliant_deform::Method;
+use pliant_editor::{Beginning, Camera, Look};
+use pliant_mesh::{Model, WeldOptions, mean_curvatures, mixed_voronoi_areas};
+use pliant_render::{Background, Frame, Headless, Image, Samples};
+use serde::Serialize;
+
+use super::apply::{method_named, read_edit};
+use super::arguments::{self, CompareArguments, PictureSize};
+use super::render::{self, Posed, Shape, Uploaded};
+use super::{Console, on_threads};
+use crate::drawing::{self, Drawing};
+use crate::engine::{self, Loaded, Solved};
+use crate::files::Destination;
+use crate::report::Report;
+use crate::sheet::{self, Caption, Cell, Layout};
+use crate::watch::Watch;
+use crate::{AppError, files, legend, painting, picture_file};
+
+pub(super) fn run(arguments: &CompareArguments, console: &mut Console<'_>) -> Result<(), AppError> {
+    render::check_png(&arguments.output)?;
+    let methods = methods(&arguments.methods)?;
+    let given = [("FILE", &*arguments.file), ("--edit", &*arguments.edit)];
+    files::refuse_shared(("--output", &arguments.output), given)?;
+    Destination::of(&arguments.output)?;
+    if let Some(report) = &arguments.report {
+        let others = given.into_iter().chain([("--output", &*arguments.output)]);
+        files::refuse_shared(("--report", report), others)?;
+        Destination::of(report)?;
+    }
+    let watch = &console.watch;
+    let Compared { sheet, report } = on_threads(arguments.threads, || compare(arguments, &methods, watch))??;
+    if watch.cancel.is_cancelled() {
+        return Err(AppError::Interrupted);
+    }
+    let mut files = vec![(arguments.output.clone(), sheet.as_slice())];
+    if let Some(path) = &arguments.report {
+        files.push((path.clone(), report.as_bytes()));
+    }
+    console.staging.stage(files.into_iter())?.commit()?;
+    Ok(())
+}
+
+/// The methods of these names, each once.
+fn methods(names: &[String]) -> Result<Vec<Method>, AppError> {
+    for (number, name) in names.iter().enumerate() {
+        if names[..number].contains(name) {
+            return Err(AppError::Arguments(format!(
+                "--methods names {name} twice: name it once"
+            )));
+        }
+    }
+    names.iter().map(|name| method_named("--methods", name)).collect()
+}
+
+/// What is written.
+struct Compared {
+    /// The picture as PNG.
+    sheet: Vec<u8>,
+    /// The report as JSON.
+    report: String,
+}
+
+/// What one method made of the edit.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Outcome {
+    Bent {
+        #[serde(flatten)]
+        report: Box<Report>,
+        /// See [`detail_error`]; by how much it exceeds that of the best method, as a ratio, at least 1. `None` where
+        /// the best has none.
+        detail_error: f64,
+        detail_error_of_best: Option<f64>,
+        #[serde(skip)]
+        surface_positions: Vec<DVec3>,
+    },
+    Refused {
+        /// The sentence.
+        refused: String,
+    },
+}
+
+#[derive(Serialize)]
+struct SheetReport<'a> {
+    methods: BTreeMap<&'a str, &'a Outcome>,
+}
+
+fn compare(arguments: &CompareArguments, methods: &[Method], watch: &Watch) -> Result<Compared, AppError> {
+    let loaded = engine::load(&arguments.file, &WeldOptions::default(), watch)?;
+    files::refuse_shared(("--output", &arguments.output), loaded.sources())?;
+    if let Some(report) = &arguments.report {
+        files::refuse_shared(("--report", report), loaded.sources())?;
+    }
+    let model = &loaded.model;
+    if model.surface.triangles.is_empty() {
+        return Err(AppError::NoTriangles(arguments.file.clone()));
+    }
+    let edit = render::resolved(&arguments.edit, model)?;
+    let mut outcomes = Vec::with_capacity(methods.len());
+    for method in methods {
+        outcomes.push(outcome(arguments, &loaded, method, watch)?);
+    }
+    if let Some(refusal) = outcomes.iter().find_map(|outcome| match outcome {
+        Outcome::Refused { refused } => Some(refused),
+        Outcome::Bent { .. } => None,
+    }) && outcomes
+        .iter()
+        .all(|outcome| matches!(outcome, Outcome::Refused { .. }))
+    {
+        return Err(AppError::System(format!("every method refuses the edit: {refusal}")));
+    }
+    rank_details(&mut outcomes);
+    let image = draw(arguments, &loaded, edit, methods, &outcomes, watch)?;
+    let report = SheetReport {
+        methods: methods.iter().map(Method::name).zip(&outcomes).collect(),
+    };
+    Ok(Compared {
+        sheet: picture_file::png(image)?,
+        // Structs of numbers, strings and lists always serialise.
+        report: serde_json::to_string_pretty(&report).unwrap_or_default() + "\n",
+    })
+}
+
+/// What a method makes of the edit: a refusal is an outcome as well.
+///
+/// # Errors
+/// It was interrupted, or the edit can't be read a second time.
+fn outcome(arguments: &CompareArguments, loaded: &Loaded, method: &Method, watch: &Watch) -> Result<Outcome, AppError> {
+    let mut edit = read_edit(&arguments.edit)?;
+    if edit.method_name() != method.name() {
+        edit.set_method(method.clone());
+    }
+    let setup = edit.resolve(&loaded.model).map_err(|source| AppError::Edit {
+        edit: arguments.edit.clone(),
+        source,
+    })?;
+    match engine::solved(&arguments.file, &edit, arguments.frames, loaded, &setup, watch) {
+        Ok(Solved {
+            surface_positions,
+            report,
+        }) => Ok(Outcome::Bent {
+            detail_error: detail_error(&loaded.model, &surface_positions),
+            report: Box::new(report),
+            detail_error_of_best: None,
+            surface_positions,
+        }),
+        Err(_) if watch.cancel.is_cancelled() => Err(AppError::Interrupted),
+        Err(refused) => Ok(Outcome::Refused {
+            refused: refused.to_string(),
+        }),
+    }
+}
+
+/// How much the surface's details changed as seen from the surface: the root of ∫ (H' − H)² dA over the rest shape,
+/// with the mean curvatures H and H' before and after. It has no unit, and neither a rigid motion nor a turn of a detail
+/// with its surroundings changes it; what the edit itself bends counts alike for all methods.
+fn detail_error(model: &Model, bent: &[DVec3]) -> f64 {
+    let (surface, topology) = (&model.surface, &model.topology);
+    let curvatures = |positions: &[DVec3]| mean_curvatures(surface, topology, positions);
+    let areas = mixed_voronoi_areas(surface);
+    let (before, after) = (curvatures(&surface.positions), curvatures(bent));
+    let squared: f64 = areas
+        .iter()
+        .zip(before.iter().zip(&after))
+        .map(|(area, (before, after))| area * (after - before).powi(2))
+        .sum();
+    crate::report::finite_or(squared.sqrt(), f64::MAX)
+}
+
+/// Tells each method's detail error relative to the least of them.
+fn rank_details(outcomes: &mut [Outcome]) {
+    let error = |outcome: &Outcome| match outcome {
+        Outcome::Bent { detail_error, .. } => Some(*detail_error),
+        Outcome::Refused { .. } => None,
+    };
+    let Some(least) = outcomes.iter().filter_map(error).min_by(f64::total_cmp) else {
+        return;
+    };
+    for outcome in outcomes {
+        if let Outcome::Bent {
+            detail_error,
+            detail_error_of_best,
+            ..
+        } = outcome
+            && least > 0.0
+        {
+            *detail_error_of_best = Some(*detail_error / least);
+        }
+    }
+}
+
+/// The sheet: each method's shape from the same side, with its name and figures beneath.
+fn draw(
+    arguments: &CompareArguments,
+    loaded: &Loaded,
+    edit: Beginning,
+    methods: &[Method],
+    outcomes: &[Outcome],
+    watch: &Watch,
+) -> Result<Image, AppError> {
+    let model = &loaded.model;
+    let mut shape = Shape::of(&arguments.file, loaded, Some(edit), Posed::AtRest, watch)?;
+    let progress = watch.begin("drawing");
+    let drawing = Drawing::new(model, loaded.scene.appearance());
+    let mut renderer = Headless::new()
+        .map_err(|error| AppError::System(error.to_string()))?
+        .renderer;
+    let PictureSize { width, height } = arguments.size;
+    let layout = Layout::of(methods.len(), [width, height]);
+    let regions = arguments.shading == arguments::Shading::Regions;
+    let look = Look {
+        shading: render::shading(arguments.shading),
+        regions,
+        outlines: regions,
+        ..Look::default()
+    };
+    let mut style = drawing::style(&look, layout.pixels_per_point);
+    style.background = Background::default();
+    let size_px = DVec2::new(f64::from(layout.view_px[0]), f64::from(layout.view_px[1]));
+    let camera = camera(arguments, model, outcomes, size_px);
+    let view = drawing::view(&camera, size_px, drawing.centre);
+    let mut cells = Vec::with_capacity(methods.len());
+    for (number, (method, outcome)) in methods.iter().zip(outcomes).enumerate() {
+        if watch.cancel.is_cancelled() {
+            return Err(AppError::Interrupted);
+        }
+        let title = method.declaration().title;
+        cells.push(match outcome {
+            Outcome::Refused { refused } => Cell {
+                picture: None,
+                caption: Caption::refused(title, refused),
+            },
+            Outcome::Bent {
+                report,
+                detail_error_of_best,
+                surface_positions,
+                ..
+            } => {
+                let rest = model.surface.positions.iter();
+                let displacements = surface_positions.iter().zip(rest).map(|(bent, rest)| *bent - *rest);
+                shape.displacements = Arc::new(displacements.collect());
+                let pose = drawing.pose(model, &shape.displacements);
+                let Uploaded { surface, scale, .. } =
+                    render::upload(&renderer, &drawing, &pose, model, &shape, &look, &watch.cancel)?;
+                let frame = Frame {
+                    view: &view,
+                    style: &style,
+                    surfaces: &[&surface],
+                    grid: None,
+                    overlays: &[],
+                };
+                let mut picture = renderer
+                    .draw_to_image(layout.view_px, Samples::Four, &frame)
+                    .map_err(render::refuse)?;
+                if let Some(scale) = scale.filter(|_| number == 0) {
+                    let legend = legend::picture(&renderer, &scale, layout.pixels_per_point);
+                    painting::composite(&mut picture, &legend.map_err(render::refuse)?, [8; 2]);
+                }
+                Cell {
+                    picture: Some(picture),
+                    caption: Caption::bent(title, report, *detail_error_of_best),
+                }
+            }
+        });
+        progress.set((number + 1) as f32 / methods.len() as f32);
+    }
+    sheet::compose(&renderer, &layout, &cells).map_err(render::refuse)
+}
+
+/// Of a shape that is more than this many times as large as the rest shape only what is in view is shown.
+const TOO_FAR: f64 = 3.0;
+
+/// A camera that sees the rest shape and every shape that is not far larger.
+fn camera(arguments: &CompareArguments, model: &Model, outcomes: &[Outcome], size_px: DVec2) -> Camera {
+    let diagonal = |positions: &[DVec3]| pliant_mesh::bounding_box(positions).map_or(0.0, |bounds| bounds.diagonal());
+    let own = diagonal(&model.surface.positions);
+    let mut seen = model.surface.positions.clone();
+    for outcome in outcomes {
+        if let Outcome::Bent { surface_positions, .. } = outcome
+            && diagonal(surface_positions) < TOO_FAR * own
+        {
+            seen.extend_from_slice(surface_positions);
+        }
+    }
+    let mut camera = render::looking(arguments.up, arguments.view, own);
+    camera.frame(&seen, size_px);
+    camera
+}
