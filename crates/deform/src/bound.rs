@@ -25,10 +25,12 @@ pub struct Bound {
     solve: Solve,
     method: Box<dyn BoundMethod>,
     followers: Followers,
+    /// First those of the binding, then what the present targets ask for and the method can't follow.
     warnings: Vec<String>,
+    binding_warnings: usize,
 }
 
-/// The factor of a bound bi-Laplacian. [`Problem::rebind`] reuses the parts of it that are unchanged. Cheap to clone.
+/// The factor of a bound linear method. [`Problem::rebind`] reuses the parts of it that are unchanged. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct ReusableFactor(pub(crate) Arc<RenewableFactor>);
 
@@ -59,7 +61,7 @@ pub struct Step {
     pub finished: bool,
     /// The deformation energy, 0 at rest, without unit and independent of the model's scale. For the bi-Laplacian it is
     /// ½ dᵀ A d (see [`crate::Bilaplacian`]) and the energy of the soft handles' springs; for ARAP its own energy and
-    /// its springs', divided by ½ Σ w |e|² of the rest shape. Components without a handle are left out.
+    /// its springs', divided by ½ Σ w |e|² of the rest shape; for gradient editing likewise. Components without a handle are left out.
     pub energy: f64,
     /// How many steps were taken towards these targets, this one included.
     pub iteration: u32,
@@ -122,12 +124,13 @@ impl Bound {
                 &partition.driven,
                 cancel,
             )?,
+            binding_warnings: warnings.len(),
             warnings,
         })
     }
 
-    /// What the next binding can reuse if only a few vertices' roles change. Only the bi-Laplacian has such a factor,
-    /// and it holds little unless [`Problem::rebind`] bound it.
+    /// What the next binding can reuse if only a few vertices' roles change. Only linear methods have such a factor, and
+    /// it holds little unless [`Problem::rebind`] bound it.
     pub fn reusable_factor(&self) -> Option<ReusableFactor> {
         self.method.reusable_factor()
     }
@@ -157,6 +160,8 @@ impl Bound {
             self.iteration = 0;
         }
         self.motions = motions;
+        self.warnings.truncate(self.binding_warnings);
+        self.warnings.extend(self.method.blind_to(&self.motions));
         Ok(())
     }
 
@@ -234,6 +239,13 @@ impl Bound {
         self.method.energy_of(&self.motions, displacements)
     }
 
+    /// A handle's weight at each surface vertex, from 0 to 1: how much of its turn and stretch the surface takes on
+    /// there. `None` if the method has no such weights, or no such handle.
+    pub fn handle_weights(&self, handle: usize) -> Option<Vec<f64>> {
+        let mut weights = vec![0.0; self.vertex_count];
+        (handle < self.handles.len() && self.method.weights_of(handle, &mut weights)).then_some(weights)
+    }
+
     /// The handle bases, if a step is a product with them.
     pub fn handle_bases(&self) -> Option<&HandleBases> {
         self.method.handle_bases()
@@ -244,7 +256,8 @@ impl Bound {
         self.solve
     }
 
-    /// Sentences for a person: what components without a handle or a fixed vertex do, and what was repaired.
+    /// Sentences for a person: what components without a handle or a fixed vertex do, what was repaired, and what the
+    /// present targets ask for that the method can't follow.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }

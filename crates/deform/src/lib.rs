@@ -7,7 +7,8 @@
 //! Binding goes from the [`Problem`] through `region` (who is solved for) to the [`Laplacian`] (`operators`), to a
 //! matrix in the restricted [`Ordering`], which is factored (`sparse`), and to the method: `bilaplacian` gives
 //! [`HandleBases`], so that a frame is a product with them; `arap` shares everything up to the factor and takes as many
-//! steps as it needs; `primo` steps with rigid prisms.
+//! steps as it needs; `primo` steps with rigid prisms; `poisson` spreads the handles' turns and solves for what fits
+//! them.
 
 mod arap;
 mod bilaplacian;
@@ -20,6 +21,7 @@ mod identity;
 mod method;
 mod numerical;
 mod operators;
+mod poisson;
 mod primo;
 mod problem;
 mod region;
@@ -38,6 +40,7 @@ pub use method::{
 };
 pub use numerical::rigid_fit::RigidMotion;
 pub use operators::Laplacian;
+pub use poisson::{Poisson, Propagation};
 pub use primo::Primo;
 pub use problem::{Loose, Problem, Role};
 pub use region::constraints::{CONTINUITY_RANGE, Constraints};

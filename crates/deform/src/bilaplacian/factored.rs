@@ -141,9 +141,14 @@ impl BilaplacianSystem {
         &self.factored
     }
 
-    /// The shift that was added to the scaled matrix' unit diagonal to factor it; 0 if none was needed.
-    pub fn shift(&self) -> f64 {
-        self.factored.shift
+    /// A sentence on the shift that was added to the scaled matrix' unit diagonal to factor it, if one was needed.
+    pub fn stiffened(&self) -> Option<String> {
+        let shift = self.factored.shift;
+        (shift > 0.0).then(|| {
+            format!(
+                "the system was barely stable on this mesh: it was stiffened by {shift:.0e} of its diagonal and refined"
+            )
+        })
     }
 
     /// S: the scale of each column.

@@ -8,6 +8,7 @@ mod continuity;
 mod declaration;
 pub(crate) mod factored;
 pub(crate) mod hubs;
+pub(crate) mod loaded;
 pub(crate) mod operator;
 mod options;
 mod refine;

@@ -10,11 +10,23 @@ use pliant_mesh::Cancel;
 
 use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
 
-/// Corrections of a solve, the first one included.
-const STEPS: std::ops::RangeInclusive<usize> = 2..=8;
+/// The most corrections of a solve, the first one included.
+const STEPS: usize = 8;
 
-/// Refinement ends when the next correction would be below this share of the solution.
-const NEGLIGIBLE: f64 = 1e-10;
+/// When refinement ends.
+#[derive(Clone, Copy, Debug)]
+struct Accuracy {
+    /// The fewest corrections.
+    steps: usize,
+    /// The next correction would be below this share of the solution.
+    error: f64,
+}
+
+/// Of what is solved once: the second correction tells how good the first one was.
+const FULL: Accuracy = Accuracy { steps: 2, error: 1e-10 };
+
+/// Of a frame: one correction is enough where the check found that the factor leaves so little.
+const FRAME: Accuracy = Accuracy { steps: 1, error: 1e-8 };
 
 /// A correction that is not smaller than this share of the one before it calls for conjugate gradients.
 const SLOW: f64 = 0.03;
@@ -42,13 +54,19 @@ const TOLERANCE: f64 = 1e-7;
 impl BilaplacianSystem {
     /// Fills in the solved vertices of `d` from its constrained ones, with the contraction that the check found.
     pub fn solve<const K: usize>(&self, d: &mut [[f64; K]], cancel: &Cancel) -> Outcome {
-        solve(self, d, self.contraction, cancel)
+        solve(self, None, d, (self.contraction, FULL), cancel)
+    }
+
+    /// As [`BilaplacianSystem::solve`], of A d = b with a load b for each column of the factor, as exactly as a frame
+    /// needs.
+    pub fn solve_frame<const K: usize>(&self, load: &[[f64; K]], d: &mut [[f64; K]]) -> Outcome {
+        solve(self, Some(load), d, (self.contraction, FRAME), &Cancel::new())
     }
 
     /// Solves as [`BilaplacianSystem::solve`] and remembers how fast refinement was. The last function of `d` is 1 at
     /// every constrained place, so its solution is known to be 1: if that is missed, the factor is unusable.
     pub fn check<const K: usize>(&mut self, d: &mut [[f64; K]], cancel: &Cancel) -> Result<f64, SystemError> {
-        let outcome = solve(self, d, 0.0, cancel);
+        let outcome = solve(self, None, d, (0.0, FULL), cancel);
         self.contraction = outcome.contraction;
         cancel.check().map_err(|_| SystemError::Cancelled)?;
         let mut worst = (0.0, 0);
@@ -69,11 +87,17 @@ impl BilaplacianSystem {
     }
 }
 
-/// Fills in the solved vertices of the fields `d` from their other entries.
+/// Fills in the solved vertices of the fields `d` from their other entries and the load, if there is one.
 ///
 /// `contraction` is what an earlier solve found. A right-hand side with little in a direction in which the factor is
 /// wrong would not reveal the error by itself, and would keep a large part of it.
-fn solve<const K: usize>(system: &BilaplacianSystem, d: &mut [[f64; K]], contraction: f64, cancel: &Cancel) -> Outcome {
+fn solve<const K: usize>(
+    system: &BilaplacianSystem,
+    load: Option<&[[f64; K]]>,
+    d: &mut [[f64; K]],
+    (contraction, accuracy): (f64, Accuracy),
+    cancel: &Cancel,
+) -> Outcome {
     for &local in system.columns() {
         d[local as usize] = [0.0; K];
     }
@@ -84,11 +108,16 @@ fn solve<const K: usize>(system: &BilaplacianSystem, d: &mut [[f64; K]], contrac
     let mut last = f64::INFINITY;
     // How many corrections, including the next, use conjugate gradients.
     let mut gradients = 0;
-    for step in 1..=*STEPS.end() {
+    for step in 1..=STEPS {
         if cancel.is_cancelled() {
             break;
         }
         let mut x = system.scaled_residual(d);
+        for ((x, load), scale) in x.iter_mut().zip(load.unwrap_or_default()).zip(system.scale()) {
+            for k in 0..K {
+                x[k] += load[k] * scale;
+            }
+        }
         if gradients > 0 {
             x = conjugate_gradients(system, x, cancel);
         } else {
@@ -104,13 +133,13 @@ fn solve<const K: usize>(system: &BilaplacianSystem, d: &mut [[f64; K]], contrac
             return Outcome { error: 0.0, ..outcome };
         }
         let relative = correction / size;
-        if step >= *STEPS.start() {
+        if step >= accuracy.steps {
             if gradients == 0 {
                 outcome.contraction = outcome.contraction.max(relative / last).min(1.0);
             }
             outcome.error = relative * if gradients > 0 { SLOW } else { outcome.contraction };
             let stalled = gradients > 1 && relative > 0.5 * last;
-            if outcome.error < NEGLIGIBLE || stalled {
+            if outcome.error < accuracy.error || stalled {
                 return outcome;
             }
         }

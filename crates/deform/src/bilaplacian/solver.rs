@@ -129,12 +129,7 @@ impl BilaplacianSolver {
         let mut sentences: Vec<String> = repairs(self.system.operator.laplacian.mollified_faces())
             .into_iter()
             .collect();
-        if self.system.shift() > 0.0 {
-            sentences.push(format!(
-                "the system was barely stable on this mesh: it was stiffened by {:.0e} of its diagonal and refined",
-                self.system.shift()
-            ));
-        }
+        sentences.extend(self.system.stiffened());
         sentences
     }
 

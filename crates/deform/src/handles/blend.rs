@@ -5,6 +5,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
+use crate::handles::polar::Polar;
 use crate::handles::{Handle, Motion};
 use crate::numerical::rotation::fit;
 
@@ -28,9 +29,7 @@ impl Screw {
     /// The motion whose linear part is `linear` and that moves the point `centre` by `shift`; all points here are
     /// relative to the common origin.
     pub fn of(linear: DMat3, shift: DVec3, centre: DVec3) -> Self {
-        let rotation = fit(&linear, DQuat::IDENTITY);
-        let stretch = DMat3::from_quat(rotation.conjugate()) * linear - DMat3::IDENTITY;
-        let turn_rad = logarithm(rotation);
+        let Polar { turn_rad, stretch } = Polar::of(&linear);
         // The velocity at the centre whose exponential shifts it by `shift`, as seen from the origin.
         let at_centre = if turn_rad == DVec3::ZERO {
             shift
@@ -95,12 +94,6 @@ pub(crate) fn carried(point: DVec3, screws: &[Screw], weights: &[f64]) -> Carrie
         displacement: stretch + turned + slid,
         turn: DQuat::from_xyzw(axis.x, axis.y, axis.z, half_cosine),
     }
-}
-
-/// The rotation vector, at most π long.
-fn logarithm(rotation: DQuat) -> DVec3 {
-    let rotation = if rotation.w < 0.0 { -rotation } else { rotation };
-    rotation.to_scaled_axis()
 }
 
 /// V with exp(turn, slide) = (exp(turn), V slide), the left Jacobian of the rotations.

@@ -4,6 +4,7 @@
 //! thousand diagonals from the origin; over these 3e-8, wherever the scan stands.
 
 pub(crate) mod blend;
+pub(crate) mod polar;
 
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
@@ -61,6 +62,11 @@ impl Handle {
         }
     }
 
+    /// The linear part of the map that a motion stands for.
+    pub fn linear(&self, motion: &Motion) -> DMat3 {
+        DMat3::IDENTITY + motion.linear * self.radius.recip()
+    }
+
     /// A point in the handle's own coordinates, with a last entry 1 for the constant.
     pub fn coordinates(&self, world_point: DVec3) -> [f64; 4] {
         let q = (world_point - self.world_centre) / self.radius;
@@ -87,6 +93,30 @@ impl Motion {
     pub fn is_rest(&self) -> bool {
         *self == Self::default()
     }
+}
+
+/// A sentence where handles are moved and none is turned or stretched, for a method that takes what happens around a
+/// handle from its turn and stretch alone. Where nothing `is_held` and all handles move alike, everything moves with
+/// them.
+pub(crate) fn only_moved(method: &str, motions: &[Motion], is_held: bool) -> Option<String> {
+    /// A turn that moves the handle's rim by less than this share of the handle's way is none.
+    const NEGLIGIBLE: f64 = 1e-3;
+    let first = motions.first()?.shift;
+    let is_only_moved = |motion: &Motion| {
+        let turn = motion
+            .linear
+            .to_cols_array()
+            .into_iter()
+            .fold(0.0, |a: f64, b| a.max(b.abs()));
+        turn <= NEGLIGIBLE * motion.shift.length()
+    };
+    let moves = motions.iter().any(|motion| motion.shift != DVec3::ZERO)
+        && (is_held || motions.iter().any(|motion| motion.shift != first));
+    (moves && motions.iter().all(is_only_moved)).then(|| {
+        format!(
+            "{method} is blind to moves: the handles are moved and not turned, so the surface shears between them; turn a              handle, or take arap"
+        )
+    })
 }
 
 /// All zero.

@@ -21,6 +21,7 @@ pub const METHODS: &[&MethodDeclaration] = &[
     &crate::bilaplacian::DECLARATION,
     &crate::arap::DECLARATION,
     &crate::primo::DECLARATION,
+    &crate::poisson::DECLARATION,
     #[cfg(feature = "identity-method")]
     &crate::identity::DECLARATION,
 ];

@@ -121,6 +121,12 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
         None
     }
 
+    /// Fills in a handle's weight at each surface vertex, from 0 to 1, where the method spreads what the handle does by
+    /// weights; `weights` are zeros. Whether it does.
+    fn weights_of(&self, _handle: usize, _weights: &mut [f64]) -> bool {
+        false
+    }
+
     /// The handles' bases, where a step is a product with them.
     fn handle_bases(&self) -> Option<&HandleBases> {
         None
@@ -146,6 +152,11 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
 
     /// Sentences about what had to be repaired.
     fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Sentences about what these motions ask for and the method can't follow.
+    fn blind_to(&self, _motions: &[Motion]) -> Vec<String> {
         Vec::new()
     }
 }

@@ -14,6 +14,7 @@
 //! scaling edges would break it.
 
 pub(crate) mod face_terms;
+pub(crate) mod gradients;
 mod mollification;
 pub(crate) mod triangulation;
 

@@ -1,0 +1,192 @@
+//! The bi-Laplacian with a load: A d = b, where b changes from frame to frame and A is factored once.
+//!
+//! Methods that change differential coordinates and put the surface together again solve this: at order 1 A is −L, a
+//! Poisson equation, at order 2 it is L M⁻¹ L [BS08, equations 15 and 21].
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_mesh::SurfaceVertex;
+use rayon::prelude::*;
+
+use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
+use crate::bilaplacian::operator::BilaplacianOperator;
+use crate::bilaplacian::setup::{Prescribed, operator};
+use crate::handles::{FRAME_CHUNK, Motion};
+use crate::method::BindInput;
+use crate::operators::repairs;
+use crate::region::slender;
+use crate::sparse::refactorisation::Refactorisation;
+use crate::{Bilaplacian, BindError, Problem, ReusableFactor, SolveError};
+
+/// The factored system, and what it takes to set up and to read a field of it: one row for each local vertex of its
+/// Laplacian, then one for each spring.
+#[derive(Debug)]
+pub(crate) struct LoadedSystem {
+    system: BilaplacianSystem,
+    /// Each handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
+    pub prescribed: Vec<Prescribed>,
+}
+
+/// How far off a solution may be, relative to its largest value.
+pub(crate) const TOLERANCE: f64 = 1e-7;
+
+impl LoadedSystem {
+    /// Assembles, factors and checks the operator of `options` under this stiffness, one number a surface vertex.
+    ///
+    /// # Errors
+    /// As the bi-Laplacian's.
+    pub fn bind(
+        options: &Bilaplacian,
+        stiffness: &[f64],
+        refactorisation: Refactorisation,
+        input: &BindInput<'_>,
+    ) -> Result<Self, BindError> {
+        let &BindInput { partition, cancel, .. } = input;
+        let problem = Problem {
+            stiffness,
+            ..*input.problem
+        };
+        let order = options.operator_power();
+        slender::check(
+            &partition.triangulation,
+            &partition.solved,
+            slender::most_edges(order),
+            Some(order),
+        )?;
+        let elimination = input.ordering()?.elimination(&partition.solved);
+        let (operator, prescribed) = operator(&problem, options, partition, input.handles);
+        cancel.check()?;
+        let refuse = |error| refused(error, input);
+        let mut system =
+            BilaplacianSystem::new(operator, elimination, refactorisation, partition.budget, cancel).map_err(refuse)?;
+        let mut constant = vec![[1.0]; system.operator.field_len()];
+        system.check(&mut constant, cancel).map_err(refuse)?;
+        Ok(Self { system, prescribed })
+    }
+
+    /// A and its Laplacian.
+    pub fn operator(&self) -> &BilaplacianOperator {
+        &self.system.operator
+    }
+
+    /// The local vertices that are solved for, one for each row of a load.
+    pub fn columns(&self) -> &[u32] {
+        self.system.columns()
+    }
+
+    /// A field of zeros.
+    pub fn field<const K: usize>(&self) -> Vec<[f64; K]> {
+        vec![[0.0; K]; self.system.operator.field_len()]
+    }
+
+    /// Fills in the solved rows of K fields without a load from their other rows.
+    ///
+    /// # Errors
+    /// [`BindError::Inaccurate`] where the solution does not settle; [`BindError::Cancelled`].
+    pub fn extend<const K: usize>(&self, field: &mut [[f64; K]], input: &BindInput<'_>) -> Result<(), BindError> {
+        let error = self.system.solve(field, input.cancel).error;
+        input.cancel.check()?;
+        if error <= TOLERANCE {
+            return Ok(());
+        }
+        let vertex = self
+            .columns()
+            .first()
+            .map_or(0, |&local| self.vertices()[local as usize]);
+        Err(refused(SystemError::Inaccurate { vertex, error }, input))
+    }
+
+    /// Sets the handles' rows of a field to where they go.
+    pub fn prescribe(&self, motions: &[Motion], field: &mut [[f64; 3]]) {
+        for (own, motion) in self.prescribed.iter().zip(motions) {
+            for &(place, coordinates) in own {
+                field[place as usize] = motion.displace(coordinates).to_array();
+            }
+        }
+    }
+
+    /// Fills in the solved rows of a field of displacements from its other rows and the load.
+    ///
+    /// # Errors
+    /// If the solution stays too inaccurate.
+    pub fn solve(&self, load: &[[f64; 3]], field: &mut [[f64; 3]]) -> Result<(), SolveError> {
+        let error = self.system.solve_frame(load, field).error;
+        // What is not finite is found by the check of all displacements, which names the vertex.
+        if error.is_finite() && error > TOLERANCE {
+            return Err(SolveError::Inaccurate { error });
+        }
+        Ok(())
+    }
+
+    /// Writes a field to the displacements of all surface vertices, zeros elsewhere.
+    pub fn write(&self, field: &[[f64; 3]], displacements: &mut [DVec3]) {
+        let vertices = self.vertices();
+        displacements
+            .par_chunks_mut(FRAME_CHUNK)
+            .enumerate()
+            .for_each(|(chunk, out)| {
+                let first = chunk * FRAME_CHUNK;
+                let place = |vertex: usize| vertices.partition_point(|&other| (other as usize) < vertex);
+                let own = place(first)..place(first + out.len());
+                out.fill(DVec3::ZERO);
+                for (&vertex, row) in vertices[own.clone()].iter().zip(&field[own]) {
+                    out[vertex as usize - first] = DVec3::from_array(*row);
+                }
+            });
+    }
+
+    /// The rows of a field for displacements of all surface vertices; springs pull at where the motions put them.
+    pub fn read(&self, motions: &[Motion], displacements: &[DVec3]) -> Vec<[f64; 3]> {
+        let mut field = self.field();
+        for (row, &vertex) in field.iter_mut().zip(self.vertices()) {
+            *row = displacements[vertex as usize].to_array();
+        }
+        let first_spring = self.vertices().len();
+        for (own, motion) in self.prescribed.iter().zip(motions) {
+            for &(place, coordinates) in own.iter().filter(|(place, _)| *place as usize >= first_spring) {
+                field[place as usize] = motion.displace(coordinates).to_array();
+            }
+        }
+        field
+    }
+
+    /// ½ Σ W |c − d|² of the springs.
+    pub fn spring_energy(&self, field: &[[f64; 3]]) -> f64 {
+        let springs = &self.operator().springs;
+        let of = |spring: usize| {
+            let pull = DVec3::from_array(self.operator().pull(spring, field));
+            0.5 * pull.length_squared() / springs.strength(spring)
+        };
+        (0..springs.len()).map(of).sum()
+    }
+
+    /// The surface vertex of each local one, ascending.
+    pub fn vertices(&self) -> &[u32] {
+        self.system.operator.laplacian.vertices()
+    }
+
+    /// How many numbers the factor stores.
+    pub fn factor_len(&self) -> usize {
+        self.system.factor_len()
+    }
+
+    /// What the next binding can reuse.
+    pub fn reusable_factor(&self) -> ReusableFactor {
+        ReusableFactor(Arc::clone(self.system.factored()))
+    }
+
+    /// Sentences about what had to be repaired.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut sentences: Vec<String> = repairs(self.operator().laplacian.mollified_faces())
+            .into_iter()
+            .collect();
+        sentences.extend(self.system.stiffened());
+        sentences
+    }
+}
+
+fn refused(error: SystemError, input: &BindInput<'_>) -> BindError {
+    let component_of = |vertex: u32| input.problem.topology.component(SurfaceVertex(vertex));
+    error.into_bind_error(component_of, input.partition.solved.len())
+}

@@ -1,0 +1,95 @@
+//! Gradient-based editing as one of the methods.
+
+use glam::DVec3;
+
+use super::{Poisson, PoissonSolver};
+use crate::handles::Motion;
+use crate::handles::polar::Polar;
+use crate::method::{
+    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
+};
+use crate::{BindError, ReusableFactor, SolveError};
+
+pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
+    name: "poisson",
+    title: "Gradient editing",
+    when_to_use: "Spreads the handles' turns and stretches over the surface, at once and beyond half a turn: for bends \
+                  and twists of detailed shapes. A handle that is only moved turns nothing, and details shear there.",
+    keywords: "poisson gradient harmonic geodesic material propagation",
+    options: Poisson::OPTIONS,
+    heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
+    default: || Poisson::default().into(),
+    first_choice: || Poisson::default().into(),
+};
+
+impl DeformMethod for Poisson {
+    fn declaration(&self) -> &'static MethodDeclaration {
+        &DECLARATION
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::Surface {
+            reach: 1,
+            ordering_power: Some(1),
+        }
+    }
+
+    fn solve(&self) -> Solve {
+        Solve::Direct
+    }
+
+    fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
+        Ok(Box::new(PoissonSolver::bind(self, input)?))
+    }
+}
+
+impl BoundMethod for PoissonSolver {
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        let energy = self.frame(motions, displacements)?;
+        Ok(Stepped {
+            converged: true,
+            energy,
+            finite: Finite::Unknown,
+        })
+    }
+
+    fn rest(&mut self) {
+        self.polars.fill(Polar::default());
+    }
+
+    fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {
+        Some(PoissonSolver::energy_of(self, motions, displacements))
+    }
+
+    fn weights_of(&self, handle: usize, weights: &mut [f64]) -> bool {
+        PoissonSolver::weights_of(self, handle, weights);
+        true
+    }
+
+    fn reusable_factor(&self) -> Option<ReusableFactor> {
+        Some(self.system.reusable_factor())
+    }
+
+    fn solved_count(&self) -> usize {
+        self.system.columns().len()
+    }
+
+    fn factor_len(&self) -> usize {
+        self.system.factor_len()
+    }
+
+    /// A frame is a back-substitution, not a product.
+    fn step_cost(&self) -> usize {
+        4 * self.solved_count()
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.system.warnings()
+    }
+
+    fn blind_to(&self, motions: &[Motion]) -> Vec<String> {
+        crate::handles::only_moved("poisson", motions, self.is_held)
+            .into_iter()
+            .collect()
+    }
+}

@@ -1,0 +1,151 @@
+//! Gradient-based editing [YZX+04, ZRKS05; BS08, sections 3.1.1 and 3.2.1 to 3.2.3]: the handles' rotations and
+//! stretches are spread over the surface, each face's edges follow, and a Poisson system joins the faces again.
+//!
+//! Parts: `propagation` gives each handle's weight at each vertex, `handles::polar` blends the handles' maps,
+//! `operators::gradients` makes the right-hand side, and `bilaplacian::loaded` solves.
+
+mod declaration;
+mod options;
+mod propagation;
+
+use glam::DVec3;
+
+pub(crate) use self::declaration::DECLARATION;
+pub use self::options::{Poisson, Propagation};
+
+use self::propagation::weights;
+use crate::bilaplacian::loaded::LoadedSystem;
+use crate::handles::polar::{Blend, Polar, following};
+use crate::handles::{Handle, Motion};
+use crate::method::BindInput;
+use crate::operators::gradients::{EdgeChanges, Gradients};
+use crate::{Bilaplacian, BilaplacianOrder, BindError, SolveError};
+
+/// The bound method.
+#[derive(Debug)]
+pub(crate) struct PoissonSolver {
+    system: LoadedSystem,
+    gradients: Gradients,
+    /// Each handle's weight, from 0 to 1: one row for each local vertex.
+    weights: Vec<f64>,
+    handles: Vec<Handle>,
+    /// The handles' maps at the last step. Turns go on from there, so that one beyond half a turn stays what it is.
+    polars: Vec<Polar>,
+    /// Whether something is fixed.
+    is_held: bool,
+    room: Room,
+}
+
+/// What is kept from frame to frame, so that none allocates it.
+#[derive(Clone, Debug, Default)]
+struct Room {
+    changes: Vec<EdgeChanges>,
+    load: Vec<[f64; 3]>,
+    field: Vec<[f64; 3]>,
+}
+
+impl PoissonSolver {
+    /// Factors the Laplacian and propagates the handles' weights.
+    pub fn bind(options: &Poisson, input: &BindInput<'_>) -> Result<Self, BindError> {
+        let &BindInput { problem, progress, .. } = input;
+        let system = LoadedSystem::bind(&membrane(), problem.stiffness, input.refactorisation, input)?;
+        progress.set(0.6);
+        let weights = weights(options.propagation, &system, input)?;
+        progress.set(0.9);
+        let laplacian = &system.operator().laplacian;
+        let gradients = Gradients::of(
+            problem.surface,
+            problem.topology,
+            problem.stiffness,
+            laplacian,
+            system.columns(),
+        );
+        input.cancel.check()?;
+        progress.set(1.0);
+        let room = Room {
+            field: system.field(),
+            ..Room::default()
+        };
+        Ok(Self {
+            system,
+            gradients,
+            weights,
+            handles: input.handles.to_vec(),
+            polars: vec![Polar::default(); input.handles.len()],
+            is_held: input.partition.held.contains(&true),
+            room,
+        })
+    }
+
+    /// Solves for the motions; returns the energy.
+    fn frame(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<f64, SolveError> {
+        self.polars = self.polars_of(motions);
+        let mut room = std::mem::take(&mut self.room);
+        let Self { system, gradients, .. } = &*self;
+        self.change(&self.polars, &mut room.changes);
+        gradients.divergence(&room.changes, stiffness_of(system), &mut room.load);
+        system.prescribe(motions, &mut room.field);
+        let solved = system.solve(&room.load, &mut room.field);
+        system.write(&room.field, displacements);
+        let energy = self.energy(&room.changes, &room.field);
+        self.room = room;
+        solved.map(|()| energy)
+    }
+
+    /// The handles' maps, their turns nearest to those of the last step.
+    fn polars_of(&self, motions: &[Motion]) -> Vec<Polar> {
+        let linear = self
+            .handles
+            .iter()
+            .zip(motions)
+            .map(|(handle, motion)| handle.linear(motion));
+        following(&self.polars, linear)
+    }
+
+    /// Each face's edges under the blend of the maps by the mean weights of its corners.
+    fn change(&self, polars: &[Polar], changes: &mut Vec<EdgeChanges>) {
+        let count = polars.len();
+        let of_face = |locals: &[u32; 3]| {
+            let [a, b, c] = locals.map(|local| &self.weights[local as usize * count..][..count]);
+            let mean = (0..count).map(|handle| (a[handle] + b[handle] + c[handle]) / 3.0);
+            let blend = Blend::of(polars, mean);
+            move |edge: DVec3| blend.change(edge)
+        };
+        self.gradients.change(|face| of_face(&face.locals), changes);
+    }
+
+    /// Of a field: the faces' energy and the springs', in units of the rest shape's.
+    fn energy(&self, changes: &[EdgeChanges], field: &[[f64; 3]]) -> f64 {
+        let scale = stiffness_of(&self.system) * self.gradients.scale;
+        let springs = self.system.spring_energy(field);
+        self.gradients.energy(changes, field) + if scale > 0.0 { springs / scale } else { 0.0 }
+    }
+
+    /// As [`PoissonSolver::energy`], of any displacements, for these motions.
+    fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
+        let mut changes = Vec::new();
+        self.change(&self.polars_of(motions), &mut changes);
+        self.energy(&changes, &self.system.read(motions, displacements))
+    }
+
+    /// A handle's weight at each surface vertex, 0 where it has none.
+    fn weights_of(&self, handle: usize, weights: &mut [f64]) {
+        let rows = self.weights.chunks_exact(self.handles.len());
+        for (&vertex, row) in self.system.vertices().iter().zip(rows) {
+            weights[vertex as usize] = row[handle];
+        }
+    }
+}
+
+/// −L as a bi-Laplacian of order 1.
+pub(crate) fn membrane() -> Bilaplacian {
+    Bilaplacian {
+        order: BilaplacianOrder::Membrane,
+        ..Bilaplacian::default()
+    }
+}
+
+/// k in A = −k L, which loads are multiplied by too.
+fn stiffness_of(system: &LoadedSystem) -> f64 {
+    system.operator().stretching + system.operator().bending
+}

@@ -1,0 +1,30 @@
+//! The options of gradient-based editing.
+
+use crate::method::option::{Choice, named_choices, options};
+
+options! {
+    /// Options of gradient-based editing.
+    pub struct Poisson {
+        /// How the handles' rotations and stretches spread.
+        propagation: Propagation = Choice {
+            default: Propagation::Harmonic,
+            help: "how turns and stretches spread from the handles: evenly (\"harmonic\"), by distance along the surface \
+                   (\"geodesic\"), or so that stiffly painted parts turn as a whole (\"material\")",
+        },
+    }
+}
+
+named_choices! {
+    /// The weights with which the handles' rotations and stretches spread: 1 on a handle, 0 on what is fixed and on other
+    /// handles. With nothing fixed they sum to 1.
+    pub enum Propagation {
+        /// L w = 0, whatever the painted stiffness [ZRKS05; BS08, section 3.2.2].
+        Harmonic = "harmonic",
+        /// By the distances D along the surface, w_h = D_h⁻¹ / (D_fixed⁻¹ + Σ_k D_k⁻¹): of one handle
+        /// D_fixed / (D_fixed + D_h) [YZX+04; BS08, section 3.2.1].
+        Geodesic = "geodesic",
+        /// L_s w = 0 with the painted stiffness s as conductance, so that w hardly changes on stiff parts
+        /// [PJS06; BS08, section 3.2.3].
+        Material = "material",
+    }
+}
