@@ -8,7 +8,7 @@
 //! matrix in the restricted [`Ordering`], which is factored (`sparse`), and to the method: `bilaplacian` gives
 //! [`HandleBases`], so that a frame is a product with them; `arap` shares everything up to the factor and takes as many
 //! steps as it needs; `primo` steps with rigid prisms; `poisson` spreads the handles' turns and solves for what fits
-//! them.
+//! them, `laplacian` does so with differential coordinates.
 
 mod arap;
 mod bilaplacian;
@@ -18,6 +18,7 @@ mod error;
 mod handles;
 #[cfg(feature = "identity-method")]
 mod identity;
+mod laplacian;
 mod method;
 mod numerical;
 mod operators;
@@ -34,6 +35,7 @@ pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Discretisation, HandleBases
 pub use bound::{Bound, ReusableFactor, Step};
 pub use budget::{Budget, Limit};
 pub use error::{BindError, Crowded, SolveError};
+pub use laplacian::{LaplacianEditing, LocalScale, Transforms};
 pub use method::{
     ConstraintKind, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused,
     OptionValue, Solve,

@@ -186,7 +186,8 @@ impl LoadedSystem {
     }
 }
 
-fn refused(error: SystemError, input: &BindInput<'_>) -> BindError {
+/// The refusal of a system as the caller sees it.
+pub(crate) fn refused(error: SystemError, input: &BindInput<'_>) -> BindError {
     let component_of = |vertex: u32| input.problem.topology.component(SurfaceVertex(vertex));
     error.into_bind_error(component_of, input.partition.solved.len())
 }

@@ -11,7 +11,7 @@ pub(crate) mod hubs;
 pub(crate) mod loaded;
 pub(crate) mod operator;
 mod options;
-mod refine;
+pub(crate) mod refine;
 pub(crate) mod setup;
 mod solver;
 mod springs;

@@ -49,12 +49,75 @@ pub(crate) struct Outcome {
 }
 
 /// By how much the constant may be missed.
-const TOLERANCE: f64 = 1e-7;
+pub(crate) const TOLERANCE: f64 = 1e-7;
+
+/// A factored system whose solutions are refined with its own residual.
+pub(crate) trait Refined {
+    /// The place in a field of each column of the factor.
+    fn places(&self) -> &[u32];
+
+    /// How many rows a field has.
+    fn field_len(&self) -> usize;
+
+    /// S: the scale of each column.
+    fn scale(&self) -> &[f64];
+
+    /// S (b − A d) on the columns, b being what the rows of `d` that are not solved for ask for.
+    fn scaled_residual<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]>;
+
+    /// x ← (S A S)⁻¹ x, up to the error of the factor.
+    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]]);
+}
+
+impl Refined for BilaplacianSystem {
+    fn places(&self) -> &[u32] {
+        self.columns()
+    }
+
+    fn field_len(&self) -> usize {
+        self.operator.field_len()
+    }
+
+    fn scale(&self) -> &[f64] {
+        Self::scale(self)
+    }
+
+    fn scaled_residual<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
+        Self::scaled_residual(self, d)
+    }
+
+    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]]) {
+        Self::solve_factored(self, x);
+    }
+}
+
+/// Fills in the solved rows of `d` from the others, as exactly as what is solved once needs; `contraction` is what an
+/// earlier solve found, or 0.
+pub(crate) fn solve_fully<S: Refined, const K: usize>(
+    system: &S,
+    d: &mut [[f64; K]],
+    contraction: f64,
+    cancel: &Cancel,
+) -> Outcome {
+    solve(system, None, d, (contraction, FULL), cancel)
+}
+
+/// Where a solution that is to be 1 everywhere, the last one of each row, is furthest from it: how far, and the place.
+pub(crate) fn missed_constant<S: Refined, const K: usize>(system: &S, d: &[[f64; K]]) -> (f64, u32) {
+    let mut worst = (0.0, 0);
+    for &place in system.places() {
+        let error = (d[place as usize][K - 1] - 1.0).abs();
+        if error > worst.0 || error.is_nan() {
+            worst = (error, place);
+        }
+    }
+    worst
+}
 
 impl BilaplacianSystem {
     /// Fills in the solved vertices of `d` from its constrained ones, with the contraction that the check found.
     pub fn solve<const K: usize>(&self, d: &mut [[f64; K]], cancel: &Cancel) -> Outcome {
-        solve(self, None, d, (self.contraction, FULL), cancel)
+        solve_fully(self, d, self.contraction, cancel)
     }
 
     /// As [`BilaplacianSystem::solve`], of A d = b with a load b for each column of the factor, as exactly as a frame
@@ -66,16 +129,10 @@ impl BilaplacianSystem {
     /// Solves as [`BilaplacianSystem::solve`] and remembers how fast refinement was. The last function of `d` is 1 at
     /// every constrained place, so its solution is known to be 1: if that is missed, the factor is unusable.
     pub fn check<const K: usize>(&mut self, d: &mut [[f64; K]], cancel: &Cancel) -> Result<f64, SystemError> {
-        let outcome = solve(self, None, d, (0.0, FULL), cancel);
+        let outcome = solve_fully(self, d, 0.0, cancel);
         self.contraction = outcome.contraction;
         cancel.check().map_err(|_| SystemError::Cancelled)?;
-        let mut worst = (0.0, 0);
-        for &local in self.columns() {
-            let error = (d[local as usize][K - 1] - 1.0).abs();
-            if error > worst.0 || error.is_nan() {
-                worst = (error, local);
-            }
-        }
+        let worst = missed_constant(self, d);
         if worst.0 <= TOLERANCE {
             Ok(outcome.error)
         } else {
@@ -91,15 +148,15 @@ impl BilaplacianSystem {
 ///
 /// `contraction` is what an earlier solve found. A right-hand side with little in a direction in which the factor is
 /// wrong would not reveal the error by itself, and would keep a large part of it.
-fn solve<const K: usize>(
-    system: &BilaplacianSystem,
+fn solve<S: Refined, const K: usize>(
+    system: &S,
     load: Option<&[[f64; K]]>,
     d: &mut [[f64; K]],
     (contraction, accuracy): (f64, Accuracy),
     cancel: &Cancel,
 ) -> Outcome {
-    for &local in system.columns() {
-        d[local as usize] = [0.0; K];
+    for &place in system.places() {
+        d[place as usize] = [0.0; K];
     }
     let mut outcome = Outcome {
         error: f64::INFINITY,
@@ -153,10 +210,10 @@ fn solve<const K: usize>(
 }
 
 /// Adds S x to `d`; returns the largest change and the largest value, or `None` where one is not finite.
-fn correct<const K: usize>(system: &BilaplacianSystem, d: &mut [[f64; K]], x: &[[f64; K]]) -> Option<(f64, f64)> {
+fn correct<S: Refined, const K: usize>(system: &S, d: &mut [[f64; K]], x: &[[f64; K]]) -> Option<(f64, f64)> {
     let (mut correction, mut size, mut finite) = (0.0_f64, 0.0_f64, true);
-    for ((&local, &scale), x) in system.columns().iter().zip(system.scale()).zip(x) {
-        let target = &mut d[local as usize];
+    for ((&place, &scale), x) in system.places().iter().zip(system.scale()).zip(x) {
+        let target = &mut d[place as usize];
         for k in 0..K {
             let change = x[k] * scale;
             target[k] += change;
@@ -169,24 +226,20 @@ fn correct<const K: usize>(system: &BilaplacianSystem, d: &mut [[f64; K]], x: &[
 }
 
 /// Solves S A S x = r for each of the K right-hand sides, from zero.
-fn conjugate_gradients<const K: usize>(
-    system: &BilaplacianSystem,
-    mut r: Vec<[f64; K]>,
-    cancel: &Cancel,
-) -> Vec<[f64; K]> {
+fn conjugate_gradients<S: Refined, const K: usize>(system: &S, mut r: Vec<[f64; K]>, cancel: &Cancel) -> Vec<[f64; K]> {
     let mut x = vec![[0.0; K]; r.len()];
     let mut z = r.clone();
     system.solve_factored(&mut z);
     let mut p = z.clone();
     let mut rho = dots(&r, &z);
     let first = rho;
-    let mut scattered = vec![[0.0; K]; system.operator.field_len()];
+    let mut scattered = vec![[0.0; K]; system.field_len()];
     for _ in 0..GRADIENT_STEPS {
         if cancel.is_cancelled() || (0..K).all(|k| rho[k].is_nan() || rho[k] <= GRADIENT_DROP * first[k]) {
             break;
         }
-        for ((&local, &scale), p) in system.columns().iter().zip(system.scale()).zip(&p) {
-            scattered[local as usize] = p.map(|value| value * scale);
+        for ((&place, &scale), p) in system.places().iter().zip(system.scale()).zip(&p) {
+            scattered[place as usize] = p.map(|value| value * scale);
         }
         // The residual has the opposite sign: this is −S A S p.
         let minus_ap = system.scaled_residual(&scattered);

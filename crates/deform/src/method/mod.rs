@@ -22,6 +22,7 @@ pub const METHODS: &[&MethodDeclaration] = &[
     &crate::arap::DECLARATION,
     &crate::primo::DECLARATION,
     &crate::poisson::DECLARATION,
+    &crate::laplacian::DECLARATION,
     #[cfg(feature = "identity-method")]
     &crate::identity::DECLARATION,
 ];

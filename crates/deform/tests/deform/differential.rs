@@ -18,6 +18,14 @@ pub fn methods() -> Vec<Method> {
         with("poisson", &[]),
         with("poisson", &named("propagation", "geodesic")),
         with("poisson", &named("propagation", "material")),
+        with("laplacian", &[]),
+        with("laplacian", &named("scale", "free")),
+        with(
+            "laplacian",
+            &[("steps", OptionValue::Whole(3)), ("ring", OptionValue::Whole(2))],
+        ),
+        with("laplacian", &named("transforms", "initial-guess")),
+        with("laplacian", &named("transforms", "none")),
     ]
 }
 
@@ -36,9 +44,10 @@ pub fn tube(method: &Method) -> Scene {
 
 #[test]
 fn a_rigid_motion_of_all_handles_moves_everything_rigidly() {
-    for method in methods() {
+    // Laplacian editing linearises turns.
+    for method in methods().iter().filter(|method| method.name() != "laplacian") {
         for (name, drawn) in shapes::classes() {
-            let scene = scene(drawn, &method).with_ends(false);
+            let scene = scene(drawn, method).with_ends(false);
             let centre = scene.model.bounds().unwrap().centre();
             let bound = &mut scene.bind();
             for angle in [0.0, 1.0, PI, -2.0] {
@@ -49,6 +58,19 @@ fn a_rigid_motion_of_all_handles_moves_everything_rigidly() {
                 let error = apart(&displacements, &expected) / scene.diagonal();
                 assert!(error < 1e-7, "{name} {method:?} {angle}: {error:e}");
             }
+        }
+    }
+}
+
+#[test]
+fn where_nothing_is_fixed_a_translation_moves_everything_by_itself() {
+    for method in methods() {
+        for (name, drawn) in shapes::classes() {
+            let scene = scene(drawn, &method).with_ends(false);
+            let shift = DVec3::new(0.7, -3.0, 0.2) * scene.diagonal();
+            let moved = scene.moved(&vec![DAffine3::from_translation(shift); scene.handle_count]);
+            let worst = moved.iter().map(|d| d.distance(shift)).fold(0.0, f64::max);
+            assert!(worst < 1e-7 * shift.length(), "{name} {method:?}: {worst:e}");
         }
     }
 }

@@ -9,6 +9,7 @@ mod continuity;
 mod differential;
 mod energies;
 mod hubs;
+mod laplacian;
 mod laws;
 mod nonlinear;
 mod operators;

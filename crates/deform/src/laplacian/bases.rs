@@ -1,0 +1,112 @@
+//! The solutions of the implicit system for each of a handle's twelve numbers: a first shape as one product.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::coupled::{CoupledEnergy, DOF};
+use super::implicit::ImplicitSystem;
+use crate::BindError;
+use crate::bilaplacian::factored::SystemError;
+use crate::bilaplacian::loaded::{LoadedSystem, TOLERANCE, refused};
+use crate::budget::{bytes_of, filled};
+use crate::handles::Motion;
+use crate::method::BindInput;
+use crate::operators::CHUNK;
+use crate::sparse::factor_error::FactorError;
+
+/// Solutions that are solved for at once.
+const AT_ONCE: usize = 6;
+
+/// The displacement of a solved vertex for each number of a handle's motion: number 3 k + c is component c of what the
+/// handle's coordinate k (x, y, z, 1) is multiplied by. In double precision: differences of displacements make the
+/// transformations.
+type Basis = [DVec3; 4 * DOF];
+
+/// The bases, one row for each column of the system, one entry a handle.
+#[derive(Debug)]
+pub(super) struct ImplicitBases {
+    rows: Vec<Basis>,
+}
+
+impl ImplicitBases {
+    /// Factors the energy's system and solves for every handle.
+    pub fn of(system: &LoadedSystem, energy: CoupledEnergy<'_>, input: &BindInput<'_>) -> Result<Self, BindError> {
+        let &BindInput { partition, cancel, .. } = input;
+        let (count, solved) = (input.handles.len(), system.columns().len());
+        let bytes = bytes_of(count, solved * size_of::<Basis>());
+        let budget = partition.budget.without(bytes).map_err(|_| BindError::Handles {
+            handle_count: count,
+            free_count: solved,
+        })?;
+        let at = |local: usize| system.vertices()[local];
+        let of_factor = |error| match error {
+            FactorError::Pivot(local) => SystemError::NotPositiveDefinite { vertex: at(local) },
+            FactorError::Memory => SystemError::OutOfMemory,
+            FactorError::Budget(limit) => SystemError::Budget(limit),
+            FactorError::Cancelled => SystemError::Cancelled,
+        };
+        let refuse = |error| refused(error, input);
+        let elimination = input.ordering()?.elimination(&partition.solved);
+        let mut implicit =
+            ImplicitSystem::of(energy, &elimination, budget, cancel).map_err(|error| refuse(of_factor(error)))?;
+        let check = |error: f64, local: u32| {
+            cancel.check()?;
+            let vertex = at(local as usize);
+            // Also where it is not a number.
+            if error <= TOLERANCE {
+                Ok(())
+            } else {
+                Err(refuse(SystemError::Inaccurate { vertex, error }))
+            }
+        };
+        let (missed, local) = implicit.check(cancel);
+        check(missed, local)?;
+        let first = system.columns().first().copied().unwrap_or(0);
+        let mut rows = filled(Basis::default(), solved * count).map_err(|_| refuse(SystemError::OutOfMemory))?;
+        for (handle, prescribed) in system.prescribed.iter().enumerate() {
+            for half in 0..2 {
+                let mut d = vec![[0.0; AT_ONCE]; DOF * system.operator().field_len()];
+                for &(place, coordinates) in prescribed {
+                    for number in 0..AT_ONCE {
+                        let (k, component) = ((half * AT_ONCE + number) / DOF, number % DOF);
+                        d[DOF * place as usize + component][number] = coordinates[k];
+                    }
+                }
+                check(implicit.solve(&mut d, cancel).error, first)?;
+                for (row, &local) in system.columns().iter().enumerate() {
+                    for number in 0..AT_ONCE {
+                        let at = |component: usize| d[DOF * local as usize + component][number];
+                        rows[row * count + handle][half * AT_ONCE + number] = DVec3::new(at(0), at(1), at(2));
+                    }
+                }
+            }
+        }
+        Ok(Self { rows })
+    }
+
+    /// Fills in the solved rows of a field of displacements.
+    pub fn evaluate(&self, motions: &[Motion], columns: &[u32], solution: &mut Vec<DVec3>, field: &mut [[f64; 3]]) {
+        let numbers = |motion: &Motion| {
+            let linear = motion.linear;
+            let columns = [linear.x_axis, linear.y_axis, linear.z_axis, motion.shift];
+            columns.map(|column| column.to_array())
+        };
+        let motions: Vec<[[f64; 3]; 4]> = motions.iter().map(numbers).collect();
+        solution.resize(columns.len(), DVec3::ZERO);
+        solution
+            .par_iter_mut()
+            .zip(self.rows.par_chunks(motions.len()))
+            .with_min_len(CHUNK)
+            .for_each(|(own, bases)| {
+                *own = DVec3::ZERO;
+                for (basis, motion) in bases.iter().zip(&motions) {
+                    for (part, number) in basis.iter().zip(motion.as_flattened()) {
+                        *own += *part * *number;
+                    }
+                }
+            });
+        for (&local, own) in columns.iter().zip(solution) {
+            field[local as usize] = own.to_array();
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! Laplacian editing as one of the methods.
+
+use glam::DVec3;
+
+use super::{LaplacianEditing, LaplacianSolver, Transforms};
+use crate::handles::Motion;
+use crate::handles::polar::Polar;
+use crate::method::{
+    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
+};
+use crate::{BindError, ReusableFactor, SolveError};
+
+pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
+    name: "laplacian",
+    title: "Laplacian editing",
+    when_to_use: "Turns details with the surface, for moves and for turns up to about 90°, at once; beyond that it bulges \
+                  and shrinks unless `steps` divides the way.",
+    keywords: "laplacian differential coordinates detail similarity implicit",
+    options: LaplacianEditing::OPTIONS,
+    heeds: &[
+        ConstraintKind::SoftHandles,
+        ConstraintKind::Continuity,
+        ConstraintKind::Stiffness,
+    ],
+    default: || LaplacianEditing::default().into(),
+    first_choice: || LaplacianEditing::default().into(),
+};
+
+impl DeformMethod for LaplacianEditing {
+    fn declaration(&self) -> &'static MethodDeclaration {
+        &DECLARATION
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::Surface {
+            reach: 2,
+            ordering_power: Some(2),
+        }
+    }
+
+    fn solve(&self) -> Solve {
+        Solve::Direct
+    }
+
+    fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
+        Ok(Box::new(LaplacianSolver::bind(self, input)?))
+    }
+}
+
+/// A turn by more than this is more than the estimates hold, in radians: 90° with some room.
+const LARGE_RAD: f64 = 1.65;
+
+/// As much without any transformation.
+const SMALL_RAD: f64 = 0.2;
+
+impl BoundMethod for LaplacianSolver {
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        let energy = self.frame(motions, displacements)?;
+        Ok(Stepped {
+            converged: true,
+            energy,
+            finite: Finite::Unknown,
+        })
+    }
+
+    fn rest(&mut self) {
+        self.polars.fill(Polar::default());
+    }
+
+    fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {
+        LaplacianSolver::energy_of(self, motions, displacements)
+    }
+
+    fn reusable_factor(&self) -> Option<ReusableFactor> {
+        Some(self.system.reusable_factor())
+    }
+
+    fn solved_count(&self) -> usize {
+        self.system.columns().len()
+    }
+
+    fn factor_len(&self) -> usize {
+        self.system.factor_len()
+    }
+
+    /// A frame is a back-substitution or two, not a product.
+    fn step_cost(&self) -> usize {
+        8 * self.options.steps as usize * self.solved_count()
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.system.warnings()
+    }
+
+    fn blind_to(&self, motions: &[Motion]) -> Vec<String> {
+        let turns = self.polars_of(motions).into_iter().map(|polar| polar.turn_rad.length());
+        let Some((handle, turn)) = (0..).zip(turns).max_by(|a: &(usize, f64), b| a.1.total_cmp(&b.1)) else {
+            return Vec::new();
+        };
+        let degrees = turn.to_degrees();
+        match self.options.transforms {
+            Transforms::None if turn > SMALL_RAD => vec![format!(
+                "laplacian turns no details where `transforms` is \"none\", and handle {handle} turns by {degrees:.0}°: \
+                 take \"implicit\""
+            )],
+            Transforms::Implicit | Transforms::InitialGuess if turn > LARGE_RAD * f64::from(self.options.steps) => {
+                let steps = (turn / LARGE_RAD).ceil();
+                vec![format!(
+                    "handle {handle} turns by {degrees:.0}°, and laplacian follows about 90° a step: set `steps` to \
+                     {steps:.0}, or take poisson or arap"
+                )]
+            }
+            _ => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,318 @@
+//! Laplacian editing [SCL+04, LSC+04; BS08, sections 3.1.2, 3.2.5 and 3.2.6]: each vertex' differential coordinate L p is
+//! transformed, and the bi-Laplacian system L M⁻¹ L d = L M⁻¹ (T − I) L p puts the surface together again.
+//!
+//! Painted stiffness s scales the density of the energy ½ ∫ s |Δp' − T Δp|², as that of a thin plate.
+//!
+//! Parts: `similarity` and `rings` give the transformations, `coupled`, `implicit` and `bases` the first shape of implicit
+//! ones, and `bilaplacian::loaded` solves.
+
+mod bases;
+mod coupled;
+mod declaration;
+mod implicit;
+mod options;
+mod rings;
+mod similarity;
+
+use glam::{DMat3, DQuat, DVec3};
+use rayon::prelude::*;
+
+pub(crate) use self::declaration::DECLARATION;
+pub use self::options::{LaplacianEditing, LocalScale, Transforms};
+
+use self::bases::ImplicitBases;
+use self::coupled::CoupledEnergy;
+use self::rings::Rings;
+use self::similarity::{Fitted, Similarity};
+use crate::bilaplacian::loaded::LoadedSystem;
+use crate::handles::polar::{Blend, Polar, following};
+use crate::handles::{Handle, Motion};
+use crate::method::BindInput;
+use crate::operators::CHUNK;
+use crate::{Bilaplacian, BindError, Laplacian, SolveError};
+
+/// The bound method.
+#[derive(Debug)]
+pub(crate) struct LaplacianSolver {
+    options: LaplacianEditing,
+    system: LoadedSystem,
+    /// Rest positions of the local vertices, relative to the first one.
+    rest: Vec<DVec3>,
+    /// (L p)_i of the local vertices, 0 where the row is not full.
+    curvature: Vec<DVec3>,
+    rings: Option<Rings>,
+    implicit: Option<Implicit>,
+    handles: Vec<Handle>,
+    /// The handles' maps at the last frame: turns go on from there.
+    polars: Vec<Polar>,
+    room: Room,
+}
+
+/// What implicit transformations need.
+#[derive(Debug)]
+struct Implicit {
+    similarities: Vec<Similarity>,
+    bases: ImplicitBases,
+}
+
+/// What is kept from frame to frame, so that none allocates it.
+#[derive(Clone, Debug, Default)]
+struct Room {
+    field: Vec<[f64; 3]>,
+    solution: Vec<DVec3>,
+    /// (T_i − I)(L p)_i of the local vertices.
+    changes: Vec<DVec3>,
+    stress: Vec<[f64; 3]>,
+    load: Vec<[f64; 3]>,
+}
+
+impl LaplacianSolver {
+    /// Factors the bi-Laplacian and, for implicit transformations, the coupled system, and solves for its bases.
+    pub fn bind(options: &LaplacianEditing, input: &BindInput<'_>) -> Result<Self, BindError> {
+        let &BindInput {
+            problem,
+            progress,
+            cancel,
+            ..
+        } = input;
+        let system = LoadedSystem::bind(&Bilaplacian::default(), problem.stiffness, input.refactorisation, input)?;
+        progress.set(0.3);
+        let positions = &problem.surface.positions;
+        let laplacian = &system.operator().laplacian;
+        let origin = system
+            .vertices()
+            .first()
+            .map_or(DVec3::ZERO, |&vertex| positions[vertex as usize]);
+        let rest: Vec<DVec3> = system
+            .vertices()
+            .iter()
+            .map(|&v| positions[v as usize] - origin)
+            .collect();
+        let coordinates: Vec<[f64; 3]> = rest.iter().map(|p| p.to_array()).collect();
+        let curvature: Vec<DVec3> = (0..rest.len())
+            .map(|local| DVec3::from_array(laplacian.row(local, &coordinates)))
+            .collect();
+        let estimates = match options.transforms {
+            Transforms::Implicit => options.scale == LocalScale::Normalised || options.steps > 1,
+            Transforms::InitialGuess => true,
+            Transforms::None => false,
+        };
+        let rings = estimates.then(|| Rings::of(laplacian, options.ring));
+        cancel.check()?;
+        let implicit = if options.transforms == Transforms::Implicit {
+            let edges = |local: usize| {
+                let (rest, own) = (&rest, rest[local]);
+                laplacian
+                    .neighbours(local)
+                    .iter()
+                    .map(move |&other| rest[other as usize] - own)
+            };
+            let similarities: Vec<Similarity> = (0..rest.len()).map(|local| Similarity::of(edges(local))).collect();
+            let energy = CoupledEnergy::of(system.operator(), &similarities, &rest, &curvature);
+            let energy = energy.map_err(|_| BindError::OutOfMemory {
+                free_count: system.columns().len(),
+            })?;
+            let bases = ImplicitBases::of(&system, energy, input)?;
+            Some(Implicit { similarities, bases })
+        } else {
+            None
+        };
+        progress.set(1.0);
+        let mut solver = Self {
+            options: options.clone(),
+            rest,
+            curvature,
+            rings,
+            implicit,
+            handles: input.handles.to_vec(),
+            polars: vec![Polar::default(); input.handles.len()],
+            room: Room::default(),
+            system,
+        };
+        solver.room = solver.new_room();
+        Ok(solver)
+    }
+
+    fn new_room(&self) -> Room {
+        Room {
+            field: self.system.field(),
+            changes: vec![DVec3::ZERO; self.rest.len()],
+            stress: vec![[0.0; 3]; self.rest.len()],
+            load: vec![[0.0; 3]; self.system.columns().len()],
+            solution: Vec::new(),
+        }
+    }
+
+    /// Solves for the motions; returns the energy.
+    fn frame(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<f64, SolveError> {
+        self.polars = self.polars_of(motions);
+        let mut room = std::mem::take(&mut self.room);
+        let solved = self.shape(motions, &mut room);
+        self.system.write(&room.field, displacements);
+        let energy = self.energy(&room.changes, &room.field);
+        self.room = room;
+        solved.map(|()| energy)
+    }
+
+    fn polars_of(&self, motions: &[Motion]) -> Vec<Polar> {
+        let linear = self
+            .handles
+            .iter()
+            .zip(motions)
+            .map(|(handle, motion)| handle.linear(motion));
+        following(&self.polars, linear)
+    }
+
+    /// Goes the handles' way in the options' steps: at each the transformations are estimated from a first shape, and the
+    /// shape is solved for with them.
+    fn shape(&self, motions: &[Motion], room: &mut Room) -> Result<(), SolveError> {
+        room.load.fill([0.0; 3]);
+        room.changes.fill(DVec3::ZERO);
+        let steps = match self.options.transforms {
+            Transforms::None => 1,
+            Transforms::Implicit | Transforms::InitialGuess => self.options.steps,
+        };
+        for step in 1..=steps {
+            let part = self.part_of_the_way(motions, f64::from(step) / f64::from(steps));
+            self.system.prescribe(&part, &mut room.field);
+            let first = self.implicit.as_ref().filter(|_| step == 1);
+            if let Some(implicit) = first {
+                let columns = self.system.columns();
+                implicit
+                    .bases
+                    .evaluate(&part, columns, &mut room.solution, &mut room.field);
+                if self.is_settled_by_bases() {
+                    self.change_by(&mut room.changes, |local| {
+                        self.fitted(implicit, local, &room.field).change()
+                    });
+                    return Ok(());
+                }
+            } else if self.rings.is_some() {
+                // With the transformations of the step before: at the first one, none.
+                self.system.solve(&room.load, &mut room.field)?;
+            }
+            if let Some(rings) = &self.rings {
+                self.change_by(&mut room.changes, |local| {
+                    let guess = first.map_or(DQuat::IDENTITY, |implicit| {
+                        self.fitted(implicit, local, &room.field).rotation_guess()
+                    });
+                    rings.change(local, &self.rest, &room.field, self.options.scale, guess)
+                });
+            }
+            self.set_load(room);
+            self.system.solve(&room.load, &mut room.field)?;
+        }
+        Ok(())
+    }
+
+    /// The motions' turns and stretches in part, as [`Blend`] scales them, and their shifts.
+    fn part_of_the_way(&self, motions: &[Motion], share: f64) -> Vec<Motion> {
+        if share >= 1.0 {
+            return motions.to_vec();
+        }
+        let part = |((handle, polar), motion): ((&Handle, Polar), &Motion)| {
+            let blend = Blend::of(&[polar], std::iter::once(share));
+            let [x, y, z] = DVec3::AXES.map(|axis| blend.change(axis) * handle.radius);
+            Motion {
+                linear: DMat3::from_cols(x, y, z),
+                shift: motion.shift * share,
+            }
+        };
+        self.handles
+            .iter()
+            .zip(self.polars_of(motions))
+            .zip(motions)
+            .map(part)
+            .collect()
+    }
+
+    /// Whether the bases' shape is the last one: implicit transformations that keep their scale are solved for with it.
+    fn is_settled_by_bases(&self) -> bool {
+        self.implicit.is_some() && self.options.scale == LocalScale::Free && self.options.steps == 1
+    }
+
+    /// The similarity that fits a field around a vertex.
+    fn fitted(&self, implicit: &Implicit, local: usize, field: &[[f64; 3]]) -> Fitted {
+        let at = |place: usize| (self.rest[place], DVec3::from_array(field[place]));
+        let (own, own_shift) = at(local);
+        let mut fitted = Fitted::default();
+        for &other in self.laplacian().neighbours(local) {
+            let (other, shift) = at(other as usize);
+            let part = implicit.similarities[local].part(other - own, shift - own_shift);
+            fitted.scale += part.scale;
+            fitted.turn += part.turn;
+        }
+        fitted
+    }
+
+    /// Fills `changes` with (T − I) L p, by what gives T − I at a local vertex.
+    fn change_by(&self, changes: &mut [DVec3], change: impl Fn(usize) -> DMat3 + Sync) {
+        let laplacian = self.laplacian();
+        changes
+            .par_iter_mut()
+            .with_min_len(CHUNK)
+            .zip(&self.curvature)
+            .enumerate()
+            .for_each(|(local, (own, &curvature))| {
+                if laplacian.is_full(local) {
+                    *own = change(local) * curvature;
+                }
+            });
+    }
+
+    /// L s M⁻¹ (T − I) L p, by differences.
+    fn set_load(&self, room: &mut Room) {
+        let laplacian = self.laplacian();
+        let Room {
+            changes, stress, load, ..
+        } = room;
+        stress
+            .par_iter_mut()
+            .with_min_len(CHUNK)
+            .zip(&*changes)
+            .enumerate()
+            .for_each(|(local, (own, change))| *own = (*change * self.density(local)).to_array());
+        load.par_iter_mut()
+            .with_min_len(CHUNK)
+            .zip(self.system.columns())
+            .for_each(|(own, &local)| *own = laplacian.row(local as usize, stress));
+    }
+
+    fn laplacian(&self) -> &Laplacian {
+        &self.system.operator().laplacian
+    }
+
+    /// s_i / M_ii.
+    fn density(&self, local: usize) -> f64 {
+        self.system.operator().cell_stiffness(local) * self.laplacian().inverse_areas()[local]
+    }
+
+    /// ½ Σ s_i / M_ii |(L d)_i − (T_i − I)(L p)_i|², and the springs'.
+    fn energy(&self, changes: &[DVec3], field: &[[f64; 3]]) -> f64 {
+        let laplacian = self.laplacian();
+        let of = |local: usize| {
+            let bend = DVec3::from_array(laplacian.row(local, field)) - changes[local];
+            0.5 * self.density(local) * bend.length_squared()
+        };
+        let count = self.rest.len();
+        let partial: Vec<f64> = (0..count.div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).map(of).sum())
+            .collect();
+        partial.iter().sum::<f64>() + self.system.spring_energy(field)
+    }
+
+    /// As [`LaplacianSolver::energy`], of any displacements, for these motions; `None` where they can't be solved for.
+    fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {
+        let field = self.system.read(motions, displacements);
+        let mut room = self.new_room();
+        match &self.implicit {
+            // The transformations are the shape's own.
+            Some(implicit) if self.is_settled_by_bases() => {
+                self.change_by(&mut room.changes, |local| self.fitted(implicit, local, &field).change());
+            }
+            _ => self.shape(motions, &mut room).ok()?,
+        }
+        Some(self.energy(&room.changes, &field))
+    }
+}

@@ -1,0 +1,86 @@
+//! Similarities that are linear in the displacements of a vertex' neighbours [SCL+04; BS08, equation 27].
+//!
+//! T = (1 + s) I + [h]× fits the edges e_j of vertex i to e_j + D_j, D_j = d_j − d_i, best in the least squares for
+//!
+//! s = Σ e_j · D_j / Σ |e_j|²,  h = J⁻¹ Σ e_j × D_j,  J = Σ |e_j|² I − e_j e_jᵀ,
+//!
+//! since s e and h × e are orthogonal. Where the edges lie on one line, the turn about it is 0.
+
+use glam::{DMat3, DQuat, DVec3};
+
+/// J is at least this share of its trace, so that edges on one line leave no turn open.
+const OPEN: f64 = 1e-9;
+
+/// The fit at one vertex.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Similarity {
+    /// 1 / Σ |e|², or 0.
+    inverse_square: f64,
+    /// J⁻¹.
+    inverse_inertia: DMat3,
+}
+
+/// s and h.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Fitted {
+    pub scale: f64,
+    pub turn: DVec3,
+}
+
+impl Similarity {
+    /// For the rest edges of a vertex.
+    pub fn of(edges: impl Iterator<Item = DVec3>) -> Self {
+        let (mut square, mut outer) = (0.0, DMat3::ZERO);
+        for edge in edges {
+            square += edge.length_squared();
+            outer += DMat3::from_cols(edge * edge.x, edge * edge.y, edge * edge.z);
+        }
+        // Also where it is not a number, or so small that its inverse is not.
+        if square.is_nan() || square < 1e-300 {
+            return Self::default();
+        }
+        let inertia = DMat3::from_diagonal(DVec3::splat(square * (1.0 + OPEN))) - outer;
+        Self {
+            inverse_square: square.recip(),
+            inverse_inertia: inertia.inverse(),
+        }
+    }
+
+    /// What D at the edge e adds to the fit.
+    #[inline]
+    pub fn part(&self, edge: DVec3, change: DVec3) -> Fitted {
+        Fitted {
+            scale: edge.dot(change) * self.inverse_square,
+            turn: self.inverse_inertia * edge.cross(change),
+        }
+    }
+
+    /// The matrix that takes D at the edge e to its part of (T − I) v.
+    pub fn effect_on(&self, v: DVec3, edge: DVec3) -> DMat3 {
+        let cross = |a: DVec3| DMat3::from_cols(a.cross(DVec3::X), a.cross(DVec3::Y), a.cross(DVec3::Z));
+        let along = edge * self.inverse_square;
+        let scaled = DMat3::from_cols(v * along.x, v * along.y, v * along.z);
+        scaled - cross(v) * self.inverse_inertia * cross(edge)
+    }
+}
+
+impl Fitted {
+    /// A guess at the rotation that carries the edges. Of a flat ring that turns by θ about an axis in its plane the fit
+    /// has |h| = sin θ and 1 + s = (1 + cos θ) / 2, which is 2 tan(θ/2) as a quotient, and less than tan θ.
+    pub fn rotation_guess(&self) -> DQuat {
+        let q = DQuat::from_xyzw(self.turn.x, self.turn.y, self.turn.z, 2.0 * (1.0 + self.scale));
+        let square = q.length_squared();
+        if square.is_finite() && square > 0.0 {
+            q * square.sqrt().recip()
+        } else {
+            DQuat::IDENTITY
+        }
+    }
+
+    /// T − I.
+    pub fn change(&self) -> DMat3 {
+        let h = self.turn;
+        DMat3::from_cols(h.cross(DVec3::X), h.cross(DVec3::Y), h.cross(DVec3::Z))
+            + DMat3::from_diagonal(DVec3::splat(self.scale))
+    }
+}
