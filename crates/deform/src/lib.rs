@@ -8,13 +8,14 @@
 //! matrix in the restricted [`Ordering`], which is factored (`sparse`), and to the method: `bilaplacian` gives
 //! [`HandleBases`], so that a frame is a product with them; `arap` shares everything up to the factor and takes as many
 //! steps as it needs; `primo` steps with rigid prisms; `poisson` spreads the handles' turns and solves for what fits
-//! them, `laplacian` does so with differential coordinates.
+//! them, `laplacian` does so with differential coordinates, and `frames` solves for the turns first.
 
 mod arap;
 mod bilaplacian;
 mod bound;
 mod budget;
 mod error;
+mod frames;
 mod handles;
 #[cfg(feature = "identity-method")]
 mod identity;
@@ -35,6 +36,7 @@ pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Discretisation, HandleBases
 pub use bound::{Bound, ReusableFactor, Step};
 pub use budget::{Budget, Limit};
 pub use error::{BindError, Crowded, SolveError};
+pub use frames::Frames;
 pub use laplacian::{LaplacianEditing, LocalScale, Transforms};
 pub use method::{
     ConstraintKind, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused,

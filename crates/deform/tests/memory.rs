@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
 use pliant_deform::{
-    Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, Constraints, Limit, Loose, Method, Primo,
-    Problem, Role,
+    Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, Constraints, Frames, Limit, Loose, Method,
+    OptionValue, Primo, Problem, Propagation, Role, Transforms,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 
@@ -143,6 +143,17 @@ fn methods() -> Vec<Method> {
         arap.energy = energy;
         methods.push(arap.into());
     }
+    let with = |name: &str, option: &str, value: &'static str| {
+        let method = Method::from_name(name).unwrap();
+        method.with([(option, OptionValue::Name(value))]).unwrap()
+    };
+    for propagation in Propagation::ALL {
+        methods.push(with("poisson", "propagation", propagation.name()));
+    }
+    for transforms in Transforms::ALL {
+        methods.push(with("laplacian", "transforms", transforms.name()));
+    }
+    methods.push(Frames::default().into());
     methods
 }
 

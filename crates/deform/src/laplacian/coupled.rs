@@ -67,8 +67,12 @@ impl<'a> CoupledEnergy<'a> {
         })
     }
 
-    /// c_i.
+    /// c_i. It is 0 at hubs, whose residual would couple all their neighbours with each other: what is around them holds
+    /// them.
     pub fn density(&self, local: usize) -> f64 {
+        if self.operator.laplacian.neighbours(local).len() > self.operator.hub_degree {
+            return 0.0;
+        }
         self.operator.cell_stiffness(local) * self.operator.laplacian.inverse_areas()[local]
     }
 
@@ -98,7 +102,10 @@ impl<'a> CoupledEnergy<'a> {
     pub fn assemble(&self, locals: &[u32], column_of: &[u32], budget: Budget) -> Result<ScaledMatrix, FactorError> {
         let laplacian = &self.operator.laplacian;
         // At most: every pair of a ring, the vertex itself included.
-        let ring = |local: u32| laplacian.neighbours(local as usize).len() + 1;
+        let ring = |local: u32| match self.density(local as usize) {
+            0.0 => 0,
+            _ => laplacian.neighbours(local as usize).len() + 1,
+        };
         let most = |local: &u32| {
             let around = laplacian.neighbours(*local as usize).iter();
             around.map(|&other| ring(other)).sum::<usize>() + ring(*local)
@@ -167,6 +174,10 @@ impl<'a> CoupledEnergy<'a> {
             .iter()
             .chain(std::iter::once(&local))
         {
+            let density = self.density(middle as usize);
+            if density == 0.0 {
+                continue;
+            }
             let own = if middle == local {
                 self.row(middle as usize).last()
             } else {
@@ -179,7 +190,6 @@ impl<'a> CoupledEnergy<'a> {
                 })
             };
             let Some((_, c, w)) = own else { continue };
-            let density = self.density(middle as usize);
             for (far, other, weight) in self.row(middle as usize) {
                 let row = column_of[far as usize];
                 if row == CONSTRAINED || row < column {

@@ -42,6 +42,13 @@ impl DeformMethod for LaplacianEditing {
         Solve::Direct
     }
 
+    fn row_bytes(&self) -> usize {
+        match self.transforms {
+            Transforms::Implicit => 3000,
+            Transforms::InitialGuess | Transforms::None => 500,
+        }
+    }
+
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         Ok(Box::new(LaplacianSolver::bind(self, input)?))
     }
@@ -107,7 +114,7 @@ impl BoundMethod for LaplacianSolver {
                 let steps = (turn / LARGE_RAD).ceil();
                 vec![format!(
                     "handle {handle} turns by {degrees:.0}°, and laplacian follows about 90° a step: set `steps` to \
-                     {steps:.0}, or take poisson or arap"
+                     {steps:.0}, or take poisson, frames or arap"
                 )]
             }
             _ => Vec::new(),

@@ -23,6 +23,7 @@ pub const METHODS: &[&MethodDeclaration] = &[
     &crate::primo::DECLARATION,
     &crate::poisson::DECLARATION,
     &crate::laplacian::DECLARATION,
+    &crate::frames::DECLARATION,
     #[cfg(feature = "identity-method")]
     &crate::identity::DECLARATION,
 ];

@@ -9,7 +9,7 @@
 //! b_i = −Σ_f Σ_j w_ij (T_f − I) e_ij. Only changes of edges enter, so b is zero to the last bit at rest, and gradients
 //! need not be formed.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use pliant_mesh::{Surface, SurfaceVertex, Topology, edge_lengths};
 use rayon::prelude::*;
 
@@ -141,18 +141,29 @@ impl Gradients {
             });
     }
 
+    /// The faces.
+    pub fn faces(&self) -> &[Face] {
+        &self.faces
+    }
+
+    /// The places of the faces around a solved vertex, by its row of a load.
+    pub fn around(&self, column: usize) -> impl Iterator<Item = usize> + '_ {
+        let own = self.offsets[column] as usize..self.offsets[column + 1] as usize;
+        self.corners[own].iter().map(|&entry| entry as usize / 3)
+    }
+
     /// E of displacements, one row for each local vertex, in units of `scale`.
     pub fn energy(&self, changes: &[EdgeChanges], d: &[[f64; 3]]) -> f64 {
-        let of = |(face, &[u, v]): (&Face, &EdgeChanges)| {
-            let [a, b, c] = face.locals.map(|local| DVec3::from_array(d[local as usize]));
-            face.square([b - a - u, c - a - v])
-        };
-        let partial: Vec<f64> = self
-            .faces
-            .par_chunks(CHUNK)
-            .zip(changes.par_chunks(CHUNK))
-            .map(|(faces, changes)| faces.iter().zip(changes).map(of).sum())
-            .collect();
+        self.total(|place, face| {
+            let ([u, v], [own_u, own_v]) = (face.moved(d), changes[place]);
+            face.square([u - own_u, v - own_v])
+        })
+    }
+
+    /// ½ Σ_f of what `of` gives for a face's place and the face, in units of `scale`.
+    pub fn total(&self, of: impl Fn(usize, &Face) -> f64 + Sync) -> f64 {
+        let chunk = |(chunk, faces): (usize, &[Face])| (chunk * CHUNK..).zip(faces).map(|(p, f)| of(p, f)).sum();
+        let partial: Vec<f64> = self.faces.par_chunks(CHUNK).enumerate().map(chunk).collect();
         // Negative cotangents leave a rounding error of either sign where nothing is strained.
         let sum = 0.5 * partial.iter().sum::<f64>();
         let sum = if sum > 0.0 || sum.is_nan() { sum } else { 0.0 };
@@ -161,8 +172,31 @@ impl Gradients {
 }
 
 impl Face {
+    /// How far the two edges that span it are moved by displacements, one row for each local vertex.
+    #[inline]
+    pub fn moved(&self, d: &[[f64; 3]]) -> EdgeChanges {
+        let [a, b, c] = self.locals.map(|local| DVec3::from_array(d[local as usize]));
+        [b - a, c - a]
+    }
+
+    /// The two edges that span it under a linear map.
+    #[inline]
+    pub fn mapped(&self, map: DMat3) -> EdgeChanges {
+        self.edges.map(|edge| map * edge)
+    }
+
+    /// Σ w e' eᵀ over its edges, e' being the rest edge e moved by displacements.
+    #[inline]
+    pub fn covariance(&self, d: &[[f64; 3]]) -> DMat3 {
+        let ([w0, w1, w2], [a, b]) = (self.weights, self.edges);
+        let [u, v] = self.moved(d);
+        let outer = |to: DVec3, from: DVec3| DMat3::from_cols(to * from.x, to * from.y, to * from.z);
+        outer(a + u, a * w2) + outer(b + v, b * w1) + outer(b + v - a - u, (b - a) * w0)
+    }
+
     /// Σ w |x|² over its edges, given the two that span it: not negative but for rounding.
-    fn square(&self, [u, v]: [DVec3; 2]) -> f64 {
+    #[inline]
+    pub fn square(&self, [u, v]: [DVec3; 2]) -> f64 {
         let [w0, w1, w2] = self.weights;
         w0 * u.distance_squared(v) + w1 * v.length_squared() + w2 * u.length_squared()
     }

@@ -6,7 +6,7 @@
 
 mod declaration;
 mod options;
-mod propagation;
+pub(crate) mod propagation;
 
 use glam::DVec3;
 
@@ -146,6 +146,6 @@ pub(crate) fn membrane() -> Bilaplacian {
 }
 
 /// k in A = −k L, which loads are multiplied by too.
-fn stiffness_of(system: &LoadedSystem) -> f64 {
+pub(crate) fn stiffness_of(system: &LoadedSystem) -> f64 {
     system.operator().stretching + system.operator().bending
 }

@@ -15,7 +15,7 @@ const AT_ONCE: usize = 4;
 
 /// One row for each local vertex of the system, one weight from 0 to 1 a handle. The weights of the system itself are
 /// `material`: the same factor serves both. `harmonic` has the same factor where nothing is painted.
-pub(super) fn weights(
+pub(crate) fn weights(
     propagation: Propagation,
     system: &LoadedSystem,
     input: &BindInput<'_>,

@@ -26,6 +26,7 @@ pub fn methods() -> Vec<Method> {
         ),
         with("laplacian", &named("transforms", "initial-guess")),
         with("laplacian", &named("transforms", "none")),
+        with("frames", &[]),
     ]
 }
 

@@ -8,6 +8,7 @@ mod components;
 mod continuity;
 mod differential;
 mod energies;
+mod frames;
 mod hubs;
 mod laplacian;
 mod laws;

@@ -1,0 +1,110 @@
+//! Rotation-invariant coordinates as one of the methods.
+
+use glam::DVec3;
+
+use super::{Frames, FramesSolver};
+use crate::handles::{Motion, only_moved};
+use crate::method::{
+    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
+};
+use crate::{BindError, ReusableFactor, SolveError};
+
+pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
+    name: "frames",
+    title: "Rotation-invariant coordinates",
+    when_to_use: "Solves for how the surface turns and then for where it lies: for turns of several handles by less than \
+                  half a turn, at once. A handle that is only moved turns nothing unless `iterations` are added.",
+    keywords: "frames rotation-invariant coordinates local frames linear",
+    options: Frames::OPTIONS,
+    heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
+    default: || Frames::default().into(),
+    first_choice: || Frames::default().into(),
+};
+
+/// A turn by so much is nearly half a turn, where the blend of two frames has no rotation, in radians.
+const LARGE_RAD: f64 = 2.97;
+
+impl DeformMethod for Frames {
+    fn declaration(&self) -> &'static MethodDeclaration {
+        &DECLARATION
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::Surface {
+            reach: 1,
+            ordering_power: Some(1),
+        }
+    }
+
+    fn solve(&self) -> Solve {
+        match self.iterations {
+            0 => Solve::Direct,
+            iterations => Solve::Iterative {
+                max_iterations: 1 + iterations,
+            },
+        }
+    }
+
+    fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
+        Ok(Box::new(FramesSolver::bind(self, input)?))
+    }
+}
+
+impl BoundMethod for FramesSolver {
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        let converged = self.advance(motions, displacements)?;
+        Ok(Stepped {
+            converged,
+            energy: self.shape.energy,
+            finite: Finite::Unknown,
+        })
+    }
+
+    fn rest(&mut self) {
+        FramesSolver::rest(self);
+    }
+
+    fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> Option<f64> {
+        Some(FramesSolver::energy_of(self, motions, displacements))
+    }
+
+    fn reusable_factor(&self) -> Option<ReusableFactor> {
+        Some(self.system.reusable_factor())
+    }
+
+    fn solved_count(&self) -> usize {
+        self.system.columns().len()
+    }
+
+    fn factor_len(&self) -> usize {
+        self.system.factor_len()
+    }
+
+    /// A frame is a back-substitution, not a product.
+    fn step_cost(&self) -> usize {
+        4 * self.solved_count()
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.system.warnings()
+    }
+
+    fn blind_to(&self, motions: &[Motion]) -> Vec<String> {
+        let turns = self.polars(motions).into_iter().map(|polar| polar.turn_rad.length());
+        let mut sentences: Vec<String> = (0..)
+            .zip(turns)
+            .filter(|(_, turn)| *turn > LARGE_RAD)
+            .map(|(handle, turn): (usize, f64)| {
+                let degrees = turn.to_degrees();
+                format!(
+                    "handle {handle} turns by {degrees:.0}°, and frames knows no turn beyond half a turn: take poisson, \
+                     which follows a drag beyond that, or arap"
+                )
+            })
+            .collect();
+        if self.options.iterations == 0 {
+            sentences.extend(only_moved("frames", motions, self.is_held));
+        }
+        sentences
+    }
+}

@@ -1,0 +1,218 @@
+//! Rotation-invariant coordinates [LSLC05; BS08, sections 3.1.3 and 3.2.4]: local frames are solved for first, positions
+//! that fit them second.
+//!
+//! At rest the frames of neighbours differ by a connection, F_j = F_i C_ij. With F_i' = T_i F_i the least squares
+//! Σ w_ij |F_j' − F_i' C_ij|² are Σ w_ij |T_j − T_i|²: the tangents that the frames are made of drop out, and what would
+//! be a system of 3n unknowns is the Laplacian, L T = 0 with the handles' T prescribed. So T is the sum of the handles'
+//! by harmonic weights, which are solved for at binding; T is then made a rotation again. The Laplacian has cotangent
+//! weights; with the uniform ones of [LSLC05] the shape would depend on the triangles.
+//!
+//! Positions minimise, with each face's edges seen from its three corners c,
+//!
+//! E = ½ Σ_f ⅓ Σ_c Σ_(ij in f) w_ij |d_j − d_i − (T_c − I) e_ij|²,
+//!
+//! a Poisson system with the mean of the three T. The same factor serves both. E is also what iterations lower: fitting
+//! the rotations of free vertices to the positions, and positions to them [SA07, CPSS10].
+
+mod declaration;
+mod fitting;
+mod options;
+
+use glam::{DMat3, DVec3};
+
+pub(crate) use self::declaration::DECLARATION;
+pub use self::options::Frames;
+
+use self::fitting::{Frame, HandleFrame, blend, fit_to};
+use crate::bilaplacian::loaded::LoadedSystem;
+use crate::handles::polar::{Polar, following};
+use crate::handles::{Handle, Motion};
+use crate::method::BindInput;
+use crate::operators::gradients::{EdgeChanges, Gradients};
+use crate::poisson::propagation::weights;
+use crate::poisson::{membrane, stiffness_of};
+use crate::{BindError, Propagation, SolveError};
+
+/// The bound method.
+#[derive(Debug)]
+pub(crate) struct FramesSolver {
+    options: Frames,
+    system: LoadedSystem,
+    gradients: Gradients,
+    /// Each handle's harmonic weight: one row for each local vertex.
+    weights: Vec<f64>,
+    handles: Vec<Handle>,
+    /// Whether something is fixed.
+    is_held: bool,
+    /// The motions that the shape is for.
+    motions: Vec<Motion>,
+    shape: Shape,
+    room: Room,
+}
+
+/// The frames and displacements of the local vertices.
+#[derive(Clone, Debug)]
+struct Shape {
+    frames: Vec<Frame>,
+    field: Vec<[f64; 3]>,
+    energy: f64,
+}
+
+/// What is kept from frame to frame, so that none allocates it.
+#[derive(Clone, Debug, Default)]
+struct Room {
+    changes: Vec<EdgeChanges>,
+    load: Vec<[f64; 3]>,
+    covariances: Vec<DMat3>,
+}
+
+impl FramesSolver {
+    /// Factors the Laplacian and solves for the handles' weights.
+    pub fn bind(options: &Frames, input: &BindInput<'_>) -> Result<Self, BindError> {
+        let &BindInput { problem, progress, .. } = input;
+        let system = LoadedSystem::bind(&membrane(), problem.stiffness, input.refactorisation, input)?;
+        progress.set(0.6);
+        // Painted stiffness is in the system, for frames as for positions.
+        let weights = weights(Propagation::Material, &system, input)?;
+        progress.set(0.9);
+        let gradients = Gradients::of(
+            problem.surface,
+            problem.topology,
+            problem.stiffness,
+            &system.operator().laplacian,
+            system.columns(),
+        );
+        input.cancel.check()?;
+        progress.set(1.0);
+        Ok(Self {
+            options: options.clone(),
+            weights,
+            handles: input.handles.to_vec(),
+            is_held: input.partition.held.contains(&true),
+            motions: vec![Motion::default(); input.handles.len()],
+            shape: Shape {
+                frames: vec![Frame::default(); system.vertices().len()],
+                field: system.field(),
+                energy: 0.0,
+            },
+            room: Room::default(),
+            gradients,
+            system,
+        })
+    }
+
+    /// The linear shape for new motions, or one iteration onwards for the same ones; returns whether it converged.
+    fn advance(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<bool, SolveError> {
+        /// An iteration that lowers the energy by less than this share of it was the last one.
+        const TOLERANCE: f64 = 1e-9;
+        let before = if self.options.iterations > 0 && self.motions == motions {
+            fit_to(
+                &self.gradients,
+                self.system.columns(),
+                &self.shape.field,
+                &mut self.room.covariances,
+                &mut self.shape.frames,
+            );
+            Some(self.shape.energy)
+        } else {
+            self.motions.copy_from_slice(motions);
+            blend(
+                &handle_frames(&self.handles, motions),
+                &self.weights,
+                &mut self.shape.frames,
+            );
+            None
+        };
+        let solved = self.solve(motions);
+        self.system.write(&self.shape.field, displacements);
+        if solved.is_err() || !self.shape.energy.is_finite() {
+            // The next targets begin afresh.
+            self.rest();
+        }
+        solved?;
+        let settled = |before: f64| before - self.shape.energy <= TOLERANCE * before;
+        Ok(self.options.iterations == 0 || before.is_some_and(settled))
+    }
+
+    /// The positions that fit the frames.
+    fn solve(&mut self, motions: &[Motion]) -> Result<(), SolveError> {
+        let Self {
+            system,
+            gradients,
+            shape,
+            room,
+            ..
+        } = self;
+        let frames = &shape.frames;
+        gradients.change(
+            |face| {
+                let [a, b, c] = face.locals.map(|local| frames[local as usize].change);
+                let mean = (a + b + c) * (1.0 / 3.0);
+                move |edge| mean * edge
+            },
+            &mut room.changes,
+        );
+        gradients.divergence(&room.changes, stiffness_of(system), &mut room.load);
+        system.prescribe(motions, &mut shape.field);
+        system.solve(&room.load, &mut shape.field)?;
+        self.shape.energy = self.energy(&self.shape.frames, &self.shape.field);
+        Ok(())
+    }
+
+    /// E and the springs' energy, in units of the rest shape's ½ Σ w |e|².
+    fn energy(&self, frames: &[Frame], field: &[[f64; 3]]) -> f64 {
+        let faces = self.gradients.total(|_, face| {
+            let [u, v] = face.moved(field);
+            let corner = |local: u32| {
+                let [own_u, own_v] = face.mapped(frames[local as usize].change);
+                face.square([u - own_u, v - own_v])
+            };
+            face.locals.map(corner).iter().sum::<f64>() / 3.0
+        });
+        let scale = stiffness_of(&self.system) * self.gradients.scale;
+        let springs = self.system.spring_energy(field);
+        faces + if scale > 0.0 { springs / scale } else { 0.0 }
+    }
+
+    /// The energy of any displacements with the frames of the linear solution or, with iterations, those that fit best.
+    fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
+        let field = self.system.read(motions, displacements);
+        let mut frames = vec![Frame::default(); self.shape.frames.len()];
+        blend(&handle_frames(&self.handles, motions), &self.weights, &mut frames);
+        if self.options.iterations > 0 {
+            fit_to(
+                &self.gradients,
+                self.system.columns(),
+                &field,
+                &mut Vec::new(),
+                &mut frames,
+            );
+        }
+        self.energy(&frames, &field)
+    }
+
+    /// Back to rest.
+    fn rest(&mut self) {
+        self.motions.fill(Motion::default());
+        self.shape.frames.fill(Frame::default());
+        self.shape.field.fill([0.0; 3]);
+        self.shape.energy = 0.0;
+    }
+
+    /// The handles' maps; a turn by more than half a turn is the shorter one the other way.
+    fn polars(&self, motions: &[Motion]) -> Vec<Polar> {
+        polars(&self.handles, motions)
+    }
+}
+
+fn polars(handles: &[Handle], motions: &[Motion]) -> Vec<Polar> {
+    let linear = handles
+        .iter()
+        .zip(motions)
+        .map(|(handle, motion)| handle.linear(motion));
+    following(&vec![Polar::default(); handles.len()], linear)
+}
+
+fn handle_frames(handles: &[Handle], motions: &[Motion]) -> Vec<HandleFrame> {
+    polars(handles, motions).iter().map(HandleFrame::of).collect()
+}
