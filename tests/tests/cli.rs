@@ -36,6 +36,7 @@ fn wrong_arguments_have_status_2() {
     let compare = ["compare", "a.ply", "--edit", "e.json", "--output", "o.png", "--methods"];
     run(compare.into_iter().chain(["arap,magic"])).refused(2, &["--methods", "magic", "bilaplacian"]);
     run(compare.into_iter().chain(["arap,primo,arap"])).refused(2, &["arap", "twice"]);
+    run(compare.into_iter().chain(["arap:energy=smoth"])).refused(2, &["--methods", "`energy`", "smooth"]);
     run(compare.into_iter().chain(["arap", "--report", "o.png"])).refused(2, &["--report", "--output"]);
     run([
         "compare",
@@ -57,7 +58,7 @@ fn a_comparison_of_methods_that_all_refuse_is_refused() {
     let file = folder.write_mesh("mesh.off", &shapes::icosphere(2));
     let mut wrong = bend(&json!({}));
     wrong["handles"][0]["select"] = json!({ "vertices": [999_999] });
-    let edit = folder.write("edit.json", &wrong.to_string());
+    let edit = folder.write("edit.json", wrong.to_string());
     let out = folder.at("sheet.png");
     let line = [
         "compare".as_ref(),

@@ -86,8 +86,10 @@ impl Caption {
         if let Some(detail) = detail {
             last += &format!("   detail's error {detail:.2} × the best");
         }
-        if shape.flipped_faces > 0 {
-            last += &format!("   {} faces flipped", shape.flipped_faces);
+        match shape.flipped_faces {
+            0 => {}
+            1 => last += "   1 face flipped",
+            count => last += &format!("   {count} faces flipped"),
         }
         Self {
             title: title.to_owned(),

@@ -16,6 +16,7 @@ usage: cargo xtask COMMAND
   bench [SECTION..] [--full] measure, and print tables
   assets [NAME..] [--triangles N] [--output DIR]
                              make the samples; with --triangles the creature at that size (60k, 600k, 5M)
+  gallery                    draw the samples' edits by every method into docs/gallery and docs/methods.md
 
 `run` and `test` install missing packages with apt after asking; --yes answers yes.";
 
@@ -49,6 +50,8 @@ pub enum Command {
     },
     /// Make the samples.
     Assets(Order),
+    /// Draw the samples by every method into the docs.
+    Gallery,
 }
 
 /// Which samples to make, how fine, and where to put them.
@@ -108,6 +111,11 @@ pub fn parse(words: &[String]) -> Result<Command, String> {
         )),
         "bench" => Ok(Command::Bench { sections: names, scale }),
         "assets" => Ok(Command::Assets(Order { names, ..order })),
+        "gallery" if names.is_empty() => Ok(Command::Gallery),
+        "gallery" => Err(format!(
+            "`cargo xtask gallery` draws all samples; it takes no `{}`.",
+            names[0]
+        )),
         _ => Err(format!("There is no command `{command}`.")),
     }
 }

@@ -1,4 +1,4 @@
-//! Pliant's own commands: `cargo xtask run|test|check|bench|assets`.
+//! Pliant's own commands: `cargo xtask run|test|check|bench|assets|gallery`.
 //!
 //! It depends only on the standard library, so it builds in seconds on a fresh machine.
 #![allow(
@@ -12,6 +12,7 @@ mod assets;
 mod bench;
 mod check;
 mod display;
+mod gallery;
 mod install;
 mod make_assets;
 mod process;
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
         Command::Check => check::check(),
         Command::Bench { sections, scale } => bench::bench(&sections, scale),
         Command::Assets(order) => make_assets::make_assets(&order),
+        Command::Gallery => gallery::gallery(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use pliant_deform::{METHODS, Method};
 use pliant_editor::{Beginning, Project};
 use pliant_io::{Format, MorphTarget};
 
 use super::arguments::ApplyArguments;
+use super::method_argument::method_argument;
 use super::{Console, on_threads};
 use crate::{AppError, engine, files};
 
@@ -25,7 +25,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     let output_name = output.to_string_lossy();
     Format::of_name(&output_name).map_err(|error| AppError::Arguments(format!("--output: {error}")))?;
     let method = method.as_deref();
-    let method = method.map(|name| method_named("--method", name)).transpose()?;
+    let method = method.map(|name| method_argument("--method", name)).transpose()?;
     files::refuse_shared(("--output", output), [("--edit", &**edit_path)])?;
     if let Some(report) = report {
         let others = [("FILE", &**file), ("--edit", edit_path), ("--output", output)];
@@ -66,13 +66,5 @@ pub(super) fn read_edit(path: &Path) -> Result<Beginning, AppError> {
     read.map_err(|source| AppError::Edit {
         edit: path.to_owned(),
         source,
-    })
-}
-
-/// The method of this name, given to `option`.
-pub(super) fn method_named(option: &str, name: &str) -> Result<Method, AppError> {
-    Method::from_name(name).ok_or_else(|| {
-        let names: Vec<&str> = METHODS.iter().map(|declaration| declaration.name).collect();
-        AppError::Arguments(format!("{option} {name} is not known: use one of {}", names.join(", ")))
     })
 }

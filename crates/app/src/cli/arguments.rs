@@ -83,7 +83,7 @@ pub(crate) struct ApplyArguments {
     /// Replay the edit as a drag of N frames (1 to 100000) instead of one solve
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=100_000))]
     pub frames: Option<usize>,
-    /// Use this method with its defaults instead of the edit's
+    /// Use this method instead of the edit's, with its defaults or with options set: NAME[:OPTION=VALUE..]
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
     /// How many threads to use (at most four a core); without it, all cores. The result is the same whatever their
@@ -99,8 +99,9 @@ pub(crate) struct CompareArguments {
     /// The edit
     #[arg(long, value_name = "EDIT.json")]
     pub edit: PathBuf,
-    /// The methods to compare, with their defaults; the edit's own method keeps its options
-    #[arg(long, value_name = "NAME", value_delimiter = ',', required = true, num_args = 1)]
+    /// The methods to compare, divided by commas, or `all` of them; each is NAME[:OPTION=VALUE..]. The edit's own keeps
+    /// the edit's options where it is given by its name alone
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', required = true, num_args = 1)]
     pub methods: Vec<String>,
     /// The picture to write: a cell for each method
     #[arg(long, value_name = "SHEET.png")]

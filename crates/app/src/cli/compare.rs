@@ -4,16 +4,18 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use pliant_deform::Method;
+use pliant_deform::{METHODS, Method};
 use pliant_editor::{Beginning, Camera, Look};
+use pliant_io::quoted;
 use pliant_mesh::{Model, WeldOptions, mean_curvatures, mixed_voronoi_areas};
 use pliant_render::{Background, Frame, Headless, Image, Samples};
 use serde::Serialize;
 
-use super::apply::{method_named, read_edit};
+use super::apply::read_edit;
 use super::arguments::{self, CompareArguments, PictureSize};
+use super::method_argument::method_argument;
 use super::render::{self, Posed, Shape, Uploaded};
-use super::{Console, on_threads};
+use super::{Console, on_threads, print};
 use crate::drawing::{self, Drawing};
 use crate::engine::{self, Loaded, Solved};
 use crate::files::Destination;
@@ -24,7 +26,7 @@ use crate::{AppError, files, legend, painting, picture_file};
 
 pub(super) fn run(arguments: &CompareArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     render::check_png(&arguments.output)?;
-    let methods = methods(&arguments.methods)?;
+    let methods = asked(&arguments.methods)?;
     let given = [("FILE", &*arguments.file), ("--edit", &*arguments.edit)];
     files::refuse_shared(("--output", &arguments.output), given)?;
     Destination::of(&arguments.output)?;
@@ -34,7 +36,7 @@ pub(super) fn run(arguments: &CompareArguments, console: &mut Console<'_>) -> Re
         Destination::of(report)?;
     }
     let watch = &console.watch;
-    let Compared { sheet, report } = on_threads(arguments.threads, || compare(arguments, &methods, watch))??;
+    let Compared { sheet, report, table } = on_threads(arguments.threads, || compare(arguments, &methods, watch))??;
     if watch.cancel.is_cancelled() {
         return Err(AppError::Interrupted);
     }
@@ -42,20 +44,49 @@ pub(super) fn run(arguments: &CompareArguments, console: &mut Console<'_>) -> Re
     if let Some(path) = &arguments.report {
         files.push((path.clone(), report.as_bytes()));
     }
-    console.staging.stage(files.into_iter())?.commit()?;
-    Ok(())
+    console.staging.stage(files)?.commit()?;
+    print(console.out, &table)
 }
 
-/// The methods of these names, each once.
-fn methods(names: &[String]) -> Result<Vec<Method>, AppError> {
+/// A method as it was asked for.
+struct Asked {
+    /// The words that ask for it.
+    name: String,
+    method: Method,
+}
+
+/// The methods that `names` ask for, each once.
+fn asked(names: &[String]) -> Result<Vec<Asked>, AppError> {
+    let all = METHODS.iter().map(|declaration| declaration.name.to_owned());
+    let names = if *names == ["all"] {
+        all.collect()
+    } else {
+        names.to_vec()
+    };
     for (number, name) in names.iter().enumerate() {
         if names[..number].contains(name) {
             return Err(AppError::Arguments(format!(
-                "--methods names {name} twice: name it once"
+                "--methods names {} twice: name it once",
+                quoted(name)
             )));
         }
     }
-    names.iter().map(|name| method_named("--methods", name)).collect()
+    let asked = |name: String| {
+        let method = method_argument("--methods", &name)?;
+        Ok(Asked { name, method })
+    };
+    names.into_iter().map(asked).collect()
+}
+
+impl Asked {
+    /// What a person calls it, with the options that are set.
+    fn title(&self) -> String {
+        let title = self.method.declaration().title.to_owned();
+        match self.name.split_once(':') {
+            Some((_, options)) => format!("{title} ({})", options.replace(':', ", ").replace('=', " ")),
+            None => title,
+        }
+    }
 }
 
 /// What is written.
@@ -64,6 +95,8 @@ struct Compared {
     sheet: Vec<u8>,
     /// The report as JSON.
     report: String,
+    /// The figures as a table for a person.
+    table: String,
 }
 
 /// What one method made of the edit.
@@ -91,7 +124,7 @@ struct SheetReport<'a> {
     methods: BTreeMap<&'a str, &'a Outcome>,
 }
 
-fn compare(arguments: &CompareArguments, methods: &[Method], watch: &Watch) -> Result<Compared, AppError> {
+fn compare(arguments: &CompareArguments, methods: &[Asked], watch: &Watch) -> Result<Compared, AppError> {
     let loaded = engine::load(&arguments.file, &WeldOptions::default(), watch)?;
     files::refuse_shared(("--output", &arguments.output), loaded.sources())?;
     if let Some(report) = &arguments.report {
@@ -118,10 +151,11 @@ fn compare(arguments: &CompareArguments, methods: &[Method], watch: &Watch) -> R
     rank_details(&mut outcomes);
     let image = draw(arguments, &loaded, edit, methods, &outcomes, watch)?;
     let report = SheetReport {
-        methods: methods.iter().map(Method::name).zip(&outcomes).collect(),
+        methods: methods.iter().map(|asked| asked.name.as_str()).zip(&outcomes).collect(),
     };
     Ok(Compared {
         sheet: picture_file::png(image)?,
+        table: table(methods, &outcomes),
         // Structs of numbers, strings and lists always serialise.
         report: serde_json::to_string_pretty(&report).unwrap_or_default() + "\n",
     })
@@ -131,10 +165,10 @@ fn compare(arguments: &CompareArguments, methods: &[Method], watch: &Watch) -> R
 ///
 /// # Errors
 /// It was interrupted, or the edit can't be read a second time.
-fn outcome(arguments: &CompareArguments, loaded: &Loaded, method: &Method, watch: &Watch) -> Result<Outcome, AppError> {
+fn outcome(arguments: &CompareArguments, loaded: &Loaded, asked: &Asked, watch: &Watch) -> Result<Outcome, AppError> {
     let mut edit = read_edit(&arguments.edit)?;
-    if edit.method_name() != method.name() {
-        edit.set_method(method.clone());
+    if edit.method_name() != asked.name {
+        edit.set_method(asked.method.clone());
     }
     let setup = edit.resolve(&loaded.model).map_err(|source| AppError::Edit {
         edit: arguments.edit.clone(),
@@ -155,6 +189,61 @@ fn outcome(arguments: &CompareArguments, loaded: &Loaded, method: &Method, watch
             refused: refused.to_string(),
         }),
     }
+}
+
+/// A line for each method: its times, how much it stretches, and how well it keeps volume and details.
+fn table(methods: &[Asked], outcomes: &[Outcome]) -> String {
+    let mut rows = vec![
+        [
+            "method",
+            "bind ms",
+            "frame ms",
+            "stretch",
+            "largest",
+            "flipped",
+            "volume",
+            "detail's error",
+        ]
+        .map(str::to_owned),
+    ];
+    let mut refusals = String::new();
+    for (asked, outcome) in methods.iter().zip(outcomes) {
+        match outcome {
+            Outcome::Bent {
+                report,
+                detail_error_of_best,
+                ..
+            } => {
+                let shape = &report.distortion;
+                rows.push([
+                    asked.name.clone(),
+                    format!("{:.1}", report.bind_ms),
+                    format!("{:.2}", report.frames.median_ms),
+                    format!("{:.3}", shape.edge_stretch_mean),
+                    format!("{:.2}", shape.edge_stretch_max),
+                    shape.flipped_faces.to_string(),
+                    format!("{:.3}", shape.volume_ratio),
+                    detail_error_of_best.map_or_else(|| "-".to_owned(), |error| format!("{error:.2}")),
+                ]);
+            }
+            Outcome::Refused { refused } => refusals += &format!("{}: {refused}\n", asked.name),
+        }
+    }
+    let widths: Vec<usize> = (0..rows[0].len())
+        .map(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0))
+        .collect();
+    let line = |row: &[String; 8]| {
+        let cells = row
+            .iter()
+            .zip(&widths)
+            .enumerate()
+            .map(|(column, (cell, &width))| match column {
+                0 => format!("{cell:<width$}"),
+                _ => format!("{cell:>width$}"),
+            });
+        cells.collect::<Vec<_>>().join("  ") + "\n"
+    };
+    rows.iter().map(line).collect::<String>() + &refusals
 }
 
 /// How much the surface's details changed as seen from the surface: the root of ∫ (H' − H)² dA over the rest shape,
@@ -200,7 +289,7 @@ fn draw(
     arguments: &CompareArguments,
     loaded: &Loaded,
     edit: Beginning,
-    methods: &[Method],
+    methods: &[Asked],
     outcomes: &[Outcome],
     watch: &Watch,
 ) -> Result<Image, AppError> {
@@ -226,11 +315,11 @@ fn draw(
     let camera = camera(arguments, model, outcomes, size_px);
     let view = drawing::view(&camera, size_px, drawing.centre);
     let mut cells = Vec::with_capacity(methods.len());
-    for (number, (method, outcome)) in methods.iter().zip(outcomes).enumerate() {
+    for (number, (asked, outcome)) in methods.iter().zip(outcomes).enumerate() {
         if watch.cancel.is_cancelled() {
             return Err(AppError::Interrupted);
         }
-        let title = method.declaration().title;
+        let title = &asked.title();
         cells.push(match outcome {
             Outcome::Refused { refused } => Cell {
                 picture: None,

@@ -6,6 +6,7 @@ mod compare;
 mod diff;
 mod info;
 mod interrupt;
+mod method_argument;
 mod progress_line;
 mod render;
 

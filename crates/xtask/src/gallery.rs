@@ -1,0 +1,99 @@
+//! `cargo xtask gallery`: draws the samples' edits by every method into the docs, with their figures.
+
+use std::fs;
+use std::process::Stdio;
+
+use crate::assets::SAMPLES;
+use crate::process::{cargo, succeed, target_folder, words};
+
+/// The methods of the gallery. Beside each method with its defaults, options that change what it can do.
+const METHODS: &str = "bilaplacian,poisson,laplacian,frames,frames:iterations=20,arap,arap:energy=smooth,primo";
+
+/// The size of a sheet in pixels.
+const SIZE: &str = "1400x840";
+
+/// Draws `docs/gallery/NAME.png` for each sample, and puts the tables of figures into `docs/methods.md`, each between
+/// its marks.
+///
+/// # Errors
+/// One sentence naming what can't be built, drawn or written.
+pub fn gallery() -> Result<(), String> {
+    succeed(&mut cargo(&[
+        "build",
+        "--release",
+        "-p",
+        "pliant-app",
+        "--bin",
+        "pliant",
+    ]))?;
+    let root = crate::root();
+    let page = root.join("docs/methods.md");
+    let mut text = fs::read_to_string(&page).map_err(|e| format!("{} can't be read: {e}.", page.display()))?;
+    let folder = root.join("docs/gallery");
+    fs::create_dir_all(&folder).map_err(|e| format!("{} can't be made: {e}.", folder.display()))?;
+    for sample in &SAMPLES {
+        let name = sample.name;
+        let sheet = folder.join(format!("{name}.png"));
+        let mut command = std::process::Command::new(target_folder().join("release/pliant"));
+        command.current_dir(&root).stderr(Stdio::inherit());
+        command.args([
+            "compare",
+            &format!("assets/{name}.glb"),
+            "--methods",
+            METHODS,
+            "--size",
+            SIZE,
+        ]);
+        command
+            .args(["--edit", &format!("assets/{name}.edit.json"), "--output"])
+            .arg(&sheet);
+        let output = command
+            .output()
+            .map_err(|e| format!("`{}` can't be started: {e}.", words(&command)))?;
+        if !output.status.success() {
+            return Err(format!("`{}` failed ({}).", words(&command), output.status));
+        }
+        let table = String::from_utf8_lossy(&output.stdout);
+        text = with_table(&text, name, &table).ok_or_else(|| {
+            format!(
+                "{} has no place for the table of {name}: {}",
+                page.display(),
+                mark(name)
+            )
+        })?;
+        println!("{}\n{table}", sheet.display());
+    }
+    fs::write(&page, text).map_err(|e| format!("{} can't be written: {e}.", page.display()))
+}
+
+/// The line before a sample's table.
+fn mark(name: &str) -> String {
+    format!("<!-- figures of {name} -->\n")
+}
+
+/// `text` with this table behind the sample's mark, in place of the block that is there.
+fn with_table(text: &str, name: &str, table: &str) -> Option<String> {
+    let (before, rest) = text.split_once(&mark(name))?;
+    let after = match rest.strip_prefix("```text\n") {
+        Some(old) => old.split_once("```\n")?.1,
+        None => rest,
+    };
+    Some(format!("{before}{}```text\n{table}```\n{after}", mark(name)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_table;
+
+    #[test]
+    fn a_table_takes_the_place_of_the_one_before() {
+        let page = "# Bar\n<!-- figures of bar -->\n\nBehind.\n";
+        let once = with_table(page, "bar", "a\n").unwrap_or_default();
+        assert_eq!(once, "# Bar\n<!-- figures of bar -->\n```text\na\n```\n\nBehind.\n");
+        assert_eq!(
+            with_table(&once, "bar", "b\n"),
+            Some("# Bar\n<!-- figures of bar -->\n```text\nb\n```\n\nBehind.\n".to_owned())
+        );
+        assert_eq!(with_table(&once, "cactus", "b\n"), None);
+    }
+}
