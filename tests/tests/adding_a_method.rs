@@ -130,9 +130,12 @@ fn an_edit_names_it_and_its_options_and_moves_the_handles_alone() {
         .done();
     let report: Value = serde_json::from_str(&std::fs::read_to_string(report).unwrap()).unwrap();
     let said = report["warnings"].to_string();
-    assert!(said.contains("take bilaplacian or arap for soft handles"), "{said}");
     assert!(
-        said.contains("take bilaplacian, arap or primo for parts that are stiffer"),
+        said.contains("take bilaplacian, arap, poisson, laplacian or frames for soft handles"),
+        "{said}"
+    );
+    assert!(
+        said.contains("take bilaplacian, arap, primo, poisson, laplacian or frames for parts that are stiffer"),
         "{said}"
     );
     assert_eq!(report["converged"], true);

@@ -115,7 +115,7 @@ pub(crate) fn only_moved(method: &str, motions: &[Motion], is_held: bool) -> Opt
     (moves && motions.iter().all(is_only_moved)).then(|| {
         format!(
             "{method} is blind to moves: the handles are moved and not turned, so the surface shears between them; turn \
-             a handle, or take arap"
+             a handle, or take laplacian or arap"
         )
     })
 }

@@ -46,6 +46,19 @@ impl Similarity {
         }
     }
 
+    /// The same with s = 0.
+    ///
+    /// At a free border L p also has a part within the surface, across the border. Under similarities it only asks that
+    /// the border keeps its angles, and on flat parts every conformal map would be free; without the scale it asks that
+    /// they keep their width, too.
+    #[must_use]
+    pub fn without_scale(self) -> Self {
+        Self {
+            inverse_square: 0.0,
+            ..self
+        }
+    }
+
     /// What D at the edge e adds to the fit.
     #[inline]
     pub fn part(&self, edge: DVec3, change: DVec3) -> Fitted {

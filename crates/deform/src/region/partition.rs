@@ -111,16 +111,16 @@ impl Partition<'_> {
     /// [`BindError::Budget`] or [`BindError::Handles`] where these alone exceed it.
     pub fn take_budget(&mut self, problem: &Problem, budget: Budget) -> Result<(), BindError> {
         let (handles, solved) = (self.handles.len(), self.solved.len());
-        let tables = bytes_of(problem.surface.positions.len(), SURFACE_ROW)
-            .saturating_add(bytes_of(solved, problem.method.implementation().row_bytes()));
-        let budget = budget
-            .without(tables)
-            .map_err(|limit| BindError::budget(solved, limit))?;
-        let bytes = bytes_of(handles, ROW * solved).saturating_add(bytes_of(handles, PAIR * handles));
-        self.budget = budget.without(bytes).map_err(|_| BindError::Handles {
+        let of_handles = bytes_of(handles, ROW * solved).saturating_add(bytes_of(handles, PAIR * handles));
+        let budget = budget.without(of_handles).map_err(|_| BindError::Handles {
             handle_count: handles,
             free_count: solved,
         })?;
+        let of_tables = bytes_of(problem.surface.positions.len(), SURFACE_ROW)
+            .saturating_add(bytes_of(solved, problem.method.implementation().row_bytes()));
+        self.budget = budget
+            .without(of_tables)
+            .map_err(|limit| BindError::budget(solved, limit))?;
         Ok(())
     }
 }

@@ -1,0 +1,128 @@
+//! A frame of Laplacian editing: estimate the transformations, transform L p, solve.
+
+use glam::{DMat3, DQuat, DVec3};
+use rayon::prelude::*;
+
+use super::similarity::Fitted;
+use super::{Implicit, LaplacianSolver, LocalScale, Room, Transforms};
+use crate::SolveError;
+use crate::handles::polar::{Blend, Polar};
+use crate::handles::{Handle, Motion};
+use crate::operators::CHUNK;
+
+impl LaplacianSolver {
+    /// Goes the handles' way in the options' steps: at each the transformations are estimated from a first shape, and the
+    /// shape is solved for with them.
+    pub(super) fn shape(&self, motions: &[Motion], room: &mut Room) -> Result<(), SolveError> {
+        room.load.fill([0.0; 3]);
+        room.changes.fill(DVec3::ZERO);
+        let steps = match self.options.transforms {
+            Transforms::None => 1,
+            Transforms::Implicit | Transforms::InitialGuess => self.options.steps,
+        };
+        for step in 1..=steps {
+            let part = self.part_of_the_way(motions, f64::from(step) / f64::from(steps));
+            self.system.prescribe(&part, &mut room.field);
+            let first = self.implicit.as_ref().filter(|_| step == 1);
+            if let Some(implicit) = first {
+                let columns = self.system.columns();
+                implicit
+                    .bases
+                    .evaluate(&part, columns, &mut room.solution, &mut room.field);
+                if self.is_settled_by_bases() {
+                    self.change_by(&mut room.changes, |local| {
+                        self.fitted(implicit, local, &room.field).change()
+                    });
+                    return Ok(());
+                }
+            } else if self.rings.is_some() {
+                // With the transformations of the step before: at the first one, none.
+                self.system.solve(&room.load, &mut room.field)?;
+            }
+            if let Some(rings) = &self.rings {
+                self.change_by(&mut room.changes, |local| {
+                    let guess = first.map_or(DQuat::IDENTITY, |implicit| {
+                        self.fitted(implicit, local, &room.field).rotation_guess()
+                    });
+                    rings.change(local, &self.rest, &room.field, self.options.scale, guess)
+                });
+            }
+            self.set_load(room);
+            self.system.solve(&room.load, &mut room.field)?;
+        }
+        Ok(())
+    }
+
+    /// The motions' turns and stretches in part, as [`Blend`] scales them, and their shifts.
+    fn part_of_the_way(&self, motions: &[Motion], share: f64) -> Vec<Motion> {
+        if share >= 1.0 {
+            return motions.to_vec();
+        }
+        let part = |((handle, polar), motion): ((&Handle, Polar), &Motion)| {
+            let blend = Blend::of(&[polar], std::iter::once(share));
+            let [x, y, z] = DVec3::AXES.map(|axis| blend.change(axis) * handle.radius);
+            Motion {
+                linear: DMat3::from_cols(x, y, z),
+                shift: motion.shift * share,
+            }
+        };
+        self.handles
+            .iter()
+            .zip(self.polars_of(motions))
+            .zip(motions)
+            .map(part)
+            .collect()
+    }
+
+    /// Whether the bases' shape is the last one: implicit transformations that keep their scale are solved for with it.
+    pub(super) fn is_settled_by_bases(&self) -> bool {
+        self.implicit.is_some() && self.options.scale == LocalScale::Free && self.options.steps == 1
+    }
+
+    /// The similarity that fits a field around a vertex.
+    pub(super) fn fitted(&self, implicit: &Implicit, local: usize, field: &[[f64; 3]]) -> Fitted {
+        let at = |place: usize| (self.rest[place], DVec3::from_array(field[place]));
+        let (own, own_shift) = at(local);
+        let mut fitted = Fitted::default();
+        for &other in self.laplacian().neighbours(local) {
+            let (other, shift) = at(other as usize);
+            let part = implicit.similarities[local].part(other - own, shift - own_shift);
+            fitted.scale += part.scale;
+            fitted.turn += part.turn;
+        }
+        fitted
+    }
+
+    /// Fills `changes` with (T − I) L p, by what gives T − I at a local vertex.
+    pub(super) fn change_by(&self, changes: &mut [DVec3], change: impl Fn(usize) -> DMat3 + Sync) {
+        let laplacian = self.laplacian();
+        changes
+            .par_iter_mut()
+            .with_min_len(CHUNK)
+            .zip(&self.curvature)
+            .enumerate()
+            .for_each(|(local, (own, &curvature))| {
+                if laplacian.is_full(local) {
+                    *own = change(local) * curvature;
+                }
+            });
+    }
+
+    /// L s M⁻¹ (T − I) L p, by differences.
+    fn set_load(&self, room: &mut Room) {
+        let laplacian = self.laplacian();
+        let Room {
+            changes, stress, load, ..
+        } = room;
+        stress
+            .par_iter_mut()
+            .with_min_len(CHUNK)
+            .zip(&*changes)
+            .enumerate()
+            .for_each(|(local, (own, change))| *own = (*change * self.density(local)).to_array());
+        load.par_iter_mut()
+            .with_min_len(CHUNK)
+            .zip(self.system.columns())
+            .for_each(|(own, &local)| *own = laplacian.row(local as usize, stress));
+    }
+}
