@@ -246,6 +246,12 @@ impl Bound {
         (handle < self.handles.len() && self.method.weights_of(handle, &mut weights)).then_some(weights)
     }
 
+    /// Replaces the rest positions of the surface's vertices by those of the smooth base that is bent in its place,
+    /// where the method has one. Whether it has.
+    pub fn base(&self, positions: &mut [DVec3]) -> bool {
+        positions.len() == self.vertex_count && self.method.base(positions)
+    }
+
     /// The handle bases, if a step is a product with them.
     pub fn handle_bases(&self) -> Option<&HandleBases> {
         self.method.handle_bases()

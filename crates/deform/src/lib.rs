@@ -32,7 +32,7 @@ mod sparse;
 pub mod stages;
 
 pub use arap::{Arap, ArapEnergy};
-pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Discretisation, HandleBases, TriangulationKind};
+pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Detail, Discretisation, HandleBases, TriangulationKind};
 pub use bound::{Bound, ReusableFactor, Step};
 pub use budget::{Budget, Limit};
 pub use error::{BindError, Crowded, SolveError};

@@ -14,16 +14,35 @@ use glam::{DMat3, DVec3};
 use crate::budget::filled;
 use crate::handles::Motion;
 
+/// The precision in which bases are stored.
+pub(crate) trait Stored: Copy + Default + Into<f64> + Send + Sync {
+    /// The nearest number.
+    fn of(value: f64) -> Self;
+}
+
+impl Stored for f32 {
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+}
+
+impl Stored for f64 {
+    fn of(value: f64) -> Self {
+        value
+    }
+}
+
 /// What the handles' transforms do to each vertex that is solved for.
 ///
 /// The columns of handle h are those of q = (p − centre_h) / radius_h and of the constant, so the displacement of a
 /// row's vertex is Σ_h radius_h (A_h − I) b_h.xyz + b_h.w t_h, where A_h is the linear part of the handle's transform
-/// and t_h what it does to the handle's centre. **f32**, which costs 1e-7 of the handles' motion.
+/// and t_h what it does to the handle's centre. Plain bending stores them in **f32**, which costs 1e-7 of the handles'
+/// motion; where differences between neighbours matter they are f64.
 #[derive(Clone, Debug, Default)]
-pub struct HandleBases {
+pub struct HandleBases<T = f32> {
     vertices: Vec<u32>,
     handle_count: usize,
-    rows: Vec<[f32; 4]>,
+    rows: Vec<[T; 4]>,
     runs: Vec<Run>,
 }
 
@@ -34,7 +53,7 @@ struct Run {
     reference: Option<u16>,
 }
 
-impl HandleBases {
+impl<T> HandleBases<T> {
     /// The surface vertices that are solved for, ascending: one per row.
     pub fn vertices(&self) -> &[u32] {
         &self.vertices
@@ -46,15 +65,19 @@ impl HandleBases {
     }
 
     /// Row-major: `handle_count` entries (x, y, z, constant) a row.
-    pub fn rows(&self) -> &[[f32; 4]] {
+    pub fn rows(&self) -> &[[T; 4]] {
         &self.rows
     }
+}
 
+impl HandleBases {
     /// The share that handle `handle` has in each row's vertex: about 1 beside it, 0 at what is fixed.
     pub fn weight(&self, row: usize, handle: usize) -> f32 {
         self.rows[row * self.handle_count + handle][3]
     }
+}
 
+impl<T> HandleBases<T> {
     /// Bases over `vertices` (ascending) from one column block a handle; `reference` names the reference handle of a
     /// vertex in a component where nothing is fixed.
     ///
@@ -62,10 +85,13 @@ impl HandleBases {
     /// Where the machine has no memory for them.
     pub(crate) fn new(
         vertices: Vec<u32>,
-        blocks: &[Vec<[f32; 4]>],
+        blocks: &[Vec<[T; 4]>],
         reference: impl Fn(u32) -> Option<u16>,
-    ) -> Result<Self, TryReserveError> {
-        let mut rows = filled([0.0; 4], vertices.len() * blocks.len())?;
+    ) -> Result<Self, TryReserveError>
+    where
+        T: Stored,
+    {
+        let mut rows = filled([T::default(); 4], vertices.len() * blocks.len())?;
         for (handle, block) in blocks.iter().enumerate() {
             for (row, entry) in block.iter().enumerate() {
                 rows[row * blocks.len() + handle] = *entry;
@@ -92,7 +118,10 @@ impl HandleBases {
 
     /// The displacements of the solved vertices among those from `first` on.
     #[inline(always)]
-    pub(crate) fn evaluate(&self, tables: &Tables, first: usize, out: &mut [DVec3]) {
+    pub(crate) fn evaluate(&self, tables: &Tables, first: usize, out: &mut [DVec3])
+    where
+        T: Stored,
+    {
         let place = |vertex: usize| self.vertices.partition_point(|&other| (other as usize) < vertex);
         let (mut row, end) = (place(first), place(first + out.len()));
         let mut run = self.runs.partition_point(|run| run.end <= row);
@@ -107,8 +136,8 @@ impl HandleBases {
             for (&vertex, entries) in self.vertices[row..until].iter().zip(entries) {
                 let mut sum = base;
                 for (entry, motion) in entries.iter().zip(table) {
-                    // f32 ends here: from the stored basis on everything is f64.
-                    let [x, y, z, w] = entry.map(f64::from);
+                    // From the stored basis on everything is f64.
+                    let [x, y, z, w] = entry.map(Into::into);
                     sum += motion[0] * x + motion[1] * y + motion[2] * z + motion[3] * w;
                 }
                 out[vertex as usize - first] = sum;
@@ -130,7 +159,7 @@ type Relative = (DVec3, Vec<[DVec3; 4]>);
 
 impl Tables {
     /// Of the motions, for `bases`.
-    pub fn of(motions: &[Motion], bases: &HandleBases) -> Self {
+    pub fn of<T>(motions: &[Motion], bases: &HandleBases<T>) -> Self {
         let columns = |base: DVec3| {
             let column = |motion: &Motion| {
                 let DMat3 { x_axis, y_axis, z_axis } = motion.linear;

@@ -5,14 +5,15 @@ use std::collections::TryReserveError;
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
+use crate::bilaplacian::bases::Stored;
 use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
 use crate::bilaplacian::setup::Prescribed;
 use crate::budget::filled;
 
 /// One handle's four columns.
-pub(crate) struct Columns {
-    /// On the solved vertices, ascending. **f32**.
-    pub rows: Vec<[f32; 4]>,
+pub(crate) struct Columns<T> {
+    /// On the solved vertices, ascending.
+    pub rows: Vec<[T; 4]>,
     /// C_hᵀ F of this handle against each handle h, F the force that it takes at h: A B, or the springs' W (C − B).
     energies: Vec<[[f64; 4]; 4]>,
     /// How far off the solution is, relative to its largest value.
@@ -22,13 +23,13 @@ pub(crate) struct Columns {
 }
 
 /// Checks the system and solves for each handle's columns on the vertices `solved`; without handles it only checks.
-pub(crate) fn solve_columns(
+pub(crate) fn solve_columns<T: Stored>(
     system: &mut BilaplacianSystem,
     prescribed: &[Prescribed],
     solved: &[u32],
     progress: &Progress,
     cancel: &Cancel,
-) -> Result<Vec<Columns>, SystemError> {
+) -> Result<Vec<Columns<T>>, SystemError> {
     let solved_locals = system.operator.laplacian.locals(solved);
     let field_len = system.operator.field_len();
     let Some((first, others)) = prescribed.split_first() else {
@@ -61,7 +62,7 @@ pub(crate) fn solve_columns(
 }
 
 /// The blocks G_hk of the energy ½ Σ_hk tr(X_hᵀ G_hk X_k) of motions X, row-major over pairs of handles.
-pub(crate) fn energy_blocks(columns: &[Columns]) -> Result<Vec<[[f64; 4]; 4]>, TryReserveError> {
+pub(crate) fn energy_blocks<T>(columns: &[Columns<T>]) -> Result<Vec<[[f64; 4]; 4]>, TryReserveError> {
     let mut blocks = filled([[0.0; 4]; 4], columns.len() * columns.len())?;
     for (k, column) in columns.iter().enumerate() {
         for (h, block) in column.energies.iter().enumerate() {
@@ -71,7 +72,7 @@ pub(crate) fn energy_blocks(columns: &[Columns]) -> Result<Vec<[[f64; 4]; 4]>, T
     Ok(blocks)
 }
 
-impl Columns {
+impl<T: Stored> Columns<T> {
     /// Of a solution whose first four functions are the handle's.
     fn of<const K: usize>(
         system: &BilaplacianSystem,
@@ -99,7 +100,7 @@ impl Columns {
             }
             block
         };
-        let row = |&local: &u32| std::array::from_fn(|k| d[local as usize][k] as f32);
+        let row = |&local: &u32| std::array::from_fn(|k| T::of(d[local as usize][k]));
         let vertex = own.first().map_or(0, |&(place, _)| {
             operator.laplacian.vertices()[operator.local_of(place as usize) as usize]
         });

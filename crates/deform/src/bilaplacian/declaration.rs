@@ -4,15 +4,15 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::bilaplacian::Bilaplacian;
+use crate::bilaplacian::detail::Multiresolution;
 use crate::bilaplacian::solver::BilaplacianSolver;
-use crate::handles::{Motion, clear};
+use crate::handles::Motion;
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, OptionRefused, Solve,
     Stepped,
 };
 use crate::operators::triangulation::Triangulation;
-use crate::{BindError, HandleBases, Problem, ReusableFactor, SolveError};
+use crate::{Bilaplacian, BindError, Detail, HandleBases, Problem, ReusableFactor, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "bilaplacian",
@@ -37,7 +37,7 @@ impl DeformMethod for Bilaplacian {
     fn needs(&self) -> Needs {
         Needs::Surface {
             reach: self.operator_power(),
-            ordering_power: Some(self.operator_power()),
+            ordering_power: Some(self.ordering_power()),
         }
     }
 
@@ -60,7 +60,10 @@ impl DeformMethod for Bilaplacian {
     }
 
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
-        Ok(Box::new(BilaplacianSolver::bind(self, input)?))
+        Ok(match self.detail {
+            Detail::None => Box::new(BilaplacianSolver::<f32>::bind(self, input)?),
+            _ => Box::new(Multiresolution::bind(self, input)?),
+        })
     }
 }
 
@@ -79,13 +82,7 @@ impl BoundMethod for BilaplacianSolver {
         motions: &[Motion],
         displacements: &mut [DVec3],
     ) -> Result<Stepped, SolveError> {
-        clear(displacements);
-        for (handle, motion) in motions.iter().enumerate() {
-            for (vertex, coordinates) in self.prescribed(handle) {
-                displacements[vertex as usize] = motion.displace(coordinates);
-            }
-        }
-        self.back_substitute(displacements)?;
+        self.frame_by_back_substitution(motions, displacements)?;
         Ok(Stepped {
             converged: true,
             energy: BilaplacianSolver::energy_of(self, motions, displacements),

@@ -6,6 +6,7 @@ mod bases;
 mod columns;
 mod continuity;
 mod declaration;
+mod detail;
 pub(crate) mod factored;
 pub(crate) mod hubs;
 pub(crate) mod loaded;
@@ -18,4 +19,4 @@ mod springs;
 
 pub use bases::HandleBases;
 pub(crate) use declaration::DECLARATION;
-pub use options::{Bilaplacian, BilaplacianOrder, Discretisation, TriangulationKind};
+pub use options::{Bilaplacian, BilaplacianOrder, Detail, Discretisation, TriangulationKind};

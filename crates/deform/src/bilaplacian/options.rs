@@ -58,6 +58,17 @@ options! {
             unit: "",
             help: "stiffer along what is long: 0 not at all, 1 as if the part that may move were as wide as long",
         },
+        /// How details are put back on the bent base.
+        detail: Detail = Choice {
+            default: Detail::None,
+            help: "how details follow: not at all (\"none\", they shear), or turned with the smooth surface below them \
+                   (\"normal-displacements\")",
+        },
+        /// The order k of the smooth base L^k x = 0. Only `detail` has use for it.
+        base_order: BilaplacianOrder = Choice {
+            default: BilaplacianOrder::ThinPlate,
+            help: "for details: how smooth the surface below them is, from a membrane to the least change of curvature",
+        },
     }
 }
 
@@ -99,7 +110,26 @@ named_choices! {
     }
 }
 
+named_choices! {
+    /// How geometric detail follows a bent surface: the detail is what the surface has beyond its smooth base B, the
+    /// bi-Laplacian bends B, and the detail is put back on the bent base [BS08, section 2.4].
+    pub enum Detail {
+        /// The surface itself is bent; its details shear.
+        None = "none",
+        /// Each vertex's displacement from its point of the base turns with the base there [BS08, equation 9].
+        NormalDisplacements = "normal-displacements",
+    }
+}
+
 impl Bilaplacian {
+    /// The power of the ordering: that of the highest power among its systems.
+    pub fn ordering_power(&self) -> u32 {
+        match self.detail {
+            Detail::None => self.operator_power(),
+            _ => self.operator_power().max(self.base_order.number()),
+        }
+    }
+
     /// The power of L in the system: the order, or 1 where nothing but stretching is left.
     pub fn operator_power(&self) -> u32 {
         if self.bending == 0.0 { 1 } else { self.order.number() }

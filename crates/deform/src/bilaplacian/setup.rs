@@ -47,7 +47,7 @@ pub(crate) fn operator(
 
 /// The vertices where L d can differ from zero: solved ones, handles and their neighbours, ascending. These rows are
 /// enough at every order, because further out all inner factors are zero.
-fn bent_rows(triangulation: &Triangulation, solved: &[u32], handles: &[Handle]) -> Vec<u32> {
+pub(crate) fn bent_rows(triangulation: &Triangulation, solved: &[u32], handles: &[Handle]) -> Vec<u32> {
     let mut bent = vec![false; triangulation.vertex_count()];
     for &vertex in solved.iter().chain(handles.iter().flat_map(|handle| &handle.vertices)) {
         bent[vertex as usize] = true;

@@ -7,11 +7,11 @@ use pliant_mesh::{Cancel, SurfaceVertex};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::bilaplacian::bases::Tables;
+use crate::bilaplacian::bases::{Stored, Tables};
 use crate::bilaplacian::columns::{energy_blocks, solve_columns};
 use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
 use crate::bilaplacian::setup::operator;
-use crate::handles::{FRAME_CHUNK, Motion};
+use crate::handles::{FRAME_CHUNK, Motion, clear};
 use crate::method::{BindInput, Finite};
 use crate::operators::repairs;
 use crate::region::partition::Partition;
@@ -19,11 +19,11 @@ use crate::region::slender;
 use crate::sparse::refactorisation::RenewableFactor;
 use crate::{Bilaplacian, BindError, HandleBases, Problem, SolveError};
 
-/// The bound bi-Laplacian.
+/// The bound bi-Laplacian, with handle bases of the precision `T`.
 #[derive(Debug)]
-pub(crate) struct BilaplacianSolver {
+pub(crate) struct BilaplacianSolver<T = f32> {
     system: BilaplacianSystem,
-    bases: HandleBases,
+    bases: HandleBases<T>,
     /// Each handle's places in a field, at its vertices or, where it is soft, at their springs, and their coordinates.
     prescribed: Vec<Vec<(u32, [f64; 4])>>,
     /// E = ½ Σ_hk tr(X_hᵀ G_hk X_k) over the motions' 4×3 matrices X; row-major, one 4×4 block a pair of handles.
@@ -33,7 +33,7 @@ pub(crate) struct BilaplacianSolver {
 /// How far off a solution may be, relative to its largest value.
 const TOLERANCE: f64 = 1e-7;
 
-impl BilaplacianSolver {
+impl<T: Stored> BilaplacianSolver<T> {
     /// Assembles, factors, checks, and solves for the bases of `handles`.
     pub fn bind(options: &Bilaplacian, input: &BindInput<'_>) -> Result<Self, BindError> {
         let &BindInput {
@@ -80,7 +80,7 @@ impl BilaplacianSolver {
         let free_count = solved.len();
         let energy_blocks = energy_blocks(&columns).map_err(|_| BindError::OutOfMemory { free_count })?;
         let reference = reference_handles(problem, partition);
-        let blocks: Vec<Vec<[f32; 4]>> = columns.into_iter().map(|column| column.rows).collect();
+        let blocks: Vec<Vec<[T; 4]>> = columns.into_iter().map(|column| column.rows).collect();
         let bases = HandleBases::new(solved.clone(), &blocks, |vertex| {
             reference[component_of(vertex) as usize]
         });
@@ -100,7 +100,7 @@ impl BilaplacianSolver {
     }
 
     /// The handles' bases.
-    pub fn bases(&self) -> &HandleBases {
+    pub fn bases(&self) -> &HandleBases<T> {
         &self.bases
     }
 
@@ -185,12 +185,30 @@ impl BilaplacianSolver {
             .collect()
     }
 
+    /// As [`BilaplacianSolver::frame`], but solves with the factor in place of the bases.
+    ///
+    /// # Errors
+    /// If the solution stays too inaccurate.
+    pub fn frame_by_back_substitution(
+        &self,
+        motions: &[Motion],
+        displacements: &mut [DVec3],
+    ) -> Result<(), SolveError> {
+        clear(displacements);
+        for (handle, motion) in motions.iter().enumerate() {
+            for (vertex, coordinates) in self.prescribed(handle) {
+                displacements[vertex as usize] = motion.displace(coordinates);
+            }
+        }
+        self.back_substitute(displacements)
+    }
+
     /// Solves for the solved vertices' displacements, given all others. The displacements of soft handles' vertices are
     /// taken as the handles' targets.
     ///
     /// # Errors
     /// If the solution stays too inaccurate.
-    pub fn back_substitute(&self, displacements: &mut [DVec3]) -> Result<(), SolveError> {
+    fn back_substitute(&self, displacements: &mut [DVec3]) -> Result<(), SolveError> {
         let vertices = self.system.operator.laplacian.vertices();
         let mut d = self.field(displacements);
         let error = self.system.solve(&mut d, &Cancel::new()).error;
@@ -206,7 +224,7 @@ impl BilaplacianSolver {
     }
 
     /// The handles' vertices and coordinates, as surface vertices, ascending.
-    pub fn prescribed(&self, handle: usize) -> impl Iterator<Item = (u32, [f64; 4])> + '_ {
+    fn prescribed(&self, handle: usize) -> impl Iterator<Item = (u32, [f64; 4])> + '_ {
         self.prescribed[handle]
             .iter()
             .map(|&(place, coordinates)| (self.vertex(place), coordinates))
@@ -234,15 +252,15 @@ fn of_order(options: &Bilaplacian, refused: BindError) -> BindError {
 /// A chunk of a frame: the displacements of the vertices from `first` on, and whether all are finite.
 ///
 /// A closure would be compiled without the vector instructions that its caller is compiled for.
-struct Frame<'a> {
-    solver: &'a BilaplacianSolver,
+struct Frame<'a, T> {
+    solver: &'a BilaplacianSolver<T>,
     motions: &'a [Motion],
     tables: &'a Tables,
     first: usize,
     out: &'a mut [DVec3],
 }
 
-impl WithSimd for Frame<'_> {
+impl<T: Stored> WithSimd for Frame<'_, T> {
     type Output = bool;
 
     #[inline(always)]

@@ -127,6 +127,12 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
         false
     }
 
+    /// Replaces the rest positions of the surface's vertices by those of the smooth base, where the method bends one
+    /// and puts the details back on it. Whether it does.
+    fn base(&self, _positions: &mut [DVec3]) -> bool {
+        false
+    }
+
     /// The handles' bases, where a step is a product with them.
     fn handle_bases(&self) -> Option<&HandleBases> {
         None

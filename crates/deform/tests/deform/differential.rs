@@ -27,6 +27,7 @@ pub fn methods() -> Vec<Method> {
         with("laplacian", &named("transforms", "initial-guess")),
         with("laplacian", &named("transforms", "none")),
         with("frames", &[]),
+        with("bilaplacian", &named("detail", "normal-displacements")),
     ]
 }
 

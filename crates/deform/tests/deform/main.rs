@@ -6,6 +6,7 @@ mod arap;
 mod bilaplacian;
 mod components;
 mod continuity;
+mod detail;
 mod differential;
 mod energies;
 mod frames;

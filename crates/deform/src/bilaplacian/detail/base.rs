@@ -1,0 +1,193 @@
+//! The smooth base: L^k x = 0 where the surface bends, the surface itself elsewhere [BS08, section 2.4].
+//!
+//! L is measured on the surface, as for bending. Handles, fixed vertices and borders keep their positions. At a border
+//! L x is the flux across it, which does not vanish on a plane, so the border's cells are left out of the energy: a flat
+//! sheet is then its own base, free borders or not.
+
+use glam::{DMat3, DVec3};
+use pliant_mesh::{SurfaceVertex, bounding_box};
+use rayon::prelude::*;
+
+use super::carry::Carried;
+use crate::bilaplacian::factored::BilaplacianSystem;
+use crate::bilaplacian::loaded::refused;
+use crate::bilaplacian::operator::BilaplacianOperator;
+use crate::bilaplacian::refine::TOLERANCE;
+use crate::bilaplacian::setup::bent_rows;
+use crate::bilaplacian::solver::BilaplacianSolver;
+use crate::handles::Motion;
+use crate::method::BindInput;
+use crate::operators::CHUNK;
+use crate::region::slender;
+use crate::sparse::ordering::hubs::hub_degree;
+use crate::sparse::refactorisation::Refactorisation;
+use crate::{Bilaplacian, BindError, Laplacian};
+
+/// The base's rest shape over *local* vertices: the solved ones and their neighbours on the surface, ascending.
+#[derive(Debug)]
+pub(crate) struct Base {
+    /// The surface vertex of each local one.
+    pub vertices: Vec<u32>,
+    /// The local vertex of each *row*, one row for each solved vertex.
+    pub rows: Vec<u32>,
+    /// The base's points relative to the centre of the surface's bounding box.
+    pub rest: Vec<DVec3>,
+    /// Of each row: the surface's vertex less the base's.
+    pub offsets: Vec<DVec3>,
+    /// The surface's diagonal.
+    pub diagonal: f64,
+    carried: Carried,
+}
+
+/// The base's points, one for each surface vertex, relative to the centre of the surface's bounding box.
+pub(crate) struct Faired {
+    points: Vec<DVec3>,
+}
+
+impl Faired {
+    /// Fairs the part of the surface that is solved for, without soft handles and borders.
+    ///
+    /// # Errors
+    /// As the bi-Laplacian's of that order.
+    pub fn of(options: &Bilaplacian, input: &BindInput<'_>) -> Result<Self, BindError> {
+        let &BindInput {
+            problem,
+            partition,
+            cancel,
+            ..
+        } = input;
+        let bounds = bounding_box(&problem.surface.positions);
+        let centre = bounds.map_or(DVec3::ZERO, |bounds| bounds.centre());
+        let mut points: Vec<DVec3> = problem.surface.positions.iter().map(|p| *p - centre).collect();
+        let mut is_held = vec![false; points.len()];
+        for vertex in problem.topology.boundary_edge_list().as_flattened() {
+            is_held[vertex.index()] = true;
+        }
+        let is_border = is_held.clone();
+        for handle in &partition.handles {
+            handle.iter().for_each(|&vertex| is_held[vertex as usize] = true);
+        }
+        let solved = partition.solved.iter().copied();
+        let faired: Vec<u32> = solved.filter(|&vertex| !is_held[vertex as usize]).collect();
+        if faired.is_empty() {
+            return Ok(Self { points });
+        }
+        let order = options.base_order.number();
+        let triangulation = &partition.triangulation;
+        slender::check(triangulation, &faired, slender::most_edges(order), Some(order))?;
+        let fairing = Bilaplacian {
+            order: options.base_order,
+            bending: 1.0,
+            stretching: 0.0,
+            ..options.clone()
+        };
+        let rows = bent_rows(triangulation, &faired, &[]);
+        let even = vec![1.0; points.len()];
+        let mut laplacian = Laplacian::on(triangulation, &even, &rows, options.discretisation, &|_, _| 1.0);
+        let factors: Vec<f64> = laplacian
+            .vertices()
+            .iter()
+            .map(|&vertex| if is_border[vertex as usize] { 0.0 } else { 1.0 })
+            .collect();
+        laplacian.scale_inverse_areas(|local| factors[local]);
+        let diagonal = bounds.map_or(0.0, |bounds| bounds.diagonal());
+        let mut operator = BilaplacianOperator::new(laplacian, &fairing, diagonal);
+        operator.hub_degree = hub_degree(triangulation.vertex_count());
+        let elimination = input.ordering()?.elimination(&faired);
+        let refuse = |error| refused(error, input);
+        let budget = partition.budget;
+        let mut system =
+            BilaplacianSystem::new(operator, elimination, Refactorisation::Never, budget, cancel).map_err(refuse)?;
+        let vertices = system.operator.laplacian.vertices();
+        let row = |&vertex: &u32| {
+            let point = points[vertex as usize];
+            [point.x, point.y, point.z, 1.0]
+        };
+        let mut field: Vec<[f64; 4]> = vertices.iter().map(row).collect();
+        let error = system.check(&mut field, cancel).map_err(refuse)?;
+        if error.is_nan() || error > TOLERANCE {
+            let vertex = faired[0];
+            let component = problem.topology.component(SurfaceVertex(vertex));
+            return Err(BindError::Inaccurate {
+                component,
+                vertex,
+                error,
+            });
+        }
+        for (&vertex, [x, y, z, _]) in system.operator.laplacian.vertices().iter().zip(&field) {
+            if faired.binary_search(&vertex).is_ok() {
+                points[vertex as usize] = DVec3::new(*x, *y, *z);
+            }
+        }
+        Ok(Self { points })
+    }
+}
+
+impl Base {
+    /// The faired part of the surface as `solver` bends it.
+    pub fn of(faired: &Faired, solver: &BilaplacianSolver<f64>, input: &BindInput<'_>) -> Self {
+        let &BindInput { problem, partition, .. } = input;
+        let bounds = bounding_box(&problem.surface.positions);
+        let centre = bounds.map_or(DVec3::ZERO, |bounds| bounds.centre());
+        let solved = &partition.solved;
+        let mut is_local = vec![false; faired.points.len()];
+        for &vertex in solved {
+            is_local[vertex as usize] = true;
+            for neighbour in problem.topology.neighbours(SurfaceVertex(vertex)) {
+                is_local[neighbour.index()] = true;
+            }
+        }
+        let vertices: Vec<u32> = (0..is_local.len() as u32)
+            .filter(|&vertex| is_local[vertex as usize])
+            .collect();
+        let rest: Vec<DVec3> = vertices.iter().map(|&vertex| faired.points[vertex as usize]).collect();
+        let rows: Vec<u32> = solved
+            .iter()
+            .filter_map(|vertex| vertices.binary_search(vertex).ok())
+            .map(|local| local as u32)
+            .collect();
+        let surface = &problem.surface.positions;
+        let offset = |&vertex: &u32| surface[vertex as usize] - centre - faired.points[vertex as usize];
+        Self {
+            offsets: solved.iter().map(offset).collect(),
+            diagonal: bounds.map_or(0.0, |bounds| bounds.diagonal()),
+            carried: Carried::of(&rows, &rest, centre, solver, input),
+            vertices,
+            rows,
+            rest,
+        }
+    }
+
+    /// How the components turn in which nothing is fixed, R − I.
+    pub fn turns(&self, motions: &[Motion]) -> Vec<DMat3> {
+        self.carried.turns(motions)
+    }
+
+    /// What a row turns by where its component has nothing fixed, R − I; zero elsewhere.
+    #[inline]
+    pub fn turn(&self, row: usize, turns: &[DMat3]) -> DMat3 {
+        self.carried.turn(row, turns)
+    }
+
+    /// Fills `posed` with the bent base's points: one for each local vertex, displaced by the surface's
+    /// `displacements`.
+    pub fn pose(&self, displacements: &[DVec3], turns: &[DMat3], posed: &mut Vec<DVec3>) {
+        posed.resize(self.rest.len(), DVec3::ZERO);
+        posed
+            .par_chunks_mut(CHUNK)
+            .zip(self.rest.par_chunks(CHUNK).zip(self.vertices.par_chunks(CHUNK)))
+            .for_each(|(posed, (rest, vertices))| {
+                for ((posed, rest), &vertex) in posed.iter_mut().zip(rest).zip(vertices) {
+                    *posed = *rest + displacements[vertex as usize];
+                }
+            });
+        self.carried.correct(&self.rows, turns, posed);
+    }
+
+    /// Moves the rest positions of the surface's vertices to the base.
+    pub fn show(&self, positions: &mut [DVec3]) {
+        for (&local, offset) in self.rows.iter().zip(&self.offsets) {
+            positions[self.vertices[local as usize] as usize] -= *offset;
+        }
+    }
+}

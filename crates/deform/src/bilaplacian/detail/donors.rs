@@ -1,0 +1,28 @@
+//! Who lends what a degenerate place of the base lacks.
+
+use std::collections::VecDeque;
+
+/// No place.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// For each place the nearest one of those that `has` it, by edges, itself first; [`NONE`] where none can be reached.
+/// Of equally near ones it is the one whose way was found first from the lowest number. `neighbours` visits a place's.
+pub(crate) fn nearest(has: &[bool], neighbours: impl Fn(usize, &mut dyn FnMut(u32))) -> Vec<u32> {
+    let mut sources: Vec<u32> = (0..has.len() as u32)
+        .map(|place| if has[place as usize] { place } else { NONE })
+        .collect();
+    if !has.contains(&false) {
+        return sources;
+    }
+    let mut queue: VecDeque<u32> = (0..has.len() as u32).filter(|&place| has[place as usize]).collect();
+    while let Some(place) = queue.pop_front() {
+        let source = sources[place as usize];
+        neighbours(place as usize, &mut |next| {
+            if sources[next as usize] == NONE {
+                sources[next as usize] = source;
+                queue.push_back(next);
+            }
+        });
+    }
+    sources
+}

@@ -1,0 +1,186 @@
+//! Normal displacements: each vertex keeps its displacement from the base in the base's local frame [BS08, equation 9].
+//!
+//! The displacement begins at the vertex's own point of the base, so it is along the normal only about, and the whole
+//! frame turns it. The frame is that of the base's gradient over a ring, fitted by least squares in the tangent plane:
+//! the normal is perpendicular to the images x and y of the two tangents, and within the plane it turns as they do on
+//! average. No edge is singled out.
+
+use glam::{DMat3, DVec3};
+use pliant_mesh::{SurfaceVertex, Topology};
+use rayon::prelude::*;
+
+use super::base::Base;
+use super::donors::{NONE, nearest};
+use crate::operators::CHUNK;
+
+/// What a frame is made of at each row of the base.
+#[derive(Debug)]
+pub(crate) struct Frames {
+    /// For each row where its neighbours begin; one more at the end.
+    starts: Vec<u32>,
+    /// The neighbours' local numbers and their shares in x and y.
+    ring: Vec<(u32, [f64; 2])>,
+    /// The row whose frame turns this one's displacement: itself, or the nearest one with a frame, or [`NONE`].
+    sources: Vec<u32>,
+    /// The displacement in its source's frame.
+    coordinates: Vec<DVec3>,
+    /// The displacement as the frame at rest gives it.
+    at_rest: Vec<DVec3>,
+}
+
+/// Where a ring of the base is narrower than this, in diagonals, nothing but the solver's error is left of it.
+pub(crate) const NARROWEST: f64 = 1e-7;
+
+/// A ring or triangle of the base that is narrower than this share of its length has no frame of its own.
+pub(crate) const SLIMMEST: f64 = 1e-4;
+
+/// The least length of a ring's mean normal: less and the base is folded there.
+const UNFOLDED: f64 = 0.1;
+
+impl Frames {
+    /// Of the base's rings.
+    pub fn of(base: &Base, triangles: &[[SurfaceVertex; 3]], topology: &Topology) -> Self {
+        let of_row = |row: usize| ring(base, row, triangles, topology);
+        let rings: Vec<Ring> = (0..base.rows.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(of_row)
+            .collect();
+        let has_frame: Vec<bool> = rings.iter().map(|ring| ring.has_frame).collect();
+        let mut starts = vec![0];
+        let mut flat = Vec::with_capacity(rings.iter().map(|ring| ring.shares.len()).sum());
+        for ring in rings {
+            flat.extend(ring.shares);
+            starts.push(flat.len() as u32);
+        }
+        let mut row_of = vec![NONE; base.vertices.len()];
+        for (row, &local) in base.rows.iter().enumerate() {
+            row_of[local as usize] = row as u32;
+        }
+        let sources = nearest(&has_frame, |row, visit| {
+            for (local, _) in &flat[starts[row] as usize..starts[row + 1] as usize] {
+                let next = row_of[*local as usize];
+                if next != NONE {
+                    visit(next);
+                }
+            }
+        });
+        let mut frames = Self {
+            starts,
+            ring: flat,
+            sources,
+            coordinates: Vec::new(),
+            at_rest: Vec::new(),
+        };
+        let rest = |row: usize| {
+            let frame = frames.frame(base, row, &base.rest).unwrap_or(DMat3::IDENTITY);
+            let coordinates = frame.transpose() * base.offsets[row];
+            (coordinates, frame * coordinates)
+        };
+        let rows = (0..base.rows.len()).into_par_iter().with_min_len(CHUNK);
+        let (coordinates, at_rest): (Vec<DVec3>, Vec<DVec3>) = rows.map(rest).unzip();
+        (frames.coordinates, frames.at_rest) = (coordinates, at_rest);
+        frames
+    }
+
+    /// The displacements of the rest base, as [`Frames::turned`] gives them.
+    pub fn at_rest(&self) -> &[DVec3] {
+        &self.at_rest
+    }
+
+    /// A row's displacement on the bent base, and the base's normal there.
+    #[inline]
+    pub fn turned(&self, base: &Base, row: usize, posed: &[DVec3], turns: &[DMat3]) -> (DVec3, DVec3) {
+        match self.frame(base, row, posed) {
+            Some(frame) => (frame * self.coordinates[row], frame.z_axis),
+            None => {
+                let at_rest = self.at_rest[row];
+                let turned = at_rest + base.turn(row, turns) * at_rest;
+                (turned, turned.normalize_or_zero())
+            }
+        }
+    }
+
+    /// The frame of a row's source: two tangents and the normal; `None` where there is none, or the base is bent to a
+    /// line or a point there.
+    #[inline]
+    fn frame(&self, base: &Base, row: usize, posed: &[DVec3]) -> Option<DMat3> {
+        let source = self.sources[row] as usize;
+        let own = posed[*base.rows.get(source)? as usize];
+        let (mut x, mut y) = (DVec3::ZERO, DVec3::ZERO);
+        for (local, [a, b]) in &self.ring[self.starts[source] as usize..self.starts[source + 1] as usize] {
+            let edge = posed[*local as usize] - own;
+            x += edge * *a;
+            y += edge * *b;
+        }
+        let first = x.try_normalize()?;
+        let normal = x.cross(y).try_normalize()?;
+        let second = normal.cross(first);
+        // The turn about the normal that fits x and y best: its cosine and sine, but for a factor.
+        let (cosine, sine) = (x.length() + y.dot(second), -y.dot(first));
+        let length = cosine.hypot(sine);
+        let (cosine, sine) = (cosine / length, sine / length);
+        Some(DMat3::from_cols(
+            first * cosine + second * sine,
+            second * cosine - first * sine,
+            normal,
+        ))
+    }
+}
+
+/// A row's neighbours and their shares in the gradient.
+struct Ring {
+    shares: Vec<(u32, [f64; 2])>,
+    has_frame: bool,
+}
+
+fn ring(base: &Base, row: usize, triangles: &[[SurfaceVertex; 3]], topology: &Topology) -> Ring {
+    let local = base.rows[row] as usize;
+    let vertex = SurfaceVertex(base.vertices[local]);
+    let local_of = |vertex: SurfaceVertex| base.vertices.binary_search(&vertex.0).ok();
+    let point = |vertex: SurfaceVertex| local_of(vertex).map_or(DVec3::ZERO, |local| base.rest[local]);
+    let (mut normal, mut area) = (DVec3::ZERO, 0.0);
+    for face in topology.faces(vertex, triangles) {
+        let [a, b, c] = triangles[face as usize].map(point);
+        let own = (b - a).cross(c - a);
+        normal += own;
+        area += own.length();
+    }
+    let locals: Vec<usize> = topology
+        .neighbours(vertex)
+        .iter()
+        .filter_map(|&next| local_of(next))
+        .collect();
+    let flat = |has_frame, [x, y]: [DVec3; 2]| {
+        let shares = locals.iter().map(|&next| {
+            let edge = base.rest[next] - base.rest[local];
+            (next as u32, [edge.dot(x), edge.dot(y)])
+        });
+        Ring {
+            shares: shares.collect(),
+            has_frame,
+        }
+    };
+    let without = || flat(false, [DVec3::ZERO; 2]);
+    if normal.length() <= UNFOLDED * area {
+        return without();
+    }
+    let (t, b) = normal.normalize().any_orthonormal_pair();
+    let [mut xx, mut xy, mut yy] = [0.0; 3];
+    for &next in &locals {
+        let edge = base.rest[next] - base.rest[local];
+        let (x, y) = (edge.dot(t), edge.dot(b));
+        xx += x * x;
+        xy += x * y;
+        yy += y * y;
+    }
+    let (determinant, trace) = (xx * yy - xy * xy, xx + yy);
+    // The smaller eigenvalue is about determinant / trace: a squared width.
+    let width = determinant / trace;
+    let least = (NARROWEST * base.diagonal).powi(2).max(SLIMMEST.powi(2) * trace);
+    if width > least {
+        flat(true, [(t * yy - b * xy) / determinant, (b * xx - t * xy) / determinant])
+    } else {
+        without()
+    }
+}

@@ -1,0 +1,151 @@
+//! Multiresolution bending [BS08, section 2.4]: the surface is a smooth base and details on it, the bi-Laplacian bends
+//! the base, and the details are put back on the bent base.
+//!
+//! Parts: `base` fairs and poses the base, `carry` keeps rigid motions rigid, `frames` turns displacements.
+//!
+//! The base is a mesh of the surface's connectivity. A region that is long or has protrusions makes parts of it shrink
+//! exponentially, so its bases are kept in f64, and where too little is left for a direction the nearest sound place
+//! lends its own (`donors`).
+
+mod base;
+mod carry;
+mod donors;
+mod frames;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use self::base::{Base, Faired};
+use self::frames::Frames;
+use crate::bilaplacian::solver::BilaplacianSolver;
+use crate::handles::{FRAME_CHUNK, Motion};
+use crate::method::{BindInput, BoundMethod, Finite, Stepped};
+use crate::{Bilaplacian, BindError, Detail, ReusableFactor, SolveError};
+
+/// The bound bi-Laplacian with details.
+#[derive(Debug)]
+pub(crate) struct Multiresolution {
+    bending: BilaplacianSolver<f64>,
+    base: Base,
+    reconstruction: Reconstruction,
+    posed: Vec<DVec3>,
+}
+
+/// How the details are put back.
+#[derive(Debug)]
+enum Reconstruction {
+    Normals(Frames),
+}
+
+impl Multiresolution {
+    /// Fairs the base, then binds what bends it.
+    ///
+    /// # Errors
+    /// As the bi-Laplacian's.
+    pub fn bind(options: &Bilaplacian, input: &BindInput<'_>) -> Result<Self, BindError> {
+        let &BindInput { problem, progress, .. } = input;
+        let faired = Faired::of(options, input)?;
+        progress.set(0.4);
+        let bending = BilaplacianSolver::bind(options, input)?;
+        let base = Base::of(&faired, &bending, input);
+        input.cancel.check()?;
+        let (triangles, topology) = (&problem.surface.triangles, problem.topology);
+        let reconstruction = match options.detail {
+            Detail::None | Detail::NormalDisplacements => {
+                Reconstruction::Normals(Frames::of(&base, triangles, topology))
+            }
+        };
+        input.cancel.check()?;
+        progress.set(1.0);
+        Ok(Self {
+            bending,
+            base,
+            reconstruction,
+            posed: Vec::new(),
+        })
+    }
+
+    /// Puts the details on the base that `displacements` bend, and replaces these by the surface's.
+    fn reconstruct(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<(), SolveError> {
+        let turns = self.base.turns(motions);
+        let mut posed = std::mem::take(&mut self.posed);
+        self.base.pose(displacements, &turns, &mut posed);
+        match &self.reconstruction {
+            Reconstruction::Normals(frames) => write(&self.base, &posed, displacements, |row| {
+                frames.turned(&self.base, row, &posed, &turns).0 - frames.at_rest()[row]
+            }),
+        }
+        self.posed = posed;
+        Ok(())
+    }
+}
+
+/// Replaces the solved vertices' displacements by those of the bent base and what `change` adds to a row's detail.
+fn write(base: &Base, posed: &[DVec3], displacements: &mut [DVec3], change: impl Fn(usize) -> DVec3 + Sync) {
+    let place = |vertex: usize| {
+        base.rows
+            .partition_point(|&local| (base.vertices[local as usize] as usize) < vertex)
+    };
+    displacements
+        .par_chunks_mut(FRAME_CHUNK)
+        .enumerate()
+        .for_each(|(chunk, out)| {
+            let first = chunk * FRAME_CHUNK;
+            for row in place(first)..place(first + out.len()) {
+                let local = base.rows[row] as usize;
+                out[base.vertices[local] as usize - first] = (posed[local] - base.rest[local]) + change(row);
+            }
+        });
+}
+
+impl BoundMethod for Multiresolution {
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        self.bending.frame(motions, displacements);
+        self.reconstruct(motions, displacements)?;
+        Ok(Stepped {
+            converged: true,
+            energy: self.bending.energy(motions),
+            finite: Finite::Unknown,
+        })
+    }
+
+    fn step_by_back_substitution(
+        &mut self,
+        motions: &[Motion],
+        displacements: &mut [DVec3],
+    ) -> Result<Stepped, SolveError> {
+        self.bending.frame_by_back_substitution(motions, displacements)?;
+        let energy = self.bending.energy_of(motions, displacements);
+        self.reconstruct(motions, displacements)?;
+        Ok(Stepped {
+            converged: true,
+            energy,
+            finite: Finite::Unknown,
+        })
+    }
+
+    fn base(&self, positions: &mut [DVec3]) -> bool {
+        self.base.show(positions);
+        true
+    }
+
+    fn reusable_factor(&self) -> Option<ReusableFactor> {
+        Some(ReusableFactor(std::sync::Arc::clone(self.bending.factored())))
+    }
+
+    fn solved_count(&self) -> usize {
+        self.base.rows.len()
+    }
+
+    fn factor_len(&self) -> usize {
+        self.bending.factor_len()
+    }
+
+    fn step_cost(&self) -> usize {
+        4 * self.solved_count()
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.bending.warnings()
+    }
+}

@@ -1,0 +1,177 @@
+//! What multiresolution details are for: bumps on a plate that is bent.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use crate::rig::{Scene, apart, back_substitute, step};
+use glam::{DAffine3, DVec3};
+use pliant_deform::{Method, OptionValue, Role};
+use pliant_mesh::{Drawn, SurfaceVertex, shapes};
+
+/// Every way to put details back.
+const DETAILS: [&str; 1] = ["normal-displacements"];
+
+fn method(detail: &'static str) -> Method {
+    let method = Method::from_name("bilaplacian").unwrap();
+    method
+        .with([("detail", OptionValue::Name(detail))].into_iter())
+        .unwrap()
+}
+
+/// Where the bumps stand on the plate, and their radius.
+const CENTRES: [f64; 3] = [0.3, 0.5, 0.7];
+const RADIUS: f64 = 0.09;
+
+/// The height of a bumpy plate over the unit square.
+fn bumps(p: DVec3, height: f64) -> f64 {
+    let of = |x: f64| {
+        let share = DVec3::new(p.x - x, p.y - 0.5, 0.0).length() / RADIUS;
+        if share < 1.0 {
+            height * (0.5 + 0.5 * (PI * share).cos())
+        } else {
+            0.0
+        }
+    };
+    CENTRES.into_iter().map(of).sum()
+}
+
+/// A plate of so many cells with bumps, fixed at the left, its right end the handle, the sides free.
+fn plate(cells: usize, height: f64, detail: &'static str) -> Scene {
+    let Drawn {
+        positions, triangles, ..
+    } = shapes::grid(cells, cells);
+    let raised = positions.iter().map(|p| *p + DVec3::Z * bumps(*p, height)).collect();
+    let mut scene = Scene::new(Drawn::once(raised, triangles))
+        .with(Role::Fixed, |p| p.x < 0.08)
+        .with(Role::Handle(0), |p| p.x > 0.92);
+    scene.method = method(detail);
+    scene
+}
+
+/// Bends the plate to about an arc of `angle_rad`, upwards where it is positive.
+fn arc(angle_rad: f64) -> DAffine3 {
+    let radius = 1.0 / angle_rad;
+    let end = DVec3::new(radius * angle_rad.sin(), 0.0, radius * (1.0 - angle_rad.cos()));
+    DAffine3::from_translation(end) * DAffine3::from_rotation_y(-angle_rad) * DAffine3::from_translation(-DVec3::X)
+}
+
+/// A bumpy plate, and it and its base under a target.
+struct Bent {
+    scene: Scene,
+    shape: Vec<DVec3>,
+    base: Vec<DVec3>,
+}
+
+/// The base is bent by what the plain bi-Laplacian does to the plate.
+fn bent(height: f64, detail: &'static str, target: DAffine3) -> Bent {
+    let scene = plate(CELLS, height, detail);
+    let moved = |from: &[DVec3], by: &[DVec3]| from.iter().zip(by).map(|(p, d)| *p + *d).collect();
+    let mut bound = scene.bind();
+    let mut base = scene.positions().to_vec();
+    assert_eq!(bound.base(&mut base), detail != "none");
+    Bent {
+        shape: moved(scene.positions(), &step(&mut bound, &[target])),
+        base: moved(&base, &plate(CELLS, height, "none").moved(&[target])),
+        scene,
+    }
+}
+
+const CELLS: usize = 40;
+
+fn distance(p: DVec3, x: f64) -> f64 {
+    DVec3::new(p.x - x, p.y - 0.5, 0.0).length()
+}
+
+impl Bent {
+    /// The volume between the base and the surface over the bump at `x`.
+    fn volume(&self, x: f64) -> f64 {
+        let tetrahedron = |p: DVec3, q: DVec3, r: DVec3, s: DVec3| (q - p).dot((r - p).cross(s - p)) / 6.0;
+        let mut sum = 0.0;
+        for corners in &self.scene.model.surface.triangles {
+            let corners = corners.map(SurfaceVertex::index);
+            if corners
+                .iter()
+                .all(|&v| distance(self.scene.positions()[v], x) < 1.5 * RADIUS)
+            {
+                let ([a, b, c], [p, q, r]) = (corners.map(|v| self.base[v]), corners.map(|v| self.shape[v]));
+                sum += tetrahedron(a, b, c, p) + tetrahedron(b, c, p, q) + tetrahedron(c, p, q, r);
+            }
+        }
+        sum
+    }
+
+    /// The angle between the bump at `x`, from the middle of its foot to its tip, and the normal of its foot, in
+    /// radians.
+    fn lean(&self, x: f64) -> f64 {
+        let vertices = || (0..self.shape.len()).map(|v| (v, distance(self.scene.positions()[v], x)));
+        let tip = vertices().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap().0;
+        let foot: Vec<usize> = vertices()
+            .filter(|(_, r)| (RADIUS..1.4 * RADIUS).contains(r))
+            .map(|(v, _)| v)
+            .collect();
+        let middle = |points: &[DVec3]| foot.iter().map(|&v| points[v]).sum::<DVec3>() / foot.len() as f64;
+        let (rest, now) = (middle(self.scene.positions()), middle(&self.shape));
+        let (mut along, mut across) = (DVec3::ZERO, DVec3::ZERO);
+        for &v in &foot {
+            let arm = self.scene.positions()[v] - rest;
+            along += (self.shape[v] - now) * arm.x;
+            across += (self.shape[v] - now) * arm.y;
+        }
+        along.cross(across).angle_between(self.shape[tip] - now)
+    }
+}
+
+#[test]
+fn bumps_turn_with_the_plate_below_them_and_shear_without_details() {
+    let lift = DAffine3::from_translation(DVec3::Z * 0.7);
+    for target in [arc(FRAC_PI_2), arc(-FRAC_PI_2), lift] {
+        let sheared = bent(0.12, "none", target);
+        for x in CENTRES {
+            assert!(sheared.lean(x) > 0.4, "{x} {}", sheared.lean(x));
+            for detail in DETAILS {
+                let upright = bent(0.12, detail, target);
+                assert!(upright.lean(x) < 0.15, "{detail} {x} {}", upright.lean(x));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_flat_plate_is_its_own_base_and_bends_as_without_details() {
+    let target = arc(FRAC_PI_2);
+    let plain = bent(0.0, "none", target);
+    for detail in DETAILS {
+        let flat = bent(0.0, detail, target);
+        assert!(apart(&flat.base, &plain.base) < 1e-7, "{detail}");
+        assert!(
+            apart(&flat.shape, &plain.shape) < 1e-6,
+            "{detail} {}",
+            apart(&flat.shape, &plain.shape)
+        );
+    }
+}
+
+#[test]
+fn every_base_order_bends_bumps_with_the_plate() {
+    for detail in DETAILS {
+        for order in 1..=3 {
+            let mut scene = plate(CELLS, 0.1, detail);
+            scene.method = scene
+                .method
+                .with([("base_order", OptionValue::Whole(order))].into_iter())
+                .unwrap();
+            let mut bound = scene.bind();
+            let mut base = scene.positions().to_vec();
+            assert!(bound.base(&mut base));
+            // The plate's rim is flat: so is its base.
+            assert!(base.iter().all(|p| p.z.abs() < 1e-7), "{order}");
+            let target = arc(1.0);
+            let shape = step(&mut bound, &[target]);
+            let solved = back_substitute(&mut bound, &[target]);
+            assert!(
+                apart(&shape, &solved) < 1e-6,
+                "{detail} {order}: {}",
+                apart(&shape, &solved)
+            );
+        }
+    }
+}
