@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
 use pliant_deform::{
-    Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, Constraints, Frames, Limit, Loose, Method,
-    OptionValue, Primo, Problem, Propagation, Role, Transforms,
+    Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, Constraints, Detail, Frames, Limit, Loose,
+    Method, OptionValue, Primo, Problem, Propagation, Role, Transforms,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 
@@ -136,6 +136,11 @@ fn methods() -> Vec<Method> {
     for order in BilaplacianOrder::ALL {
         let mut options = Bilaplacian::default();
         options.order = order;
+        methods.push(options.into());
+    }
+    for detail in Detail::ALL.into_iter().filter(|detail| *detail != Detail::None) {
+        let mut options = Bilaplacian::default();
+        options.detail = detail;
         methods.push(options.into());
     }
     for energy in ArapEnergy::ALL {

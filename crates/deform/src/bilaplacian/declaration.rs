@@ -59,6 +59,23 @@ impl DeformMethod for Bilaplacian {
         Triangulation::of_options(problem, self)
     }
 
+    fn row_bytes(&self) -> usize {
+        match self.detail {
+            Detail::None => 300,
+            Detail::NormalDisplacements => 900,
+            Detail::DisplacementVolumes => 1100,
+            Detail::DeformationTransfer => 1300,
+        }
+    }
+
+    /// Where details are put back the bases are kept in double precision.
+    fn handle_row_bytes(&self) -> usize {
+        match self.detail {
+            Detail::None => 32,
+            _ => 64,
+        }
+    }
+
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         Ok(match self.detail {
             Detail::None => Box::new(BilaplacianSolver::<f32>::bind(self, input)?),

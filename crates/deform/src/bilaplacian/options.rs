@@ -1,6 +1,6 @@
 //! Options of the bi-Laplacian [BS08, section 2]: the material, and the operator's discretisation.
 
-use crate::method::option::{Choice, Choices, Number, OptionType, named_choices, options};
+use crate::method::option::{Choice, Choices, Number, OptionType, Whole, named_choices, options};
 use crate::{OptionKind, OptionValue};
 
 /// The largest coefficient.
@@ -61,13 +61,20 @@ options! {
         /// How details are put back on the bent base.
         detail: Detail = Choice {
             default: Detail::None,
-            help: "how details follow: not at all (\"none\", they shear), or turned with the smooth surface below them \
-                   (\"normal-displacements\")",
+            help: "how details follow: not at all (\"none\", they shear), turned with the smooth surface below them \
+                   (\"normal-displacements\"), with their volume kept over it (\"displacement-volumes\"), or bent as it \
+                   is (\"deformation-transfer\")",
         },
         /// The order k of the smooth base L^k x = 0. Only `detail` has use for it.
         base_order: BilaplacianOrder = Choice {
             default: BilaplacianOrder::ThinPlate,
             help: "for details: how smooth the surface below them is, from a membrane to the least change of curvature",
+        },
+        /// How often displacement volumes are corrected in a frame.
+        volume_iterations: u32 = Whole {
+            default: 8,
+            range: [1, 1000],
+            help: "for \"displacement-volumes\": how often the volumes are corrected",
         },
     }
 }
@@ -118,6 +125,12 @@ named_choices! {
         None = "none",
         /// Each vertex's displacement from its point of the base turns with the base there [BS08, equation 9].
         NormalDisplacements = "normal-displacements",
+        /// As normal displacements, then the heights are corrected until the prisms between the base's triangles and
+        /// the surface's have their volumes of rest [BK03].
+        DisplacementVolumes = "displacement-volumes",
+        /// Each triangle takes on the deformation gradient of the base's triangle, and a Poisson system joins them
+        /// [BSPG06, SP04].
+        DeformationTransfer = "deformation-transfer",
     }
 }
 

@@ -55,6 +55,11 @@ pub(crate) trait DeformMethod: Options {
         300
     }
 
+    /// Bytes that each handle takes at a solved vertex while it is bound: twice four numbers in single precision.
+    fn handle_row_bytes(&self) -> usize {
+        32
+    }
+
     /// Computes what does not depend on the handles' transforms.
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError>;
 }

@@ -36,7 +36,7 @@ pub(crate) struct Face {
     /// w of the edge opposite to each corner.
     weights: [f64; 3],
     /// The rest edges from corner 0 to the corners 1 and 2, which span it.
-    edges: [DVec3; 2],
+    pub edges: [DVec3; 2],
 }
 
 /// How a face's two edges change: (T − I) e.
@@ -103,6 +103,11 @@ impl Gradients {
             corners: entries,
             scale,
         }
+    }
+
+    /// The faces: every one with a corner that is solved for.
+    pub fn faces(&self) -> &[Face] {
+        &self.faces
     }
 
     /// Fills `changes` with every face's, by `change` of the face and an edge of it.

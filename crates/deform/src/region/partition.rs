@@ -111,7 +111,8 @@ impl Partition<'_> {
     /// [`BindError::Budget`] or [`BindError::Handles`] where these alone exceed it.
     pub fn take_budget(&mut self, problem: &Problem, budget: Budget) -> Result<(), BindError> {
         let (handles, solved) = (self.handles.len(), self.solved.len());
-        let of_handles = bytes_of(handles, ROW * solved).saturating_add(bytes_of(handles, PAIR * handles));
+        let row = problem.method.implementation().handle_row_bytes();
+        let of_handles = bytes_of(handles, row * solved).saturating_add(bytes_of(handles, PAIR * handles));
         let budget = budget.without(of_handles).map_err(|_| BindError::Handles {
             handle_count: handles,
             free_count: solved,
@@ -127,9 +128,6 @@ impl Partition<'_> {
 
 /// Bytes of a surface vertex in all tables of a binding but the solver's: as allocated, measured by `tests/memory.rs`.
 const SURFACE_ROW: usize = 190;
-
-/// Bytes of a handle's basis at a vertex while the bases are assembled: twice four numbers in single precision.
-const ROW: usize = 32;
 
 /// Bytes of the energy's block of a pair of handles: 4 × 4 numbers.
 const PAIR: usize = 128;

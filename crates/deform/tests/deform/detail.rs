@@ -8,7 +8,7 @@ use pliant_deform::{Method, OptionValue, Role};
 use pliant_mesh::{Drawn, SurfaceVertex, shapes};
 
 /// Every way to put details back.
-const DETAILS: [&str; 1] = ["normal-displacements"];
+const DETAILS: [&str; 3] = ["normal-displacements", "displacement-volumes", "deformation-transfer"];
 
 fn method(detail: &'static str) -> Method {
     let method = Method::from_name("bilaplacian").unwrap();
@@ -171,6 +171,25 @@ fn every_base_order_bends_bumps_with_the_plate() {
                 apart(&shape, &solved) < 1e-6,
                 "{detail} {order}: {}",
                 apart(&shape, &solved)
+            );
+        }
+    }
+}
+
+#[test]
+fn bumps_keep_their_volume_on_a_bent_plate_but_with_normal_displacements() {
+    for angle in [FRAC_PI_2, -FRAC_PI_2] {
+        let change = |detail: &'static str| {
+            let (rest, bent) = (bent(0.12, detail, DAffine3::IDENTITY), bent(0.12, detail, arc(angle)));
+            CENTRES.map(|x| bent.volume(x) / rest.volume(x) - 1.0)
+        };
+        let turned = change("normal-displacements");
+        assert!(turned.iter().all(|change| change.abs() > 0.09), "{angle} {turned:?}");
+        for detail in ["displacement-volumes", "deformation-transfer"] {
+            let kept = change(detail);
+            assert!(
+                kept.iter().all(|change| change.abs() < 0.045),
+                "{detail} {angle} {kept:?}"
             );
         }
     }

@@ -28,6 +28,8 @@ pub fn methods() -> Vec<Method> {
         with("laplacian", &named("transforms", "none")),
         with("frames", &[]),
         with("bilaplacian", &named("detail", "normal-displacements")),
+        with("bilaplacian", &named("detail", "deformation-transfer")),
+        with("bilaplacian", &named("detail", "displacement-volumes")),
     ]
 }
 

@@ -96,7 +96,8 @@ mod tests {
     fn every_option_is_read_and_written_again() {
         let value = json!({
             "name": "bilaplacian", "order": 3, "stretching": 2.5, "bending": 0.5, "discretisation": "uniform",
-            "triangulation": "tufted", "anisotropy": 0.25, "detail": "normal-displacements", "base_order": 3
+            "triangulation": "tufted", "anisotropy": 0.25, "detail": "displacement-volumes", "base_order": 3,
+            "volume_iterations": 20
         });
         let method = parsed(&value).unwrap();
         let options = method.options::<Bilaplacian>().unwrap();

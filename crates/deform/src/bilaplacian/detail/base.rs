@@ -34,6 +34,8 @@ pub(crate) struct Base {
     pub rest: Vec<DVec3>,
     /// Of each row: the surface's vertex less the base's.
     pub offsets: Vec<DVec3>,
+    /// Of each row: whether fairing moved it.
+    pub is_faired: Vec<bool>,
     /// The surface's diagonal.
     pub diagonal: f64,
     carried: Carried,
@@ -42,6 +44,8 @@ pub(crate) struct Base {
 /// The base's points, one for each surface vertex, relative to the centre of the surface's bounding box.
 pub(crate) struct Faired {
     points: Vec<DVec3>,
+    /// The surface vertices that were solved for, ascending.
+    vertices: Vec<u32>,
 }
 
 impl Faired {
@@ -70,7 +74,10 @@ impl Faired {
         let solved = partition.solved.iter().copied();
         let faired: Vec<u32> = solved.filter(|&vertex| !is_held[vertex as usize]).collect();
         if faired.is_empty() {
-            return Ok(Self { points });
+            return Ok(Self {
+                points,
+                vertices: faired,
+            });
         }
         let order = options.base_order.number();
         let triangulation = &partition.triangulation;
@@ -119,7 +126,10 @@ impl Faired {
                 points[vertex as usize] = DVec3::new(*x, *y, *z);
             }
         }
-        Ok(Self { points })
+        Ok(Self {
+            points,
+            vertices: faired,
+        })
     }
 }
 
@@ -150,6 +160,10 @@ impl Base {
         let offset = |&vertex: &u32| surface[vertex as usize] - centre - faired.points[vertex as usize];
         Self {
             offsets: solved.iter().map(offset).collect(),
+            is_faired: solved
+                .iter()
+                .map(|vertex| faired.vertices.binary_search(vertex).is_ok())
+                .collect(),
             diagonal: bounds.map_or(0.0, |bounds| bounds.diagonal()),
             carried: Carried::of(&rows, &rest, centre, solver, input),
             vertices,

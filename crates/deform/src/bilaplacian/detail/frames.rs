@@ -88,7 +88,7 @@ impl Frames {
         &self.at_rest
     }
 
-    /// A row's displacement on the bent base, and the base's normal there.
+    /// A row's displacement on the bent base, and the base's normal there, zero where it has none.
     #[inline]
     pub fn turned(&self, base: &Base, row: usize, posed: &[DVec3], turns: &[DMat3]) -> (DVec3, DVec3) {
         match self.frame(base, row, posed) {
@@ -96,7 +96,7 @@ impl Frames {
             None => {
                 let at_rest = self.at_rest[row];
                 let turned = at_rest + base.turn(row, turns) * at_rest;
-                (turned, turned.normalize_or_zero())
+                (turned, DVec3::ZERO)
             }
         }
     }

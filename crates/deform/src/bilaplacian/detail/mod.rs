@@ -1,7 +1,8 @@
 //! Multiresolution bending [BS08, section 2.4]: the surface is a smooth base and details on it, the bi-Laplacian bends
 //! the base, and the details are put back on the bent base.
 //!
-//! Parts: `base` fairs and poses the base, `carry` keeps rigid motions rigid, `frames` turns displacements.
+//! Parts: `base` fairs and poses the base, `carry` keeps rigid motions rigid, `frames` turns displacements, `volumes`
+//! corrects their heights, `transfer` transfers gradients.
 //!
 //! The base is a mesh of the surface's connectivity. A region that is long or has protrusions makes parts of it shrink
 //! exponentially, so its bases are kept in f64, and where too little is left for a direction the nearest sound place
@@ -11,12 +12,16 @@ mod base;
 mod carry;
 mod donors;
 mod frames;
+mod transfer;
+mod volumes;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use self::base::{Base, Faired};
 use self::frames::Frames;
+use self::transfer::{Transfer, left_by};
+use self::volumes::Volumes;
 use crate::bilaplacian::solver::BilaplacianSolver;
 use crate::handles::{FRAME_CHUNK, Motion};
 use crate::method::{BindInput, BoundMethod, Finite, Stepped};
@@ -34,7 +39,11 @@ pub(crate) struct Multiresolution {
 /// How the details are put back.
 #[derive(Debug)]
 enum Reconstruction {
+    /// As the base is bent: there are no vertices to put details on.
+    Plain,
     Normals(Frames),
+    Volumes(Box<Volumes>),
+    Gradients(Box<Transfer>),
 }
 
 impl Multiresolution {
@@ -51,6 +60,17 @@ impl Multiresolution {
         input.cancel.check()?;
         let (triangles, topology) = (&problem.surface.triangles, problem.topology);
         let reconstruction = match options.detail {
+            Detail::DeformationTransfer => {
+                let budget = left_by(bending.factor_len(), input)?;
+                let transfer = Transfer::bind(&base, budget, input)?;
+                transfer.map_or(Reconstruction::Plain, |transfer| {
+                    Reconstruction::Gradients(Box::new(transfer))
+                })
+            }
+            Detail::DisplacementVolumes => {
+                let iterations = options.volume_iterations;
+                Reconstruction::Volumes(Box::new(Volumes::of(&base, iterations, triangles, topology)))
+            }
             Detail::None | Detail::NormalDisplacements => {
                 Reconstruction::Normals(Frames::of(&base, triangles, topology))
             }
@@ -70,13 +90,24 @@ impl Multiresolution {
         let turns = self.base.turns(motions);
         let mut posed = std::mem::take(&mut self.posed);
         self.base.pose(displacements, &turns, &mut posed);
-        match &self.reconstruction {
-            Reconstruction::Normals(frames) => write(&self.base, &posed, displacements, |row| {
-                frames.turned(&self.base, row, &posed, &turns).0 - frames.at_rest()[row]
+        let base = &self.base;
+        let mut reconstructed = Ok(());
+        match &mut self.reconstruction {
+            Reconstruction::Plain => write(base, &posed, displacements, |_| DVec3::ZERO),
+            Reconstruction::Normals(frames) => write(base, &posed, displacements, |row| {
+                frames.turned(base, row, &posed, &turns).0 - frames.at_rest()[row]
             }),
+            Reconstruction::Volumes(volumes) => {
+                volumes.frame(base, &posed, &turns);
+                write(base, &posed, displacements, |row| volumes.change(row));
+            }
+            Reconstruction::Gradients(transfer) => {
+                write(base, &posed, displacements, |_| DVec3::ZERO);
+                reconstructed = transfer.frame(base, &posed, &turns, displacements);
+            }
         }
         self.posed = posed;
-        Ok(())
+        reconstructed
     }
 }
 
@@ -138,7 +169,11 @@ impl BoundMethod for Multiresolution {
     }
 
     fn factor_len(&self) -> usize {
-        self.bending.factor_len()
+        let transfer = match &self.reconstruction {
+            Reconstruction::Gradients(transfer) => transfer.factor_len(),
+            Reconstruction::Plain | Reconstruction::Normals(_) | Reconstruction::Volumes(_) => 0,
+        };
+        self.bending.factor_len() + transfer
     }
 
     fn step_cost(&self) -> usize {
