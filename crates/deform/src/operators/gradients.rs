@@ -146,11 +146,6 @@ impl Gradients {
             });
     }
 
-    /// The faces.
-    pub fn faces(&self) -> &[Face] {
-        &self.faces
-    }
-
     /// The places of the faces around a solved vertex, by its row of a load.
     pub fn around(&self, column: usize) -> impl Iterator<Item = usize> + '_ {
         let own = self.offsets[column] as usize..self.offsets[column + 1] as usize;

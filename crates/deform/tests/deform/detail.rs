@@ -12,9 +12,7 @@ const DETAILS: [&str; 3] = ["normal-displacements", "displacement-volumes", "def
 
 fn method(detail: &'static str) -> Method {
     let method = Method::from_name("bilaplacian").unwrap();
-    method
-        .with([("detail", OptionValue::Name(detail))].into_iter())
-        .unwrap()
+    method.with([("detail", OptionValue::Name(detail))]).unwrap()
 }
 
 /// Where the bumps stand on the plate, and their radius.
@@ -155,10 +153,7 @@ fn every_base_order_bends_bumps_with_the_plate() {
     for detail in DETAILS {
         for order in 1..=3 {
             let mut scene = plate(CELLS, 0.1, detail);
-            scene.method = scene
-                .method
-                .with([("base_order", OptionValue::Whole(order))].into_iter())
-                .unwrap();
+            scene.method = scene.method.with([("base_order", OptionValue::Whole(order))]).unwrap();
             let mut bound = scene.bind();
             let mut base = scene.positions().to_vec();
             assert!(bound.base(&mut base));
