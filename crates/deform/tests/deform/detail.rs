@@ -189,3 +189,32 @@ fn bumps_keep_their_volume_on_a_bent_plate_but_with_normal_displacements() {
         }
     }
 }
+
+#[test]
+fn transferred_gradients_keep_a_tube_whole_whose_base_shrinks_to_a_line() {
+    // In the middle the base is about e^-10 as wide as the tube.
+    let mut scene = Scene::new(shapes::tube(12, 40, 20.0))
+        .with(Role::Fixed, |p| p.z < 1.0)
+        .with(Role::Handle(0), |p| p.z > 19.0);
+    scene.method = method("deformation-transfer");
+    let turn = DAffine3::from_translation(DVec3::X * 4.0) * DAffine3::from_rotation_y(0.5);
+    let displacements = scene.moved(&[turn]);
+    let stretch = |[a, b]: [SurfaceVertex; 2]| {
+        let [a, b] = [a, b].map(SurfaceVertex::index);
+        let rest = scene.positions()[b] - scene.positions()[a];
+        (rest + displacements[b] - displacements[a]).length() / rest.length()
+    };
+    let edges = scene
+        .model
+        .surface
+        .triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let (least, most) = edges.map(stretch).fold((f64::MAX, 0.0_f64), |(least, most), stretch| {
+        (least.min(stretch), most.max(stretch))
+    });
+    assert!(
+        least > 0.3 && most < 3.0,
+        "edges are {least} to {most} as long as before"
+    );
+}

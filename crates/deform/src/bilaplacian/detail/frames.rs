@@ -32,7 +32,7 @@ pub(crate) struct Frames {
 pub(crate) const NARROWEST: f64 = 1e-7;
 
 /// A ring or triangle of the base that is narrower than this share of its length has no frame of its own.
-pub(crate) const SLIMMEST: f64 = 1e-4;
+pub(crate) const SLIMMEST: f64 = 1e-6;
 
 /// The least length of a ring's mean normal: less and the base is folded there.
 const UNFOLDED: f64 = 0.1;
