@@ -30,6 +30,8 @@ pub(crate) struct Volumes {
     starts: Vec<u32>,
     /// Three times a prism's place, plus the corner at which the row is.
     corners: Vec<u32>,
+    /// The most that the iterations change each row's height.
+    most: Vec<f64>,
     room: Room,
 }
 
@@ -46,13 +48,16 @@ struct Room {
     offsets: Vec<DVec3>,
     normals: Vec<DVec3>,
     lacks: Vec<Lack>,
+    /// What the iterations add along the normals, and the same before it is smoothed.
+    heights: Vec<f64>,
+    rough: Vec<f64>,
 }
 
 /// What a prism lacks.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lack {
     height: f64,
-    /// By how much a height at each corner changes the volume.
+    /// By how much a height at each corner adds to the volume; 0 where the prism is folded there.
     gains: [f64; 3],
     /// What a gain has to exceed to count in full.
     least: f64,
@@ -61,6 +66,14 @@ struct Lack {
 /// The most that a height changes in an iteration, in units of the prism's longest displacement: where a prism is folded
 /// its volume hardly depends on its heights.
 const STEP: f64 = 0.5;
+
+/// The most that all iterations change a height, in units of the longest displacement around it at rest: where the base
+/// is bent more sharply than its details are high, no heights give the volumes of rest.
+const MOST: f64 = 0.5;
+
+/// How much of each height is taken from its neighbours in an iteration. What alternates from vertex to vertex hardly
+/// changes a volume, so nothing else would hold it back.
+const SMOOTHING: f64 = 0.5;
 
 /// A prism that gains less than this share of its triangles' area by its heights is folded or stands upright.
 const UPRIGHT: f64 = 0.03;
@@ -110,6 +123,17 @@ impl Volumes {
         let frames = Frames::of(base, triangles, topology);
         let offsets = frames.at_rest();
         let volume = |prism: &Prism| measure(prism, &base.rest, offsets).volume;
+        let around = |row: usize| corners[starts[row] as usize..starts[row + 1] as usize].iter();
+        let length = |row: &u32| offsets.get(*row as usize).map_or(0.0, |offset| offset.length());
+        let longest = |row: usize| {
+            let rows = around(row).flat_map(|&entry| &prisms[entry as usize / 3].rows);
+            rows.map(length).fold(0.0, f64::max)
+        };
+        let most = (0..base.rows.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|row| MOST * longest(row))
+            .collect();
         Self {
             volumes: prisms.par_iter().with_min_len(CHUNK).map(volume).collect(),
             frames,
@@ -117,6 +141,7 @@ impl Volumes {
             prisms,
             starts,
             corners,
+            most,
             room: Room::default(),
         }
     }
@@ -134,7 +159,11 @@ impl Volumes {
             offsets,
             normals,
             lacks,
+            heights,
+            rough,
         } = &mut room;
+        heights.clear();
+        heights.resize(base.rows.len(), 0.0);
         (0..base.rows.len())
             .into_par_iter()
             .with_min_len(CHUNK)
@@ -147,14 +176,39 @@ impl Volumes {
                 .with_min_len(CHUNK)
                 .map(|(prism, &volume)| lack(prism, volume, posed, offsets, normals))
                 .collect_into_vec(lacks);
-            offsets
-                .par_iter_mut()
-                .zip(&*normals)
+            let next = |row: usize| (heights[row] + self.mean(row, lacks)).clamp(-self.most[row], self.most[row]);
+            (0..base.rows.len())
+                .into_par_iter()
+                .with_min_len(CHUNK)
+                .map(next)
+                .collect_into_vec(rough);
+            (&mut *offsets, &mut *heights, &*normals)
+                .into_par_iter()
                 .enumerate()
                 .with_min_len(CHUNK)
-                .for_each(|(row, (offset, &normal))| *offset += normal * self.mean(row, lacks));
+                .for_each(|(row, (offset, height, &normal))| {
+                    let next = rough[row] + SMOOTHING * (self.beside(row, rough) - rough[row]);
+                    *offset += normal * (next - *height);
+                    *height = next;
+                });
         }
         self.room = room;
+    }
+
+    /// The mean of the heights around a row; its own where it has no prism.
+    #[inline]
+    fn beside(&self, row: usize, heights: &[f64]) -> f64 {
+        let own = &self.corners[self.starts[row] as usize..self.starts[row + 1] as usize];
+        if own.is_empty() {
+            return heights[row];
+        }
+        // The corner's own height is left out; where fairing left a corner its height is 0.
+        let others = own.iter().map(|&entry| {
+            let rows = &self.prisms[entry as usize / 3].rows;
+            let all: f64 = rows.iter().filter_map(|&row| heights.get(row as usize)).sum();
+            all - heights[row]
+        });
+        others.sum::<f64>() / (2 * own.len()) as f64
     }
 
     /// The mean of what the prisms around a row lack.
@@ -165,7 +219,7 @@ impl Volumes {
             let lack = &lacks[entry as usize / 3];
             let gain = lack.gains[entry as usize % 3];
             sum += gain * lack.height;
-            weight += gain.abs() + lack.least;
+            weight += gain + lack.least;
         }
         if weight > 0.0 { sum / weight } else { 0.0 }
     }
@@ -207,9 +261,9 @@ fn lack(prism: &Prism, volume: f64, posed: &[DVec3], offsets: &[DVec3], normals:
     let gains = prism.rows.map(|row| {
         normals
             .get(row as usize)
-            .map_or(0.0, |normal| normal.dot(now.area) / 3.0)
+            .map_or(0.0, |normal| (normal.dot(now.area) / 3.0).max(0.0))
     });
-    let gain: f64 = gains.iter().map(|gain| gain.abs()).sum();
+    let gain: f64 = gains.iter().sum();
     let least = UPRIGHT * now.size;
     let square = gain * gain + least * least;
     let height = if square > 0.0 {
