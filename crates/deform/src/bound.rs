@@ -302,19 +302,16 @@ impl Bound {
 
 /// Every result passes through here, so that none with a displacement that is not finite gets out.
 fn gate(displacements: &mut [DVec3]) -> Result<(), SolveError> {
-    let finite = displacements
-        .par_chunks(FRAME_CHUNK)
-        .all(|chunk| chunk.iter().all(|displacement| displacement.is_finite()));
-    if finite {
-        // Beyond the root of the largest number the energy overflows.
-        let is_measurable = displacements.par_chunks(FRAME_CHUNK).all(|chunk| {
-            chunk
-                .iter()
-                .all(|displacement| displacement.length_squared().is_finite())
-        });
-        if is_measurable {
-            return Ok(());
-        }
+    // Beyond the root of the largest number the energy overflows. What can be measured is finite.
+    let is_measurable = displacements.par_chunks(FRAME_CHUNK).all(|chunk| {
+        chunk
+            .iter()
+            .all(|displacement| displacement.length_squared().is_finite())
+    });
+    if is_measurable {
+        return Ok(());
+    }
+    if displacements.iter().all(|displacement| displacement.is_finite()) {
         displacements.fill(DVec3::ZERO);
         return Err(SolveError::EnergyNotFinite);
     }

@@ -10,7 +10,7 @@ use crate::process::{cargo, succeed, target_folder, words};
 const METHODS: &str = "bilaplacian,poisson,laplacian,frames,frames:iterations=20,arap,arap:energy=smooth,primo";
 
 /// The size of a sheet in pixels.
-const SIZE: &str = "1400x840";
+const SIZE: &str = "1040x640";
 
 /// Draws `docs/gallery/NAME.png` for each sample, and puts the tables of figures into `docs/methods.md`, each between
 /// its marks.
