@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec3, Mat3};
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
+use crate::handles::residual::HandleResidual;
 use crate::handles::{FRAME_CHUNK, Handle, Motion, clear};
-use crate::method::{BindInput, BoundMethod, Finite, Solve};
+use crate::method::{BindInput, BoundMethod, Finite, HandleFit, Solve};
 use crate::region::follow::{Followers, followers};
 use crate::region::partition::Partition;
 use crate::sparse::refactorisation::{Refactorisation, RenewableFactor};
@@ -25,6 +26,8 @@ pub struct Bound {
     solve: Solve,
     method: Box<dyn BoundMethod>,
     followers: Followers,
+    /// Of hard handles that the method only fits.
+    residual: HandleResidual,
     /// First those of the binding, then what the present targets ask for and the method can't follow.
     warnings: Vec<String>,
     binding_warnings: usize,
@@ -65,6 +68,9 @@ pub struct Step {
     pub energy: f64,
     /// How many steps were taken towards these targets, this one included.
     pub iteration: u32,
+    /// The largest distance of a hard handle's vertex from where the handle's transform takes it, in world units: 0
+    /// for every method that holds handles exactly.
+    pub handle_residual: f64,
 }
 
 impl Bound {
@@ -106,6 +112,10 @@ impl Bound {
             progress,
             cancel,
         })?;
+        let residual = match problem.method.implementation().handle_fit() {
+            HandleFit::Exact => HandleResidual::default(),
+            HandleFit::LeastSquares => HandleResidual::new(&handles, &partition.soft, positions),
+        };
         let mut warnings = partition.warnings;
         warnings.extend(method.warnings());
         Ok(Self {
@@ -124,6 +134,7 @@ impl Bound {
                 &partition.driven,
                 cancel,
             )?,
+            residual,
             binding_warnings: warnings.len(),
             warnings,
         })
@@ -200,6 +211,7 @@ impl Bound {
             finished: true,
             energy: 0.0,
             iteration: self.iteration,
+            handle_residual: 0.0,
         };
         let motions = &self.motions;
         if motions.iter().all(Motion::is_rest) {
@@ -223,6 +235,7 @@ impl Bound {
         if stepped.finite == Finite::Unknown || !self.followers.is_empty() {
             gate(displacements)?;
         }
+        step.handle_residual = self.residual.of(motions, displacements);
         if !step.energy.is_finite() {
             displacements.fill(DVec3::ZERO);
             return Err(SolveError::EnergyNotFinite);
@@ -250,6 +263,18 @@ impl Bound {
     /// where the method has one. Whether it has.
     pub fn base(&self, positions: &mut [DVec3]) -> bool {
         positions.len() == self.vertex_count && self.method.base(positions)
+    }
+
+    /// The Jacobian of the displacements at each surface vertex, as of the last step; `None` where the method does not
+    /// know its map's derivative. A normal there turns by the inverse transpose of I plus it.
+    pub fn jacobians(&self) -> Option<Vec<Mat3>> {
+        let mut jacobians = vec![Mat3::ZERO; self.vertex_count];
+        let is_rest = self.motions.iter().all(Motion::is_rest);
+        let is_known = self.method.jacobians(&self.motions, &mut jacobians);
+        if is_known && is_rest {
+            jacobians.fill(Mat3::ZERO);
+        }
+        is_known.then_some(jacobians)
     }
 
     /// The handle bases, if a step is a product with them.

@@ -26,17 +26,20 @@ mod operators;
 mod poisson;
 mod primo;
 mod problem;
+mod rbf;
 mod region;
+mod space;
 mod sparse;
 #[doc(hidden)]
 pub mod stages;
 
 pub use arap::{Arap, ArapEnergy};
-pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Detail, Discretisation, HandleBases, TriangulationKind};
+pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Detail, Discretisation, TriangulationKind};
 pub use bound::{Bound, ReusableFactor, Step};
 pub use budget::{Budget, Limit};
 pub use error::{BindError, Crowded, SolveError};
 pub use frames::Frames;
+pub use handles::bases::HandleBases;
 pub use laplacian::{LaplacianEditing, LocalScale, Transforms};
 pub use method::{
     ConstraintKind, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused,
@@ -47,5 +50,6 @@ pub use operators::Laplacian;
 pub use poisson::{Poisson, Propagation};
 pub use primo::Primo;
 pub use problem::{Loose, Problem, Role};
+pub use rbf::Rbf;
 pub use region::constraints::{CONTINUITY_RANGE, Constraints};
 pub use sparse::Ordering;

@@ -5,10 +5,10 @@ use std::collections::TryReserveError;
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
-use crate::bilaplacian::bases::Stored;
 use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
 use crate::bilaplacian::setup::Prescribed;
 use crate::budget::filled;
+use crate::handles::bases::Stored;
 
 /// One handle's four columns.
 pub(crate) struct Columns<T> {

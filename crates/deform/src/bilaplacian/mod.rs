@@ -2,7 +2,6 @@
 //! linear: A d = 0, so a frame is a product with the handle bases [BK04, BS08].
 
 pub(crate) mod assembly;
-mod bases;
 mod columns;
 mod continuity;
 mod declaration;
@@ -17,6 +16,5 @@ pub(crate) mod setup;
 mod solver;
 mod springs;
 
-pub use bases::HandleBases;
 pub(crate) use declaration::DECLARATION;
 pub use options::{Bilaplacian, BilaplacianOrder, Detail, Discretisation, TriangulationKind};

@@ -4,14 +4,12 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_mesh::{Cancel, SurfaceVertex};
-use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
-use crate::bilaplacian::bases::{Stored, Tables};
 use crate::bilaplacian::columns::{energy_blocks, solve_columns};
 use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
 use crate::bilaplacian::setup::operator;
-use crate::handles::{FRAME_CHUNK, Motion, clear};
+use crate::handles::bases::{Stored, frame};
+use crate::handles::{Motion, clear};
 use crate::method::{BindInput, Finite};
 use crate::operators::repairs;
 use crate::region::partition::Partition;
@@ -104,24 +102,10 @@ impl<T: Stored> BilaplacianSolver<T> {
         &self.bases
     }
 
-    /// Fills all of `displacements` from the bases, chunk by chunk: each goes through memory once.
+    /// Fills all of `displacements` from the bases.
     pub fn frame(&self, motions: &[Motion], displacements: &mut [DVec3]) -> Finite {
-        let tables = Tables::of(motions, &self.bases);
-        let arch = Arch::new();
-        let is_finite = displacements
-            .par_chunks_mut(FRAME_CHUNK)
-            .enumerate()
-            .map(|(chunk, out)| {
-                arch.dispatch(Frame {
-                    solver: self,
-                    motions,
-                    tables: &tables,
-                    first: chunk * FRAME_CHUNK,
-                    out,
-                })
-            })
-            .reduce(|| true, |a, b| a && b);
-        if is_finite { Finite::Yes } else { Finite::Unknown }
+        let vertex = |place| self.vertex(place) as usize;
+        frame(&self.bases, &self.prescribed, vertex, motions, displacements)
     }
 
     /// Sentences about what had to be repaired.
@@ -246,35 +230,6 @@ fn of_order(options: &Bilaplacian, refused: BindError) -> BindError {
             refused: Box::new(refused),
         },
         _ => refused,
-    }
-}
-
-/// A chunk of a frame: the displacements of the vertices from `first` on, and whether all are finite.
-///
-/// A closure would be compiled without the vector instructions that its caller is compiled for.
-struct Frame<'a, T> {
-    solver: &'a BilaplacianSolver<T>,
-    motions: &'a [Motion],
-    tables: &'a Tables,
-    first: usize,
-    out: &'a mut [DVec3],
-}
-
-impl<T: Stored> WithSimd for Frame<'_, T> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> bool {
-        let Self { solver, first, out, .. } = self;
-        out.fill(DVec3::ZERO);
-        for (own, motion) in solver.prescribed.iter().zip(self.motions) {
-            let place = |vertex: usize| own.partition_point(|&(place, _)| (solver.vertex(place) as usize) < vertex);
-            for &(at, coordinates) in &own[place(first)..place(first + out.len())] {
-                out[solver.vertex(at) as usize - first] = motion.displace(coordinates);
-            }
-        }
-        solver.bases.evaluate(self.tables, first, out);
-        out.iter().all(|displacement| displacement.is_finite())
     }
 }
 

@@ -3,8 +3,10 @@
 //! The coordinates are centred on the handle and scaled to it. Bases in f32 over world coordinates lose 3e-3 at ten
 //! thousand diagonals from the origin; over these 3e-8, wherever the scan stands.
 
+pub(crate) mod bases;
 pub(crate) mod blend;
 pub(crate) mod polar;
+pub(crate) mod residual;
 
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;

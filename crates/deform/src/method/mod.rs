@@ -13,7 +13,7 @@ use pliant_mesh::{Cancel, Cancelled, Progress, Topology};
 
 pub use self::declaration::{ConstraintKind, MethodDeclaration, Needs, Solve};
 pub use self::option::{OptionDeclaration, OptionKind, OptionRefused, OptionValue};
-pub(crate) use self::traits::{BindInput, BoundMethod, DeformMethod, Finite, Options, Stepped};
+pub(crate) use self::traits::{BindInput, BoundMethod, DeformMethod, Finite, HandleFit, Options, Stepped};
 use crate::Ordering;
 
 /// Every method, in the order in which they are shown. A new one adds its line here.
@@ -24,6 +24,7 @@ pub const METHODS: &[&MethodDeclaration] = &[
     &crate::poisson::DECLARATION,
     &crate::laplacian::DECLARATION,
     &crate::frames::DECLARATION,
+    &crate::rbf::DECLARATION,
     #[cfg(feature = "identity-method")]
     &crate::identity::DECLARATION,
 ];

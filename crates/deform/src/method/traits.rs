@@ -3,7 +3,7 @@
 use std::any::Any;
 use std::fmt::Debug;
 
-use glam::DVec3;
+use glam::{DVec3, Mat3};
 use pliant_mesh::{Cancel, Progress};
 
 use super::{MethodDeclaration, Needs, OptionRefused, OptionValue, Solve};
@@ -47,6 +47,11 @@ pub(crate) trait DeformMethod: Options {
     /// The triangles that its operator is made on.
     fn triangulation<'a>(&self, problem: &Problem<'a>) -> Triangulation<'a> {
         Triangulation::of_surface(problem.surface, problem.topology)
+    }
+
+    /// How hard handles hold their vertices.
+    fn handle_fit(&self) -> HandleFit {
+        HandleFit::Exact
     }
 
     /// Bytes of a solved vertex in the method's tables, without matrices and factors, whose entries are counted one by
@@ -138,6 +143,12 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
         false
     }
 
+    /// Fills in the Jacobian of the displacements at each surface vertex, as of the last step, where the method knows
+    /// its map's derivative: normals are then turned by the inverse transpose of I plus it. Whether it does.
+    fn jacobians(&self, _motions: &[Motion], _out: &mut [Mat3]) -> bool {
+        false
+    }
+
     /// The handles' bases, where a step is a product with them.
     fn handle_bases(&self) -> Option<&HandleBases> {
         None
@@ -170,6 +181,15 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
     fn blind_to(&self, _motions: &[Motion]) -> Vec<String> {
         Vec::new()
     }
+}
+
+/// How hard handles hold their vertices.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum HandleFit {
+    /// They go exactly where the handle's transform takes them.
+    Exact,
+    /// The method brings them there as well as it can.
+    LeastSquares,
 }
 
 /// What a step did.

@@ -20,9 +20,9 @@ pub(crate) struct Lanes(pub [f64; LANES]);
 
 /// A machine's vector of numbers, one per cell.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Vector<S: Simd> {
-    pub(super) simd: S,
-    pub(super) numbers: S::f64s,
+pub(crate) struct Vector<S: Simd> {
+    pub(crate) simd: S,
+    pub(crate) numbers: S::f64s,
 }
 
 /// Matrices, column by column.
@@ -58,7 +58,7 @@ impl<S: Simd> Neg for Vector<S> {
 
 impl<S: Simd> Vector<S> {
     #[inline(always)]
-    pub(super) fn splat(simd: S, value: f64) -> Self {
+    pub(crate) fn splat(simd: S, value: f64) -> Self {
         Self {
             simd,
             numbers: simd.splat_f64s(value),
@@ -67,7 +67,7 @@ impl<S: Simd> Vector<S> {
 
     /// The vector at one of the places of each.
     #[inline(always)]
-    pub(super) fn each<const N: usize>(simd: S, lanes: &[Lanes; N], place: usize) -> [Self; N] {
+    pub(crate) fn each<const N: usize>(simd: S, lanes: &[Lanes; N], place: usize) -> [Self; N] {
         let mut vectors = [Self::splat(simd, 0.0); N];
         for (vector, lanes) in vectors.iter_mut().zip(lanes) {
             vector.numbers = S::as_simd_f64s(&lanes.0).0[place];
@@ -76,19 +76,19 @@ impl<S: Simd> Vector<S> {
     }
 
     #[inline(always)]
-    pub(super) fn put(self, lanes: &mut Lanes, place: usize) {
+    pub(crate) fn put(self, lanes: &mut Lanes, place: usize) {
         S::as_mut_simd_f64s(&mut lanes.0).0[place] = self.numbers;
     }
 
     #[inline(always)]
-    pub(super) fn put_each<const N: usize>(vectors: [Self; N], lanes: &mut [Lanes; N], place: usize) {
+    pub(crate) fn put_each<const N: usize>(vectors: [Self; N], lanes: &mut [Lanes; N], place: usize) {
         for (vector, lanes) in vectors.into_iter().zip(lanes) {
             vector.put(lanes, place);
         }
     }
 
     #[inline(always)]
-    pub(super) fn sqrt(self) -> Self {
+    pub(crate) fn sqrt(self) -> Self {
         Self {
             numbers: self.simd.sqrt_f64s(self.numbers),
             ..self
@@ -130,7 +130,7 @@ impl<S: Simd> Vector<S> {
 /// Which cells of a vector.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mask<S: Simd> {
-    pub(super) simd: S,
+    pub(crate) simd: S,
     lanes: S::m64s,
 }
 

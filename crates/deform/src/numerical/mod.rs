@@ -1,6 +1,7 @@
 //! Small numerical tools that several methods share: descent directions, line searches, rotations and rigid motions
 //! that fit, sums that do not depend on the number of threads.
 
+pub(crate) mod dense;
 pub(crate) mod eigen;
 pub(crate) mod lane_fits;
 pub(crate) mod lanes;

@@ -1,7 +1,7 @@
 //! Handle bases: a frame as one small product a vertex, with no solve in it.
 //!
-//! A handle moves affinely and the bi-Laplacian is linear, so the solved vertices' displacement is Σ_h B_h (T_h − I)
-//! with B_h = −A_ff⁻¹ A_fh [q 1], four columns a handle solved once at bind [BK04].
+//! A handle moves affinely, so what a linear method does to the solved vertices is Σ_h B_h (T_h − I), four columns a
+//! handle computed once at bind [BK04]. For the bi-Laplacian B_h = −A_ff⁻¹ A_fh [q 1].
 //!
 //! Where nothing is fixed the weights of all handles sum to 1. Rounded to f32 they no longer do, and a plain
 //! translation would leave dents. So the motion of one *reference* handle's centre is subtracted first and added back
@@ -10,9 +10,12 @@
 use std::collections::TryReserveError;
 
 use glam::{DMat3, DVec3};
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
 
 use crate::budget::filled;
-use crate::handles::Motion;
+use crate::handles::{FRAME_CHUNK, Motion};
+use crate::method::Finite;
 
 /// The precision in which bases are stored.
 pub(crate) trait Stored: Copy + Default + Into<f64> + Send + Sync {
@@ -116,9 +119,20 @@ impl<T> HandleBases<T> {
         })
     }
 
+    /// From rows of `handle_count` entries, one row for each of the vertices, ascending.
+    pub(crate) fn of_rows(vertices: Vec<u32>, handle_count: usize, rows: Vec<[T; 4]>) -> Self {
+        let end = vertices.len();
+        Self {
+            vertices,
+            handle_count,
+            rows,
+            runs: vec![Run { end, reference: None }],
+        }
+    }
+
     /// The displacements of the solved vertices among those from `first` on.
     #[inline(always)]
-    pub(crate) fn evaluate(&self, tables: &Tables, first: usize, out: &mut [DVec3])
+    fn evaluate(&self, tables: &Tables, first: usize, out: &mut [DVec3])
     where
         T: Stored,
     {
@@ -149,7 +163,7 @@ impl<T> HandleBases<T> {
 }
 
 /// The motions' columns relative to each reference handle in use.
-pub(crate) struct Tables {
+struct Tables {
     plain: Vec<[DVec3; 4]>,
     relative: Vec<Option<Relative>>,
 }
@@ -183,5 +197,61 @@ impl Tables {
             Some((base, table)) => (*base, table),
             None => (DVec3::ZERO, &self.plain),
         }
+    }
+}
+
+/// Fills all of `displacements`: those of the handles' vertices from the motions, those of the bases' vertices from the
+/// bases, zeros elsewhere. Chunk by chunk, so that each goes through memory once.
+///
+/// `prescribed` has each handle's places, ascending, and their coordinates; `vertex` is the vertex of a place.
+pub(crate) fn frame<T: Stored>(
+    bases: &HandleBases<T>,
+    prescribed: &[Vec<(u32, [f64; 4])>],
+    vertex: impl Fn(u32) -> usize + Sync,
+    motions: &[Motion],
+    displacements: &mut [DVec3],
+) -> Finite {
+    let tables = Tables::of(motions, bases);
+    let arch = Arch::new();
+    let is_finite = displacements
+        .par_chunks_mut(FRAME_CHUNK)
+        .enumerate()
+        .map(|(chunk, out)| {
+            let first = chunk * FRAME_CHUNK;
+            out.fill(DVec3::ZERO);
+            for (own, motion) in prescribed.iter().zip(motions) {
+                let place = |end: usize| own.partition_point(|&(place, _)| vertex(place) < end);
+                for &(at, coordinates) in &own[place(first)..place(first + out.len())] {
+                    out[vertex(at) - first] = motion.displace(coordinates);
+                }
+            }
+            arch.dispatch(Evaluation {
+                bases,
+                tables: &tables,
+                first,
+                out,
+            })
+        })
+        .reduce(|| true, |a, b| a && b);
+    if is_finite { Finite::Yes } else { Finite::Unknown }
+}
+
+/// A chunk of a frame: the displacements of the vertices from `first` on, and whether all are finite.
+///
+/// A closure would be compiled without the vector instructions that its caller is compiled for.
+struct Evaluation<'a, T> {
+    bases: &'a HandleBases<T>,
+    tables: &'a Tables,
+    first: usize,
+    out: &'a mut [DVec3],
+}
+
+impl<T: Stored> WithSimd for Evaluation<'_, T> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> bool {
+        self.bases.evaluate(self.tables, self.first, self.out);
+        self.out.iter().all(|displacement| displacement.is_finite())
     }
 }

@@ -1,0 +1,126 @@
+//! Radial basis functions as one of the methods.
+
+use glam::{DVec3, Mat3};
+
+use super::Rbf;
+use super::centres::fitted;
+use super::constraints::Constraints;
+use super::kernel::{Sum, Weights};
+use crate::handles::Motion;
+use crate::method::{BindInput, BoundMethod, DeformMethod, HandleFit, MethodDeclaration, Needs, Solve, Stepped};
+use crate::space::falloff::Falloff;
+use crate::space::field::{Coefficients, FIELD_ROW, LinearField, SpaceMap};
+use crate::{BindError, SolveError};
+
+pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
+    name: "rbf",
+    title: "Radial basis functions",
+    when_to_use: "Bends the space around the surface as smoothly as can be, at once: for scans of loose or broken \
+                  pieces, and for points. What is near in space moves along, whether it is connected or not.",
+    keywords: "rbf radial triharmonic space points soup warp",
+    options: Rbf::OPTIONS,
+    heeds: &[],
+    default: || Rbf::default().into(),
+    first_choice: || Rbf::default().into(),
+};
+
+/// The bound method.
+#[derive(Debug)]
+struct BoundRbf {
+    field: LinearField,
+    solved_count: usize,
+    warnings: Vec<String>,
+}
+
+/// The field in world units.
+struct WorldField<'a> {
+    weights: &'a Weights,
+    world_origin: DVec3,
+    unit: f64,
+}
+
+impl SpaceMap for WorldField<'_> {
+    fn coefficients(&self, world_points: &[DVec3], out: &mut [Coefficients]) {
+        let relative = |point: &DVec3| (*point - self.world_origin) / self.unit;
+        let points: Vec<DVec3> = world_points.iter().map(relative).collect();
+        let mut sums = vec![Sum::default(); points.len()];
+        let count = self.weights.handle_count;
+        for handle in 0..count {
+            self.weights.evaluate(handle, &points, &mut sums);
+            for (out, sum) in out.iter_mut().skip(handle).step_by(count).zip(&sums) {
+                out.value = sum[0];
+                for k in 0..4 {
+                    out.gradient[k] = DVec3::new(sum[1][k], sum[2][k], sum[3][k]) / self.unit;
+                }
+            }
+        }
+    }
+}
+
+impl DeformMethod for Rbf {
+    fn declaration(&self) -> &'static MethodDeclaration {
+        &DECLARATION
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::Points
+    }
+
+    fn solve(&self) -> Solve {
+        Solve::Direct
+    }
+
+    fn handle_row_bytes(&self) -> usize {
+        FIELD_ROW
+    }
+
+    fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
+        let constraints = Constraints::of(input);
+        input.progress.set(0.1);
+        let fitted = fitted(self, &constraints.points, input.handles.len(), input.cancel)?;
+        input.progress.set(0.5);
+        let map = WorldField {
+            weights: &fitted.weights,
+            world_origin: constraints.world_origin,
+            unit: constraints.unit,
+        };
+        let field = LinearField::bind(&map, &Falloff::default(), HandleFit::Exact, input)?;
+        input.progress.set(1.0);
+        let missed = (fitted.error > self.tolerance).then(|| {
+            format!(
+                "rbf misses its constraints by up to {:.1e} of the handles' way with {} centres: allow more `centres`, \
+                 or a larger `tolerance`",
+                fitted.error,
+                fitted.weights.centres.len()
+            )
+        });
+        Ok(Box::new(BoundRbf {
+            field,
+            solved_count: input.partition.solved.len(),
+            warnings: missed.into_iter().collect(),
+        }))
+    }
+}
+
+impl BoundMethod for BoundRbf {
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        Ok(Stepped {
+            converged: true,
+            energy: 0.0,
+            finite: self.field.frame(motions, displacements),
+        })
+    }
+
+    fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) -> bool {
+        self.field.jacobians(motions, out);
+        true
+    }
+
+    fn solved_count(&self) -> usize {
+        self.solved_count
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
+}

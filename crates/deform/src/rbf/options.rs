@@ -1,0 +1,23 @@
+//! The options of radial basis functions.
+
+use crate::method::option::{Number, Whole, options};
+
+options! {
+    /// Options of radial basis functions.
+    pub struct Rbf {
+        /// How closely the field meets handles and what is fixed.
+        tolerance: f64 = Number {
+            default: 1e-4,
+            range: [1e-9, 0.1],
+            unit: "",
+            help: "the largest error at the constraints, as a share of how far the handles move: centres are added until \
+                   it is met",
+        },
+        /// The most centres.
+        centres: u32 = Whole {
+            default: 1500,
+            range: [8, 5000],
+            help: "the most centres, chosen among the constraints",
+        },
+    }
+}

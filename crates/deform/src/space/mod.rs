@@ -1,0 +1,9 @@
+//! What the methods share that bend the space around the points, connected or not.
+//!
+//! A method that is linear in the handles' motions is a [`field::SpaceMap`]: it gives each point's coefficients once,
+//! and [`field::LinearField`] makes its frames, by a product, and its Jacobians. Methods that do not hold what is fixed
+//! by themselves fade towards it by a [`falloff::Falloff`].
+
+pub(crate) mod falloff;
+pub(crate) mod field;
+pub(crate) mod nearest;

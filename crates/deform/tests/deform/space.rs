@@ -1,0 +1,275 @@
+//! The laws that every method obeys that bends the space around the points.
+
+use std::collections::HashMap;
+use std::f64::consts::PI;
+
+use crate::rig::{Scene, apart, far, scaled, settle, turned};
+use glam::{DAffine3, DMat3, DVec3};
+use pliant_deform::{Bound, Method, OptionValue, Role};
+use pliant_mesh::{Drawn, DrawnVertex, shapes};
+
+/// Every method with the options that change what it computes.
+pub fn methods() -> Vec<Method> {
+    let with = |name: &str| Method::from_name(name).unwrap();
+    vec![with("rbf")]
+}
+
+/// Those that hold handles exactly.
+fn interpolating() -> impl Iterator<Item = Method> {
+    methods().into_iter().filter(|method| ["rbf"].contains(&method.name()))
+}
+
+fn scene(drawn: Drawn, method: &Method) -> Scene {
+    let mut scene = Scene::new(drawn);
+    scene.method = method.clone();
+    scene
+}
+
+/// Binds, moves the handles until nothing changes any more, and returns the displacements.
+fn moved(scene: &Scene, targets: &[DAffine3]) -> Vec<DVec3> {
+    settle(&mut scene.bind(), targets).0
+}
+
+#[test]
+fn a_rigid_motion_of_all_handles_moves_everything_rigidly() {
+    for method in methods() {
+        for (name, drawn) in shapes::classes() {
+            let scene = scene(drawn, &method).with_ends(false);
+            let centre = scene.model.bounds().unwrap().centre();
+            let bound = &mut scene.bind();
+            for angle in [0.0, 1.0, PI, -2.0] {
+                let motion = turned(centre, angle, DVec3::new(2.0, -1.0, 0.5) * scene.diagonal());
+                let (displacements, _) = settle(bound, &vec![motion; scene.handle_count]);
+                let expected: Vec<DVec3> = scene
+                    .positions()
+                    .iter()
+                    .map(|p| motion.transform_point3(*p) - *p)
+                    .collect();
+                let error = apart(&displacements, &expected) / scene.diagonal();
+                assert!(error < 1e-7, "{name} {method:?} {angle}: {error:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_fixed_and_what_rests_stays_to_the_bit() {
+    for method in methods() {
+        for (name, drawn) in shapes::classes() {
+            let scene = scene(drawn, &method).with_ends(true);
+            let bound = &mut scene.bind();
+            let (displacements, _) = settle(bound, &far(&scene));
+            for (role, displacement) in scene.roles.iter().zip(&displacements) {
+                assert!(
+                    *role != Role::Fixed || *displacement == DVec3::ZERO,
+                    "{name} {method:?}"
+                );
+            }
+            let rest = vec![DAffine3::IDENTITY; scene.handle_count];
+            let (at_rest, _) = settle(bound, &rest);
+            assert!(at_rest.iter().all(|d| *d == DVec3::ZERO), "{name} {method:?}");
+            let jacobians = bound.jacobians().unwrap();
+            assert!(jacobians.iter().all(|j| *j == glam::Mat3::ZERO));
+            let (again, _) = settle(bound, &far(&scene));
+            assert!(again == displacements, "{name} {method:?}: rest forgets");
+        }
+    }
+}
+
+#[test]
+fn handles_are_met_or_the_distance_is_told() {
+    for method in methods() {
+        for (name, drawn) in shapes::classes() {
+            let scene = scene(drawn, &method).with_ends(true);
+            let bound = &mut scene.bind();
+            let targets = far(&scene);
+            let (mut displacements, _) = settle(bound, &targets);
+            let missed = scene.roles.iter().zip(scene.positions()).zip(&displacements);
+            let missed = missed.filter_map(|((role, rest), displacement)| match role {
+                Role::Handle(h) => {
+                    let expected = targets[usize::from(*h)].transform_point3(*rest) - *rest;
+                    Some(displacement.distance(expected))
+                }
+                _ => None,
+            });
+            let missed = missed.fold(0.0, f64::max);
+            let told = bound.step(&mut displacements).unwrap().handle_residual;
+            let rounding = 1e-9 * scene.diagonal() + 1e-14 * scene.positions()[0].length();
+            assert!((missed - told).abs() < rounding, "{name} {method:?}: {missed} {told}");
+            if interpolating().any(|other| other == method) {
+                assert!(told == 0.0, "{name} {method:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn turning_the_whole_problem_turns_the_result() {
+    // A lattice's box is turned with the axes of space.
+    for method in methods().iter().filter(|method| method.name() != "lattice") {
+        // Of centres that are equally good, rounding chooses: only where all are taken does that not matter.
+        let exact = method.with([("tolerance", OptionValue::Number(1e-9))]);
+        let method = &exact.unwrap_or_else(|_| method.clone());
+        for (name, drawn) in shapes::classes() {
+            let here = scene(drawn.clone(), method).with_ends(true);
+            let world = turned(DVec3::ONE, 2.2, DVec3::new(3.0, -2.0, 1.0));
+            let mut there = scene(drawn, method).with_ends(true);
+            for p in &mut there.model.surface.positions {
+                *p = world.transform_point3(*p);
+            }
+            there.roles.clone_from(&here.roles);
+            let targets = far(&here);
+            let carried: Vec<DAffine3> = targets.iter().map(|t| world * *t * world.inverse()).collect();
+            let expected: Vec<DVec3> = moved(&here, &targets)
+                .iter()
+                .map(|d| world.transform_vector3(*d))
+                .collect();
+            let error = apart(&moved(&there, &carried), &expected) / here.diagonal();
+            assert!(error < 1e-6, "{name} {method:?}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn the_result_is_the_same_bit_for_bit_on_any_number_of_threads() {
+    for method in methods() {
+        // Enough for more than one chunk.
+        let scene = scene(shapes::torus(90, 50), &method).with_ends(true);
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let bound = &mut scene.bind();
+                (settle(bound, &far(&scene)).0, bound.jacobians())
+            })
+        };
+        let one = run(1);
+        assert!(one == run(2) && one == run(3), "{method:?}");
+    }
+}
+
+#[test]
+fn extreme_targets_give_finite_shapes_and_do_not_spoil_the_next() {
+    for method in methods() {
+        for (name, drawn) in shapes::classes() {
+            let scene = scene(drawn, &method).with_ends(true);
+            let (centre, size) = (scene.model.bounds().unwrap().centre(), scene.diagonal());
+            let expected = moved(&scene, &far(&scene));
+            let bound = &mut scene.bind();
+            for target in [
+                DAffine3::from_translation(DVec3::new(-3.0, 0.1, 0.0) * size),
+                turned(centre, PI, DVec3::ZERO),
+                scaled(centre, DVec3::ZERO),
+                scaled(centre, DVec3::splat(-1.0)),
+                scaled(centre, DVec3::new(1.0, 1.0, -2.0)),
+                scaled(centre, DVec3::splat(1e4)),
+                DAffine3::from_mat3(DMat3::ZERO),
+                DAffine3::from_translation(DVec3::X * 1e6 * size),
+            ] {
+                let (shape, _) = settle(bound, &vec![target; scene.handle_count]);
+                assert!(shape.iter().all(|d| d.is_finite()), "{name} {method:?}");
+            }
+            let beyond = vec![DAffine3::from_scale(DVec3::splat(1e200)); scene.handle_count];
+            bound.set_targets(&beyond).unwrap();
+            let mut out = vec![DVec3::NAN; scene.roles.len()];
+            let refused = bound.step(&mut out).is_err();
+            assert!(out.iter().all(|d| d.is_finite()) && (!refused || out.iter().all(|d| *d == DVec3::ZERO)));
+            settle(bound, &vec![DAffine3::IDENTITY; scene.handle_count]);
+            assert!(settle(bound, &far(&scene)).0 == expected, "{name} {method:?}");
+        }
+    }
+}
+
+#[test]
+fn handles_and_what_is_fixed_may_be_anything() {
+    for method in methods() {
+        let single = |v: usize| move |p: DVec3| p == shapes::icosphere(1).positions[v];
+        let sphere = || scene(shapes::icosphere(1), &method);
+        for scene in [
+            // A handle of one vertex, with nothing fixed, and with one vertex fixed.
+            sphere().with(Role::Handle(0), single(3)),
+            sphere().with(Role::Handle(0), single(3)).with(Role::Fixed, single(7)),
+            // Nothing free.
+            sphere().with(Role::Handle(0), |_| true),
+            sphere().with(Role::Fixed, |_| true).with(Role::Handle(0), single(3)),
+            // Handles beside each other.
+            sphere()
+                .with(Role::Fixed, |p| p.z < 0.0)
+                .with(Role::Handle(0), |p| p.z > 0.0 && p.x < 0.0)
+                .with(Role::Handle(1), |p| p.z > 0.0 && p.x >= 0.0),
+        ] {
+            let targets = far(&scene);
+            assert!(moved(&scene, &targets).iter().all(|d| d.is_finite()), "{method:?}");
+        }
+    }
+}
+
+/// Eight-sided crumbs of the radius `size` about the vertices of a shape, each loose.
+fn crumbs(shape: &Drawn, size: f64) -> Drawn {
+    let corners = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for &middle in &shape.positions {
+        let first = positions.len() as u32;
+        positions.extend(corners.map(|corner| middle + corner * size));
+        for [a, b, c] in [
+            [0, 2, 4],
+            [2, 1, 4],
+            [1, 3, 4],
+            [3, 0, 4],
+            [2, 0, 5],
+            [1, 2, 5],
+            [3, 1, 5],
+            [0, 3, 5],
+        ] {
+            triangles.push([a, b, c].map(|corner| DrawnVertex(first + corner)));
+        }
+    }
+    Drawn::once(positions, triangles)
+}
+
+#[test]
+fn jacobians_are_the_derivatives_of_the_displacements() {
+    let size = 1e-4;
+    for method in methods() {
+        let shape = crumbs(&shapes::icosphere(2), size);
+        let scene = scene(shape.clone(), &method)
+            .with(Role::Fixed, |p| p.z < -0.5)
+            .with(Role::Handle(0), |p| p.z > 0.7)
+            .with(Role::Handle(1), |p| p.x > 0.9);
+        let bound: &mut Bound = &mut scene.bind();
+        let targets = [
+            turned(DVec3::Z, 0.7, DVec3::X * 0.3),
+            turned(DVec3::X, -0.4, DVec3::Y * 0.2),
+        ];
+        let (displacements, _) = settle(bound, &targets);
+        let jacobians = bound.jacobians().unwrap();
+        // Welding numbers the vertices anew.
+        let numbers: HashMap<[u64; 3], usize> = (0..)
+            .zip(scene.positions())
+            .map(|(vertex, p)| (p.to_array().map(f64::to_bits), vertex))
+            .collect();
+        let mut tested = 0;
+        for corners in shape.positions.chunks(6) {
+            let corners: Vec<usize> = corners
+                .iter()
+                .map(|p| numbers[&p.to_array().map(f64::to_bits)])
+                .collect();
+            if corners.iter().any(|&corner| scene.roles[corner] != Role::Free) {
+                continue;
+            }
+            tested += 1;
+            let difference = |axis: usize| {
+                let [ahead, behind] = [2 * axis, 2 * axis + 1].map(|corner| displacements[corners[corner]]);
+                (ahead - behind) / (2.0 * size)
+            };
+            let expected = DMat3::from_cols(difference(0), difference(1), difference(2));
+            let sum: DMat3 = corners.iter().map(|&corner| jacobians[corner].as_dmat3()).sum();
+            let found = sum * (1.0 / 6.0);
+            let error = (found - expected)
+                .to_cols_array()
+                .into_iter()
+                .fold(0.0, |a: f64, b| a.max(b.abs()));
+            assert!(error < 1e-5, "{method:?} {tested}: {error:e}\n{found}\n{expected}");
+        }
+        assert!(tested > 50, "{tested}");
+    }
+}
