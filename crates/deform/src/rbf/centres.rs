@@ -17,7 +17,7 @@ const FIRST: usize = 16;
 /// Each round adds this share of the centres there are.
 const ROUND: f64 = 0.5;
 
-/// Constraints that are nearer to each other, in units of half the diagonal of all, can't both be centres: the system
+/// Constraints that are nearer to each other, in the unit of all, can't both be centres: the system
 /// would be singular.
 const APART: f64 = 1e-6;
 

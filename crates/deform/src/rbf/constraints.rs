@@ -19,9 +19,9 @@ const SLAB: f64 = 0.05;
 #[derive(Clone, Debug)]
 pub(super) struct Constraints {
     pub points: Vec<Constraint>,
-    /// The middle of the points' bounding box.
+    /// The points' mean.
     pub world_origin: DVec3,
-    /// Half its diagonal, the unit of length; 1 if it has none.
+    /// Their largest distance from it, the unit of length; 1 if all are in one place.
     pub unit: f64,
 }
 
@@ -43,19 +43,13 @@ impl Constraints {
         let fixed = fixed.filter_map(|(vertex, role)| (*role == Role::Fixed).then_some(vertex));
         let mut sets: Vec<Vec<u32>> = handles.collect();
         sets.push(fixed.collect());
-        let everything = sets.iter().flatten().map(|&vertex| positions[vertex as usize]);
-        let (low, high) = everything.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), point| {
-            (low.min(point), high.max(point))
-        });
-        let half = 0.5 * low.distance(high);
-        let (world_origin, unit) = (
-            if low.is_finite() {
-                0.5 * (low + high)
-            } else {
-                DVec3::ZERO
-            },
-            if half > 0.0 && half.is_finite() { half } else { 1.0 },
-        );
+        let everything = || sets.iter().flatten().map(|&vertex| positions[vertex as usize]);
+        // Neither depends on how the axes lie.
+        let world_origin = everything().sum::<DVec3>() / everything().count().max(1) as f64;
+        let radius = everything()
+            .map(|point| point.distance(world_origin))
+            .fold(0.0, f64::max);
+        let unit = if radius > 0.0 { radius } else { 1.0 };
         let most = MOST / sets.len();
         let mut points: Vec<Constraint> = Vec::new();
         let constraint = |set: usize, point: DVec3| {
