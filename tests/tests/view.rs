@@ -210,7 +210,7 @@ fn a_comparison_shows_each_method_beside_the_others_and_tells_what_apply_does() 
     for member in ["distortion", "energy", "iterations", "free_vertices", "converged"] {
         assert_eq!(told["methods"]["arap"][member], applied[member], "{member}");
     }
-    let errors = ["bilaplacian", "arap"].map(|name| told["methods"][name]["detail_error_of_best"].as_f64().unwrap());
+    let errors = ["bilaplacian", "arap"].map(|name| told["methods"][name]["detail_error_ratio"].as_f64().unwrap());
     assert!(
         errors.contains(&1.0) && errors.iter().all(|error| *error >= 1.0),
         "{errors:?}"

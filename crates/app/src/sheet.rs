@@ -14,8 +14,8 @@ const CAPTION: f32 = 76.0;
 pub struct Layout {
     /// The sheet's size in pixels.
     pub sheet_px: [u32; 2],
-    /// How many cells stand side by side.
-    pub columns: u32,
+    /// How many cells stand side by side, and how many rows of them.
+    pub grid: [u32; 2],
     /// A cell's size in pixels, its caption included.
     pub cell_px: [u32; 2],
     /// A picture's size in pixels.
@@ -50,10 +50,11 @@ impl Layout {
         let pixels_per_point = (height as f32 / 900.0).min(width as f32 / 1100.0).clamp(0.4, 8.0);
         let caption = (CAPTION * pixels_per_point).ceil() as u32;
         let with_columns = |columns: u32| {
-            let cell_px = [(width / columns).max(1), (height / count.div_ceil(columns)).max(1)];
+            let rows = count.div_ceil(columns);
+            let cell_px = [(width / columns).max(1), (height / rows).max(1)];
             Self {
                 sheet_px,
-                columns,
+                grid: [columns, rows],
                 cell_px,
                 view_px: [cell_px[0], cell_px[1].saturating_sub(caption).max(1)],
                 pixels_per_point,
@@ -68,12 +69,13 @@ impl Layout {
         )
     }
 
-    /// The upper left corner of a cell.
+    /// The upper left corner of a cell. Pixels that the grid does not divide by are spread between the cells.
     fn corner_px(&self, cell: usize) -> [u32; 2] {
-        let cell = cell as u32;
+        let [columns, rows] = self.grid;
+        let place = [cell as u32 % columns, cell as u32 / columns];
         [
-            (cell % self.columns) * self.cell_px[0],
-            (cell / self.columns) * self.cell_px[1],
+            place[0] * self.sheet_px[0] / columns,
+            place[1] * self.sheet_px[1] / rows,
         ]
     }
 }
@@ -203,6 +205,6 @@ mod tests {
                 assert!(layout.view_px[0] <= layout.cell_px[0] && layout.view_px[1] <= layout.cell_px[1]);
             }
         }
-        assert_eq!(Layout::of(6, [1600, 1000]).columns, 3);
+        assert_eq!(Layout::of(6, [1600, 1000]).grid, [3, 2]);
     }
 }

@@ -2,6 +2,7 @@
 
 use pliant_mesh::{Cancelled, SurfaceVertex, Topology};
 
+use crate::method::space_methods;
 use crate::{Budget, Limit};
 
 /// A problem could not be bound. Vertices are the surface's, until they are [`BindError::renumbered`].
@@ -91,7 +92,8 @@ pub enum BindError {
     },
     /// The system is not positive definite, even with a little regularisation.
     #[error(
-        "component {component} cannot be solved for at vertex {vertex}: fix vertices around it or repair the triangles there"
+        "component {component} cannot be solved for at vertex {vertex}: fix vertices around it, repair the triangles there, or take {}",
+        space_methods()
     )]
     NotPositiveDefinite {
         /// The component, as `cli.md` numbers them.
@@ -101,7 +103,8 @@ pub enum BindError {
     },
     /// The factor does not reproduce a constant.
     #[error(
-        "component {component} is solved only to {error:.1e} near vertex {vertex}: fix vertices around it or repair the triangles there"
+        "component {component} is solved only to {error:.1e} near vertex {vertex}: fix vertices around it, repair the triangles there, or take {}",
+        space_methods()
     )]
     Inaccurate {
         /// The component, as `cli.md` numbers them.
@@ -121,10 +124,10 @@ pub enum BindError {
     },
     /// The region that is solved for is too long and thin to compute with.
     #[error(
-        "vertex {vertex} lies {edges} edges from all that holds it, too far to be solved for: fix vertices on the way{}",
-        .order.map_or(" or make the mesh coarser".to_owned(), |order| {
-            format!(", make the mesh coarser, or lower the method's `order` from {order}")
-        })
+        "vertex {vertex} lies {edges} edges from all that holds it, too far to be solved for: fix vertices on the way, make \
+         the mesh coarser, {}or take {}",
+        .order.map_or(String::new(), |order| format!("lower the method's `order` from {order}, ")),
+        space_methods()
     )]
     Slender {
         /// The vertex that is farthest.
@@ -182,12 +185,16 @@ fn over_budget(free_count: usize, limit: Limit, crowded: Option<&Crowded>) -> St
     };
     let remedy = match (crowded, limit) {
         (Some(Crowded { vertex, neighbours }), _) => {
-            format!("split vertex {vertex}, which has {neighbours} neighbours, or make the region smaller")
+            let space = space_methods();
+            format!(
+                "split vertex {vertex}, which has {neighbours} neighbours, make the region smaller, or take {space}"
+            )
         }
         (None, Limit::Bytes(_)) => "make the region smaller or the mesh coarser".to_owned(),
-        (None, Limit::Operations(_)) => {
-            "make the region smaller or the mesh coarser, or move apart vertices that coincide by accident".to_owned()
-        }
+        (None, Limit::Operations(_)) => format!(
+            "make the region smaller or the mesh coarser, move apart vertices that coincide by accident, or take {}",
+            space_methods()
+        ),
     };
     format!("solving for {free_count} free vertices takes more than the {allowed} allowed: {remedy}")
 }

@@ -8,7 +8,8 @@
 //! matrix in the restricted [`Ordering`], which is factored (`sparse`), and to the method: `bilaplacian` gives
 //! [`HandleBases`], so that a frame is a product with them; `arap` shares everything up to the factor and takes as many
 //! steps as it needs; `primo` steps with rigid prisms; `poisson` spreads the handles' turns and solves for what fits
-//! them, `laplacian` does so with differential coordinates, and `frames` solves for the turns first.
+//! them, `laplacian` does so with differential coordinates, and `frames` solves for the turns first. `rbf` bends the space
+//! around points, connected or not (`space`).
 
 mod arap;
 mod bilaplacian;

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use glam::DVec3;
 use pliant_deform::{
     Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, Constraints, Detail, Frames, Limit, Loose,
-    Method, OptionValue, Primo, Problem, Propagation, Role, Transforms,
+    Method, OptionValue, Primo, Problem, Propagation, Rbf, Role, Transforms,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 
@@ -159,6 +159,7 @@ fn methods() -> Vec<Method> {
         methods.push(with("laplacian", "transforms", transforms.name()));
     }
     methods.push(Frames::default().into());
+    methods.push(Rbf::default().into());
     methods
 }
 

@@ -115,6 +115,18 @@ pub(crate) struct CompareArguments {
     /// The picture's size in pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1600x1000")]
     pub size: PictureSize,
+    /// From where, and in which colours.
+    #[command(flatten)]
+    pub look: LookArguments,
+    /// How many threads to use (at most four a core); without it, all cores. The shapes are the same whatever their
+    /// number
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=65_536))]
+    pub threads: Option<usize>,
+}
+
+/// From where a picture looks, and in which colours.
+#[derive(Args, Clone, Copy, PartialEq, Eq, Debug)]
+pub struct LookArguments {
     /// The axis that points up
     #[arg(long, value_enum, default_value = "y")]
     pub up: Up,
@@ -124,10 +136,6 @@ pub(crate) struct CompareArguments {
     /// How to colour the surface
     #[arg(long, value_enum, default_value = "clay")]
     pub shading: Shading,
-    /// How many threads to use (at most four a core); without it, all cores. The shapes are the same whatever their
-    /// number
-    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=65_536))]
-    pub threads: Option<usize>,
 }
 
 /// What `pliant render` draws, and how.
@@ -144,15 +152,9 @@ pub struct RenderArguments {
     /// The picture's size in pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800")]
     pub size: PictureSize,
-    /// The axis that points up
-    #[arg(long, value_enum, default_value = "y")]
-    pub up: Up,
-    /// From where to look
-    #[arg(long, value_enum, default_value = "three-quarter")]
-    pub view: View,
-    /// How to colour the surface
-    #[arg(long, value_enum, default_value = "clay")]
-    pub shading: Shading,
+    /// From where, and in which colours.
+    #[command(flatten)]
+    pub look: LookArguments,
     /// Which clay `--shading clay` and `regions` take
     #[arg(long, default_value = "clay", value_parser = clay())]
     pub clay: Clay,

@@ -106,10 +106,10 @@ enum Outcome {
     Bent {
         #[serde(flatten)]
         report: Box<Report>,
-        /// See [`detail_error`]; by how much it exceeds that of the best method, as a ratio, at least 1. `None` where
-        /// the best has none.
+        /// See [`detail_error`].
         detail_error: f64,
-        detail_error_of_best: Option<f64>,
+        /// That over the best method's, at least 1; `None` where the best has none.
+        detail_error_ratio: Option<f64>,
         #[serde(skip)]
         surface_positions: Vec<DVec3>,
     },
@@ -181,7 +181,7 @@ fn outcome(arguments: &CompareArguments, loaded: &Loaded, asked: &Asked, watch: 
         }) => Ok(Outcome::Bent {
             detail_error: detail_error(&loaded.model, &surface_positions),
             report: Box::new(report),
-            detail_error_of_best: None,
+            detail_error_ratio: None,
             surface_positions,
         }),
         Err(_) if watch.cancel.is_cancelled() => Err(AppError::Interrupted),
@@ -211,7 +211,7 @@ fn table(methods: &[Asked], outcomes: &[Outcome]) -> String {
         match outcome {
             Outcome::Bent {
                 report,
-                detail_error_of_best,
+                detail_error_ratio,
                 ..
             } => {
                 let shape = &report.distortion;
@@ -223,7 +223,7 @@ fn table(methods: &[Asked], outcomes: &[Outcome]) -> String {
                     format!("{:.2}", shape.edge_stretch_max),
                     shape.flipped_faces.to_string(),
                     format!("{:.3}", shape.volume_ratio),
-                    detail_error_of_best.map_or_else(|| "-".to_owned(), |error| format!("{error:.2}")),
+                    detail_error_ratio.map_or_else(|| "-".to_owned(), |error| format!("{error:.2}")),
                 ]);
             }
             Outcome::Refused { refused } => refusals += &format!("{}: {refused}\n", asked.name),
@@ -274,12 +274,12 @@ fn rank_details(outcomes: &mut [Outcome]) {
     for outcome in outcomes {
         if let Outcome::Bent {
             detail_error,
-            detail_error_of_best,
+            detail_error_ratio,
             ..
         } = outcome
             && least > 0.0
         {
-            *detail_error_of_best = Some(*detail_error / least);
+            *detail_error_ratio = Some(*detail_error / least);
         }
     }
 }
@@ -302,9 +302,9 @@ fn draw(
         .renderer;
     let PictureSize { width, height } = arguments.size;
     let layout = Layout::of(methods.len(), [width, height]);
-    let regions = arguments.shading == arguments::Shading::Regions;
+    let regions = arguments.look.shading == arguments::Shading::Regions;
     let look = Look {
-        shading: render::shading(arguments.shading),
+        shading: render::shading(arguments.look.shading),
         regions,
         outlines: regions,
         ..Look::default()
@@ -327,7 +327,7 @@ fn draw(
             },
             Outcome::Bent {
                 report,
-                detail_error_of_best,
+                detail_error_ratio,
                 surface_positions,
                 ..
             } => {
@@ -353,7 +353,7 @@ fn draw(
                 }
                 Cell {
                     picture: Some(picture),
-                    caption: Caption::bent(title, report, *detail_error_of_best),
+                    caption: Caption::bent(title, report, *detail_error_ratio),
                 }
             }
         });
@@ -377,7 +377,7 @@ fn camera(arguments: &CompareArguments, model: &Model, outcomes: &[Outcome], siz
             seen.extend_from_slice(surface_positions);
         }
     }
-    let mut camera = render::looking(arguments.up, arguments.view, own);
+    let mut camera = render::looking(arguments.look.up, arguments.look.view, own);
     camera.frame(&seen, size_px);
     camera
 }

@@ -14,7 +14,7 @@ use std::ffi::OsString;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 
-pub use arguments::{PictureSize, RenderArguments, Shading, Up, View};
+pub use arguments::{LookArguments, PictureSize, RenderArguments, Shading, Up, View};
 
 use pliant_io::steers;
 

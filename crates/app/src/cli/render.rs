@@ -77,13 +77,13 @@ fn paths(arguments: &RenderArguments) -> Vec<PathBuf> {
 /// How the arguments want the surface shown.
 fn look(arguments: &RenderArguments) -> Look {
     Look {
-        shading: shading(arguments.shading),
+        shading: shading(arguments.look.shading),
         clay: arguments.clay,
         flat: arguments.flat,
         wireframe: arguments.wireframe,
         borders: arguments.borders,
-        regions: arguments.shading == arguments::Shading::Regions,
-        outlines: arguments.outlines || arguments.shading == arguments::Shading::Regions,
+        regions: arguments.look.shading == arguments::Shading::Regions,
+        outlines: arguments.outlines || arguments.look.shading == arguments::Shading::Regions,
         grid: arguments.grid,
     }
 }
@@ -225,7 +225,7 @@ pub(super) fn refuse(error: RenderError) -> AppError {
 /// Where the eye of the first picture is: it sees all of the rest shape, whatever the edit does, so that before and
 /// after compare. `diagonal` is the model's.
 fn camera(arguments: &RenderArguments, model: &Model, diagonal: f64, size_px: DVec2) -> Camera {
-    let mut camera = looking(arguments.up, arguments.view, diagonal);
+    let mut camera = looking(arguments.look.up, arguments.look.view, diagonal);
     camera.projection = match arguments.projection {
         ProjectionName::Perspective => Projection::Perspective,
         ProjectionName::Orthographic => Projection::Orthographic,

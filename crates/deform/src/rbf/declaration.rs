@@ -6,6 +6,7 @@ use super::Rbf;
 use super::centres::fitted;
 use super::constraints::Constraints;
 use super::kernel::{Sum, Weights};
+use crate::budget::bytes_of;
 use crate::handles::Motion;
 use crate::method::{BindInput, BoundMethod, DeformMethod, HandleFit, MethodDeclaration, Needs, Solve, Stepped};
 use crate::space::falloff::Falloff;
@@ -76,6 +77,10 @@ impl DeformMethod for Rbf {
 
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         let constraints = Constraints::of(input);
+        let most = constraints.points.len().min(self.centres as usize);
+        let of_system = bytes_of(most + 4, (most + 4 + 8 * input.handles.len()) * size_of::<f64>());
+        let budget = input.partition.budget.without(of_system);
+        budget.map_err(|limit| BindError::budget(input.partition.solved.len(), limit))?;
         input.progress.set(0.1);
         let fitted = fitted(self, &constraints.points, input.handles.len(), input.cancel)?;
         input.progress.set(0.5);

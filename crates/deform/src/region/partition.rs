@@ -9,6 +9,7 @@ use pliant_mesh::SurfaceVertex;
 
 use crate::budget::bytes_of;
 use crate::method::option::joined;
+use crate::method::space_methods;
 use crate::operators::triangulation::{Graph, Triangulation};
 use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, METHODS, Needs, Problem, Role};
 
@@ -284,10 +285,12 @@ fn warnings(problem: &Problem, loose: &[u32], loose_of: &[Loose], unheld: &[u32]
         let alike: Vec<u32> = alike.collect();
         if alike.len() > NAMED {
             sentences.push(format!(
-                "{} components ({} vertices, from component {} on) hold no handle and no fixed vertex: they {they}",
+                "{} components ({} vertices, from component {} on) hold no handle and no fixed vertex: they {they}; {} \
+                 bends them with the space around",
                 alike.len(),
                 sum(&alike),
                 alike[0],
+                space_methods(),
             ));
             continue;
         }
