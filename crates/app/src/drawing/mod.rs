@@ -15,7 +15,7 @@ mod stage;
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec3, Mat3};
 use pliant_io::Appearance;
 use pliant_mesh::{Model, bounding_box};
 use pliant_render::{Chunks, ColourSpace, MaterialGroup, RenderError, Renderer, Surface, SurfaceData};
@@ -82,7 +82,13 @@ impl Drawing {
 
     /// The shape given by `displacements` (one per surface vertex, from the file's shape) for the renderer.
     pub fn pose(&self, model: &Model, displacements: &[DVec3]) -> Pose {
-        Pose::of(model, displacements, self)
+        Pose::of(model, displacements, None, self)
+    }
+
+    /// As [`Drawing::pose`], of a shape that the method's own map has made: normals turn by the inverse transpose of
+    /// I + J, with J the map's Jacobian at each surface vertex ([`pliant_deform::Bound::jacobians`]).
+    pub fn pose_turned(&self, model: &Model, displacements: &[DVec3], jacobians: &[Mat3]) -> Pose {
+        Pose::of(model, displacements, Some(jacobians), self)
     }
 
     /// Uploads everything except the images, in the shape of `pose`.

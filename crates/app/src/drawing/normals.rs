@@ -6,9 +6,10 @@
 //! when a drag begins.
 
 use std::collections::HashMap;
+use std::sync::OnceLock;
 
-use glam::{DVec3, Quat, Vec3};
-use pliant_mesh::Model;
+use glam::{DVec3, Mat3, Quat, Vec3};
+use pliant_mesh::{DrawnVertex, Model};
 use rayon::prelude::*;
 
 /// Which drawn vertices share a normal, and the triangles that it is computed from.
@@ -21,6 +22,8 @@ pub struct NormalGroups {
     faces: Vec<u32>,
     /// Geometric normals at rest and stored normals of each group; `None` if the file stores no normals.
     rest: Option<RestNormals>,
+    /// The normals of the groups that are shown at rest, once they were asked for.
+    shown_at_rest: OnceLock<Vec<Vec3>>,
 }
 
 #[derive(Debug)]
@@ -58,6 +61,7 @@ impl NormalGroups {
             offsets,
             faces,
             rest: None,
+            shown_at_rest: OnceLock::new(),
         };
         if stored.is_some() {
             let geometric = groups.geometric(&model.rest_positions(), triangles);
@@ -93,6 +97,36 @@ impl NormalGroups {
             .par_iter()
             .map(|&group| normals[group as usize].to_array())
             .collect()
+    }
+
+    /// As [`NormalGroups::at`], from those at rest and the Jacobian J of the displacements at each surface vertex: a
+    /// normal n becomes the direction of cof(I + J) n, with cof(F) = det(F) F⁻ᵀ, which has no pole where F is singular.
+    pub fn turned(&self, model: &Model, triangles: &[[u32; 3]], jacobians: &[Mat3]) -> Vec<[f32; 3]> {
+        let at_rest = self.shown_at_rest.get_or_init(|| {
+            let mut normals = match &self.rest {
+                Some(rest) => rest.geometric.clone(),
+                None => self.geometric(&model.rest_positions(), triangles),
+            };
+            let stored = self.rest.iter().flat_map(|rest| &rest.stored);
+            for (normal, stored) in normals.iter_mut().zip(stored) {
+                if *stored != Vec3::ZERO {
+                    *normal = *stored;
+                }
+            }
+            normals
+        });
+        let turned = |(drawn, &group): (usize, &u32)| {
+            let normal = at_rest[group as usize];
+            let surface = model.drawn.surface_vertex(DrawnVertex(drawn as u32));
+            let jacobian = surface.map_or(Mat3::ZERO, |vertex| jacobians[vertex.index()]);
+            if jacobian == Mat3::ZERO {
+                return normal.to_array();
+            }
+            let Mat3 { x_axis, y_axis, z_axis } = Mat3::IDENTITY + jacobian;
+            let cofactor = Mat3::from_cols(y_axis.cross(z_axis), z_axis.cross(x_axis), x_axis.cross(y_axis));
+            (cofactor * normal).try_normalize().unwrap_or(normal).to_array()
+        };
+        self.group_of_drawn.par_iter().enumerate().map(turned).collect()
     }
 
     /// Area-weighted geometric normal of each group; the z axis if its triangles have no area.

@@ -1,6 +1,6 @@
 //! One shape, converted for the renderer.
 
-use glam::DVec3;
+use glam::{DVec3, Mat3};
 use pliant_mesh::Model;
 use pliant_render::{ChunkBounds, ShapeData};
 use rayon::prelude::*;
@@ -19,11 +19,14 @@ pub struct Pose {
 }
 
 impl Pose {
-    pub(super) fn of(model: &Model, displacements: &[DVec3], drawing: &Drawing) -> Self {
+    pub(super) fn of(model: &Model, displacements: &[DVec3], jacobians: Option<&[Mat3]>, drawing: &Drawing) -> Self {
         let (centre, chunks) = (drawing.centre, &drawing.chunks);
         let mut world = Vec::new();
         model.drawn_positions(displacements, &mut world);
-        let normals = drawing.normals.at(&world, &drawing.triangles);
+        let normals = match jacobians {
+            Some(jacobians) => drawing.normals.turned(model, &drawing.triangles, jacobians),
+            None => drawing.normals.at(&world, &drawing.triangles),
+        };
         let positions: Vec<[f32; 3]> = world.par_iter().map(|&position| finite(position - centre)).collect();
         let bounds = (0..chunks.count())
             .into_par_iter()

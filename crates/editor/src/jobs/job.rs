@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec3, Mat3};
 use pliant_deform::{Bound, Budget, Ordering};
 use pliant_mesh::{Bvh, Cancel, Progress, SurfaceVertex};
 
@@ -188,6 +188,9 @@ pub struct Solved {
     pub from_rest: Arc<Vec<DVec3>>,
     /// From the file's shape: what is drawn. The same allocation while nothing was applied.
     pub from_file: Arc<Vec<DVec3>>,
+    /// The Jacobian of the displacements at each surface vertex, where the method knows it and `from_file` is what it has
+    /// made: normals turn by it, whatever the triangles are.
+    pub jacobians: Option<Vec<Mat3>>,
     /// The solution behind it, where it carries what was seen before along.
     pub(crate) carried: Option<Carried>,
     /// Whether further steps would leave it as it is.

@@ -129,7 +129,9 @@ pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Wor
                 step,
             }) => {
                 let from_file = sum_of_shapes(rest.as_ref(), &from_rest);
+                let is_own = rest.is_none() && carried.is_none();
                 JobOutcome::Solved(Solved {
+                    jacobians: is_own.then(|| bound.jacobians()).flatten(),
                     from_rest,
                     from_file,
                     carried,

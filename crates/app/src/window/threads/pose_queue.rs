@@ -32,7 +32,7 @@ impl PoseQueue {
         let (stamp, stage) = (running.stamp, stage.clone());
         workers.spawn(
             "posing",
-            move || Message::Posed(stamp, Ok(stage.pose(displacements))),
+            move || Message::Posed(stamp, Ok(stage.pose(displacements, None))),
             move |sentence| Message::Posed(stamp, Err(sentence)),
         );
     }

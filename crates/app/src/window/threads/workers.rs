@@ -9,7 +9,7 @@ use std::sync::mpsc::Sender;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui;
-use glam::DVec3;
+use glam::{DVec3, Mat3};
 use pliant_deform::Budget;
 use pliant_editor::{Executor, Job, JobDone, JobOutcome};
 
@@ -41,10 +41,13 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// A shape, made ready for the renderer.
-    pub fn pose(&self, displacements: Arc<Vec<DVec3>>) -> Posed {
+    /// A shape, made ready for the renderer; its normals are turned by `jacobians` where these are known.
+    pub fn pose(&self, displacements: Arc<Vec<DVec3>>, jacobians: Option<&[Mat3]>) -> Posed {
         let model = &self.loaded.model;
-        let pose = self.drawing.pose(model, &displacements);
+        let pose = match jacobians {
+            Some(jacobians) => self.drawing.pose_turned(model, &displacements, jacobians),
+            None => self.drawing.pose(model, &displacements),
+        };
         let painted = self.field.map(|field| {
             let mut scales = self.scales.lock().unwrap_or_else(PoisonError::into_inner);
             let scale = scales.entry(field).or_insert_with(|| Arc::new(Scale::of(field, model)));
@@ -137,7 +140,9 @@ impl Executor for Workers {
             move || {
                 let done = job.run();
                 let posed = match (&done.outcome, stage) {
-                    (JobOutcome::Solved(solved), Some(stage)) => Some(stage.pose(Arc::clone(&solved.from_file))),
+                    (JobOutcome::Solved(solved), Some(stage)) => {
+                        Some(stage.pose(Arc::clone(&solved.from_file), solved.jacobians.as_deref()))
+                    }
                     _ => None,
                 };
                 Message::Job(done, posed)
