@@ -47,6 +47,7 @@ use self::descent::End;
 use self::domain::Domain;
 use self::history::{Field, History};
 use self::lead::Corrections;
+use self::matrix::System;
 use self::precondition::{MapRoom, Preconditioner, WeightInput};
 use self::shape::{Guesses, IDENTITY, Scratch, Shape};
 use self::springs::Springs;
@@ -153,20 +154,7 @@ impl ArapSolver {
         let system = system.map_err(too_large)?;
         cancel.check()?;
         progress.set(0.4);
-        let component = |local: usize| topology.component(SurfaceVertex(domain.vertices[local]));
-        let handle_of = |local: u32| match problem.roles[domain.vertices[local as usize] as usize] {
-            Role::Handle(handle) => Some(usize::from(handle)),
-            Role::Fixed | Role::Free => None,
-        };
-        let unheld = |local: u32| !partition.held[component(local as usize) as usize];
-        let input = WeightInput {
-            domain: &domain,
-            handle_count: handles.len(),
-            handle_of: &handle_of,
-            unheld: &unheld,
-        };
-        let (preconditioner, weights) = Preconditioner::of(&system, &ends, &input, partition.budget, cancel)
-            .map_err(|error| error.into_bind_error(&domain, component))?;
+        let (preconditioner, weights) = preconditioner(problem, partition, &domain, &system, &ends, cancel)?;
         cancel.check()?;
         progress.set(0.9);
         let world_origin = handles.first().map_or(DVec3::ZERO, |handle| handle.world_centre);
@@ -287,6 +275,31 @@ impl ArapSolver {
         }
         (self.state == State::Converged, self.relative(energy))
     }
+}
+
+/// Factors the system, checks the factor, and solves for the handles' weights.
+fn preconditioner(
+    problem: &Problem,
+    partition: &Partition,
+    domain: &Domain,
+    system: &System,
+    ends: &[u32],
+    cancel: &Cancel,
+) -> Result<(Preconditioner, Vec<f64>), BindError> {
+    let component = |local: usize| problem.topology.component(SurfaceVertex(domain.vertices[local]));
+    let handle_of = |local: u32| match problem.roles[domain.vertices[local as usize] as usize] {
+        Role::Handle(handle) => Some(usize::from(handle)),
+        Role::Fixed | Role::Free => None,
+    };
+    let unheld = |local: u32| !partition.held[component(local as usize) as usize];
+    let input = WeightInput {
+        domain,
+        handle_count: partition.handles.len(),
+        handle_of: &handle_of,
+        unheld: &unheld,
+    };
+    Preconditioner::of(system, ends, &input, partition.budget, cancel)
+        .map_err(|error| error.into_bind_error(domain, component))
 }
 
 /// The cells of the options' energy, and the stiffness κ A of its bending term, 0 without one.
