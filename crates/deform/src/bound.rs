@@ -265,16 +265,21 @@ impl Bound {
         positions.len() == self.vertex_count && self.method.base(positions)
     }
 
-    /// The Jacobian of the displacements at each surface vertex, as of the last step; `None` where the method does not
-    /// know its map's derivative. A normal there turns by the inverse transpose of I plus it.
+    /// The Jacobian J of the displacements at each surface vertex, as of the last step; `None` where the method does not
+    /// know its map's derivative. A normal there turns by the inverse transpose of I + J.
     pub fn jacobians(&self) -> Option<Vec<Mat3>> {
-        let mut jacobians = vec![Mat3::ZERO; self.vertex_count];
-        let is_rest = self.motions.iter().all(Motion::is_rest);
-        let is_known = self.method.jacobians(&self.motions, &mut jacobians);
-        if is_known && is_rest {
+        let mut jacobians = Vec::new();
+        self.jacobians_into(&mut jacobians).then_some(jacobians)
+    }
+
+    /// As [`Bound::jacobians`], into a table that is kept from frame to frame. Whether the method knows them.
+    pub fn jacobians_into(&self, jacobians: &mut Vec<Mat3>) -> bool {
+        jacobians.resize(self.vertex_count, Mat3::ZERO);
+        let are_known = self.method.jacobians(&self.motions, jacobians);
+        if self.motions.iter().all(Motion::is_rest) {
             jacobians.fill(Mat3::ZERO);
         }
-        is_known.then_some(jacobians)
+        are_known
     }
 
     /// The handle bases, if a step is a product with them.
