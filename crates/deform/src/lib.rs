@@ -22,6 +22,7 @@ mod handles;
 mod identity;
 mod laplacian;
 mod method;
+mod mls;
 mod numerical;
 mod operators;
 mod poisson;
@@ -46,6 +47,7 @@ pub use method::{
     ConstraintKind, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused,
     OptionValue, Solve,
 };
+pub use mls::{Mls, MlsTransforms};
 pub use numerical::rigid_fit::RigidMotion;
 pub use operators::Laplacian;
 pub use poisson::{Poisson, Propagation};

@@ -160,6 +160,7 @@ fn methods() -> Vec<Method> {
     }
     methods.push(Frames::default().into());
     methods.push(Rbf::default().into());
+    methods.push(Method::from_name("mls").unwrap());
     methods
 }
 

@@ -25,6 +25,7 @@ pub const METHODS: &[&MethodDeclaration] = &[
     &crate::laplacian::DECLARATION,
     &crate::frames::DECLARATION,
     &crate::rbf::DECLARATION,
+    &crate::mls::DECLARATION,
     #[cfg(feature = "identity-method")]
     &crate::identity::DECLARATION,
 ];

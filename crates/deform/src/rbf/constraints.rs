@@ -1,12 +1,11 @@
 //! The points through which the field goes.
 
-use std::collections::HashSet;
-
 use glam::DVec3;
 
 use super::system::directions;
 use crate::Role;
 use crate::method::BindInput;
+use crate::space::samples::thinned;
 
 /// More constraints than these are thinned out to about as many, evenly in space.
 const MOST: usize = 40_000;
@@ -77,29 +76,5 @@ impl Constraints {
             world_origin,
             unit,
         }
-    }
-}
-
-/// At most about so many of the vertices: the first in each cell of the finest grid that has no more occupied cells.
-fn thinned(vertices: &[u32], positions: &[DVec3], most: usize) -> Vec<u32> {
-    if vertices.len() <= most {
-        return vertices.to_vec();
-    }
-    let points = || vertices.iter().map(|&vertex| positions[vertex as usize]);
-    let (low, high) = points().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), point| {
-        (low.min(point), high.max(point))
-    });
-    let extent = (high - low).max_element();
-    // Each coarser grid has a quarter to an eighth of the cells.
-    let mut cells = 1024.0;
-    loop {
-        let cell = |point: DVec3| ((point - low) * (cells / extent)).as_i64vec3();
-        let mut seen = HashSet::new();
-        let kept = |vertex: &&u32| seen.insert(cell(positions[**vertex as usize]));
-        let kept: Vec<u32> = vertices.iter().filter(kept).copied().collect();
-        if kept.len() <= most || cells <= 1.0 {
-            return kept;
-        }
-        cells *= 0.5_f64.max((most as f64 / kept.len() as f64).sqrt());
     }
 }

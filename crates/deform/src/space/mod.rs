@@ -2,8 +2,12 @@
 //!
 //! A method that is linear in the handles' motions is a [`field::SpaceMap`]: it gives each point's coefficients once,
 //! and [`field::LinearField`] makes its frames, by a product, and its Jacobians. Methods that do not hold what is fixed
-//! by themselves fade towards it by a [`falloff::Falloff`].
+//! by themselves fade towards it by a [`falloff::Falloff`]. Methods that are not linear evaluate each vertex of
+//! [`moving::Moving`].
 
 pub(crate) mod falloff;
 pub(crate) mod field;
+pub(crate) mod moving;
 pub(crate) mod nearest;
+pub(crate) mod samples;
+pub(crate) mod unit;

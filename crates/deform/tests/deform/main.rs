@@ -13,6 +13,7 @@ mod frames;
 mod hubs;
 mod laplacian;
 mod laws;
+mod mls;
 mod nonlinear;
 mod operators;
 mod ordering;

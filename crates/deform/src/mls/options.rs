@@ -1,0 +1,35 @@
+//! The options of moving least squares.
+
+use crate::method::option::{Choice, Number, named_choices, options};
+
+options! {
+    /// Options of moving least squares.
+    pub struct Mls {
+        /// What is fitted at each place.
+        transforms: MlsTransforms = Choice {
+            default: MlsTransforms::Rigid,
+            help: "what each place may do: turn (\"rigid\"), turn and grow (\"similarity\"), or also stretch and shear \
+                   (\"affine\")",
+        },
+        /// How fast a handle's influence falls off: its weight is one over this power of the distance.
+        falloff: f64 = Number {
+            default: 4.0,
+            range: [2.0, 8.0],
+            unit: "",
+            help: "how fast a handle's influence falls off with the distance, as a power: the higher it is, the more of \
+                   the surface around a handle moves just as the handle does",
+        },
+    }
+}
+
+named_choices! {
+    /// The transformations that moving least squares fits [SMW06].
+    pub enum MlsTransforms {
+        /// Any affine map (section 2.1).
+        Affine = "affine",
+        /// Rotation, uniform scale and shift (section 2.2).
+        Similarity = "similarity",
+        /// Rotation and shift (section 2.3).
+        Rigid = "rigid",
+    }
+}
