@@ -26,6 +26,7 @@ pub const METHODS: &[&MethodDeclaration] = &[
     &crate::frames::DECLARATION,
     &crate::rbf::DECLARATION,
     &crate::mls::DECLARATION,
+    &crate::embedded::DECLARATION,
     #[cfg(feature = "identity-method")]
     &crate::identity::DECLARATION,
 ];

@@ -5,9 +5,11 @@
 //! by themselves fade towards it by a [`falloff::Falloff`]. Methods that are not linear evaluate each vertex of
 //! [`moving::Moving`].
 
+pub(crate) mod blend;
 pub(crate) mod falloff;
 pub(crate) mod field;
 pub(crate) mod moving;
 pub(crate) mod nearest;
+pub(crate) mod neighbours;
 pub(crate) mod samples;
 pub(crate) mod unit;

@@ -23,7 +23,11 @@ impl Unit {
             .fold(0.0, f64::max);
         Self {
             world_origin,
-            length: if radius > 0.0 && radius.is_finite() { radius } else { 1.0 },
+            length: if radius > 0.0 && radius.is_finite() {
+                radius
+            } else {
+                1.0
+            },
         }
     }
 

@@ -8,6 +8,7 @@ mod components;
 mod continuity;
 mod detail;
 mod differential;
+mod embedded;
 mod energies;
 mod frames;
 mod hubs;

@@ -1,0 +1,151 @@
+//! Embedded deformation as one of the methods.
+
+use glam::{DVec3, Mat3};
+
+use super::Embedded;
+use super::energy::{Energy, constrained};
+use super::graph::Graph;
+use super::nodes::spread;
+use super::solver::Solver;
+use super::system::System;
+use crate::handles::Motion;
+use crate::method::{
+    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
+};
+use crate::space::blend::{Affine, Blend, Share};
+use crate::sparse::factor_error::FactorError;
+use crate::{BindError, Role, SolveError};
+
+pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
+    name: "embedded",
+    title: "Embedded graph",
+    when_to_use: "A few hundred nodes bend as rigidly as they can and carry everything around them, step by step: for \
+                  large bends of scans of millions of vertices, of loose or broken pieces, and of points.",
+    keywords: "embedded deformation graph nodes sumner rigid nonlinear space points soup",
+    options: Embedded::OPTIONS,
+    heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
+    default: || Embedded::default().into(),
+    first_choice: || Embedded::default().into(),
+};
+
+/// How far the nodes' misses are carried off, and how near what is fixed holds them, in mean distances of nodes.
+const REACH: f64 = 1.0;
+
+/// The bound method.
+#[derive(Debug)]
+pub(super) struct BoundEmbedded {
+    graph: Graph,
+    pub solver: Solver,
+    blend: Blend,
+    /// The nodes' motions of the last step.
+    affine: Vec<Affine>,
+}
+
+impl DeformMethod for Embedded {
+    fn declaration(&self) -> &'static MethodDeclaration {
+        &DECLARATION
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::Points
+    }
+
+    fn solve(&self) -> Solve {
+        Solve::Iterative {
+            max_iterations: self.max_iterations,
+        }
+    }
+
+    fn row_bytes(&self) -> usize {
+        // Up to five shares of nodes, twice while the graph is made, and seven of residuals.
+        300 + 24 * size_of::<Share>()
+    }
+
+    fn handle_row_bytes(&self) -> usize {
+        0
+    }
+
+    fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
+        Ok(Box::new(bound(self, input)?))
+    }
+}
+
+/// Spreads and joins the nodes, analyses the matrix and weighs every vertex.
+pub(super) fn bound(options: &Embedded, input: &BindInput<'_>) -> Result<BoundEmbedded, BindError> {
+    let positions = &input.problem.surface.positions;
+    let moving = (0..).zip(input.problem.roles);
+    let moving: Vec<u32> = moving
+        .filter_map(|(vertex, role)| (*role != Role::Fixed).then_some(vertex))
+        .collect();
+    let nodes = spread(input, &moving, options.nodes as usize);
+    input.progress.set(0.2);
+    // What is fixed holds the nodes that are about as near to it as to each other.
+    let spacing = spacing(&nodes, positions);
+    let sets = constrained(input, &moving, REACH * spacing);
+    let places: Vec<DVec3> = sets.iter().flat_map(|set| set.places(positions)).collect();
+    let graph = Graph::of(input, &nodes, &moving, &places)?;
+    input.progress.set(0.5);
+    let energy = Energy::of(input, &graph, &sets);
+    let refused = |error| match error {
+        FactorError::Budget(limit) => BindError::budget(input.partition.solved.len(), limit),
+        _ => BindError::OutOfMemory {
+            free_count: input.partition.solved.len(),
+        },
+    };
+    let system = System::of(&energy, &graph, input.partition.budget).map_err(refused)?;
+    let is_held = energy.constraints.iter().any(|constraint| constraint.handle.is_none());
+    let solver = Solver::of(energy, system, &graph, input.handles, is_held, options.tolerance);
+    input.progress.set(0.7);
+    let blend = Blend::bind(input, REACH * graph.world_unit, |place| graph.influence(place))?;
+    input.progress.set(1.0);
+    Ok(BoundEmbedded {
+        affine: solver.affine(&graph),
+        graph,
+        solver,
+        blend,
+    })
+}
+
+/// The mean distance of nodes to their nearest one, in world units.
+fn spacing(nodes: &[u32], positions: &[DVec3]) -> f64 {
+    let places: Vec<DVec3> = nodes.iter().map(|&node| positions[node as usize]).collect();
+    let tree = crate::space::neighbours::Neighbours::of(&places);
+    let nearest = places
+        .iter()
+        .filter_map(|&place| tree.nearest(place, 2).get(1).map(|(_, distance)| *distance));
+    nearest.sum::<f64>() / places.len().max(1) as f64
+}
+
+impl BoundMethod for BoundEmbedded {
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        let (converged, energy) = self.solver.step(motions);
+        self.affine = self.solver.affine(&self.graph);
+        let finite = self.blend.frame(&self.affine, motions, displacements);
+        Ok(Stepped {
+            converged,
+            energy,
+            finite: if energy.is_finite() { finite } else { Finite::Unknown },
+        })
+    }
+
+    fn rest(&mut self) {
+        self.solver.rest();
+    }
+
+    fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) -> bool {
+        self.blend.jacobians(&self.affine, motions, out);
+        true
+    }
+
+    fn solved_count(&self) -> usize {
+        self.blend.row_count()
+    }
+
+    fn factor_len(&self) -> usize {
+        self.solver.stored()
+    }
+
+    fn step_cost(&self) -> usize {
+        self.blend.row_count() + 500 * self.graph.world_nodes.len()
+    }
+}

@@ -1,0 +1,34 @@
+//! Embedded deformation [SSP07]: a graph of nodes spread over the shape, each with an affine map, whose blend moves every
+//! vertex.
+//!
+//! A node at g with the linear map A = I + X and the shift t takes a point p to A (p − g) + g + t; a vertex takes the
+//! mean of its four nearest nodes' with the weights (1 − d/d₅)², d₅ being the distance of the fifth. The nodes'
+//! maps minimise, in the unit of the mean distance of joined nodes,
+//!
+//! E = Σ_j ρ_j ‖A_jᵀ A_j − I‖² + 10 Σ_jk α_jk |X_j (g_k − g_j) + t_j − t_k|² + Σ_l w_l |d(v_l) − u(v_l)|²:
+//!
+//! each node's rigidity, the regularity of neighbours, and the constraints v_l, which are samples of the handles and of
+//! what is fixed near the part that moves. The differences from the paper:
+//!
+//! - The rigidity counts the angles between A's columns twice, so that it does not depend on the axes of space.
+//! - α_jk is Σ_v s_v w_j w_k over the vertices, s the painted stiffness, over the root of the two nodes' own sums
+//!   without s, and ρ_j the mean of s around the node: neighbours that share more are joined more firmly, and nodes in
+//!   stiff paint stay rigid together. Parts that share nothing are joined at their nearest nodes.
+//! - A constraint also asks that the blended linear map be its handle's, as if a small cross were tied to the vertex. So
+//!   handles of one vertex turn what is around them, and the surface leaves constrained parts without a hinge.
+//! - The constraints are met in the least-squares sense by the nodes; what is then missing is carried off smoothly
+//!   (`space::blend`), so that hard handles are met exactly.
+//!
+//! Parts: `nodes` spreads them, `graph` joins them, `energy` has the terms, `system` the Gauss–Newton matrix, whose
+//! pattern is analysed once, and `solver` takes the steps.
+
+mod declaration;
+mod energy;
+mod graph;
+mod nodes;
+mod options;
+mod solver;
+mod system;
+
+pub(crate) use self::declaration::DECLARATION;
+pub use self::options::Embedded;

@@ -1,0 +1,20 @@
+//! The options of embedded deformation.
+
+use crate::method::iteration::{MAX_ITERATIONS, TOLERANCE};
+use crate::method::option::{Whole, options};
+
+options! {
+    /// Options of embedded deformation.
+    pub struct Embedded {
+        /// How many nodes are spread over the part that moves.
+        nodes: u32 = Whole {
+            default: 300,
+            range: [4, 1000],
+            help: "how many nodes are spread over the part that moves: more bend in more places, and take longer",
+        },
+        /// Where iteration ends.
+        tolerance: f64 = TOLERANCE,
+        /// The most steps.
+        max_iterations: u32 = MAX_ITERATIONS,
+    }
+}
