@@ -22,6 +22,7 @@ mod handles;
 #[cfg(feature = "identity-method")]
 mod identity;
 mod laplacian;
+mod lattice;
 mod method;
 mod mls;
 mod numerical;
@@ -45,6 +46,7 @@ pub use error::{BindError, Crowded, SolveError};
 pub use frames::Frames;
 pub use handles::bases::HandleBases;
 pub use laplacian::{LaplacianEditing, LocalScale, Transforms};
+pub use lattice::{Lattice, LatticeBasis, LatticeNorm};
 pub use method::{
     ConstraintKind, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused,
     OptionValue, Solve,

@@ -162,6 +162,7 @@ fn methods() -> Vec<Method> {
     methods.push(Rbf::default().into());
     methods.push(Method::from_name("mls").unwrap());
     methods.push(Method::from_name("embedded").unwrap());
+    methods.push(Method::from_name("lattice").unwrap());
     methods
 }
 

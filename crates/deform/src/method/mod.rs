@@ -27,6 +27,7 @@ pub const METHODS: &[&MethodDeclaration] = &[
     &crate::rbf::DECLARATION,
     &crate::mls::DECLARATION,
     &crate::embedded::DECLARATION,
+    &crate::lattice::DECLARATION,
     #[cfg(feature = "identity-method")]
     &crate::identity::DECLARATION,
 ];

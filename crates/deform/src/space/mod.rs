@@ -2,12 +2,14 @@
 //!
 //! A method that is linear in the handles' motions is a [`field::SpaceMap`]: it gives each point's coefficients once,
 //! and [`field::LinearField`] makes its frames, by a product, and its Jacobians. Methods that do not hold what is fixed
-//! by themselves fade towards it by a [`falloff::Falloff`]. Methods that are not linear evaluate each vertex of
-//! [`moving::Moving`].
+//! by themselves fade towards it by a [`falloff::Falloff`]. Those that only fit the handles do so at [`fit_samples`], and
+//! solve for an affine map first ([`affine`]). Methods that are not linear evaluate each vertex of [`moving::Moving`].
 
+pub(crate) mod affine;
 pub(crate) mod blend;
 pub(crate) mod falloff;
 pub(crate) mod field;
+pub(crate) mod fit_samples;
 pub(crate) mod moving;
 pub(crate) mod nearest;
 pub(crate) mod neighbours;

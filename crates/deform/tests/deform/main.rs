@@ -13,6 +13,7 @@ mod energies;
 mod frames;
 mod hubs;
 mod laplacian;
+mod lattice;
 mod laws;
 mod mls;
 mod nonlinear;

@@ -1,6 +1,6 @@
 //! The laws of radial basis functions.
 
-use crate::rig::{Scene, apart, step, turned};
+use crate::rig::{Scene, apart, eliminated, step, turned};
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Method, OptionValue, Role};
 use pliant_mesh::shapes;
@@ -20,31 +20,6 @@ fn bar(method: Method) -> Scene {
     scene
         .with(Role::Fixed, |p| p.x < low + 0.1 * (high - low))
         .with(Role::Handle(0), |p| p.x > high - 0.1 * (high - low))
-}
-
-/// Gaussian elimination with row pivoting.
-fn eliminated(mut a: Vec<Vec<f64>>, mut b: Vec<DVec3>) -> Vec<DVec3> {
-    let size = b.len();
-    for k in 0..size {
-        let pivot = (k..size)
-            .max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs()))
-            .unwrap();
-        a.swap(k, pivot);
-        b.swap(k, pivot);
-        for row in k + 1..size {
-            let factor = a[row][k] / a[k][k];
-            for column in k..size {
-                a[row][column] -= factor * a[k][column];
-            }
-            let above = b[k];
-            b[row] -= above * factor;
-        }
-    }
-    for k in (0..size).rev() {
-        let known: DVec3 = (k + 1..size).map(|column| b[column] * a[k][column]).sum();
-        b[k] = (b[k] - known) / a[k][k];
-    }
-    b
 }
 
 #[test]

@@ -183,3 +183,28 @@ pub fn mirrored(drawn: &Drawn) -> Drawn {
     }
     image
 }
+
+/// Gaussian elimination with row pivoting.
+pub fn eliminated(mut a: Vec<Vec<f64>>, mut b: Vec<DVec3>) -> Vec<DVec3> {
+    let size = b.len();
+    for k in 0..size {
+        let pivot = (k..size)
+            .max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs()))
+            .unwrap();
+        a.swap(k, pivot);
+        b.swap(k, pivot);
+        for row in k + 1..size {
+            let factor = a[row][k] / a[k][k];
+            for column in k..size {
+                a[row][column] -= factor * a[k][column];
+            }
+            let above = b[k];
+            b[row] -= above * factor;
+        }
+    }
+    for k in (0..size).rev() {
+        let known: DVec3 = (k + 1..size).map(|column| b[column] * a[k][column]).sum();
+        b[k] = (b[k] - known) / a[k][k];
+    }
+    b
+}

@@ -11,10 +11,17 @@ use pliant_mesh::{Drawn, DrawnVertex, shapes};
 /// Every method with the options that change what it computes.
 pub fn methods() -> Vec<Method> {
     let with = |name: &str| Method::from_name(name).unwrap();
-    let mut methods = vec![with("rbf")];
+    let set = |name: &str, option: &str, value: OptionValue| with(name).with([(option, value)]).unwrap();
+    let mut methods = vec![
+        with("rbf"),
+        with("lattice"),
+        set("lattice", "resolution", OptionValue::Whole(2)),
+        set("lattice", "basis", OptionValue::Name("bernstein")),
+        set("lattice", "norm", OptionValue::Name("displacement")),
+        set("lattice", "falloff", OptionValue::Number(0.0)),
+    ];
     for transforms in MlsTransforms::ALL {
-        let transforms = OptionValue::Name(transforms.name());
-        methods.push(with("mls").with([("transforms", transforms)]).unwrap());
+        methods.push(set("mls", "transforms", OptionValue::Name(transforms.name())));
     }
     let few = [
         ("nodes", OptionValue::Whole(24)),

@@ -1,0 +1,82 @@
+//! Times the methods that bend space: `space VERTICES THREADS METHOD [OPTION=VALUE ..]`.
+//!
+//! Points are spread over a bumpy ball; a cap is the handle, the lower third is fixed. One JSON object: binding, the
+//! median frame of a drag and the median of its Jacobians, from which normals are turned, in milliseconds.
+#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
+
+mod common;
+
+use common::{median, one_handle, timed};
+use glam::{DAffine3, DVec3};
+use pliant_deform::{Method, OptionKind, OptionValue, Role};
+use pliant_mesh::{Cancel, Progress, shapes};
+
+/// Frames of the drag.
+const FRAMES: usize = 30;
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [vertices, threads, name, options @ ..] = words.as_slice() else {
+        panic!("usage: space VERTICES THREADS METHOD [OPTION=VALUE ..]");
+    };
+    let method = options.iter().fold(Method::from_name(name).unwrap(), |method, option| {
+        let (option, value) = option.split_once('=').unwrap();
+        let declared = method.declaration().options.iter().find(|own| own.name == option);
+        let value = match declared.unwrap().kind {
+            OptionKind::Number { .. } => OptionValue::Number(value.parse().unwrap()),
+            OptionKind::Whole { .. } | OptionKind::Numbered { .. } => OptionValue::Whole(value.parse().unwrap()),
+            OptionKind::Named { choices } => {
+                OptionValue::Name(choices.iter().find(|choice| **choice == value).unwrap())
+            }
+            OptionKind::Switch => OptionValue::Switch(value.parse().unwrap()),
+        };
+        method.with([(option, value)]).unwrap()
+    });
+    let threads = threads.parse().unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| measure(vertices.parse().unwrap(), threads, &method));
+}
+
+fn measure(vertices: usize, threads: usize, method: &Method) {
+    let rings = (vertices as f64 / 2.0).sqrt() as usize;
+    let mut drawn = shapes::uv_sphere(rings, 2 * rings);
+    for p in &mut drawn.positions {
+        *p *= 1.0 + 0.05 * (9.0 * p.x).sin() * (7.0 * p.y).sin() * (8.0 * p.z).sin();
+    }
+    let model = shapes::model(drawn);
+    let role = |p: &DVec3| match p.z {
+        z if z > 0.8 => Role::Handle(0),
+        z if z < -0.33 => Role::Fixed,
+        _ => Role::Free,
+    };
+    let roles: Vec<Role> = model.surface.positions.iter().map(role).collect();
+    let stiffness = vec![1.0; roles.len()];
+    let (progress, cancel) = (Progress::new(), Cancel::new());
+    let problem = one_handle(&model, &roles, &stiffness, method);
+    let (bind_ms, bound) = timed(|| problem.bind(None, &progress, &cancel));
+    let mut bound = bound.unwrap();
+    let mut displacements = vec![DVec3::ZERO; roles.len()];
+    let (mut frames, mut jacobians, mut table) = (Vec::new(), Vec::new(), Vec::new());
+    for frame in 0..FRAMES {
+        let t = frame as f64 / FRAMES as f64;
+        let turn = DAffine3::from_axis_angle(DVec3::X, 0.8 * t);
+        let target = DAffine3::from_translation(DVec3::new(0.3, 0.1, 0.4) * t) * turn;
+        let (frame_ms, ()) = timed(|| {
+            bound.set_targets(&[target]).unwrap();
+            bound.step(&mut displacements).unwrap();
+        });
+        let (jacobians_ms, _) = timed(|| bound.jacobians_into(&mut table));
+        frames.push(frame_ms);
+        jacobians.push(jacobians_ms);
+    }
+    println!(
+        "{{\"vertices\": {}, \"method\": \"{}\", \"threads\": {threads}, \"free\": {}, \"bind\": {bind_ms:.0}, \
+         \"frame\": {:.2}, \"jacobians\": {:.2}, \"warnings\": {:?}}}",
+        roles.len(),
+        method.name(),
+        bound.solved_count(),
+        median(&mut frames[1..]),
+        median(&mut jacobians[1..]),
+        bound.warnings(),
+    );
+}

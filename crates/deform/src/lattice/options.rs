@@ -1,0 +1,75 @@
+//! The options of the lattice.
+
+use crate::method::option::{Choice, Number, Whole, named_choices, options};
+
+/// The help of one axis' resolution.
+const fn of_axis(help: &'static str) -> Whole {
+    Whole {
+        default: 0,
+        range: [0, 10],
+        help,
+    }
+}
+
+options! {
+    /// Options of the lattice.
+    pub struct Lattice {
+        /// Cells along each axis.
+        resolution: u32 = Whole {
+            default: 4,
+            range: [1, 10],
+            help: "cells of the lattice along each axis; more follow the handles more closely and bend more locally",
+        },
+        /// Cells along x, in place of `resolution`.
+        resolution_x: u32 = of_axis("cells along x, or 0 for as many as `resolution` says"),
+        /// Cells along y, in place of `resolution`.
+        resolution_y: u32 = of_axis("cells along y, or 0 for as many as `resolution` says"),
+        /// Cells along z, in place of `resolution`.
+        resolution_z: u32 = of_axis("cells along z, or 0 for as many as `resolution` says"),
+        /// The functions that control points are weighted by.
+        basis: LatticeBasis = Choice {
+            default: LatticeBasis::BSpline,
+            help: "b-spline: a control point moves what is near it; bernstein: it moves everything a little",
+        },
+        /// The degree of B-splines.
+        degree: u32 = Whole {
+            default: 3,
+            range: [1, 3],
+            help: "how smooth b-splines are: 1 has creases, 2 has even tangents, 3 even curvature; bernstein has the \
+                   resolution for its degree",
+        },
+        /// What decides where the handles leave a choice.
+        norm: LatticeNorm = Choice {
+            default: LatticeNorm::Bending,
+            help: "what the lattice does where handles leave it a choice: bend as little as it can, or (displacement) \
+                   move as little as it can, which stays close to the handles",
+        },
+        /// Where the field fades towards what is fixed.
+        falloff: f64 = Number {
+            default: 0.1,
+            range: [0.0, 1.0],
+            unit: "diagonals of the region",
+            help: "how far from what is fixed the deformation fades in",
+        },
+    }
+}
+
+named_choices! {
+    /// The functions of a lattice.
+    pub enum LatticeBasis {
+        /// Uniform B-splines of the option `degree`.
+        BSpline = "b-spline",
+        /// Bernstein polynomials, of as high a degree as there are cells.
+        Bernstein = "bernstein",
+    }
+}
+
+named_choices! {
+    /// Which of the lattices that fit the handles equally well is taken.
+    pub enum LatticeNorm {
+        /// That of the least second differences of the control points.
+        Bending = "bending",
+        /// That whose control points move least [HHK92].
+        Displacement = "displacement",
+    }
+}

@@ -1,0 +1,117 @@
+//! The points at which a space method fits the handles and what is fixed, and the box around what moves.
+
+use glam::DVec3;
+
+use super::field::moving;
+use super::samples::thinned;
+use crate::Role;
+use crate::method::{BindInput, HandleFit};
+
+/// What is fixed counts as near the region up to this share of the diagonal of what moves beside its box.
+const NEAR: f64 = 0.25;
+
+/// The box reaches beyond what it holds by this share of the same diagonal, so that it has some thickness around flat
+/// shapes.
+const MARGIN: f64 = 0.05;
+
+/// The box around everything that moves and what is fixed near it, along the axes of space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RegionBox {
+    /// Its lowest corner.
+    pub low: DVec3,
+    /// Its sides, all above 0.
+    pub extent: DVec3,
+    /// The diagonal of what moves, in world units; 1 if it has none.
+    pub diagonal: f64,
+}
+
+/// A point where the field is to have a displacement.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sample {
+    pub world_point: DVec3,
+    /// The handle whose motion it has, with its coordinates there; `None` where it is fixed.
+    pub handle: Option<(usize, [f64; 4])>,
+    /// Its weight in a least-squares fit. The weights of each hard handle and of the fixed part sum to 1, so that each
+    /// counts alike, however densely it was sampled.
+    pub weight: f64,
+}
+
+impl RegionBox {
+    /// Of the problem's vertices.
+    pub fn of(input: &BindInput<'_>) -> Self {
+        let positions = &input.problem.surface.positions;
+        let moving = moving(HandleFit::LeastSquares, input).into_iter();
+        let (low, high) = bounds(moving.map(|vertex| positions[vertex as usize]));
+        let diagonal = low.distance(high);
+        let (low, high) = if low.is_finite() {
+            (low, high)
+        } else {
+            (DVec3::ZERO, DVec3::ZERO)
+        };
+        let diagonal = if diagonal > 0.0 && diagonal.is_finite() {
+            diagonal
+        } else {
+            1.0
+        };
+        let around = |low: DVec3, high: DVec3, share: f64| Self {
+            low: low - share * diagonal,
+            extent: high - low + 2.0 * share * diagonal,
+            diagonal,
+        };
+        let near = around(low, high, NEAR);
+        let fixed = positions.iter().zip(input.problem.roles);
+        let fixed = fixed.filter(|(point, role)| **role == Role::Fixed && near.contains(**point));
+        let (low, high) = bounds(fixed.map(|(point, _)| *point).chain([low, high]));
+        around(low, high, MARGIN)
+    }
+
+    /// Its middle.
+    pub fn middle(&self) -> DVec3 {
+        self.low + 0.5 * self.extent
+    }
+
+    /// Whether a point lies in it.
+    pub fn contains(&self, point: DVec3) -> bool {
+        point.cmpge(self.low).all() && point.cmple(self.low + self.extent).all()
+    }
+}
+
+/// The samples of all handles, and of what is fixed in the box. Those of a soft handle of weight w weigh `soft_unit` w
+/// together. A handle, or the fixed part, with more than `most` vertices is thinned out to about as many, evenly in
+/// space.
+pub(crate) fn samples(input: &BindInput<'_>, within: &RegionBox, soft_unit: f64, most: usize) -> Vec<Sample> {
+    let positions = &input.problem.surface.positions;
+    let mut samples = Vec::new();
+    for (number, (handle, soft)) in input.handles.iter().zip(&input.partition.soft).enumerate() {
+        let vertices = thinned(&handle.vertices, positions, most);
+        let all = soft.map_or(1.0, |weight| weight * soft_unit);
+        let weight = all / vertices.len() as f64;
+        samples.extend(vertices.into_iter().map(|vertex| {
+            let world_point = positions[vertex as usize];
+            Sample {
+                world_point,
+                handle: Some((number, handle.coordinates(world_point))),
+                weight,
+            }
+        }));
+    }
+    let fixed: Vec<u32> = (0..)
+        .zip(input.problem.roles)
+        .filter_map(|(vertex, role)| (*role == Role::Fixed).then_some(vertex))
+        .filter(|&vertex: &u32| within.contains(positions[vertex as usize]))
+        .collect();
+    let fixed = thinned(&fixed, positions, most);
+    let weight = 1.0 / fixed.len() as f64;
+    samples.extend(fixed.into_iter().map(|vertex| Sample {
+        world_point: positions[vertex as usize],
+        handle: None,
+        weight,
+    }));
+    samples
+}
+
+fn bounds(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
+    points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), point| {
+        (low.min(point), high.max(point))
+    })
+}
