@@ -307,3 +307,29 @@ fn jacobians_are_the_derivatives_of_the_displacements() {
         );
     }
 }
+
+#[test]
+fn what_lies_beside_each_other_stays_so_though_nothing_joins_it() {
+    let jitter = 1e-4;
+    for method in methods() {
+        let mut shape = shapes::soup(&shapes::icosphere(3));
+        let corner_of: Vec<[u64; 3]> = shape.positions.iter().map(|p| p.to_array().map(f64::to_bits)).collect();
+        for (number, p) in shape.positions.iter_mut().enumerate() {
+            let noise = |seed: usize| ((number * 7919 + seed * 104_729) % 1009) as f64 / 1009.0 - 0.5;
+            *p += DVec3::new(noise(1), noise(2), noise(3)) * jitter;
+        }
+        let scene = scene(shape.clone(), &method)
+            .with(Role::Fixed, |p| p.z < -0.3)
+            .with(Role::Handle(0), |p| p.z > 0.8);
+        let target = turned(DVec3::Z, 0.6, DVec3::new(0.2, 0.1, 0.3));
+        let displacements = moved(&scene, &[target]);
+        let mut first: HashMap<[u64; 3], DVec3> = HashMap::new();
+        let mut widest: f64 = 0.0;
+        for ((drawn, corner), p) in (0..).zip(&corner_of).zip(&shape.positions) {
+            let vertex = scene.model.drawn.surface_vertex(DrawnVertex(drawn)).unwrap();
+            let bent = *p + displacements[vertex.index()];
+            widest = widest.max(bent.distance(*first.entry(*corner).or_insert(bent)));
+        }
+        assert!(widest < 10.0 * jitter, "{method:?}: {widest:e}");
+    }
+}
