@@ -25,7 +25,7 @@ pub use self::options::Frames;
 
 use self::fitting::{Frame, HandleFrame, blend, fit_to};
 use crate::bilaplacian::loaded::LoadedSystem;
-use crate::handles::polar::{Polar, following};
+use crate::handles::polar::{Polar, polars_of};
 use crate::handles::{Handle, Motion};
 use crate::method::BindInput;
 use crate::operators::gradients::{EdgeChanges, Gradients};
@@ -206,11 +206,7 @@ impl FramesSolver {
 }
 
 fn polars(handles: &[Handle], motions: &[Motion]) -> Vec<Polar> {
-    let linear = handles
-        .iter()
-        .zip(motions)
-        .map(|(handle, motion)| handle.linear(motion));
-    following(&vec![Polar::default(); handles.len()], linear)
+    polars_of(&vec![Polar::default(); handles.len()], handles, motions)
 }
 
 fn handle_frames(handles: &[Handle], motions: &[Motion]) -> Vec<HandleFrame> {

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 
 use glam::{DMat3, DQuat, DVec3};
 
+use super::{Handle, Motion};
 use crate::numerical::rotation::fit;
 
 /// R = exp([turn_rad]×) and S = I + stretch.
@@ -61,9 +62,18 @@ impl Polar {
     }
 }
 
+/// The parts of the handles' maps under these motions. Turns go on from those of the `last` step.
+pub(crate) fn polars_of(last: &[Polar], handles: &[Handle], motions: &[Motion]) -> Vec<Polar> {
+    let linears = handles
+        .iter()
+        .zip(motions)
+        .map(|(handle, motion)| handle.linear(motion));
+    following(last, linears)
+}
+
 /// The parts of the handles' maps that follow those of the `last` step: the logarithms nearest to them. Where two are
 /// equally near (half a turn), the first handle decides for all, so that handles that move alike turn alike.
-pub(crate) fn following(last: &[Polar], linears: impl Iterator<Item = DMat3>) -> Vec<Polar> {
+fn following(last: &[Polar], linears: impl Iterator<Item = DMat3>) -> Vec<Polar> {
     let mut lead = DVec3::ZERO;
     let mut followed = Vec::with_capacity(last.len());
     for (handle, (last, linear)) in last.iter().zip(linears).enumerate() {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{LaplacianEditing, LaplacianSolver, Transforms};
 use crate::handles::Motion;
-use crate::handles::polar::Polar;
+use crate::handles::polar::{Polar, polars_of};
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
 };
@@ -100,7 +100,9 @@ impl BoundMethod for LaplacianSolver {
     }
 
     fn blind_to(&self, motions: &[Motion]) -> Vec<String> {
-        let turns = self.polars_of(motions).into_iter().map(|polar| polar.turn_rad.length());
+        let turns = polars_of(&self.polars, &self.handles, motions)
+            .into_iter()
+            .map(|polar| polar.turn_rad.length());
         let Some((handle, turn)) = (0..).zip(turns).max_by(|a: &(usize, f64), b| a.1.total_cmp(&b.1)) else {
             return Vec::new();
         };

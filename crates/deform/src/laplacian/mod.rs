@@ -27,7 +27,7 @@ use self::coupled::CoupledEnergy;
 use self::rings::Rings;
 use self::similarity::Similarity;
 use crate::bilaplacian::loaded::LoadedSystem;
-use crate::handles::polar::{Polar, following};
+use crate::handles::polar::{Polar, polars_of};
 use crate::handles::{Handle, Motion};
 use crate::method::BindInput;
 use crate::operators::CHUNK;
@@ -155,22 +155,13 @@ impl LaplacianSolver {
 
     /// Solves for the motions; returns the energy.
     fn frame(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<f64, SolveError> {
-        self.polars = self.polars_of(motions);
+        self.polars = polars_of(&self.polars, &self.handles, motions);
         let mut room = std::mem::take(&mut self.room);
         let solved = self.shape(motions, &mut room);
         self.system.write(&room.field, displacements);
         let energy = self.energy(&room.changes, &room.field);
         self.room = room;
         solved.map(|()| energy)
-    }
-
-    fn polars_of(&self, motions: &[Motion]) -> Vec<Polar> {
-        let linear = self
-            .handles
-            .iter()
-            .zip(motions)
-            .map(|(handle, motion)| handle.linear(motion));
-        following(&self.polars, linear)
     }
 
     fn laplacian(&self) -> &Laplacian {

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::similarity::Fitted;
 use super::{Implicit, LaplacianSolver, LocalScale, Room, Transforms};
 use crate::SolveError;
-use crate::handles::polar::{Blend, Polar};
+use crate::handles::polar::{Blend, Polar, polars_of};
 use crate::handles::{Handle, Motion};
 use crate::operators::CHUNK;
 
@@ -68,7 +68,7 @@ impl LaplacianSolver {
         };
         self.handles
             .iter()
-            .zip(self.polars_of(motions))
+            .zip(polars_of(&self.polars, &self.handles, motions))
             .zip(motions)
             .map(part)
             .collect()

@@ -15,7 +15,7 @@ pub use self::options::{Poisson, Propagation};
 
 use self::propagation::weights;
 use crate::bilaplacian::loaded::LoadedSystem;
-use crate::handles::polar::{Blend, Polar, following};
+use crate::handles::polar::{Blend, Polar, polars_of};
 use crate::handles::{Handle, Motion};
 use crate::method::BindInput;
 use crate::operators::gradients::{EdgeChanges, Gradients};
@@ -79,7 +79,7 @@ impl PoissonSolver {
 
     /// Solves for the motions; returns the energy.
     fn frame(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<f64, SolveError> {
-        self.polars = self.polars_of(motions);
+        self.polars = polars_of(&self.polars, &self.handles, motions);
         let mut room = std::mem::take(&mut self.room);
         let Self { system, gradients, .. } = &*self;
         self.change(&self.polars, &mut room.changes);
@@ -90,16 +90,6 @@ impl PoissonSolver {
         let energy = self.energy(&room.changes, &room.field);
         self.room = room;
         solved.map(|()| energy)
-    }
-
-    /// The handles' maps, their turns nearest to those of the last step.
-    fn polars_of(&self, motions: &[Motion]) -> Vec<Polar> {
-        let linear = self
-            .handles
-            .iter()
-            .zip(motions)
-            .map(|(handle, motion)| handle.linear(motion));
-        following(&self.polars, linear)
     }
 
     /// Each face's edges under the blend of the maps by the mean weights of its corners.
@@ -124,7 +114,7 @@ impl PoissonSolver {
     /// As [`PoissonSolver::energy`], of any displacements, for these motions.
     fn energy_of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
         let mut changes = Vec::new();
-        self.change(&self.polars_of(motions), &mut changes);
+        self.change(&polars_of(&self.polars, &self.handles, motions), &mut changes);
         self.energy(&changes, &self.system.read(motions, displacements))
     }
 
