@@ -6,6 +6,7 @@
 
 mod arap;
 mod cholesky;
+mod differential;
 mod editor;
 mod files;
 mod frames;
@@ -59,6 +60,11 @@ const SECTIONS: &[Section] = &[
         name: "arap",
         title: "As-rigid-as-possible compared with libigl: milliseconds; energies without unit; distances in diagonals",
         rows: arap::rows,
+    },
+    Section {
+        name: "differential",
+        title: "The differential methods and details beside the bi-Laplacian, medians of a drag: milliseconds; binding as a multiple of its",
+        rows: differential::rows,
     },
     Section {
         name: "files",

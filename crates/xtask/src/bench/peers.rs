@@ -23,15 +23,17 @@ struct Versus {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Ours {
     Linear,
+    Laplacian,
     SpokesAndRims,
     Smooth,
 }
 
 const FRAME: &[&str] = &["frame", "drawn", "normals"];
+const DRAG: &[&str] = &["frame", "normals"];
 const BEGIN: &[&str] = &["order", "bind"];
 
 #[rustfmt::skip]
-const VERSUS: [Versus; 13] = [
+const VERSUS: [Versus; 15] = [
     Versus { line: "libigl bilaplacian", does: "precompute", ours: Ours::Linear, columns: BEGIN },
     Versus { line: "libigl bilaplacian", does: "precompute", ours: Ours::Linear, columns: &["bind"] },
     Versus { line: "libigl bilaplacian", does: "precompute", ours: Ours::Linear, columns: &["rebind"] },
@@ -39,6 +41,8 @@ const VERSUS: [Versus; 13] = [
     Versus { line: "libigl bilaplacian", does: "solve", ours: Ours::Linear, columns: FRAME },
     Versus { line: "blender laplacian-deform", does: "bind", ours: Ours::Linear, columns: BEGIN },
     Versus { line: "blender laplacian-deform", does: "move", ours: Ours::Linear, columns: FRAME },
+    Versus { line: "blender laplacian-deform", does: "bind", ours: Ours::Laplacian, columns: &["bind"] },
+    Versus { line: "blender laplacian-deform", does: "move", ours: Ours::Laplacian, columns: DRAG },
     Versus { line: "libigl arap", does: "precompute", ours: Ours::SpokesAndRims, columns: BEGIN },
     Versus { line: "libigl arap", does: "iteration", ours: Ours::SpokesAndRims, columns: &["step"] },
     Versus { line: "cgal spokes-and-rims", does: "preprocess", ours: Ours::SpokesAndRims, columns: BEGIN },
@@ -107,7 +111,7 @@ fn compared(off: &Path, level: usize, lines: &str) -> Result<Vec<Row>, String> {
                 .text("does", versus.does)
                 .text("solved", if found { "yes" } else { "no" })
                 .number("ms", theirs)
-                .text("Pliant", &versus.columns.join(" + "))
+                .text("Pliant", &format!("{:?}: {}", versus.ours, versus.columns.join(" + ")))
                 .number("its_ms", ms)
                 .number("times_faster", theirs / ms),
         );
@@ -121,6 +125,7 @@ impl Ours {
         let arguments = [off.display().to_string(), all.to_string()];
         let (example, further): (_, &[&str]) = match self {
             Self::Linear => ("linear", &[]),
+            Self::Laplacian => ("differential", &["laplacian"]),
             Self::SpokesAndRims => ("steps", &["arap", "spokes-and-rims"]),
             Self::Smooth => ("steps", &["arap", "smooth"]),
         };
