@@ -27,6 +27,7 @@ pub(crate) struct BilaplacianSystem {
     pub operator: BilaplacianOperator,
     /// The local vertex of each column of the factor.
     columns: Vec<u32>,
+    column_of: Vec<u32>,
     /// The column of each of the operator's springs.
     spring_columns: Vec<u32>,
     factored: Arc<RenewableFactor>,
@@ -111,11 +112,17 @@ impl BilaplacianSystem {
         Ok(Self {
             operator,
             columns,
+            column_of,
             spring_columns,
             factored: Arc::new(factored),
             low_rank,
             contraction: 0.0,
         })
+    }
+
+    /// The column of each local vertex, [`CONSTRAINED`] where it is not solved for.
+    pub fn column_of(&self) -> &[u32] {
+        &self.column_of
     }
 
     /// The local vertices that are solved for.

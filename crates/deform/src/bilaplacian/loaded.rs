@@ -11,8 +11,9 @@ use rayon::prelude::*;
 
 use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
 use crate::bilaplacian::operator::BilaplacianOperator;
+use crate::bilaplacian::refine::Outcome;
 use crate::bilaplacian::setup::{Prescribed, operator};
-use crate::handles::{FRAME_CHUNK, Motion};
+use crate::handles::{FRAME_CHUNK, Motion, clear};
 use crate::method::BindInput;
 use crate::operators::repairs;
 use crate::region::slender;
@@ -111,29 +112,21 @@ impl LoadedSystem {
     /// # Errors
     /// If the solution stays too inaccurate.
     pub fn solve(&self, load: &[[f64; 3]], field: &mut [[f64; 3]]) -> Result<(), SolveError> {
-        let error = self.system.solve_frame(load, field).error;
-        // What is not finite is found by the check of all displacements, which names the vertex.
-        if error.is_finite() && error > TOLERANCE {
-            return Err(SolveError::Inaccurate { error });
-        }
-        Ok(())
+        settled(self.system.solve_frame(load, field))
+    }
+
+    /// As [`LoadedSystem::solve`], from what the field holds: the nearer to the solution, the fewer corrections.
+    ///
+    /// # Errors
+    /// As [`LoadedSystem::solve`].
+    pub fn refine(&self, load: &[[f64; 3]], field: &mut [[f64; 3]]) -> Result<(), SolveError> {
+        settled(self.system.refine_frame(load, field))
     }
 
     /// Writes a field to the displacements of all surface vertices, zeros elsewhere.
     pub fn write(&self, field: &[[f64; 3]], displacements: &mut [DVec3]) {
-        let vertices = self.vertices();
-        displacements
-            .par_chunks_mut(FRAME_CHUNK)
-            .enumerate()
-            .for_each(|(chunk, out)| {
-                let first = chunk * FRAME_CHUNK;
-                let place = |vertex: usize| vertices.partition_point(|&other| (other as usize) < vertex);
-                let own = place(first)..place(first + out.len());
-                out.fill(DVec3::ZERO);
-                for (&vertex, row) in vertices[own.clone()].iter().zip(&field[own]) {
-                    out[vertex as usize - first] = DVec3::from_array(*row);
-                }
-            });
+        clear(displacements);
+        write_field(field, self.vertices(), displacements);
     }
 
     /// The rows of a field for displacements of all surface vertices; springs pull at where the motions put them.
@@ -184,6 +177,33 @@ impl LoadedSystem {
         sentences.extend(self.system.stiffened());
         sentences
     }
+}
+
+/// Writes a field's rows to the displacements of `vertices`, which ascend.
+pub(crate) fn write_field(field: &[[f64; 3]], vertices: &[u32], displacements: &mut [DVec3]) {
+    let place = |vertex: usize| vertices.partition_point(|&other| (other as usize) < vertex);
+    displacements
+        .par_chunks_mut(FRAME_CHUNK)
+        .enumerate()
+        .for_each(|(chunk, out)| {
+            let first = chunk * FRAME_CHUNK;
+            let own = place(first)..place(first + out.len());
+            for (&vertex, row) in vertices[own.clone()].iter().zip(&field[own]) {
+                out[vertex as usize - first] = DVec3::from_array(*row);
+            }
+        });
+}
+
+/// Whether a frame's solution is accurate enough.
+///
+/// # Errors
+/// If it is not.
+pub(crate) fn settled(Outcome { error, .. }: Outcome) -> Result<(), SolveError> {
+    // What is not finite is found by the check of all displacements, which names the vertex.
+    if error.is_finite() && error > TOLERANCE {
+        return Err(SolveError::Inaccurate { error });
+    }
+    Ok(())
 }
 
 /// The refusal of a system as the caller sees it.

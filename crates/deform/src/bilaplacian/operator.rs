@@ -8,6 +8,8 @@
 //! its surroundings, and joins soft parts without a crease. (If the cotangents of both outer L were scaled,
 //! which is ∫ |div(s ∇d)|², stiff parts would keep their slope in space: they would not turn, and crease at their rim.)
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use crate::bilaplacian::springs::Springs;
@@ -18,7 +20,7 @@ use crate::{Bilaplacian, Laplacian};
 /// The functions that L is applied to last: φ, and d itself if stretching has its own L.
 #[derive(Debug)]
 pub(crate) struct Potential<'a, const K: usize> {
-    phi: Vec<[f64; K]>,
+    phi: Cow<'a, [[f64; K]]>,
     d: &'a [[f64; K]],
 }
 
@@ -111,7 +113,7 @@ impl BilaplacianOperator {
     /// φ of K functions on the local vertices, correct wherever the neighbours' rows are full.
     pub fn potential<'a, const K: usize>(&self, d: &'a [[f64; K]]) -> Potential<'a, K> {
         if self.power == 1 {
-            return Potential { phi: d.to_vec(), d };
+            return Potential { phi: d.into(), d };
         }
         let mut phi = self.laplacian.per_area(d);
         if self.power == 3 {
@@ -132,7 +134,7 @@ impl BilaplacianOperator {
                     }
                 }
             });
-        Potential { phi, d }
+        Potential { phi: phi.into(), d }
     }
 
     /// (A d)_i of `local`, given d's potential.

@@ -7,11 +7,23 @@
 //! one step for each of them.
 
 use pliant_mesh::Cancel;
+use rayon::prelude::*;
 
 use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
+use crate::operators::CHUNK;
+use crate::sparse::matrix::CONSTRAINED;
 
 /// The most corrections of a solve, the first one included.
 const STEPS: usize = 8;
+
+/// Where a solve begins.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Start {
+    /// From zero.
+    Zero,
+    /// From what the field holds.
+    Guess,
+}
 
 /// When refinement ends.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +37,9 @@ struct Accuracy {
 /// Of what is solved once: the second correction tells how good the first one was.
 const FULL: Accuracy = Accuracy { steps: 2, error: 1e-10 };
 
-/// Of a frame: one correction is enough where the check found that the factor leaves so little.
-const FRAME: Accuracy = Accuracy { steps: 1, error: 1e-8 };
+/// Of a frame: one correction is enough where the check found that the factor leaves so little. Positions that are saved
+/// in f32 are rounded by more.
+const FRAME: Accuracy = Accuracy { steps: 1, error: 5e-8 };
 
 /// A correction that is not smaller than this share of the one before it calls for conjugate gradients.
 const SLOW: f64 = 0.03;
@@ -56,6 +69,9 @@ pub(crate) trait Refined {
     /// The place in a field of each column of the factor.
     fn places(&self) -> &[u32];
 
+    /// The column of each place, [`CONSTRAINED`] where it is not solved for. The places of springs come behind.
+    fn column_of(&self) -> &[u32];
+
     /// How many rows a field has.
     fn field_len(&self) -> usize;
 
@@ -72,6 +88,10 @@ pub(crate) trait Refined {
 impl Refined for BilaplacianSystem {
     fn places(&self) -> &[u32] {
         self.columns()
+    }
+
+    fn column_of(&self) -> &[u32] {
+        Self::column_of(self)
     }
 
     fn field_len(&self) -> usize {
@@ -99,7 +119,7 @@ pub(crate) fn solve_fully<S: Refined, const K: usize>(
     contraction: f64,
     cancel: &Cancel,
 ) -> Outcome {
-    solve(system, None, d, (contraction, FULL), cancel)
+    solve(system, None, (d, Start::Zero), (contraction, FULL), cancel)
 }
 
 /// Where a solution that is to be 1 everywhere, the last one of each row, is furthest from it: how far, and the place.
@@ -123,7 +143,14 @@ impl BilaplacianSystem {
     /// As [`BilaplacianSystem::solve`], of A d = b with a load b for each column of the factor, as exactly as a frame
     /// needs.
     pub fn solve_frame<const K: usize>(&self, load: &[[f64; K]], d: &mut [[f64; K]]) -> Outcome {
-        solve(self, Some(load), d, (self.contraction, FRAME), &Cancel::new())
+        let accuracy = (self.contraction, FRAME);
+        solve(self, Some(load), (d, Start::Zero), accuracy, &Cancel::new())
+    }
+
+    /// As [`BilaplacianSystem::solve_frame`], from what `d` holds: the nearer to the solution, the fewer corrections.
+    pub fn refine_frame<const K: usize>(&self, load: &[[f64; K]], d: &mut [[f64; K]]) -> Outcome {
+        let accuracy = (self.contraction, FRAME);
+        solve(self, Some(load), (d, Start::Guess), accuracy, &Cancel::new())
     }
 
     /// Solves as [`BilaplacianSystem::solve`] and remembers how fast refinement was. The last function of `d` is 1 at
@@ -151,12 +178,16 @@ impl BilaplacianSystem {
 fn solve<S: Refined, const K: usize>(
     system: &S,
     load: Option<&[[f64; K]]>,
-    d: &mut [[f64; K]],
+    (d, start): (&mut [[f64; K]], Start),
     (contraction, accuracy): (f64, Accuracy),
     cancel: &Cancel,
 ) -> Outcome {
-    for &place in system.places() {
-        d[place as usize] = [0.0; K];
+    if start == Start::Zero {
+        for (row, &column) in d.iter_mut().zip(system.column_of()) {
+            if column != CONSTRAINED {
+                *row = [0.0; K];
+            }
+        }
     }
     let mut outcome = Outcome {
         error: f64::INFINITY,
@@ -170,11 +201,12 @@ fn solve<S: Refined, const K: usize>(
             break;
         }
         let mut x = system.scaled_residual(d);
-        for ((x, load), scale) in x.iter_mut().zip(load.unwrap_or_default()).zip(system.scale()) {
+        let loaded = x.par_iter_mut().zip(load.unwrap_or_default()).zip(system.scale());
+        loaded.with_min_len(CHUNK).for_each(|((x, load), scale)| {
             for k in 0..K {
                 x[k] += load[k] * scale;
             }
-        }
+        });
         if gradients > 0 {
             x = conjugate_gradients(system, x, cancel);
         } else {
@@ -211,18 +243,29 @@ fn solve<S: Refined, const K: usize>(
 
 /// Adds S x to `d`; returns the largest change and the largest value, or `None` where one is not finite.
 fn correct<S: Refined, const K: usize>(system: &S, d: &mut [[f64; K]], x: &[[f64; K]]) -> Option<(f64, f64)> {
-    let (mut correction, mut size, mut finite) = (0.0_f64, 0.0_f64, true);
-    for ((&place, &scale), x) in system.places().iter().zip(system.scale()).zip(x) {
-        let target = &mut d[place as usize];
-        for k in 0..K {
-            let change = x[k] * scale;
-            target[k] += change;
-            finite &= target[k].is_finite();
-            correction = correction.max(change.abs());
-            size = size.max(target[k].abs());
+    let scale = system.scale();
+    let chunk = |(targets, columns): (&mut [[f64; K]], &[u32])| {
+        let (mut correction, mut size) = (0.0_f64, 0.0_f64);
+        for (target, &column) in targets.iter_mut().zip(columns) {
+            if column == CONSTRAINED {
+                continue;
+            }
+            for k in 0..K {
+                let change = x[column as usize][k] * scale[column as usize];
+                target[k] += change;
+                if !target[k].is_finite() {
+                    return None;
+                }
+                correction = correction.max(change.abs());
+                size = size.max(target[k].abs());
+            }
         }
-    }
-    finite.then_some((correction, size))
+        Some((correction, size))
+    };
+    d.par_chunks_mut(CHUNK)
+        .zip(system.column_of().par_chunks(CHUNK))
+        .map(chunk)
+        .try_reduce(|| (0.0, 0.0), |a, b| Some((a.0.max(b.0), a.1.max(b.1))))
 }
 
 /// Solves S A S x = r for each of the K right-hand sides, from zero.

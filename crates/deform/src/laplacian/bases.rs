@@ -22,9 +22,11 @@ const AT_ONCE: usize = 6;
 /// transformations.
 type Basis = [DVec3; 4 * DOF];
 
-/// The bases, one row for each column of the system, one entry a handle.
+/// The bases, one row for each solved vertex, one entry a handle.
 #[derive(Debug)]
 pub(super) struct ImplicitBases {
+    /// The solved local vertices, ascending.
+    locals: Vec<u32>,
     rows: Vec<Basis>,
 }
 
@@ -62,6 +64,8 @@ impl ImplicitBases {
         let (missed, local) = implicit.check(cancel);
         check(missed, local)?;
         let first = system.columns().first().copied().unwrap_or(0);
+        let mut locals = system.columns().to_vec();
+        locals.sort_unstable();
         let mut rows = filled(Basis::default(), solved * count).map_err(|_| refuse(SystemError::OutOfMemory))?;
         for (handle, prescribed) in system.prescribed.iter().enumerate() {
             for half in 0..2 {
@@ -73,7 +77,7 @@ impl ImplicitBases {
                     }
                 }
                 check(implicit.solve(&mut d, cancel).error, first)?;
-                for (row, &local) in system.columns().iter().enumerate() {
+                for (row, &local) in locals.iter().enumerate() {
                     for number in 0..AT_ONCE {
                         let at = |component: usize| d[DOF * local as usize + component][number];
                         rows[row * count + handle][half * AT_ONCE + number] = DVec3::new(at(0), at(1), at(2));
@@ -81,32 +85,31 @@ impl ImplicitBases {
                 }
             }
         }
-        Ok(Self { rows })
+        Ok(Self { locals, rows })
     }
 
     /// Fills in the solved rows of a field of displacements.
-    pub fn evaluate(&self, motions: &[Motion], columns: &[u32], solution: &mut Vec<DVec3>, field: &mut [[f64; 3]]) {
+    pub fn evaluate(&self, motions: &[Motion], field: &mut [[f64; 3]]) {
         let numbers = |motion: &Motion| {
             let linear = motion.linear;
             let columns = [linear.x_axis, linear.y_axis, linear.z_axis, motion.shift];
             columns.map(|column| column.to_array())
         };
         let motions: Vec<[[f64; 3]; 4]> = motions.iter().map(numbers).collect();
-        solution.resize(columns.len(), DVec3::ZERO);
-        solution
-            .par_iter_mut()
-            .zip(self.rows.par_chunks(motions.len()))
-            .with_min_len(CHUNK)
-            .for_each(|(own, bases)| {
-                *own = DVec3::ZERO;
+        field.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, out)| {
+            let first = chunk * CHUNK;
+            let place = |local: usize| self.locals.partition_point(|&other| (other as usize) < local);
+            let own = place(first)..place(first + out.len());
+            let rows = self.rows[own.start * motions.len()..own.end * motions.len()].chunks_exact(motions.len());
+            for (&local, bases) in self.locals[own].iter().zip(rows) {
+                let mut sum = DVec3::ZERO;
                 for (basis, motion) in bases.iter().zip(&motions) {
                     for (part, number) in basis.iter().zip(motion.as_flattened()) {
-                        *own += *part * *number;
+                        sum += *part * *number;
                     }
                 }
-            });
-        for (&local, own) in columns.iter().zip(solution) {
-            field[local as usize] = own.to_array();
-        }
+                out[local as usize - first] = sum.to_array();
+            }
+        });
     }
 }

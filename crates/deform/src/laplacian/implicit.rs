@@ -21,6 +21,8 @@ pub(super) struct ImplicitSystem<'a> {
     energy: CoupledEnergy<'a>,
     /// The row of each column.
     places: Vec<u32>,
+    /// The column of each row.
+    column_of: Vec<u32>,
     /// The first column of each spring's vertex.
     spring_columns: Vec<u32>,
     factor: Factor,
@@ -59,6 +61,15 @@ impl<'a> ImplicitSystem<'a> {
                 .flat_map(|local| [0, 1, 2].map(|k| 3 * local + k))
                 .collect(),
             spring_columns: springs.map(|&local| 3 * column_of[local as usize]).collect(),
+            column_of: column_of
+                .iter()
+                .flat_map(|&column| {
+                    [0, 1, 2].map(|k| match column {
+                        CONSTRAINED => CONSTRAINED,
+                        column => 3 * column + k,
+                    })
+                })
+                .collect(),
             energy,
             factor,
             scale: matrix.scale,
@@ -83,6 +94,10 @@ impl<'a> ImplicitSystem<'a> {
 impl Refined for ImplicitSystem<'_> {
     fn places(&self) -> &[u32] {
         &self.places
+    }
+
+    fn column_of(&self) -> &[u32] {
+        &self.column_of
     }
 
     fn field_len(&self) -> usize {

@@ -3,13 +3,15 @@
 //!
 //! Painted stiffness s scales the density of the energy ½ ∫ s |Δp' − T Δp|², as that of a thin plate.
 //!
-//! Parts: `similarity` and `rings` give the transformations, `coupled`, `implicit` and `bases` the first shape of implicit
+//! Parts: `similarity`, `rings` and `estimate` give the transformations, `coupled`, `implicit` and `bases` the first shape of implicit
 //! ones, `shape` goes through a frame, and `bilaplacian::loaded` solves.
 
 mod bases;
 mod coupled;
 mod declaration;
+mod estimate;
 mod implicit;
+mod moments;
 mod options;
 mod rings;
 mod shape;
@@ -61,7 +63,6 @@ struct Implicit {
 #[derive(Clone, Debug, Default)]
 struct Room {
     field: Vec<[f64; 3]>,
-    solution: Vec<DVec3>,
     /// (T_i − I)(L p)_i of the local vertices.
     changes: Vec<DVec3>,
     stress: Vec<[f64; 3]>,
@@ -149,7 +150,6 @@ impl LaplacianSolver {
             changes: vec![DVec3::ZERO; self.rest.len()],
             stress: vec![[0.0; 3]; self.rest.len()],
             load: vec![[0.0; 3]; self.system.columns().len()],
-            solution: Vec::new(),
         }
     }
 

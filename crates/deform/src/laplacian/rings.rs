@@ -1,16 +1,12 @@
-//! Each vertex' neighbours within some edges, and the transformation that carries them best from rest to a shape
-//! [BS08, section 3.2.5].
+//! Each vertex' neighbours within some edges.
 
-use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
 
-use super::LocalScale;
 use crate::Laplacian;
-use crate::numerical::rotation::fit;
 use crate::operators::CHUNK;
 
-/// The rings of the vertices with full rows, in local vertices.
-#[derive(Debug)]
+/// The rings of the vertices with full rows, in local vertices; empty where they are the Laplacian's own.
+#[derive(Debug, Default)]
 pub(super) struct Rings {
     offsets: Vec<u32>,
     others: Vec<u32>,
@@ -19,6 +15,9 @@ pub(super) struct Rings {
 impl Rings {
     /// Within `size` edges.
     pub fn of(laplacian: &Laplacian, size: u32) -> Self {
+        if size == 1 {
+            return Self::default();
+        }
         let count = laplacian.vertices().len();
         let chunks: Vec<(Vec<u32>, Vec<u32>)> = (0..count.div_ceil(CHUNK))
             .into_par_iter()
@@ -49,37 +48,18 @@ impl Rings {
         rings
     }
 
-    fn around(&self, local: usize) -> &[u32] {
-        &self.others[self.offsets[local] as usize..self.offsets[local + 1] as usize]
+    /// The neighbours of a local vertex.
+    #[inline]
+    pub fn around<'a>(&'a self, laplacian: &'a Laplacian, local: usize) -> &'a [u32] {
+        match self.offsets.get(local..local + 2) {
+            Some(ends) => &self.others[ends[0] as usize..ends[1] as usize],
+            None => laplacian.neighbours(local),
+        }
     }
 
-    /// What the best transformation of a vertex' neighbourhood changes, T − I, from the rest positions to these plus the
-    /// displacements `d`. Its rotation is searched for from `guess` on.
-    pub fn change(&self, local: usize, rest: &[DVec3], d: &[[f64; 3]], scale: LocalScale, guess: DQuat) -> DMat3 {
-        let at = |place: u32| (rest[place as usize], DVec3::from_array(d[place as usize]));
-        let (own, own_shift) = at(local as u32);
-        let (mut covariance, mut square) = (DMat3::ZERO, 0.0);
-        let mut is_at_rest = true;
-        for &other in self.around(local) {
-            let (other, shift) = at(other);
-            let (edge, change) = (other - own, shift - own_shift);
-            is_at_rest &= change == DVec3::ZERO;
-            let turned = edge + change;
-            covariance += DMat3::from_cols(turned * edge.x, turned * edge.y, turned * edge.z);
-            square += edge.length_squared();
-        }
-        if is_at_rest {
-            return DMat3::ZERO;
-        }
-        let rotation = DMat3::from_quat(fit(&covariance, guess));
-        let size = match scale {
-            LocalScale::Free if square > 0.0 => {
-                let aligned = rotation.transpose() * covariance;
-                (aligned.x_axis.x + aligned.y_axis.y + aligned.z_axis.z) / square
-            }
-            _ => 1.0,
-        };
-        rotation * size - DMat3::IDENTITY
+    /// Whether they are the nearest ones alone.
+    pub fn are_nearest(&self) -> bool {
+        self.offsets.is_empty()
     }
 }
 

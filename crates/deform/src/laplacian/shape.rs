@@ -1,8 +1,10 @@
 //! A frame of Laplacian editing: estimate the transformations, transform L p, solve.
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
+use super::estimate::Estimate;
+use super::moments::Moments;
 use super::similarity::Fitted;
 use super::{Implicit, LaplacianSolver, LocalScale, Room, Transforms};
 use crate::SolveError;
@@ -25,10 +27,7 @@ impl LaplacianSolver {
             self.system.prescribe(&part, &mut room.field);
             let first = self.implicit.as_ref().filter(|_| step == 1);
             if let Some(implicit) = first {
-                let columns = self.system.columns();
-                implicit
-                    .bases
-                    .evaluate(&part, columns, &mut room.solution, &mut room.field);
+                implicit.bases.evaluate(&part, &mut room.field);
                 if self.is_settled_by_bases() {
                     self.change_by(&mut room.changes, |local| {
                         self.fitted(implicit, local, &room.field).change()
@@ -40,15 +39,23 @@ impl LaplacianSolver {
                 self.system.solve(&room.load, &mut room.field)?;
             }
             if let Some(rings) = &self.rings {
-                self.change_by(&mut room.changes, |local| {
-                    let guess = first.map_or(DQuat::IDENTITY, |implicit| {
-                        self.fitted(implicit, local, &room.field).rotation_guess()
-                    });
-                    rings.change(local, &self.rest, &room.field, self.options.scale, guess)
-                });
+                let estimate = Estimate {
+                    laplacian: self.laplacian(),
+                    rings,
+                    scale: self.options.scale,
+                    rest: &self.rest,
+                    field: &room.field,
+                    similarities: first.map(|implicit| &*implicit.similarities),
+                    curvature: &self.curvature,
+                };
+                estimate.transform(&mut room.changes);
             }
             self.set_load(room);
-            self.system.solve(&room.load, &mut room.field)?;
+            match &self.rings {
+                // The first shape is near.
+                Some(_) => self.system.refine(&room.load, &mut room.field)?,
+                None => self.system.solve(&room.load, &mut room.field)?,
+            }
         }
         Ok(())
     }
@@ -81,16 +88,8 @@ impl LaplacianSolver {
 
     /// The similarity that fits a field around a vertex.
     pub(super) fn fitted(&self, implicit: &Implicit, local: usize, field: &[[f64; 3]]) -> Fitted {
-        let at = |place: usize| (self.rest[place], DVec3::from_array(field[place]));
-        let (own, own_shift) = at(local);
-        let mut fitted = Fitted::default();
-        for &other in self.laplacian().neighbours(local) {
-            let (other, shift) = at(other as usize);
-            let part = implicit.similarities[local].part(other - own, shift - own_shift);
-            fitted.scale += part.scale;
-            fitted.turn += part.turn;
-        }
-        fitted
+        let nearest = self.laplacian().neighbours(local);
+        implicit.similarities[local].fit(&Moments::of(local, nearest, &self.rest, field))
     }
 
     /// Fills `changes` with (T − I) L p, by what gives T − I at a local vertex.

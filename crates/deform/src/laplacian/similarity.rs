@@ -8,6 +8,8 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
+use super::moments::Moments;
+
 /// J is at least this share of its trace, so that edges on one line leave no turn open.
 const OPEN: f64 = 1e-9;
 
@@ -59,12 +61,12 @@ impl Similarity {
         }
     }
 
-    /// What D at the edge e adds to the fit.
-    #[inline]
-    pub fn part(&self, edge: DVec3, change: DVec3) -> Fitted {
+    /// The fit to displacements with these moments.
+    #[inline(always)]
+    pub fn fit(&self, moments: &Moments) -> Fitted {
         Fitted {
-            scale: edge.dot(change) * self.inverse_square,
-            turn: self.inverse_inertia * edge.cross(change),
+            scale: moments.along() * self.inverse_square,
+            turn: self.inverse_inertia * moments.across(),
         }
     }
 

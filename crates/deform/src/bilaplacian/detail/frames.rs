@@ -88,15 +88,14 @@ impl Frames {
         &self.at_rest
     }
 
-    /// A row's displacement on the bent base, and the base's normal there, zero where it has none.
+    /// A row's displacement on the bent base.
     #[inline]
-    pub fn turned(&self, base: &Base, row: usize, posed: &[DVec3], turns: &[DMat3]) -> (DVec3, DVec3) {
+    pub fn turned(&self, base: &Base, row: usize, posed: &[DVec3], turns: &[DMat3]) -> DVec3 {
         match self.frame(base, row, posed) {
-            Some(frame) => (frame * self.coordinates[row], frame.z_axis),
+            Some(frame) => frame * self.coordinates[row],
             None => {
                 let at_rest = self.at_rest[row];
-                let turned = at_rest + base.turn(row, turns) * at_rest;
-                (turned, DVec3::ZERO)
+                at_rest + base.turn(row, turns) * at_rest
             }
         }
     }

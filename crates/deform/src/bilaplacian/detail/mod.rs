@@ -95,7 +95,7 @@ impl Multiresolution {
         match &mut self.reconstruction {
             Reconstruction::Plain => write(base, &posed, displacements, |_| DVec3::ZERO),
             Reconstruction::Normals(frames) => write(base, &posed, displacements, |row| {
-                frames.turned(base, row, &posed, &turns).0 - frames.at_rest()[row]
+                frames.turned(base, row, &posed, &turns) - frames.at_rest()[row]
             }),
             Reconstruction::Volumes(volumes) => {
                 volumes.frame(base, &posed, &turns);

@@ -13,7 +13,7 @@ use super::base::Base;
 use super::donors::{NONE, nearest};
 use super::frames::{NARROWEST, SLIMMEST};
 use crate::bilaplacian::factored::BilaplacianSystem;
-use crate::bilaplacian::loaded::{TOLERANCE, refused};
+use crate::bilaplacian::loaded::{refused, settled, write_field};
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::setup::bent_rows;
 use crate::budget::{Budget, bytes_of};
@@ -140,17 +140,14 @@ impl Transfer {
         self.gradients
             .divergence(changes, operator.stretching + operator.bending, load);
         let vertices = operator.laplacian.vertices();
-        field.clear();
-        field.extend(vertices.iter().map(|&vertex| displacements[vertex as usize].to_array()));
-        let error = self.system.solve_frame(load, field).error;
-        for &local in self.system.columns() {
-            displacements[vertices[local as usize] as usize] = DVec3::from_array(field[local as usize]);
-        }
-        // What is not finite is found by the check of all displacements, which names the vertex.
-        if error.is_finite() && error > TOLERANCE {
-            return Err(SolveError::Inaccurate { error });
-        }
-        Ok(())
+        vertices
+            .par_iter()
+            .with_min_len(CHUNK)
+            .map(|&vertex| displacements[vertex as usize].to_array())
+            .collect_into_vec(field);
+        let solved = settled(self.system.solve_frame(load, field));
+        write_field(field, vertices, displacements);
+        solved
     }
 
     /// How many numbers the factor stores.
