@@ -190,6 +190,38 @@ fn bumps_keep_their_volume_on_a_bent_plate_but_with_normal_displacements() {
     }
 }
 
+/// By how much the plate turns between x = 0.38 and x = 0.62 under a quarter arc, in radians, with its middle so stiff:
+/// the directions of its flat flanks there are compared.
+fn turn_of_the_middle(detail: &'static str, stiffness: f64) -> f64 {
+    let mut scene = plate(CELLS, 0.12, detail);
+    let rest = scene.positions().to_vec();
+    for (own, p) in scene.stiffness.iter_mut().zip(&rest) {
+        if (0.36..0.64).contains(&p.x) {
+            *own = stiffness;
+        }
+    }
+    let moved = scene.moved(&[arc(FRAC_PI_2)]);
+    let direction = |x: f64| {
+        let flank = |p: &DVec3| (p.x - x).abs() < 0.05 && (p.y - 0.5).abs() > 0.2;
+        let own = || rest.iter().zip(&moved).filter(|(p, _)| flank(p));
+        let middle = own().map(|(p, _)| p.x).sum::<f64>() / own().count() as f64;
+        own().map(|(p, d)| (*p + *d) * (p.x - middle)).sum::<DVec3>()
+    };
+    direction(0.42).angle_between(direction(0.58))
+}
+
+#[test]
+fn a_stiff_patch_with_details_bends_less_and_keeps_them_upright() {
+    for detail in ["none"].into_iter().chain(DETAILS) {
+        let [even, stiff, stiffer] = [1.0, 10.0, 100.0].map(|stiffness| turn_of_the_middle(detail, stiffness));
+        assert!(even > 0.15, "{detail} {even}");
+        assert!(
+            stiff < 0.5 * even && stiffer < 0.5 * stiff,
+            "{detail} {even} {stiff} {stiffer}"
+        );
+    }
+}
+
 #[test]
 fn transferred_gradients_keep_a_tube_whole_whose_base_shrinks_to_a_line() {
     // In the middle the base is about e^-10 as wide as the tube.
