@@ -122,6 +122,16 @@ pub(crate) fn solve_fully<S: Refined, const K: usize>(
     solve(system, None, (d, Start::Zero), (contraction, FULL), cancel)
 }
 
+/// As [`solve_fully`], as exactly as a frame needs.
+pub(crate) fn solve_for_frames<S: Refined, const K: usize>(
+    system: &S,
+    d: &mut [[f64; K]],
+    contraction: f64,
+    cancel: &Cancel,
+) -> Outcome {
+    solve(system, None, (d, Start::Zero), (contraction, FRAME), cancel)
+}
+
 /// Where a solution that is to be 1 everywhere, the last one of each row, is furthest from it: how far, and the place.
 pub(crate) fn missed_constant<S: Refined, const K: usize>(system: &S, d: &[[f64; K]]) -> (f64, u32) {
     let mut worst = (0.0, 0);

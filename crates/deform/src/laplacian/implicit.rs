@@ -8,7 +8,7 @@ use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
 use super::coupled::{CoupledEnergy, DOF};
-use crate::bilaplacian::refine::{Outcome, Refined, missed_constant, solve_fully};
+use crate::bilaplacian::refine::{Outcome, Refined, missed_constant, solve_for_frames, solve_fully};
 use crate::budget::Budget;
 use crate::operators::{CHUNK, place_in};
 use crate::sparse::Elimination;
@@ -87,7 +87,7 @@ impl<'a> ImplicitSystem<'a> {
 
     /// Fills in the solved rows of K functions.
     pub fn solve<const K: usize>(&self, d: &mut [[f64; K]], cancel: &Cancel) -> Outcome {
-        solve_fully(self, d, self.contraction, cancel)
+        solve_for_frames(self, d, self.contraction, cancel)
     }
 }
 

@@ -77,7 +77,7 @@ const MOST: f64 = 0.5;
 const FOLDED: f64 = 0.1;
 
 /// Corrections end with one whose root mean square is below this share of the largest heights'.
-const SMALL: f64 = 0.1;
+const SMALL: f64 = 0.2;
 
 impl Volumes {
     /// Of the base's faces.
