@@ -1,10 +1,10 @@
 //! Displacement volumes: the prism between a triangle of the base and that of the surface keeps its volume [BK03].
 //!
 //! Normal displacements are where iteration begins. Then the prisms around a vertex tell which volume they lack, and the
-//! vertex moves along the surface's normal until its ring would have it, if all of the ring moved as far: with A the sum
-//! of the ring's area vectors by A Σ lack / |A|². The surface has a normal also where the base shrinks to a line. As
-//! neighbours move about as far, two corrections leave some percent of what was lacking, and a third only sharpens what
-//! differs from vertex to vertex; iteration ends there.
+//! vertex scales its displacement o until its ring would have it, if all of the ring scaled by as much: with A the sum
+//! of the ring's area vectors by 1 + Σ lack / (o · A). So details keep their direction, and no normal of the base is
+//! needed, which it lacks where it shrinks to a line. As neighbours scale by about as much, two corrections leave some
+//! percent of what was lacking, and further ones only sharpen what differs from vertex to vertex; iteration ends there.
 //!
 //! Over a triangle of corners b the displacements o vary linearly, and the triangle with corners b + s o has the area
 //! vector A(s). So with m the mean of o the volume is m · ∫ A ds.
@@ -30,8 +30,8 @@ pub(crate) struct Volumes {
     starts: Vec<u32>,
     /// The places of the prisms around the rows.
     around: Vec<u32>,
-    /// Of each row: what limits it.
-    limits: Vec<Limit>,
+    /// Of each row the least o · A, squared, that counts in full: a ring of less is folded or hardly displaced.
+    least_squares: Vec<f64>,
     room: Room,
 }
 
@@ -43,23 +43,18 @@ struct Prism {
     rows: [u32; 3],
 }
 
-/// What limits a row's height.
-#[derive(Clone, Copy, Debug, Default)]
-struct Limit {
-    /// The most that the corrections change it.
-    most: f64,
-    /// A ring of less than this squared area hardly has a normal, and counts in part.
-    least_square: f64,
-}
-
 /// What is kept from frame to frame, so that none allocates it.
 #[derive(Clone, Debug, Default)]
 struct Room {
-    /// One more than there are rows: the last one is zero.
+    /// As the base turns them.
+    turned: Vec<DVec3>,
+    /// Scaled; one more than there are rows, the last one zero.
     offsets: Vec<DVec3>,
     lacks: Vec<Lack>,
-    /// What the corrections have added.
-    heights: Vec<f64>,
+    /// By how much the scales exceed 1.
+    growths: Vec<f64>,
+    /// The same before they are smoothed; one more than there are rows, the last one zero.
+    rough: Vec<f64>,
 }
 
 /// The volume that a prism lacks, and the area vector of its triangle of the surface.
@@ -69,15 +64,18 @@ struct Lack {
     area: DVec3,
 }
 
-/// The most that all corrections change a height, in units of the longest displacement around it at rest: where the base
-/// is bent more sharply than its details are high, no heights give the volumes of rest.
-const MOST: f64 = 0.5;
+/// The most that a displacement grows or shrinks, as a share of it: where the base is bent more sharply than its details
+/// are high, no scales give the volumes of rest.
+const MOST: f64 = 0.4;
 
-/// A ring with less than this share of its area at rest is folded.
+/// How much of each scale is taken from its neighbours in a correction: neighbours that differ crumple the surface.
+const SMOOTHING: f64 = 0.5;
+
+/// Of what a ring's area and longest displacement at rest could hold, o · A is at least this share where it counts.
 const FOLDED: f64 = 0.1;
 
-/// Corrections end with one whose root mean square is below this share of the largest heights'.
-const SMALL: f64 = 0.2;
+/// Corrections end with one whose root mean square is below this.
+const SMALL: f64 = 0.05;
 
 impl Volumes {
     /// Of the base's faces.
@@ -130,18 +128,19 @@ impl Volumes {
             .with_min_len(CHUNK)
             .map(|prism| measure(prism, &base.rest, &offsets))
             .collect();
-        let limit = |row: usize| {
+        let least_square = |row: usize| {
             let around = || around[starts[row] as usize..starts[row + 1] as usize].iter();
             let rows = around().flat_map(|&place| prisms[place as usize].rows);
             let longest = rows.map(|row| offsets[row as usize].length()).fold(0.0, f64::max);
             let area: f64 = around().map(|&place| measured[place as usize].area.length()).sum();
-            Limit {
-                most: MOST * longest,
-                least_square: (FOLDED * area).powi(2),
-            }
+            (FOLDED * area * longest).powi(2)
         };
         Self {
-            limits: (0..count).into_par_iter().with_min_len(CHUNK).map(limit).collect(),
+            least_squares: (0..count)
+                .into_par_iter()
+                .with_min_len(CHUNK)
+                .map(least_square)
+                .collect(),
             volumes: measured.iter().map(|measured| measured.volume).collect(),
             frames,
             iterations,
@@ -162,19 +161,23 @@ impl Volumes {
     pub fn frame(&mut self, base: &Base, posed: &[DVec3], turns: &[DMat3]) {
         let mut room = std::mem::take(&mut self.room);
         let Room {
+            turned,
             offsets,
             lacks,
-            heights,
+            growths,
+            rough,
         } = &mut room;
         let count = base.rows.len();
-        offsets.resize(count + 1, DVec3::ZERO);
-        offsets[..count]
-            .par_iter_mut()
-            .enumerate()
+        (0..count)
+            .into_par_iter()
             .with_min_len(CHUNK)
-            .for_each(|(row, offset)| *offset = self.frames.turned(base, row, posed, turns));
-        heights.clear();
-        heights.resize(count, 0.0);
+            .map(|row| self.frames.turned(base, row, posed, turns))
+            .collect_into_vec(turned);
+        offsets.clone_from(turned);
+        offsets.push(DVec3::ZERO);
+        growths.clear();
+        growths.resize(count, 0.0);
+        rough.resize(count + 1, 0.0);
         for _ in 0..self.iterations {
             self.prisms
                 .par_iter()
@@ -188,47 +191,66 @@ impl Volumes {
                     }
                 })
                 .collect_into_vec(lacks);
-            if self.correct(lacks, &mut offsets[..count], heights) {
+            self.grow(turned, lacks, growths, &mut rough[..count]);
+            if self.smooth(rough, turned, &mut offsets[..count], growths) {
                 break;
             }
         }
         self.room = room;
     }
 
-    /// Moves every row along the surface's normal; whether that was the last correction.
-    fn correct(&self, lacks: &[Lack], offsets: &mut [DVec3], heights: &mut [f64]) -> bool {
-        let chunk = |(chunk, (offsets, heights)): (usize, (&mut [DVec3], &mut [f64]))| {
-            let (mut moved, mut all) = (0.0, 0.0);
-            for (place, (offset, height)) in offsets.iter_mut().zip(heights).enumerate() {
-                let row = chunk * CHUNK + place;
-                let (mut volume, mut area) = (0.0, DVec3::ZERO);
-                for &prism in &self.around[self.starts[row] as usize..self.starts[row + 1] as usize] {
-                    let lack = &lacks[prism as usize];
-                    volume += lack.volume;
-                    area += lack.area;
-                }
-                let Limit { most, least_square } = self.limits[row];
-                let square = area.length_squared();
-                if square == 0.0 {
-                    continue;
-                }
-                let size = square.sqrt();
-                let next = (*height + volume * size / (square + least_square)).clamp(-most, most);
-                *offset += area * ((next - *height) / size);
-                moved += (next - *height).powi(2);
-                all += most * most;
-                *height = next;
+    /// Finds by how much every row grows so that its ring has the volume of rest.
+    fn grow(&self, turned: &[DVec3], lacks: &[Lack], growths: &[f64], rough: &mut [f64]) {
+        let rows = rough.par_iter_mut().zip(turned).enumerate();
+        rows.with_min_len(CHUNK).for_each(|(row, (rough, turned))| {
+            let (mut volume, mut area) = (0.0, DVec3::ZERO);
+            for &prism in self.around(row) {
+                let lack = &lacks[prism as usize];
+                volume += lack.volume;
+                area += lack.area;
             }
-            (moved, all)
+            let gain = turned.dot(area);
+            let square = gain * gain + self.least_squares[row];
+            let growth = if square > 0.0 { volume * gain / square } else { 0.0 };
+            *rough = (growths[row] + growth).clamp(-MOST, MOST);
+        });
+    }
+
+    /// Scales every row by what it grows, smoothed; whether that was the last correction.
+    fn smooth(&self, rough: &[f64], turned: &[DVec3], offsets: &mut [DVec3], growths: &mut [f64]) -> bool {
+        let chunk = |(chunk, (offsets, growths)): (usize, (&mut [DVec3], &mut [f64]))| {
+            let mut moved = 0.0;
+            for (place, (offset, growth)) in offsets.iter_mut().zip(growths).enumerate() {
+                let row = chunk * CHUNK + place;
+                let around = self.around(row);
+                // Every prism has the row itself and two beside it; those that fairing left do not grow.
+                let mut ring = 0.0;
+                for &prism in around {
+                    let [a, b, c] = self.prisms[prism as usize].rows.map(|row| rough[row as usize]);
+                    ring += a + b + c;
+                }
+                let count = around.len().max(1) as f64;
+                let beside = (ring - count * rough[row]) / (2.0 * count);
+                let next = rough[row] + SMOOTHING * (beside - rough[row]);
+                *offset = turned[row] + turned[row] * next;
+                moved += (next - *growth).powi(2);
+                *growth = next;
+            }
+            moved
         };
-        let sums: Vec<(f64, f64)> = offsets
+        let sums: Vec<f64> = offsets
             .par_chunks_mut(CHUNK)
-            .zip(heights.par_chunks_mut(CHUNK))
+            .zip(growths.par_chunks_mut(CHUNK))
             .enumerate()
             .map(chunk)
             .collect();
-        let (moved, all) = sums.iter().fold((0.0, 0.0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
-        moved <= SMALL * SMALL * all
+        sums.iter().sum::<f64>() <= SMALL * SMALL * turned.len() as f64
+    }
+
+    /// The places of the prisms around a row.
+    #[inline]
+    fn around(&self, row: usize) -> &[u32] {
+        &self.around[self.starts[row] as usize..self.starts[row + 1] as usize]
     }
 }
 
