@@ -361,6 +361,74 @@ fn a_whole_session_undone_redone_saved_and_opened_again_is_the_same_document_by_
     assert_eq!(hash(&session), last, "opened again");
 }
 
+/// Small views of all methods: they follow the handles and the camera, a click takes one as a step, Esc closes them.
+#[test]
+fn all_methods_are_compared_in_small_views_and_a_click_takes_one() {
+    let Some(mut session) = Session::with_handle() else {
+        return;
+    };
+    let height = session.harness.state().view_rect().height();
+    session.palette("compare methods");
+    session.key(Key::Enter, Modifiers::NONE);
+    for key in [Key::R, Key::Z, Key::Num5, Key::Num0, Key::Enter] {
+        session.key(key, Modifiers::NONE);
+    }
+    session.settle();
+    assert!(session.harness.state().view_rect().height() < 0.8 * height);
+    let comparison = |session: &Session| -> Vec<Vec<DVec3>> {
+        let comparison = session.harness.state().editor().comparison().unwrap();
+        let alternatives = comparison.alternatives().iter();
+        alternatives.map(|alternative| alternative.shape.to_vec()).collect()
+    };
+    let shapes = comparison(&session);
+    assert_eq!(shapes.len(), METHODS.len());
+    for (number, shape) in shapes.iter().enumerate() {
+        assert!(
+            moved(shape) > 0 && shapes[..number].iter().all(|other| other != shape),
+            "{number}"
+        );
+    }
+    // A click takes what is shown there.
+    let own = session.harness.state().editor().document().method().name();
+    let (number, other) = (0..)
+        .zip(METHODS)
+        .find(|(_, method)| method.name != own && method.name != "identity")
+        .unwrap();
+    let label = format!("Take {}", other.title);
+    let middle = session.harness.get_by_label(&label).rect().center();
+    session.pointer(middle, Some(true));
+    session.pointer(middle, Some(false));
+    session.settle();
+    assert_eq!(session.harness.state().editor().document().method().name(), other.name);
+    let size = session
+        .harness
+        .state()
+        .editor()
+        .view()
+        .model
+        .unwrap()
+        .bounds()
+        .unwrap()
+        .diagonal();
+    let apart = session
+        .shape()
+        .into_iter()
+        .zip(&shapes[number])
+        .map(|(a, b)| a.distance(*b));
+    assert!(
+        apart.fold(0.0, f64::max) < DESCENDED * size,
+        "the view shows what the small one showed"
+    );
+    assert_eq!(comparison(&session), shapes, "the small views stay as they are");
+    session.key(Key::Z, Modifiers::COMMAND);
+    session.settle();
+    assert_eq!(session.harness.state().editor().document().method().name(), own);
+    session.key(Key::Escape, Modifiers::NONE);
+    session.settle();
+    assert!(session.harness.state().editor().comparison().is_none());
+    assert_eq!(session.harness.state().view_rect().height(), height);
+}
+
 /// Two views side by side: one drag by two methods; closing the second leaves the first unchanged.
 #[test]
 fn two_methods_are_compared_on_the_same_drag() {

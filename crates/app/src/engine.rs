@@ -293,7 +293,7 @@ fn solve(
             rest: 0.0,
             r#final: finite_or(bent.last.energy, f64::MAX),
         },
-        warnings: bound.warnings().to_vec(),
+        warnings: setup.worded(bound.warnings()),
     })
 }
 

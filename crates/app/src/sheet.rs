@@ -49,24 +49,16 @@ impl Layout {
         let count = count.max(1) as u32;
         let pixels_per_point = (height as f32 / 900.0).min(width as f32 / 1100.0).clamp(0.4, 8.0);
         let caption = (CAPTION * pixels_per_point).ceil() as u32;
-        let with_columns = |columns: u32| {
-            let rows = count.div_ceil(columns);
-            let cell_px = [(width / columns).max(1), (height / rows).max(1)];
-            Self {
-                sheet_px,
-                grid: [columns, rows],
-                cell_px,
-                view_px: [cell_px[0], cell_px[1].saturating_sub(caption).max(1)],
-                pixels_per_point,
-            }
-        };
-        let side = |layout: &Self| layout.view_px[0].min(layout.view_px[1]);
-        let layouts = (2..=count).map(with_columns);
-        // The first of equals: the fewest columns.
-        layouts.fold(
-            with_columns(1),
-            |best, layout| if side(&layout) > side(&best) { layout } else { best },
-        )
+        let columns = columns(count, [width as f32, height as f32], caption as f32);
+        let rows = count.div_ceil(columns);
+        let cell_px = [(width / columns).max(1), (height / rows).max(1)];
+        Self {
+            sheet_px,
+            grid: [columns, rows],
+            cell_px,
+            view_px: [cell_px[0], cell_px[1].saturating_sub(caption).max(1)],
+            pixels_per_point,
+        }
     }
 
     /// The upper left corner of a cell. Pixels that the grid does not divide by are spread between the cells.
@@ -78,6 +70,29 @@ impl Layout {
             place[1] * self.sheet_px[1] / rows,
         ]
     }
+}
+
+/// How many columns make the shorter side of so many pictures longest in an area of this size, with a caption of this
+/// height beneath each; of equals the fewest.
+pub fn columns(count: u32, [width, height]: [f32; 2], caption: f32) -> u32 {
+    let side = |columns: u32| {
+        let rows = count.div_ceil(columns);
+        (width / columns as f32).min(height / rows as f32 - caption)
+    };
+    (2..=count).fold(
+        1,
+        |best, columns| if side(columns) > side(best) { columns } else { best },
+    )
+}
+
+/// How long binding and a frame took.
+pub fn times(bind_ms: f64, frame_ms: f64) -> String {
+    format!("bind {}   frame {}", time(bind_ms), time(frame_ms))
+}
+
+/// The mean and the largest stretch of the edges.
+pub fn stretch([mean, largest]: [f64; 2]) -> String {
+    format!("stretch {mean:.3}, at most {largest:.2}")
 }
 
 impl Caption {
@@ -96,11 +111,8 @@ impl Caption {
         Self {
             title: title.to_owned(),
             lines: vec![
-                format!("bind {}   frame {}", time(report.bind_ms), time(frames.median_ms)),
-                format!(
-                    "stretch {:.3}, at most {:.2}",
-                    shape.edge_stretch_mean, shape.edge_stretch_max
-                ),
+                times(report.bind_ms, frames.median_ms),
+                stretch([shape.edge_stretch_mean, shape.edge_stretch_max]),
                 last,
             ],
             refusal: None,

@@ -12,7 +12,7 @@ use crate::method::{BindInput, BoundMethod, Finite, HandleFit, Solve};
 use crate::region::follow::{Followers, followers};
 use crate::region::partition::Partition;
 use crate::sparse::refactorisation::{Refactorisation, RenewableFactor};
-use crate::{BindError, Budget, HandleBases, Ordering, Problem, SolveError};
+use crate::{BindError, Budget, HandleBases, Ordering, Problem, SolveError, Warning};
 
 /// A bound problem: everything that does not depend on the handles' transforms is solved.
 #[derive(Debug)]
@@ -29,7 +29,7 @@ pub struct Bound {
     /// Of hard handles that the method only fits.
     residual: HandleResidual,
     /// First those of the binding, then what the present targets ask for and the method can't follow.
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
     binding_warnings: usize,
 }
 
@@ -117,7 +117,7 @@ impl Bound {
             HandleFit::LeastSquares => HandleResidual::new(&handles, &partition.soft, positions),
         };
         let mut warnings = partition.warnings;
-        warnings.extend(method.warnings());
+        warnings.extend(method.warnings().into_iter().map(Warning::from));
         Ok(Self {
             revision: problem.revision,
             vertex_count: positions.len(),
@@ -294,8 +294,13 @@ impl Bound {
 
     /// Sentences for a person: what components without a handle or a fixed vertex do, what was repaired, and what the
     /// present targets ask for that the method can't follow.
-    pub fn warnings(&self) -> &[String] {
+    pub fn warnings(&self) -> &[Warning] {
         &self.warnings
+    }
+
+    /// Of these, what the present targets ask for and the method can't follow.
+    pub fn blind_to(&self) -> &[Warning] {
+        &self.warnings[self.binding_warnings..]
     }
 
     /// How many vertices the surface has: the length of what [`Bound::step`] fills.

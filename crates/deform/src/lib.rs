@@ -36,6 +36,7 @@ mod space;
 mod sparse;
 #[doc(hidden)]
 pub mod stages;
+mod warning;
 
 pub use arap::{Arap, ArapEnergy};
 pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Detail, Discretisation, TriangulationKind};
@@ -60,3 +61,4 @@ pub use problem::{Loose, Problem, Role};
 pub use rbf::Rbf;
 pub use region::constraints::{CONTINUITY_RANGE, Constraints};
 pub use sparse::Ordering;
+pub use warning::Warning;

@@ -17,6 +17,7 @@ mod snapshot;
 mod status;
 mod tool;
 mod view;
+mod warning;
 mod workspace;
 
 pub use command::{Command, KeyMap, Listed, Shortcut};
@@ -32,8 +33,8 @@ pub use format::{
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
-    Counts, Descent, Executor, InlineExecutor, Job, JobDone, JobKind, JobOutcome, JobQueue, Region, Revision, Rim,
-    Running, Solved,
+    Alternative, Compared, Comparison, Counts, Descent, Executor, Figures, InlineExecutor, Job, JobDone, JobKind,
+    JobOutcome, JobQueue, Region, Revision, Rim, Running, Solved,
 };
 pub use scene_view::{Cursor, Readout, SceneView};
 pub use selection::Selection;

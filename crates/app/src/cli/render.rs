@@ -300,7 +300,7 @@ impl Shape {
             let Some(job) = executor.take(kind) else { break };
             // A picture needs no hierarchy for rays, and a shape at rest no solver: without an ordering nothing is bound.
             let is_needed = match kind {
-                JobKind::Pick => false,
+                JobKind::Pick | JobKind::Compare => false,
                 JobKind::Order => posed == Posed::Bent,
                 _ => true,
             };

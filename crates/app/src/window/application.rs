@@ -31,6 +31,7 @@ use super::threads::pose_queue::PoseQueue;
 use super::threads::workers::Workers;
 use super::viewport::Viewport;
 use super::viewport::compare::Compare;
+use super::viewport::method_views::MethodViews;
 use super::widgets::theme;
 use crate::AppError;
 
@@ -43,6 +44,8 @@ pub struct Application {
     pub(super) viewport: Viewport,
     /// The second view, while two methods are compared.
     pub(super) compare: Option<Compare>,
+    /// The small views of what each method makes of the edit, while they are compared.
+    pub(super) method_views: MethodViews,
     pub(super) workers: Workers,
     pub(super) messages: Receiver<Message>,
     pub(super) session: Session,
@@ -125,6 +128,7 @@ impl Application {
             editor: Editor::new(Box::new(workers.clone())),
             viewport,
             compare: None,
+            method_views: MethodViews::default(),
             workers,
             messages,
             session,
@@ -170,6 +174,7 @@ impl Application {
         let system = |error: pliant_render::RenderError| AppError::System(error.to_string());
         self.viewport = Viewport::new(state).map_err(system)?;
         self.compare = None;
+        self.method_views = MethodViews::default();
         self.workers.wake(context.egui_ctx.clone());
         self.input = Input::default();
         self.stop_images();
@@ -226,6 +231,8 @@ impl Application {
             .displacements()
             .is_some_and(|shown| Arc::ptr_eq(shown, view.displacements));
         let compared = self.compare.as_ref().is_none_or(Compare::is_settled);
+        let comparison = self.editor.comparison();
+        let compared = compared && comparison.is_none_or(|comparison| self.method_views.are_settled(comparison));
         view.settled && shown && compared && self.session.doing().is_none() && !self.is_loading_textures()
     }
 
@@ -273,7 +280,7 @@ impl Application {
     /// How long drawing has kept the window's thread busy so far.
     pub fn drawing_time(&self) -> Duration {
         let second = self.compare.as_ref().map_or(Duration::ZERO, Compare::drawing_time);
-        self.viewport.drawing_time() + second
+        self.viewport.drawing_time() + second + self.method_views.drawing_time()
     }
 
     /// Gives the editor a command, as a menu would.

@@ -7,7 +7,7 @@ use crate::handles::{Motion, only_moved};
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
 };
-use crate::{BindError, ReusableFactor, SolveError};
+use crate::{BindError, ReusableFactor, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "frames",
@@ -89,17 +89,19 @@ impl BoundMethod for FramesSolver {
         self.system.warnings()
     }
 
-    fn blind_to(&self, motions: &[Motion]) -> Vec<String> {
+    fn blind_to(&self, motions: &[Motion]) -> Vec<Warning> {
         let turns = self.polars(motions).into_iter().map(|polar| polar.turn_rad.length());
-        let mut sentences: Vec<String> = (0..)
+        let mut sentences: Vec<Warning> = (0..)
             .zip(turns)
             .filter(|(_, turn)| *turn > LARGE_RAD)
             .map(|(handle, turn): (usize, f64)| {
                 let degrees = turn.to_degrees();
-                format!(
-                    "handle {handle} turns by {degrees:.0}°, and frames knows no turn beyond half a turn: take poisson, \
-                     which follows a drag beyond that, or arap"
-                )
+                Warning::of_handle(handle, |handle| {
+                    format!(
+                        "{handle} turns by {degrees:.0}°, and frames knows no turn beyond half a turn: take poisson, \
+                         which follows a drag beyond that, or arap"
+                    )
+                })
             })
             .collect();
         if self.options.iterations == 0 {

@@ -11,6 +11,8 @@ pub(crate) mod residual;
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 
+use crate::Warning;
+
 /// Surface vertices that one task displaces.
 pub(crate) const FRAME_CHUNK: usize = 4096;
 
@@ -100,7 +102,7 @@ impl Motion {
 /// A sentence where handles are moved and none is turned or stretched, for a method that takes what happens around a
 /// handle from its turn and stretch alone. Where nothing `is_held` and all handles move alike, everything moves with
 /// them.
-pub(crate) fn only_moved(method: &str, motions: &[Motion], is_held: bool) -> Option<String> {
+pub(crate) fn only_moved(method: &str, motions: &[Motion], is_held: bool) -> Option<Warning> {
     /// A turn that moves the handle's rim by less than this share of the handle's way is none.
     const NEGLIGIBLE: f64 = 1e-3;
     let first = motions.first()?.shift;
@@ -114,12 +116,13 @@ pub(crate) fn only_moved(method: &str, motions: &[Motion], is_held: bool) -> Opt
     };
     let moves = motions.iter().any(|motion| motion.shift != DVec3::ZERO)
         && (is_held || motions.iter().any(|motion| motion.shift != first));
-    (moves && motions.iter().all(is_only_moved)).then(|| {
+    let sentence = || {
         format!(
             "{method} is blind to moves: the handles are moved and not turned, so the surface shears between them; turn \
              a handle, or take laplacian or arap"
         )
-    })
+    };
+    (moves && motions.iter().all(is_only_moved)).then(|| sentence().into())
 }
 
 /// All zero.

@@ -8,7 +8,7 @@ use crate::handles::polar::{Polar, polars_of};
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
 };
-use crate::{BindError, ReusableFactor, SolveError};
+use crate::{BindError, ReusableFactor, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "laplacian",
@@ -99,7 +99,7 @@ impl BoundMethod for LaplacianSolver {
         self.system.warnings()
     }
 
-    fn blind_to(&self, motions: &[Motion]) -> Vec<String> {
+    fn blind_to(&self, motions: &[Motion]) -> Vec<Warning> {
         let turns = polars_of(&self.polars, &self.handles, motions)
             .into_iter()
             .map(|polar| polar.turn_rad.length());
@@ -108,16 +108,20 @@ impl BoundMethod for LaplacianSolver {
         };
         let degrees = turn.to_degrees();
         match self.options.transforms {
-            Transforms::None if turn > SMALL_RAD => vec![format!(
-                "laplacian turns no details where `transforms` is \"none\", and handle {handle} turns by {degrees:.0}°: \
-                 take \"implicit\""
-            )],
+            Transforms::None if turn > SMALL_RAD => vec![Warning::of_handle(handle, |handle| {
+                format!(
+                    "laplacian turns no details where `transforms` is \"none\", and {handle} turns by {degrees:.0}°: \
+                     take \"implicit\""
+                )
+            })],
             Transforms::Implicit | Transforms::InitialGuess if turn > LARGE_RAD * f64::from(self.options.steps) => {
                 let steps = (turn / LARGE_RAD).ceil();
-                vec![format!(
-                    "handle {handle} turns by {degrees:.0}°, and laplacian follows about 90° a step: set `steps` to \
-                     {steps:.0}, or take poisson, frames or arap"
-                )]
+                vec![Warning::of_handle(handle, |handle| {
+                    format!(
+                        "{handle} turns by {degrees:.0}°, and laplacian follows about 90° a step: set `steps` to \
+                         {steps:.0}, or take poisson, frames or arap"
+                    )
+                })]
             }
             _ => Vec::new(),
         }

@@ -11,7 +11,7 @@ use crate::handles::{Handle, Motion};
 use crate::operators::triangulation::Triangulation;
 use crate::region::partition::Partition;
 use crate::sparse::refactorisation::Refactorisation;
-use crate::{BindError, HandleBases, Ordering, Problem, ReusableFactor, SolveError};
+use crate::{BindError, HandleBases, Ordering, Problem, ReusableFactor, SolveError, Warning};
 
 /// Options by name; [`super::option::options!`] implements it.
 pub(crate) trait Options: Any + Debug + Send + Sync {
@@ -178,7 +178,7 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
     }
 
     /// Sentences about what these motions ask for and the method can't follow.
-    fn blind_to(&self, _motions: &[Motion]) -> Vec<String> {
+    fn blind_to(&self, _motions: &[Motion]) -> Vec<Warning> {
         Vec::new()
     }
 }

@@ -8,7 +8,7 @@ use crate::handles::polar::Polar;
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
 };
-use crate::{BindError, ReusableFactor, SolveError};
+use crate::{BindError, ReusableFactor, SolveError, Warning};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "poisson",
@@ -87,7 +87,7 @@ impl BoundMethod for PoissonSolver {
         self.system.warnings()
     }
 
-    fn blind_to(&self, motions: &[Motion]) -> Vec<String> {
+    fn blind_to(&self, motions: &[Motion]) -> Vec<Warning> {
         crate::handles::only_moved("poisson", motions, self.is_held)
             .into_iter()
             .collect()

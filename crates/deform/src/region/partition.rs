@@ -11,7 +11,7 @@ use crate::budget::bytes_of;
 use crate::method::option::joined;
 use crate::method::space_methods;
 use crate::operators::triangulation::{Graph, Triangulation};
-use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, METHODS, Needs, Problem, Role};
+use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, METHODS, Needs, Problem, Role, Warning};
 
 /// The vertices by what happens to them, all lists ascending.
 #[derive(Debug)]
@@ -35,7 +35,7 @@ pub(crate) struct Partition<'a> {
     /// How much memory may be taken for them.
     pub budget: Budget,
     /// Sentences for a person about components.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 impl<'a> Partition<'a> {
@@ -70,13 +70,13 @@ impl<'a> Partition<'a> {
                 .collect::<Vec<_>>()
         };
         let loose_of = problem.loose_by_component();
-        let (loose, mut warnings) = match method.needs() {
+        let (loose, mut warnings): (_, Vec<Warning>) = match method.needs() {
             // Where nothing needs to be connected, nothing is loose.
             Needs::Points => (Vec::new(), Vec::new()),
             Needs::Surface { .. } => {
                 let loose = indices(&|c| !held[c] && !driven[c]);
                 let warnings = warnings(problem, &loose, &loose_of, &indices(&|c| driven[c] && !held[c]));
-                (loose, warnings)
+                (loose, warnings.into_iter().map(Warning::from).collect())
             }
         };
         let follows = |component: u32| match loose_of[component as usize] {
@@ -88,7 +88,7 @@ impl<'a> Partition<'a> {
             .map(|handle| problem.constraints.weight(handle as u16).filter(|_| heeds_soft))
             .collect();
         warnings.extend(unheeded(problem));
-        warnings.extend(triangulation.warning().map(str::to_owned));
+        warnings.extend(triangulation.warning().map(|sentence| sentence.to_owned().into()));
         Ok(Self {
             solved: solved(problem, &triangulation, &handles, &soft),
             triangulation,
@@ -213,7 +213,7 @@ fn solved(problem: &Problem, triangulation: &Triangulation, handles: &[Vec<u32>]
 }
 
 /// Sentences about constraints that the method does not support, with the methods that do.
-fn unheeded(problem: &Problem) -> Vec<String> {
+fn unheeded(problem: &Problem) -> Vec<Warning> {
     let constraints = &problem.constraints;
     let soft = constraints.soft.iter().position(Option::is_some);
     let has_joints = constraints
@@ -221,34 +221,30 @@ fn unheeded(problem: &Problem) -> Vec<String> {
         .iter()
         .any(|&value| value != *CONTINUITY_RANGE.end());
     let is_painted = problem.stiffness.iter().any(|&value| value != 1.0);
-    let name = problem.method.name();
-    let asked = [
-        (
-            ConstraintKind::SoftHandles,
-            soft.map(|handle| format!("handle {handle} is soft, and {name} holds every handle hard")),
-            "soft handles",
-        ),
-        (
-            ConstraintKind::Continuity,
-            has_joints.then(|| format!("{name} has no choice of continuity")),
-            "hinges and smooth joints",
-        ),
-        (
-            ConstraintKind::Stiffness,
-            is_painted.then(|| format!("{name} takes no notice of painted stiffness")),
-            "parts that are stiffer than others",
-        ),
-    ];
     let declaration = problem.method.declaration();
-    asked
-        .into_iter()
-        .filter(|(kind, ..)| !declaration.heeds(*kind))
-        .filter_map(|(kind, what, purpose)| {
-            let others = METHODS.iter().filter(|other| other.heeds(kind));
-            let others = joined(others.map(|other| other.name.to_owned()), "or");
-            Some(format!("{}: take {others} for {purpose}", what?))
-        })
-        .collect()
+    let name = declaration.name;
+    let remedy = |kind: ConstraintKind, purpose: &str| {
+        let others = METHODS.iter().filter(|other| other.heeds(kind));
+        let others = joined(others.map(|other| other.name.to_owned()), "or");
+        format!("take {others} for {purpose}")
+    };
+    let is_unheeded = |kind: ConstraintKind, is_asked: bool| is_asked && !declaration.heeds(kind);
+    let mut warnings = Vec::new();
+    if let Some(handle) = soft.filter(|_| is_unheeded(ConstraintKind::SoftHandles, true)) {
+        let remedy = remedy(ConstraintKind::SoftHandles, "soft handles");
+        warnings.push(Warning::of_handle(handle, |handle| {
+            format!("{handle} is soft, and {name} holds every handle hard: {remedy}")
+        }));
+    }
+    if is_unheeded(ConstraintKind::Continuity, has_joints) {
+        let remedy = remedy(ConstraintKind::Continuity, "hinges and smooth joints");
+        warnings.push(format!("{name} has no choice of continuity: {remedy}").into());
+    }
+    if is_unheeded(ConstraintKind::Stiffness, is_painted) {
+        let remedy = remedy(ConstraintKind::Stiffness, "parts that are stiffer than others");
+        warnings.push(format!("{name} takes no notice of painted stiffness: {remedy}").into());
+    }
+    warnings
 }
 
 /// How many components are named; more are only counted.

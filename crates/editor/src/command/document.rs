@@ -129,6 +129,31 @@ pub(super) const SET_LOOSE_PART: Entry<(u32, Option<Loose>)> = Entry {
     action: Action::Do(|context, (part, loose)| set_loose_part(context.workspace, part, loose)),
 };
 
+/// Begins to compare what the methods make of the edit, or ends it.
+pub(super) const COMPARE_METHODS: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Compare methods",
+        "Shows small views of what every method makes of the present edit; a click takes one.",
+        "alternatives grid side by side arap poisson laplacian",
+        &[],
+    )],
+    scope: Scope::View,
+    unavailable: |state, ()| {
+        let has_handles = !state.workspace.document.handles().is_empty();
+        let is_comparing = state.workspace.jobs.comparison.is_some();
+        let nothing_bends = "Nothing bends yet: paint a handle first.";
+        state.unopened().or(unless(has_handles || is_comparing, nothing_bends))
+    },
+    action: Action::Do(|context, ()| {
+        let workspace = &mut *context.workspace;
+        match workspace.jobs.comparison {
+            Some(_) => workspace.jobs.end_comparing(),
+            None => workspace.jobs.begin_comparing(&workspace.document),
+        }
+    }),
+};
+
 /// Stops the jobs that run; what needs them starts them again.
 pub(super) const CANCEL_JOBS: Entry<()> = Entry {
     listed: &[item((), "Stop", "Stops what is being computed.", "cancel abort", &[])],
@@ -137,5 +162,8 @@ pub(super) const CANCEL_JOBS: Entry<()> = Entry {
         let mut running = state.workspace.jobs.running().into_iter();
         unless(running.any(|(kind, _)| kind != JobKind::Pick), "Nothing is under way.")
     },
-    action: Action::Do(|context, ()| context.workspace.jobs.give_up()),
+    action: Action::Do(|context, ()| {
+        let workspace = &mut *context.workspace;
+        workspace.jobs.give_up(&workspace.document);
+    }),
 };

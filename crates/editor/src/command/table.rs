@@ -98,6 +98,8 @@ commands! {
     SetLoose(loose: Loose) = document::SET_LOOSE;
     /// Chooses what one of them does, by its component's number; `None` is what all do.
     SetLoosePart(part: u32, loose: Option<Loose>) = document::SET_LOOSE_PART;
+    /// Begins to compare what the methods make of the edit, or ends it.
+    CompareMethods = document::COMPARE_METHODS;
     /// Stops the jobs that run; what needs them starts them again.
     CancelJobs = document::CANCEL_JOBS;
     /// Chooses what the left button does on the surface.

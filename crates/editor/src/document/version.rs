@@ -96,6 +96,12 @@ impl Versions {
         Aspect::OF_PROBLEM.iter().any(|&aspect| self.differ(other, aspect))
     }
 
+    /// Whether they differ in something that region and factorisation of every method follow from.
+    pub(crate) fn are_other_edit(&self, other: &Self) -> bool {
+        let mut aspects = Aspect::OF_PROBLEM.iter().filter(|&&aspect| aspect != Aspect::Method);
+        aspects.any(|&aspect| self.differ(other, aspect))
+    }
+
     /// Takes one aspect over from `other`.
     pub(crate) fn take(&mut self, other: &Self, aspect: Aspect) {
         self.0[aspect as usize] = other.of(aspect);

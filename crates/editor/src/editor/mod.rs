@@ -197,6 +197,11 @@ impl Editor {
             return;
         }
         if key == Key::Escape {
+            // The nearest thing first: what waits for a click, then the comparison.
+            let waits = self.settings.wants_pivot || self.workspace.selection.wants_new_handle;
+            if !waits {
+                self.workspace.jobs.end_comparing();
+            }
             self.workspace.refusal = None;
             self.workspace.selection.wants_new_handle = false;
             self.settings.wants_pivot = false;

@@ -12,7 +12,7 @@ use crate::EditFile;
 use crate::command::{Command, Shortcut, State};
 use crate::document::{Document, History};
 use crate::format::{ExportError, export};
-use crate::jobs::{JobKind, Revision, Rim};
+use crate::jobs::{Comparison, JobKind, Revision, Rim};
 use crate::scene_view::{Cursor, SceneView};
 use crate::snapshot::Snapshot;
 use crate::status::status;
@@ -108,9 +108,17 @@ impl Editor {
         &self.workspace.computed().region.loose
     }
 
-    /// Sentences about the present factorisation: what loose parts do, what was repaired.
-    pub fn warnings(&self) -> &[String] {
-        &self.workspace.computed().warnings
+    /// Sentences about the present binding and shape: what loose parts do, what was repaired, and what the method can't
+    /// follow of where the handles are.
+    pub fn warnings(&self) -> Vec<String> {
+        let computed = self.workspace.computed();
+        let warnings = computed.warnings.iter().chain(&computed.blind_to);
+        warnings.map(|warning| warning.worded(self.document())).collect()
+    }
+
+    /// What the methods make of the present edit, while they are compared.
+    pub fn comparison(&self) -> Option<&Comparison> {
+        self.workspace.jobs.comparison.as_ref()
     }
 
     /// Which of [`pliant_mesh::Drawn::triangles`] are shown; `None` is all of them. Another allocation when it changed.
@@ -217,7 +225,7 @@ impl Editor {
     /// prepare for the pointer or the first drag.
     pub fn is_settled(&self) -> bool {
         let awaited = |kind| match kind {
-            JobKind::Pick => false,
+            JobKind::Pick | JobKind::Compare => false,
             JobKind::Order => self.document().is_displaced(),
             JobKind::Region | JobKind::Bind | JobKind::Solve | JobKind::Mirror | JobKind::Enclose => true,
         };

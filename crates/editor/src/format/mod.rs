@@ -27,5 +27,6 @@ pub use exchange::ExportError;
 pub(crate) use exchange::{export, without_pivot};
 pub use field::FieldEntry;
 pub use project::{MeshReference, Project, geometry_hash};
+pub(crate) use refusal::shortened;
 pub use selector::{Axis, Selector};
 pub use setup::{HandleSetup, Rest, Setup};

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{CONTINUITY_RANGE, Constraints, Loose, Method, Problem, Role};
+use pliant_deform::{CONTINUITY_RANGE, Constraints, Loose, Method, Problem, Role, Warning};
 use pliant_mesh::{Model, Surface, SurfaceVertex};
 
 use super::edit_error::EditError;
@@ -13,6 +13,7 @@ use super::refusal::shortened;
 use crate::HandleTransform;
 use crate::document::Document;
 use crate::jobs::Region;
+use crate::warning::worded;
 
 /// What [`pliant_deform::Problem`] needs of an edit, and the handles' transforms.
 #[derive(Clone, PartialEq, Debug)]
@@ -116,6 +117,13 @@ impl Setup {
                 surface: Arc::clone(surface),
             }),
         }
+    }
+
+    /// The sentences of a binding's warnings, with the handles' names.
+    pub fn worded(&self, warnings: &[Warning]) -> Vec<String> {
+        let name = |number: usize| self.handles.get(number).map(|handle| &*handle.name);
+        let sentence = |warning: &Warning| worded(warning, warning.handle().and_then(name));
+        warnings.iter().map(sentence).collect()
     }
 
     /// Where the handles are at the share `t` of the way, 0 at rest and 1 at their targets.

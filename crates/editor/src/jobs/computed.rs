@@ -7,6 +7,7 @@ use pliant_mesh::Model;
 
 use super::job::{Carried, Pickable, ShownTriangles};
 use super::region::{FileContacts, Region};
+use crate::warning::HandleWarning;
 
 /// The last results.
 pub(crate) struct Computed {
@@ -24,8 +25,10 @@ pub(crate) struct Computed {
     pub(super) carried: Option<Carried>,
     /// What the next binding can take over of the last one.
     pub(super) reusable_factor: Option<ReusableFactor>,
-    /// Sentences about the last binding.
-    pub(crate) warnings: Vec<String>,
+    /// About the last binding.
+    pub(crate) warnings: Vec<HandleWarning>,
+    /// About the targets of the last solve.
+    pub(crate) blind_to: Vec<HandleWarning>,
 }
 
 impl Default for Computed {
@@ -41,6 +44,7 @@ impl Default for Computed {
             carried: None,
             reusable_factor: None,
             warnings: Vec::new(),
+            blind_to: Vec::new(),
         }
     }
 }

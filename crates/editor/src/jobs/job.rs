@@ -10,8 +10,10 @@ use glam::{DVec3, Mat3};
 use pliant_deform::{Bound, Budget, Ordering};
 use pliant_mesh::{Bvh, Cancel, Progress, SurfaceVertex};
 
+use super::comparison::Compared;
 use super::region::Region;
 use crate::document::KeptShape;
+use crate::warning::HandleWarning;
 
 /// The jobs the editor hands out, by what they make.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -30,11 +32,13 @@ pub enum JobKind {
     Mirror,
     /// The vertices that an outline on the screen holds.
     Enclose,
+    /// What another method makes of the edit.
+    Compare,
 }
 
 impl JobKind {
     /// Every kind, in the order in which their results build on one another.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Pick,
         Self::Order,
         Self::Region,
@@ -42,6 +46,7 @@ impl JobKind {
         Self::Solve,
         Self::Mirror,
         Self::Enclose,
+        Self::Compare,
     ];
 
     /// What the job does, for the status line: "binding".
@@ -54,6 +59,7 @@ impl JobKind {
             Self::Solve => "bending",
             Self::Mirror => "looking for the mirror image",
             Self::Enclose => "looking for what is inside",
+            Self::Compare => "comparing methods",
         }
     }
 }
@@ -112,6 +118,12 @@ pub trait Executor {
     fn budget(&self) -> fn() -> Budget {
         Budget::default
     }
+
+    /// Tells the time in milliseconds since some moment, for figures that a person reads and for nothing else. It stands
+    /// still where nobody measures.
+    fn clock_ms(&self) -> fn() -> f64 {
+        || 0.0
+    }
 }
 
 /// What rays are answered from.
@@ -159,6 +171,8 @@ pub enum JobOutcome {
     Mirrored(Vec<usize>),
     /// The vertices that an outline holds, ascending.
     Enclosed(Vec<SurfaceVertex>),
+    /// What a method makes of the edit.
+    Compared(Box<Compared>),
     /// It was cancelled, and nothing is owed.
     Cancelled,
     /// It failed; one sentence that names the culprit and the remedy.
@@ -175,6 +189,7 @@ impl std::fmt::Debug for JobOutcome {
             Self::Solved(_) => "Solved",
             Self::Mirrored(_) => "Mirrored",
             Self::Enclosed(_) => "Enclosed",
+            Self::Compared(_) => "Compared",
             Self::Cancelled => "Cancelled",
             Self::Failed(sentence) => return write!(f, "Failed({sentence})"),
         })
@@ -193,6 +208,8 @@ pub struct Solved {
     pub jacobians: Option<Vec<Mat3>>,
     /// The solution behind it, where it carries what was seen before along.
     pub(crate) carried: Option<Carried>,
+    /// What the method can't follow of these targets.
+    pub(crate) blind_to: Vec<HandleWarning>,
     /// Whether further steps would leave it as it is.
     pub finished: bool,
     /// How far an iterative method's descent is; `None` for a method that is done in one step.

@@ -1,5 +1,6 @@
 //! What follows from the document and is computed beside the window: the jobs, their queues and their last results.
 
+mod comparison;
 mod computed;
 mod inline_executor;
 mod job;
@@ -7,8 +8,10 @@ mod job_queue;
 mod region;
 mod rim;
 mod scheduler;
+mod solving;
 mod work;
 
+pub use comparison::{Alternative, Compared, Comparison, Figures};
 pub(crate) use computed::Computed;
 pub use inline_executor::InlineExecutor;
 pub(crate) use job::Pickable;

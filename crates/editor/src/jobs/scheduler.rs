@@ -10,12 +10,15 @@ use std::sync::{Arc, Mutex};
 
 use pliant_mesh::{Model, SurfaceVertex};
 
+use super::comparison::Comparison;
 use super::computed::Computed;
 use super::job::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, ShownTriangles, Solved, Work};
 use super::job_queue::{JobQueue, Running};
 use super::region::{Region, region_input};
-use super::work::{bind_work, order_work, pick_work, region_work, solve_work};
+use super::solving::solve_work;
+use super::work::{bind_work, order_work, pick_work, region_work};
 use crate::document::Document;
+use crate::warning::HandleWarning;
 
 /// What the person is doing, as far as jobs care.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -36,6 +39,8 @@ pub(crate) struct Jobs {
     given_up: [Option<Revision>; JobKind::ALL.len()],
     counter: u64,
     pub(crate) computed: Computed,
+    /// What other methods make of the edit, while they are compared.
+    pub(crate) comparison: Option<Comparison>,
     pub(crate) model_revision: Revision,
     problem_revision: Revision,
     target_revision: Revision,
@@ -49,6 +54,7 @@ pub(crate) struct Jobs {
     bound_revision: Revision,
     mirror_revision: Revision,
     enclose_revision: Revision,
+    compare_revision: Revision,
 }
 
 /// What a job's result means for the editor.
@@ -84,6 +90,7 @@ impl Jobs {
             given_up: [None; JobKind::ALL.len()],
             counter: 0,
             computed: Computed::default(),
+            comparison: None,
             model_revision: Revision(0),
             problem_revision: Revision(0),
             target_revision: Revision(0),
@@ -95,6 +102,7 @@ impl Jobs {
             bound_revision: Revision(0),
             mirror_revision: Revision(0),
             enclose_revision: Revision(0),
+            compare_revision: Revision(0),
         }
     }
 
@@ -109,6 +117,7 @@ impl Jobs {
         for kind in JobKind::ALL {
             self.queues[kind as usize].cancel();
         }
+        self.comparison = None;
         self.computed = Computed {
             region: Region::still(model.surface.positions.len()),
             model: Some(model),
@@ -154,6 +163,19 @@ impl Jobs {
         self.enclose_revision = self.next_revision();
     }
 
+    /// Begins to compare what the methods make of the edit.
+    pub(crate) fn begin_comparing(&mut self, document: &Document) {
+        self.comparison = Some(Comparison::new(document));
+        // A person who asks again wants the ordering that was stopped before.
+        self.given_up[JobKind::Order as usize] = None;
+    }
+
+    /// Ends the comparison; the methods' bindings are dropped.
+    pub(crate) fn end_comparing(&mut self) {
+        self.comparison = None;
+        self.queues[JobKind::Compare as usize].cancel();
+    }
+
     /// Rays are to meet these triangles alone.
     pub(crate) fn show_triangles(&mut self, shown: Option<Arc<Vec<u32>>>) {
         self.computed.shown = ShownTriangles {
@@ -171,6 +193,7 @@ impl Jobs {
     /// Solves that run or are done but have not arrived must not change the shape any more.
     pub(crate) fn drop_solves(&mut self) {
         self.queues[JobKind::Solve as usize].cancel();
+        self.computed.blind_to.clear();
         self.solve_floor = self.next_revision();
         self.targets_changed();
     }
@@ -182,7 +205,11 @@ impl Jobs {
     }
 
     /// Stops every job for good: each is tried again only when what it is made for has changed.
-    pub(crate) fn give_up(&mut self) {
+    pub(crate) fn give_up(&mut self, document: &Document) {
+        if let Some(comparison) = &mut self.comparison {
+            comparison.stop(document);
+            self.queues[JobKind::Compare as usize].cancel();
+        }
         for kind in [
             JobKind::Order,
             JobKind::Region,
@@ -263,7 +290,33 @@ impl Jobs {
                 self.want(JobKind::Solve, |computed| solve_work(computed, document));
             }
         }
+        if activity != Activity::Painting {
+            self.compare(document, &model);
+        }
         self.start();
+    }
+
+    /// Asks for the next shape of the comparison once the document's own binding is not waited for: what it needs of
+    /// memory comes first.
+    fn compare(&mut self, document: &Document, model: &Arc<Model>) {
+        let Some(comparison) = &mut self.comparison else { return };
+        if comparison.follow(document) {
+            self.queues[JobKind::Compare as usize].cancel();
+        }
+        let awaited = [JobKind::Order, JobKind::Region, JobKind::Bind, JobKind::Compare];
+        let is_awaited = awaited.into_iter().any(|kind| self.queues[kind as usize].is_busy());
+        if is_awaited || self.region_revision != self.problem_revision || self.computed.region.handles.is_empty() {
+            return;
+        }
+        if let Some(power) = comparison.missing_ordering(&self.computed) {
+            if self.given_up[JobKind::Order as usize] == Some(self.model_revision) {
+                comparison.stop(document);
+            }
+            self.want(JobKind::Order, |_| order_work(model, power));
+        } else if let Some(work) = comparison.next_work(document, &self.computed, &*self.executor) {
+            self.compare_revision = self.next_revision();
+            self.queues[JobKind::Compare as usize].request(self.compare_revision, work);
+        }
     }
 
     /// Takes a job's result; what was made for a state that is gone is dropped.
@@ -273,6 +326,14 @@ impl Jobs {
             return Arrival::Nothing;
         };
         let wanted = stamp >= self.model_revision;
+        if kind == JobKind::Compare {
+            if let Some(comparison) = &mut self.comparison
+                && !running.cancel.is_cancelled()
+            {
+                comparison.take(outcome);
+            }
+            return Arrival::Nothing;
+        }
         match outcome {
             // Somebody else stopped it: asking again at once would go on for ever.
             JobOutcome::Cancelled if !running.cancel.is_cancelled() => self.given_up[kind as usize] = Some(stamp),
@@ -294,7 +355,9 @@ impl Jobs {
                 self.region_revision = stamp;
             }
             JobOutcome::Bound(bound) if stamp == self.problem_revision => {
-                self.computed.warnings = bound.warnings().to_vec();
+                let handles = &self.computed.region.handles;
+                self.computed.warnings = HandleWarning::list(bound.warnings(), handles);
+                self.computed.blind_to.clear();
                 self.computed.reusable_factor = bound.reusable_factor();
                 self.computed.bound = Some(Arc::new(Mutex::new(*bound)));
                 self.computed.carried = None;
@@ -307,6 +370,7 @@ impl Jobs {
                 if solved.carried.is_some() {
                     self.computed.carried.clone_from(&solved.carried);
                 }
+                self.computed.blind_to.clone_from(&solved.blind_to);
                 return Arrival::Shape(solved, if last { Finality::Final } else { Finality::Preview });
             }
             _ => {}
@@ -323,6 +387,7 @@ impl Jobs {
             JobKind::Solve => self.target_revision,
             JobKind::Mirror => self.mirror_revision,
             JobKind::Enclose => self.enclose_revision,
+            JobKind::Compare => self.compare_revision,
         }
     }
 

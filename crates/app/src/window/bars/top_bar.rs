@@ -254,6 +254,8 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     choice(ui, Command::ToggleOutlines, look.outlines);
     choice(ui, Command::ToggleGrid, look.grid);
     ui.separator();
+    choice(ui, Command::CompareMethods, editor.comparison().is_some());
+    ui.separator();
     let up = view.camera.up;
     for axis in [UpAxis::Y, UpAxis::Z] {
         choice(ui, Command::SetUp(axis), up == axis);

@@ -4,6 +4,7 @@ use eframe::egui::{self, ComboBox, DragValue, RichText};
 use pliant_deform::{METHODS, Method, OptionDeclaration, OptionKind, OptionValue};
 use pliant_editor::{Command, Editor};
 
+use crate::window::widgets::command_button::command_choice;
 use crate::window::widgets::number_field::number_field;
 use crate::window::widgets::outbox::Outbox;
 
@@ -21,6 +22,13 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         }
     });
     ui.label(RichText::new(declaration.when_to_use).weak().small());
+    for sentence in editor.warnings() {
+        let colour = ui.visuals().warn_fg_color;
+        ui.add(egui::Label::new(RichText::new(sentence).small().color(colour)).wrap());
+    }
+    if command_choice(ui, editor, &Command::CompareMethods, editor.comparison().is_some()) {
+        commands.push(Command::CompareMethods);
+    }
     if declaration.options.is_empty() {
         return;
     }

@@ -6,7 +6,8 @@
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::Sender;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::time::Instant;
 
 use eframe::egui;
 use glam::{DVec3, Mat3};
@@ -17,6 +18,7 @@ use super::message::{Message, Painted, Posed};
 use crate::drawing::{self, Drawing, Field, Scale};
 use crate::engine::Loaded;
 use crate::memory;
+use crate::report::ms_since;
 
 /// Starts work off the window's thread and wakes the window when it ends. Cloning shares the channel.
 #[derive(Clone)]
@@ -132,6 +134,10 @@ impl Executor for Workers {
         memory::budget
     }
 
+    fn clock_ms(&self) -> fn() -> f64 {
+        clock_ms
+    }
+
     fn start(&mut self, job: Job) {
         let (kind, stamp) = (job.kind, job.stamp);
         let stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
@@ -159,6 +165,12 @@ impl Executor for Workers {
             },
         );
     }
+}
+
+/// Milliseconds since the first call.
+fn clock_ms() -> f64 {
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    ms_since(*START)
 }
 
 fn panic_sentence(panic: &(dyn std::any::Any + Send)) -> String {

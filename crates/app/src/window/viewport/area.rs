@@ -4,10 +4,11 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Sense, vec2};
 use glam::DVec2;
-use pliant_editor::{Cursor, Event};
+use pliant_editor::{Command, Cursor, Event};
 
 use super::Smoothness;
 use super::axis_ball;
+use super::method_views::MethodViews;
 use crate::legend;
 use crate::window::application::{Application, REST};
 use crate::window::bars::hints;
@@ -30,10 +31,17 @@ impl Application {
     /// The 3D view: input first, then the picture, then what lies over it.
     pub(in crate::window) fn view(&mut self, ui: &mut egui::Ui) -> Result<(), pliant_render::RenderError> {
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        let (rect, second) = match self.compare {
+        let (above, strip) = match self.editor.comparison() {
             None => (whole, None),
             Some(_) => {
-                let (first, second) = whole.split_left_right_at_fraction(0.5);
+                let (above, strip) = whole.split_top_bottom_at_fraction(0.62);
+                (above, Some(strip))
+            }
+        };
+        let (rect, second) = match self.compare {
+            None => (above, None),
+            Some(_) => {
+                let (first, second) = above.split_left_right_at_fraction(0.5);
                 (first, Some(second))
             }
         };
@@ -57,8 +65,9 @@ impl Application {
             Cursor::Move => egui::CursorIcon::Move,
         });
         self.picture(ui, rect, second)?;
+        self.method_views(ui, strip)?;
         self.marks(ui, rect);
-        self.words(ui, rect, whole);
+        self.words(ui, rect, above);
         Ok(())
     }
 
@@ -95,6 +104,42 @@ impl Application {
         }
     }
 
+    /// Whether anything has moved of late.
+    fn smoothness(&self) -> Smoothness {
+        let is_resting = self.last_change.elapsed() >= REST && self.editor.view().settled;
+        if is_resting {
+            Smoothness::Resting
+        } else {
+            Smoothness::Moving
+        }
+    }
+
+    /// Draws the views of all methods into `strip` while they are compared.
+    fn method_views(&mut self, ui: &mut egui::Ui, strip: Option<egui::Rect>) -> Result<(), pliant_render::RenderError> {
+        let (Some(strip), Some(comparison), Some(stage)) = (strip, self.editor.comparison(), self.workers.stage())
+        else {
+            // What is on the device for them goes with them.
+            self.method_views = MethodViews::default();
+            return Ok(());
+        };
+        self.method_views.follow(ui.ctx(), comparison, &self.viewport, &stage);
+        let are_settled = self.method_views.are_settled(comparison);
+        let smooth = if are_settled {
+            self.smoothness()
+        } else {
+            Smoothness::Moving
+        };
+        let shown = self.method_views.show(ui, strip, &self.editor, smooth)?;
+        if shown.again {
+            ui.ctx().request_repaint_after(REST);
+        }
+        if let Some(method) = shown.taken {
+            self.command(Command::SetMethod(method));
+            ui.ctx().request_repaint();
+        }
+        Ok(())
+    }
+
     /// Draws the view, and beside it the `second` one where two methods are compared.
     fn picture(
         &mut self,
@@ -102,13 +147,9 @@ impl Application {
         rect: egui::Rect,
         second: Option<egui::Rect>,
     ) -> Result<(), pliant_render::RenderError> {
-        let resting = self.last_change.elapsed() >= REST && self.editor.view().settled;
-        let smooth = if resting {
-            Smoothness::Resting
-        } else {
-            Smoothness::Moving
-        };
-        if self.viewport.paint(ui, rect, &self.editor, smooth)? {
+        let smooth = self.smoothness();
+        let view = self.editor.view();
+        if self.viewport.paint(ui, rect, &view, &self.editor, smooth)? {
             ui.ctx().request_repaint_after(
                 REST.saturating_sub(self.last_change.elapsed())
                     .max(Duration::from_millis(10)),

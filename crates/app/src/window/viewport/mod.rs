@@ -9,7 +9,9 @@ pub(in crate::window) mod axis_ball;
 pub(in crate::window) mod coarseness;
 pub(in crate::window) mod compare;
 pub(in crate::window) mod gpu;
+pub(in crate::window) mod method_views;
 pub(in crate::window) mod shown;
+pub(in crate::window) mod side_view;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -233,7 +235,7 @@ impl Viewport {
         self.surface.as_ref().map(|shown| &shown.displacements)
     }
 
-    /// Draws if anything changed and paints the picture into `rect`. Returns whether a smoother picture is worth a
+    /// Draws the scene `view` with the editor's colours if anything changed, and paints the picture into `rect`. Returns whether a smoother picture is worth a
     /// second drawing when nothing has changed for a while.
     ///
     /// # Errors
@@ -242,10 +244,10 @@ impl Viewport {
         &mut self,
         ui: &egui::Ui,
         rect: egui::Rect,
+        view: &SceneView<'_>,
         editor: &Editor,
         smooth: Smoothness,
     ) -> Result<bool, RenderError> {
-        let view = editor.view();
         let pixels_per_point = ui.ctx().pixels_per_point();
         let size_px = pixels(rect.size() * pixels_per_point);
         let software = self.software.is_some();
@@ -265,15 +267,15 @@ impl Viewport {
         };
         let drawn_px = size_px.map(|side| side.div_ceil(factor));
         let detail = match smooth {
-            Smoothness::Moving if software && self.may_be_reduced(&view) => Detail::Reduced,
+            Smoothness::Moving if software && self.may_be_reduced(view) => Detail::Reduced,
             Smoothness::Moving | Smoothness::Resting => Detail::Full,
         };
         let key = DrawnKey {
             detail,
-            ..self.key(&view, pixels_per_point, drawn_px, samples)
+            ..self.key(view, pixels_per_point, drawn_px, samples)
         };
         if !self.drawn.as_ref().is_some_and(|drawn| drawn.serves(&key, size_px)) {
-            if self.draw(&view, &key)? {
+            if self.draw(view, &key)? {
                 self.drawn = Some(key);
                 self.drawings += 1;
                 if smooth == Smoothness::Moving
@@ -409,6 +411,14 @@ impl Viewport {
         match self.texture {
             Some(texture) => egui_renderer.update_egui_texture_from_wgpu_texture(device, view, filter, texture),
             None => self.texture = Some(egui_renderer.register_native_texture(device, view, filter)),
+        }
+    }
+}
+
+impl Drop for Viewport {
+    fn drop(&mut self) {
+        if let Some(texture) = self.texture.take() {
+            self.state.renderer.write().free_texture(&texture);
         }
     }
 }

@@ -1,0 +1,202 @@
+//! Small live views of what each method makes of the present edit, from the main view's camera, with names and figures
+//! beneath. A click takes a method.
+
+use std::time::Duration;
+
+use eframe::egui::{self, Color32, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use glam::DVec2;
+use pliant_deform::Method;
+use pliant_editor::{Alternative, Camera, Comparison, Editor, SceneView};
+use pliant_render::RenderError;
+
+use super::side_view::SideView;
+use super::{Smoothness, Viewport};
+use crate::report::finite_or;
+use crate::sheet;
+use crate::window::threads::workers::Stage;
+use crate::window::widgets::theme;
+
+/// The height of a caption in points.
+const CAPTION: f32 = 52.0;
+/// What is left free around a picture, in points.
+const GAP: f32 = 3.0;
+
+/// A view for each method that is compared.
+#[derive(Default)]
+pub struct MethodViews {
+    views: Vec<SideView>,
+}
+
+/// What came of showing the views.
+pub struct Shown {
+    /// Whether a second drawing is worth it when nothing has changed for a while.
+    pub again: bool,
+    /// The method that was clicked.
+    pub taken: Option<Method>,
+}
+
+impl MethodViews {
+    /// Whether every view shows what its method makes of the present edit.
+    pub fn are_settled(&self, comparison: &Comparison) -> bool {
+        let alternatives = comparison.alternatives();
+        let mut pairs = self.views.iter().zip(alternatives);
+        self.views.len() == alternatives.len()
+            && comparison.is_current()
+            && pairs.all(|(view, alternative)| view.shows(&alternative.shape))
+    }
+
+    /// How long drawing them has kept the window's thread busy so far.
+    pub fn drawing_time(&self) -> Duration {
+        self.views.iter().map(|view| view.viewport.drawing_time()).sum()
+    }
+
+    /// Takes over the shapes of the comparison, and what has ended elsewhere. The file is uploaded for one view after the
+    /// other.
+    pub fn follow(&mut self, context: &egui::Context, comparison: &Comparison, first: &Viewport, stage: &Stage) {
+        let alternatives = comparison.alternatives();
+        self.views.truncate(alternatives.len());
+        while self.views.len() < alternatives.len() {
+            self.views.push(SideView::beside(context, first));
+        }
+        for (view, alternative) in self.views.iter_mut().zip(alternatives) {
+            while let Some(message) = view.receive() {
+                view.take(message, &alternative.shape, stage);
+            }
+        }
+        let mut is_uploading = false;
+        for (view, alternative) in self.views.iter_mut().zip(alternatives) {
+            if !is_uploading || view.viewport.shows(&stage.drawing) {
+                view.follow(&alternative.shape, first, stage);
+            }
+            is_uploading |= view.is_uploading();
+        }
+    }
+
+    /// Shows the views in `rect`, which has the main view's camera.
+    ///
+    /// # Errors
+    /// As [`Viewport::paint`].
+    pub fn show(&mut self, ui: &mut Ui, rect: Rect, editor: &Editor, smooth: Smoothness) -> Result<Shown, RenderError> {
+        let mut shown = Shown {
+            again: false,
+            taken: None,
+        };
+        let Some(comparison) = editor.comparison() else {
+            return Ok(shown);
+        };
+        ui.painter().rect_filled(rect, 0.0, ui.visuals().panel_fill);
+        let line = Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color);
+        ui.painter().hline(rect.x_range(), rect.top(), line);
+        let columns = sheet::columns(self.views.len() as u32, rect.size().into(), CAPTION) as usize;
+        let rows = self.views.len().div_ceil(columns);
+        let size = vec2(rect.width() / columns as f32, rect.height() / rows as f32);
+        let pairs = self.views.iter_mut().zip(comparison.alternatives());
+        for (number, (view, alternative)) in pairs.enumerate() {
+            let corner = rect.min + vec2((number % columns) as f32 * size.x, (number / columns) as f32 * size.y);
+            let cell = Rect::from_min_size(corner, size).shrink(GAP);
+            let picture = Rect::from_min_max(cell.min, cell.max - vec2(0.0, CAPTION));
+            if picture.width() < 1.0 || picture.height() < 1.0 {
+                continue;
+            }
+            if alternative.refusal.is_none() {
+                shown.again |= draw(ui, picture, view, editor, smooth)?;
+            }
+            let is_own = *editor.document().method() == alternative.method;
+            caption(ui, cell, picture, alternative, view.problem.as_deref(), is_own);
+            if button(ui, cell, number, alternative, is_own) && !is_own {
+                shown.taken = Some(alternative.method.clone());
+            }
+        }
+        Ok(shown)
+    }
+}
+
+/// Draws a method's shape as the main view sees it, without what belongs to the pointer there.
+fn draw(ui: &Ui, rect: Rect, view: &mut SideView, editor: &Editor, smooth: Smoothness) -> Result<bool, RenderError> {
+    let main = editor.view();
+    let viewport_px = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
+    let camera = as_wide(main.camera, main.viewport_px, viewport_px);
+    let scene = SceneView {
+        camera: &camera,
+        viewport_px,
+        brush_ring: &[],
+        gizmo: &[],
+        overlay_revision: 0,
+        ..main
+    };
+    view.viewport.paint(ui, rect, &scene, editor, smooth)
+}
+
+/// The camera that shows in `to` at least what `camera` shows in `from`, in the same perspective.
+fn as_wide(camera: &Camera, from: DVec2, to: DVec2) -> Camera {
+    let wider = ((from.x / from.y) / (to.x / to.y)).max(1.0);
+    Camera {
+        fov_y_rad: 2.0 * ((0.5 * camera.fov_y_rad).tan() * wider).atan(),
+        ..*camera
+    }
+}
+
+/// Writes a method's name and figures beneath its picture, or why there is none in the picture's place.
+fn caption(ui: &Ui, cell: Rect, picture: Rect, alternative: &Alternative, problem: Option<&str>, is_own: bool) {
+    let painter = ui.painter().with_clip_rect(cell);
+    let visuals = ui.visuals();
+    let (strong, weak) = (visuals.strong_text_color(), visuals.weak_text_color());
+    let write = |at: Pos2, text: &str, size: f32, colour: Color32| {
+        let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(size), colour);
+        painter.galley(at, galley, colour);
+    };
+    let at = picture.left_bottom() + vec2(4.0, 2.0);
+    let title = alternative.method.declaration().title;
+    let title_colour = if is_own { theme::ACCENT } else { strong };
+    write(at, title, 13.0, title_colour);
+    let refusal = alternative.refusal.as_deref().or(problem);
+    if let Some(sentence) = refusal {
+        let width = cell.width() - 12.0;
+        let text = painter.layout(sentence.to_owned(), FontId::proportional(12.0), strong, width);
+        painter.galley(pos2(cell.left() + 6.0, cell.top() + 8.0), text, strong);
+    } else if let Some(figures) = &alternative.figures {
+        let colour = if alternative.is_current { strong } else { weak };
+        let stretch = [figures.edge_stretch_mean, figures.edge_stretch_max].map(|ratio| finite_or(ratio, f64::MAX));
+        write(
+            at + vec2(0.0, 17.0),
+            &sheet::times(figures.bind_ms, figures.frame_ms),
+            11.0,
+            colour,
+        );
+        write(at + vec2(0.0, 32.0), &sheet::stretch(stretch), 11.0, colour);
+    } else {
+        write(at + vec2(0.0, 17.0), "being bound …", 11.0, weak);
+    }
+}
+
+/// The cell as a button; whether it was clicked.
+fn button(ui: &Ui, cell: Rect, number: usize, alternative: &Alternative, is_own: bool) -> bool {
+    let declaration = alternative.method.declaration();
+    let response = ui.interact(cell, ui.scope_id().with(("method view", number)), Sense::click());
+    response.widget_info(|| {
+        let label = format!("Take {}", declaration.title);
+        egui::WidgetInfo::selected(egui::Role::Button, true, is_own, label)
+    });
+    let stroke = match (is_own, response.hovered() || response.has_focus()) {
+        (true, _) => Stroke::new(2.0, theme::ACCENT),
+        (false, true) => Stroke::new(1.5, ui.visuals().strong_text_color()),
+        (false, false) => Stroke::NONE,
+    };
+    ui.painter().rect_stroke(cell, 4.0, stroke, StrokeKind::Inside);
+    response.on_hover_text(declaration.when_to_use).clicked()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_narrow_view_shows_as_much_as_a_wide_one() {
+        let camera = Camera::default();
+        let (main, cell) = (DVec2::new(1200.0, 700.0), DVec2::new(150.0, 200.0));
+        let narrow = as_wide(&camera, main, cell);
+        let widest = |camera: &Camera, size: DVec2| (0.5 * camera.fov_y_rad).tan() * size.x / size.y;
+        assert!((widest(&narrow, cell) - widest(&camera, main)).abs() < 1e-12);
+        assert_eq!(as_wide(&camera, cell, main).fov_y_rad, camera.fov_y_rad);
+    }
+}

@@ -1,0 +1,147 @@
+//! A further view on the window's device: the open file's surface, uploaded once more, in a shape of its own.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, channel};
+
+use eframe::egui;
+use glam::DVec3;
+
+use super::Viewport;
+use crate::drawing::Drawing;
+use crate::window::threads::message::{Message, Posed};
+use crate::window::threads::pose_queue::PoseQueue;
+use crate::window::threads::workers::{Stage, Workers};
+
+/// A view beside the first, with threads of its own.
+pub struct SideView {
+    pub viewport: Viewport,
+    pub workers: Workers,
+    messages: Receiver<Message>,
+    /// The file whose surface is being uploaded for it.
+    uploading: Option<Arc<Drawing>>,
+    poses: PoseQueue,
+    /// What went wrong last, in a sentence.
+    pub problem: Option<String>,
+}
+
+impl SideView {
+    /// A view of nothing yet, on the device of another.
+    pub fn beside(context: &egui::Context, first: &Viewport) -> Self {
+        let (sender, messages) = channel();
+        Self {
+            viewport: first.beside(),
+            workers: Workers::new(context.clone(), sender),
+            messages,
+            uploading: None,
+            poses: PoseQueue::default(),
+            problem: None,
+        }
+    }
+
+    /// Whether it shows this shape.
+    pub fn shows(&self, shape: &Arc<Vec<DVec3>>) -> bool {
+        self.viewport
+            .displacements()
+            .is_some_and(|shown| Arc::ptr_eq(shown, shape))
+    }
+
+    /// Whether the open file is being uploaded for it.
+    pub fn is_uploading(&self) -> bool {
+        self.uploading.is_some()
+    }
+
+    /// What its threads have sent.
+    pub fn receive(&mut self) -> Option<Message> {
+        self.messages.try_recv().ok()
+    }
+
+    /// Takes what its threads have sent; `wanted` is the shape that it is to show.
+    pub fn take(&mut self, message: Message, wanted: &Arc<Vec<DVec3>>, stage: &Stage) {
+        match message {
+            Message::Posed(stamp, result) => {
+                self.poses.finish(stamp);
+                match result {
+                    Ok(posed) => self.show_pose(posed, wanted),
+                    Err(sentence) => self.problem = Some(sentence),
+                }
+            }
+            Message::Uploaded(drawing, result) => {
+                self.uploading = None;
+                match result {
+                    Ok(surface) => {
+                        let model = &stage.loaded.model;
+                        let lowest = model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
+                        let rest = Arc::new(vec![DVec3::ZERO; model.surface.positions.len()]);
+                        self.viewport.show(drawing, surface, rest, lowest);
+                    }
+                    Err(sentence) => self.problem = Some(sentence),
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Shows a pose, unless it is of another shape than is wanted by now.
+    pub fn show_pose(&mut self, posed: Posed, wanted: &Arc<Vec<DVec3>>) {
+        let is_present = Arc::ptr_eq(&posed.displacements, wanted);
+        let fits = self.viewport.displacements().map(|shown| shown.len()) == Some(posed.displacements.len());
+        if is_present
+            && fits
+            && let Err(error) = self.viewport.pose(posed)
+        {
+            self.problem = Some(error.to_string());
+        }
+    }
+
+    /// Asks for what it lacks to show the shape `wanted` of the open file as the first view shows its own.
+    pub fn follow(&mut self, wanted: &Arc<Vec<DVec3>>, first: &Viewport, stage: &Stage) {
+        self.upload(stage);
+        self.set_materials(first, stage);
+        if self.viewport.shows(&stage.drawing) {
+            self.poses.follow(wanted, &self.viewport, stage, &self.workers);
+        }
+    }
+
+    /// Shows the same images as the first view.
+    fn set_materials(&mut self, first: &Viewport, stage: &Stage) {
+        let lacks_what_is_there = self.viewport.shows(&stage.drawing)
+            && self.viewport.awaits_images()
+            && first.shows(&stage.drawing)
+            && !first.awaits_images();
+        if !lacks_what_is_there {
+            return;
+        }
+        let Some(materials) = first.materials() else {
+            self.viewport.give_up_images(&stage.drawing);
+            return;
+        };
+        if let Err(error) = self.viewport.set_materials(&stage.drawing, materials.clone()) {
+            self.problem = Some(error.to_string());
+        }
+    }
+
+    /// Has the open file's surface uploaded once more.
+    fn upload(&mut self, stage: &Stage) {
+        let drawing = &stage.drawing;
+        let is_under_way = self
+            .uploading
+            .as_ref()
+            .is_some_and(|under_way| Arc::ptr_eq(under_way, drawing));
+        if self.viewport.shows(drawing) || is_under_way {
+            return;
+        }
+        self.uploading = Some(Arc::clone(drawing));
+        let (gpu, stage) = (self.viewport.gpu(), stage.clone());
+        let (drawing, failed) = (Arc::clone(drawing), Arc::clone(drawing));
+        self.workers.spawn(
+            "uploading",
+            move || {
+                let rest = vec![DVec3::ZERO; stage.loaded.model.surface.positions.len()];
+                let pose = drawing.pose(&stage.loaded.model, &rest);
+                let surface = gpu.upload(&drawing, &pose).map_err(|error| error.to_string());
+                Message::Uploaded(drawing, surface)
+            },
+            move |sentence| Message::Uploaded(Arc::clone(&failed), Err(sentence)),
+        );
+    }
+}

@@ -1,0 +1,38 @@
+//! The solver's warnings, in words that call handles by their names.
+
+use pliant_deform::Warning;
+
+use crate::document::{Document, HandleId};
+use crate::format::shortened;
+
+/// A warning of a binding, with the handle that it is about: the binding knows it only by a number.
+#[derive(Clone, PartialEq, Debug)]
+pub(crate) struct HandleWarning {
+    warning: Warning,
+    handle: Option<HandleId>,
+}
+
+impl HandleWarning {
+    /// The warnings of a binding whose handles these are.
+    pub(crate) fn list(warnings: &[Warning], handles: &[HandleId]) -> Vec<Self> {
+        let with_handle = |warning: &Warning| Self {
+            handle: warning.handle().and_then(|number| handles.get(number).copied()),
+            warning: warning.clone(),
+        };
+        warnings.iter().map(with_handle).collect()
+    }
+
+    /// The sentence, with the name that the handle has now.
+    pub(crate) fn worded(&self, document: &Document) -> String {
+        let handle = self.handle.and_then(|id| document.handle(id));
+        worded(&self.warning, handle.map(|handle| &*handle.name))
+    }
+}
+
+/// The sentence of a warning about a handle of this name, if it is about one that has a name.
+pub(crate) fn worded(warning: &Warning, name: Option<&str>) -> String {
+    match name.filter(|name| !name.is_empty()) {
+        Some(name) => warning.naming(&format!("\"{}\"", shortened(name))),
+        None => warning.to_string(),
+    }
+}
