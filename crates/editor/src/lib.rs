@@ -33,8 +33,8 @@ pub use format::{
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
-    Alternative, Compared, Comparison, Counts, Descent, Executor, Figures, InlineExecutor, Job, JobDone, JobKind,
-    JobOutcome, JobQueue, Region, Revision, Rim, Running, Solved,
+    Alternative, Compared, Comparison, Counts, Descent, Executor, Figures, InlineExecutor, Inspectable, Inspected, Job,
+    JobDone, JobKind, JobOutcome, JobQueue, Region, Revision, Rim, Running, Solved,
 };
 pub use scene_view::{Cursor, Readout, SceneView};
 pub use selection::Selection;

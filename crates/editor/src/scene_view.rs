@@ -26,6 +26,11 @@ pub struct SceneView<'a> {
     /// Per surface vertex, from the file's shape: hand it to [`Model::drawn_positions`]. Shared, never changed in
     /// place.
     pub displacements: &'a Arc<Vec<DVec3>>,
+    /// What is drawn, from the file's shape: the displacements, or the smooth base at rest where that is shown.
+    pub drawn: &'a Arc<Vec<DVec3>>,
+    /// Per surface vertex the selected handle's weight, from 0 to 1, where the shading is by weights and the method has
+    /// some.
+    pub weights: Option<&'a Arc<Vec<f64>>>,
     /// Grows when the colours of regions and handles changed: fetch them by
     /// [`Editor::region_colours`](crate::Editor::region_colours).
     pub regions_revision: u64,

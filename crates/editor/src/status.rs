@@ -72,7 +72,7 @@ fn working(workspace: &Workspace, is_dragging: bool) -> Option<String> {
         return Some("Nothing is bound: handles move alone until the regions change".to_owned());
     }
     let (kind, fraction) = jobs.running().into_iter().rfind(|(kind, _)| match kind {
-        JobKind::Solve | JobKind::Compare => false,
+        JobKind::Solve | JobKind::Compare | JobKind::Inspect => false,
         JobKind::Pick => workspace.computed().pickable.is_none(),
         JobKind::Order => !document.handles().is_empty(),
         JobKind::Region | JobKind::Bind | JobKind::Mirror | JobKind::Enclose => true,

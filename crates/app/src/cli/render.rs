@@ -85,6 +85,7 @@ fn look(arguments: &RenderArguments) -> Look {
         regions: arguments.look.shading == arguments::Shading::Regions,
         outlines: arguments.outlines || arguments.look.shading == arguments::Shading::Regions,
         grid: arguments.grid,
+        base: false,
     }
 }
 
@@ -300,7 +301,7 @@ impl Shape {
             let Some(job) = executor.take(kind) else { break };
             // A picture needs no hierarchy for rays, and a shape at rest no solver: without an ordering nothing is bound.
             let is_needed = match kind {
-                JobKind::Pick | JobKind::Compare => false,
+                JobKind::Pick | JobKind::Compare | JobKind::Inspect => false,
                 JobKind::Order => posed == Posed::Bent,
                 _ => true,
             };

@@ -15,6 +15,15 @@ pub enum Field {
     Curvature,
     /// Stiffness, 1 by default.
     Stiffness,
+    /// A handle's weight, from 0 to 1.
+    Weight,
+}
+
+impl Field {
+    /// Whether it follows from the shape, as the others do not.
+    pub fn is_of_shape(self) -> bool {
+        !matches!(self, Self::Stiffness | Self::Weight)
+    }
 }
 
 /// A colour scale, which a legend shows.
@@ -43,6 +52,8 @@ enum Spacing {
     Ratio { most: f64 },
     /// Linear, from −most to most.
     Even { most: f64 },
+    /// Linear, from 0 to 1.
+    Share,
 }
 
 impl Scale {
@@ -64,6 +75,13 @@ impl Scale {
             Field::Stretch => ratio("edge length / rest", 2.0, &[0.5, 0.71, 1.0, 1.41, 2.0]),
             Field::Area => ratio("area / rest", 2.0, &[0.5, 0.71, 1.0, 1.41, 2.0]),
             Field::Stiffness => ratio("stiffness", 1000.0, &[0.001, 0.03, 1.0, 30.0, 1000.0]),
+            Field::Weight => Self {
+                title: "handle's weight",
+                spacing: Spacing::Share,
+                ticks: [0.0, 0.25, 0.5, 0.75, 1.0]
+                    .map(|at| Tick { at, label: short(at) })
+                    .to_vec(),
+            },
             Field::Curvature => {
                 let most = usual_curvature(model);
                 let spacing = Spacing::Even { most };
@@ -94,6 +112,7 @@ impl Spacing {
         let signed = match self {
             Self::Ratio { most } => value.ln() / most.ln(),
             Self::Even { most } => value / most,
+            Self::Share => 2.0 * value - 1.0,
         };
         (0.5 + 0.5 * signed).clamp(0.0, 1.0)
     }
@@ -121,26 +140,28 @@ pub fn colour_at(share: f64) -> [u8; 4] {
     [mixed(0), mixed(1), mixed(2), 255]
 }
 
-/// The colours of the surface vertices in the shape given by `displacements`.
+/// The colours of the surface vertices in the shape given by `displacements`, or those of the `values` of a field that
+/// does not follow from the shape.
 pub fn colours(
     field: Field,
     scale: &Scale,
     model: &Model,
     displacements: &[DVec3],
-    stiffness: Option<&[f64]>,
+    values: Option<&[f64]>,
 ) -> Vec<[u8; 4]> {
     let vertex_count = model.surface.positions.len();
     let colour = |value: f64| scale.colour(value);
-    if field == Field::Stiffness {
-        return match stiffness {
-            Some(stiffness) => stiffness.par_iter().map(|&value| colour(value)).collect(),
-            None => vec![colour(1.0); vertex_count],
+    if !field.is_of_shape() {
+        let default = if field == Field::Stiffness { 1.0 } else { 0.0 };
+        return match values {
+            Some(values) => values.par_iter().map(|&value| colour(value)).collect(),
+            None => vec![colour(default); vertex_count],
         };
     }
     let rest = &model.surface.positions;
     let moved: Vec<DVec3> = rest.par_iter().zip(displacements).map(|(&p, &d)| p + d).collect();
     match field {
-        Field::Stretch | Field::Stiffness => (0..vertex_count as u32)
+        Field::Stretch | Field::Stiffness | Field::Weight => (0..vertex_count as u32)
             .into_par_iter()
             .map(|v| colour(stretch(model, &moved, SurfaceVertex(v))))
             .collect(),

@@ -27,6 +27,7 @@ pub fn view(camera: &Camera, viewport_px: DVec2, centre: DVec3) -> View {
 pub fn field(shading: Shading) -> Option<Field> {
     match shading {
         Shading::Stiffness => Some(Field::Stiffness),
+        Shading::Weights => Some(Field::Weight),
         Shading::Stretch => Some(Field::Stretch),
         Shading::Area => Some(Field::Area),
         Shading::Curvature => Some(Field::Curvature),
@@ -42,7 +43,7 @@ pub fn style(look: &Look, pixels_per_point: f32) -> Style {
         Shading::Material => (pliant_render::Shading::Material, 0.45),
         Shading::Zebra => (pliant_render::Shading::Zebra, 0.0),
         Shading::Normals => (pliant_render::Shading::Normals, 0.0),
-        Shading::Stiffness | Shading::Stretch | Shading::Area | Shading::Curvature => {
+        Shading::Stiffness | Shading::Weights | Shading::Stretch | Shading::Area | Shading::Curvature => {
             (pliant_render::Shading::Painted, 1.0)
         }
     };

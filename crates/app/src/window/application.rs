@@ -181,7 +181,7 @@ impl Application {
         self.title.clear();
         if let Some(open) = &self.session.open {
             let (drawing, model) = (Arc::clone(&open.drawing), &open.loaded.model);
-            let displacements = Arc::clone(self.editor.view().displacements);
+            let displacements = Arc::clone(self.editor.view().drawn);
             let pose = drawing.pose(model, &displacements);
             let surface = self.viewport.gpu().upload(&drawing, &pose).map_err(system)?;
             let lowest = model.bounds().map_or(DVec3::ZERO, |bounds| bounds.min);
@@ -229,7 +229,7 @@ impl Application {
         let shown = self
             .viewport
             .displacements()
-            .is_some_and(|shown| Arc::ptr_eq(shown, view.displacements));
+            .is_some_and(|shown| Arc::ptr_eq(shown, view.drawn));
         let compared = self.compare.as_ref().is_none_or(Compare::is_settled);
         let comparison = self.editor.comparison();
         let compared = compared && comparison.is_none_or(|comparison| self.method_views.are_settled(comparison));

@@ -1,6 +1,7 @@
 //! How the surface is shown.
 
-use super::entry::{Action, Entry, Scope, always, character, item};
+use super::entry::{Action, Entry, Reason, Scope, State, always, character, item};
+use crate::jobs::Inspectable;
 use crate::view::{Clay, Shading};
 
 /// Shades the surface like this clay.
@@ -96,6 +97,13 @@ pub(super) const SET_SHADING: Entry<Shading> = Entry {
             &[],
         ),
         item(
+            Shading::Weights,
+            "Handle's weights",
+            "Colours the surface by how much of the selected handle's turn and stretch it takes on.",
+            "heat map influence propagation",
+            &[],
+        ),
+        item(
             Shading::Curvature,
             "Curvature",
             "Colours the surface by its mean curvature: red bulges, blue is hollow.",
@@ -118,8 +126,55 @@ pub(super) const SET_SHADING: Entry<Shading> = Entry {
         ),
     ],
     scope: Scope::View,
-    unavailable: always,
+    unavailable: |state, shading| match shading {
+        Shading::Weights => no_weights(state),
+        _ => None,
+    },
     action: Action::Do(|context, shading| context.view.look.shading = shading),
+};
+
+/// Why no handle's weights can be shown.
+fn no_weights(state: &State<'_>) -> Option<Reason> {
+    let why = |title: &str| format!("{title} uses no weights: take a method that does, such as Gradient editing.");
+    let inspectable = |inspectable: Inspectable| inspectable.weights;
+    state
+        .selected()
+        .err()
+        .or_else(|| not_in_binding(state, inspectable, why))
+}
+
+/// Why something of the binding can't be shown: nothing is bound, or `why` for the method of this title.
+fn not_in_binding(
+    state: &State<'_>,
+    is_there: impl Fn(Inspectable) -> bool,
+    why: impl Fn(&str) -> String,
+) -> Option<Reason> {
+    let workspace = state.workspace;
+    if !workspace.jobs.is_bound() {
+        return Some("Nothing is bound yet: paint a handle, or wait until it is bound.".into());
+    }
+    let title = workspace.document.method().declaration().title;
+    (!is_there(workspace.computed().inspectable)).then(|| why(title).into())
+}
+
+/// Shows the smooth base in place of the surface, or the surface again.
+pub(super) const TOGGLE_BASE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Smooth base",
+        "Shows the smooth base that is bent in place of the surface, at rest and without its details.",
+        "fairing multiresolution detail",
+        &[],
+    )],
+    scope: Scope::View,
+    unavailable: |state, ()| {
+        let why =
+            |title: &str| format!("{title} has no smooth base here: take Thin plate, and choose its option detail.");
+        let reason = || not_in_binding(state, |inspectable| inspectable.base, why);
+        // What is on can always be turned off.
+        (!state.view.look.base).then(reason).flatten()
+    },
+    action: Action::Do(|context, ()| context.view.look.base = !context.view.look.base),
 };
 
 /// Shows each triangle flat, or normals interpolated.

@@ -232,6 +232,8 @@ commands! {
     ToggleOutlines = look::TOGGLE_OUTLINES;
     /// Shows or hides the ground's grid.
     ToggleGrid = look::TOGGLE_GRID;
+    /// Shows the smooth base in place of the surface, or the surface again.
+    ToggleBase = look::TOGGLE_BASE;
     /// Shows or hides the regions' colours over clay and material.
     ToggleRegions = look::TOGGLE_REGIONS;
     /// Shows or hides the wireframe.

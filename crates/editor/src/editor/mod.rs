@@ -14,10 +14,10 @@ use crate::command::{Command, KeyMap, Scope, frame_all};
 use crate::document::Document;
 use crate::event::Event;
 use crate::input::{Button, Key, Modifiers, Pointer};
-use crate::jobs::{Activity, Arrival, Executor, JobDone, JobKind};
+use crate::jobs::{Activity, Arrival, Asked, Executor, JobDone, JobKind};
 use crate::snapshot::Snapshot;
 use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin};
-use crate::view::View;
+use crate::view::{Shading, View};
 use crate::workspace::{ColouredBy, Workspace, take_mirrored};
 
 /// The program without a window.
@@ -140,7 +140,13 @@ impl Editor {
             ToolMode::PaintStiffness => ColouredBy::Stiffness,
             _ => ColouredBy::Region,
         };
-        self.workspace.conclude(activity, by);
+        let look = &self.view.look;
+        let selected = self.workspace.selection.selected();
+        let asked = Asked {
+            weights_of: selected.filter(|_| look.shading == Shading::Weights),
+            base: look.base,
+        };
+        self.workspace.conclude(activity, by, asked);
         if !gesture.is_some_and(Gesture::moves_camera) {
             self.view.rest();
         }

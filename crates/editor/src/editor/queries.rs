@@ -27,12 +27,22 @@ impl Editor {
         let (workspace, view, settings) = (&self.workspace, &self.view, &self.settings);
         let gesture = self.gesture.as_deref();
         let document = &workspace.document;
+        let inspected = &workspace.computed().inspected;
         SceneView {
             model: workspace.model(),
             camera: view.camera(),
             viewport_px: view.viewport_px(),
             shape_revision: workspace.shape_revision(),
             displacements: document.from_file(),
+            drawn: inspected
+                .base
+                .as_ref()
+                .filter(|_| view.look.base)
+                .unwrap_or(document.from_file()),
+            weights: inspected
+                .weights
+                .as_ref()
+                .filter(|_| workspace.selection.selected().is_some()),
             regions_revision: workspace.colours().regions_revision(),
             rims_revision: workspace.colours().rims_revision(),
             overlay_revision: self.overlay.revision,
@@ -227,7 +237,12 @@ impl Editor {
         let awaited = |kind| match kind {
             JobKind::Pick | JobKind::Compare => false,
             JobKind::Order => self.document().is_displaced(),
-            JobKind::Region | JobKind::Bind | JobKind::Solve | JobKind::Mirror | JobKind::Enclose => true,
+            JobKind::Region
+            | JobKind::Bind
+            | JobKind::Solve
+            | JobKind::Mirror
+            | JobKind::Enclose
+            | JobKind::Inspect => true,
         };
         let jobs = &self.workspace.jobs;
         let is_busy = || JobKind::ALL.into_iter().any(|kind| awaited(kind) && jobs.is_busy(kind));

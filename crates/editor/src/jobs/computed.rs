@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex};
 use pliant_deform::{Bound, Ordering, ReusableFactor};
 use pliant_mesh::Model;
 
+use super::inspection::{Inspectable, Inspected};
 use super::job::{Carried, Pickable, ShownTriangles};
 use super::region::{FileContacts, Region};
 use crate::warning::HandleWarning;
@@ -23,6 +24,10 @@ pub(crate) struct Computed {
     pub(super) bound: Option<Arc<Mutex<Bound>>>,
     /// What a solve from a kept shape goes on from, with this factorisation.
     pub(super) carried: Option<Carried>,
+    /// What of the binding can be looked at.
+    pub(crate) inspectable: Inspectable,
+    /// What of it is looked at.
+    pub(crate) inspected: Inspected,
     /// What the next binding can take over of the last one.
     pub(super) reusable_factor: Option<ReusableFactor>,
     /// About the last binding.
@@ -42,6 +47,8 @@ impl Default for Computed {
             contacts: FileContacts::default(),
             bound: None,
             carried: None,
+            inspectable: Inspectable::default(),
+            inspected: Inspected::default(),
             reusable_factor: None,
             warnings: Vec::new(),
             blind_to: Vec::new(),

@@ -11,6 +11,7 @@ use pliant_deform::{Bound, Budget, Ordering};
 use pliant_mesh::{Bvh, Cancel, Progress, SurfaceVertex};
 
 use super::comparison::Compared;
+use super::inspection::{Inspectable, Inspected};
 use super::region::Region;
 use crate::document::KeptShape;
 use crate::warning::HandleWarning;
@@ -34,11 +35,13 @@ pub enum JobKind {
     Enclose,
     /// What another method makes of the edit.
     Compare,
+    /// Weights or base of the present binding, to be looked at.
+    Inspect,
 }
 
 impl JobKind {
     /// Every kind, in the order in which their results build on one another.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Pick,
         Self::Order,
         Self::Region,
@@ -47,6 +50,7 @@ impl JobKind {
         Self::Mirror,
         Self::Enclose,
         Self::Compare,
+        Self::Inspect,
     ];
 
     /// What the job does, for the status line: "binding".
@@ -60,6 +64,7 @@ impl JobKind {
             Self::Mirror => "looking for the mirror image",
             Self::Enclose => "looking for what is inside",
             Self::Compare => "comparing methods",
+            Self::Inspect => "looking into the binding",
         }
     }
 }
@@ -163,8 +168,8 @@ pub enum JobOutcome {
     Ordered(Arc<Ordering>),
     /// The region that the handles reach.
     Region(Region),
-    /// A factorisation, ready to be stepped.
-    Bound(Box<Bound>),
+    /// A factorisation, ready to be stepped, and what of it can be looked at.
+    Bound(Box<Bound>, Inspectable),
     /// A new shape.
     Solved(Solved),
     /// The vertices of a region's mirror image, ascending.
@@ -173,6 +178,8 @@ pub enum JobOutcome {
     Enclosed(Vec<SurfaceVertex>),
     /// What a method makes of the edit.
     Compared(Box<Compared>),
+    /// What was found in the binding.
+    Inspected(Inspected),
     /// It was cancelled, and nothing is owed.
     Cancelled,
     /// It failed; one sentence that names the culprit and the remedy.
@@ -185,11 +192,12 @@ impl std::fmt::Debug for JobOutcome {
             Self::Pick(..) => "Pick",
             Self::Ordered(_) => "Ordered",
             Self::Region(_) => "Region",
-            Self::Bound(_) => "Bound",
+            Self::Bound(..) => "Bound",
             Self::Solved(_) => "Solved",
             Self::Mirrored(_) => "Mirrored",
             Self::Enclosed(_) => "Enclosed",
             Self::Compared(_) => "Compared",
+            Self::Inspected(_) => "Inspected",
             Self::Cancelled => "Cancelled",
             Self::Failed(sentence) => return write!(f, "Failed({sentence})"),
         })

@@ -3,6 +3,7 @@
 mod comparison;
 mod computed;
 mod inline_executor;
+mod inspection;
 mod job;
 mod job_queue;
 mod region;
@@ -14,6 +15,8 @@ mod work;
 pub use comparison::{Alternative, Compared, Comparison, Figures};
 pub(crate) use computed::Computed;
 pub use inline_executor::InlineExecutor;
+pub(crate) use inspection::Asked;
+pub use inspection::{Inspectable, Inspected};
 pub(crate) use job::Pickable;
 pub use job::{Descent, Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
 pub use job_queue::{JobQueue, Running};

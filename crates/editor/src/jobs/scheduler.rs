@@ -12,6 +12,7 @@ use pliant_mesh::{Model, SurfaceVertex};
 
 use super::comparison::Comparison;
 use super::computed::Computed;
+use super::inspection::{Asked, Inspected, inspect_work};
 use super::job::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, ShownTriangles, Solved, Work};
 use super::job_queue::{JobQueue, Running};
 use super::region::{Region, region_input};
@@ -55,6 +56,9 @@ pub(crate) struct Jobs {
     mirror_revision: Revision,
     enclose_revision: Revision,
     compare_revision: Revision,
+    inspect_revision: Revision,
+    /// What is looked at of which binding, from when it was asked for.
+    inspection: (Revision, Asked),
 }
 
 /// What a job's result means for the editor.
@@ -103,6 +107,8 @@ impl Jobs {
             mirror_revision: Revision(0),
             enclose_revision: Revision(0),
             compare_revision: Revision(0),
+            inspect_revision: Revision(0),
+            inspection: (Revision(0), Asked::default()),
         }
     }
 
@@ -174,6 +180,21 @@ impl Jobs {
     pub(crate) fn end_comparing(&mut self) {
         self.comparison = None;
         self.queues[JobKind::Compare as usize].cancel();
+    }
+
+    /// Has looked up what is asked of the present binding, unless it is known or under way.
+    pub(crate) fn inspect(&mut self, asked: Asked) {
+        let wanted = (self.bound_revision, asked);
+        if self.inspection == wanted || !(self.is_bound() || asked == Asked::default()) {
+            return;
+        }
+        self.inspection = wanted;
+        self.inspect_revision = self.next_revision();
+        self.queues[JobKind::Inspect as usize].cancel();
+        match inspect_work(&self.computed, asked).filter(|_| asked != Asked::default()) {
+            Some(work) => self.queues[JobKind::Inspect as usize].request(self.inspect_revision, work),
+            None => self.computed.inspected = Inspected::default(),
+        }
     }
 
     /// Rays are to meet these triangles alone.
@@ -354,7 +375,11 @@ impl Jobs {
                 self.roles_revision = self.next_revision();
                 self.region_revision = stamp;
             }
-            JobOutcome::Bound(bound) if stamp == self.problem_revision => {
+            JobOutcome::Bound(bound, inspectable) if stamp == self.problem_revision => {
+                self.computed.inspectable = inspectable;
+                let inspected = &mut self.computed.inspected;
+                inspected.weights.take_if(|_| !inspectable.weights);
+                inspected.base.take_if(|_| !inspectable.base);
                 let handles = &self.computed.region.handles;
                 self.computed.warnings = HandleWarning::list(bound.warnings(), handles);
                 self.computed.blind_to.clear();
@@ -363,6 +388,7 @@ impl Jobs {
                 self.computed.carried = None;
                 self.bound_revision = stamp;
             }
+            JobOutcome::Inspected(inspected) if stamp == self.inspect_revision => self.computed.inspected = inspected,
             JobOutcome::Mirrored(image) if stamp == self.mirror_revision => return Arrival::Mirrored(image),
             JobOutcome::Enclosed(vertices) if stamp == self.enclose_revision => return Arrival::Enclosed(vertices),
             JobOutcome::Solved(solved) if stamp >= self.solve_floor => {
@@ -388,6 +414,7 @@ impl Jobs {
             JobKind::Mirror => self.mirror_revision,
             JobKind::Enclose => self.enclose_revision,
             JobKind::Compare => self.compare_revision,
+            JobKind::Inspect => self.inspect_revision,
         }
     }
 

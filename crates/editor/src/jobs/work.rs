@@ -6,6 +6,7 @@ use pliant_deform::{BindError, Budget, Ordering, Problem};
 use pliant_mesh::{Bvh, Model, SurfaceVertex};
 
 use super::computed::Computed;
+use super::inspection::Inspectable;
 use super::job::{JobOutcome, Pickable, Work};
 use super::region::{Region, RegionInput};
 use crate::Setup;
@@ -82,7 +83,10 @@ pub(super) fn bind_work(
         };
         let (ordering, reusable_factor) = (ordering.as_deref(), reusable_factor.as_ref());
         match problem.rebind_within(ordering, reusable_factor, budget(), progress, cancel) {
-            Ok(bound) => JobOutcome::Bound(Box::new(bound)),
+            Ok(bound) => {
+                let inspectable = Inspectable::of(&bound, &problem.surface.positions);
+                JobOutcome::Bound(Box::new(bound), inspectable)
+            }
             Err(BindError::Cancelled(_)) => JobOutcome::Cancelled,
             Err(error) => JobOutcome::Failed(
                 error

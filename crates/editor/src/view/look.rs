@@ -19,6 +19,8 @@ pub struct Look {
     pub outlines: bool,
     /// Whether the ground's grid is shown.
     pub grid: bool,
+    /// Whether the smooth base is shown in place of the surface, where the method has one.
+    pub base: bool,
 }
 
 impl Default for Look {
@@ -32,6 +34,7 @@ impl Default for Look {
             regions: true,
             outlines: true,
             grid: true,
+            base: false,
         }
     }
 }
@@ -46,6 +49,8 @@ pub enum Shading {
     Material,
     /// How stiff it was painted.
     Stiffness,
+    /// How much of the selected handle's turn and stretch it takes on, where the method has such weights.
+    Weights,
     /// How much longer or shorter edges are than at rest.
     Stretch,
     /// How much larger or smaller areas are than at rest.

@@ -6,15 +6,16 @@
 use super::colour_revisions::{ColouredBy, Sources};
 use super::state::Workspace;
 use crate::document::{Aspect, Handle, VertexAccess};
-use crate::jobs::{Activity, Arrival, Finality, Solved};
+use crate::jobs::{Activity, Arrival, Asked, Finality, Solved};
 
 impl Workspace {
     /// Draws the conclusions from what an event changed: revisions grow, and jobs are asked for.
-    pub(crate) fn conclude(&mut self, activity: Activity, coloured_by: ColouredBy) {
+    pub(crate) fn conclude(&mut self, activity: Activity, coloured_by: ColouredBy, asked: Asked) {
         self.renew_vertex_access();
         self.settle_what_needs_no_solve();
         self.follow_versions(activity);
         self.selection.drop_lost(&self.document);
+        self.jobs.inspect(asked);
         self.jobs.pump(&self.document, activity);
         let versions = self.document.versions();
         let sources = Sources {

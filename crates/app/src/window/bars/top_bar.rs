@@ -239,6 +239,7 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
             Shading::Stretch,
             Shading::Area,
             Shading::Stiffness,
+            Shading::Weights,
             Shading::Curvature,
             Shading::Zebra,
             Shading::Normals,
@@ -253,6 +254,7 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     choice(ui, Command::ToggleRegions, look.regions);
     choice(ui, Command::ToggleOutlines, look.outlines);
     choice(ui, Command::ToggleGrid, look.grid);
+    choice(ui, Command::ToggleBase, look.base);
     ui.separator();
     choice(ui, Command::CompareMethods, editor.comparison().is_some());
     ui.separator();

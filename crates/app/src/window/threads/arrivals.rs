@@ -30,7 +30,7 @@ impl Application {
                     self.editor.handle(Event::JobDone(done));
                     // A stale result's pose is not shown: the editor has another shape.
                     if let Some(posed) =
-                        posed.filter(|posed| Arc::ptr_eq(&posed.displacements, self.editor.view().displacements))
+                        posed.filter(|posed| Arc::ptr_eq(&posed.displacements, self.editor.view().drawn))
                     {
                         self.show_pose(posed);
                     }
@@ -124,9 +124,9 @@ impl Application {
         }
     }
 
-    /// The field of the shape that is shown as colours. Stiffness is not a field of the shape.
+    /// The field of the shape that is shown as colours.
     pub(in crate::window) fn wanted_field(&self) -> Option<Field> {
-        drawing::field(self.editor.view().look.shading).filter(|&field| field != Field::Stiffness)
+        drawing::field(self.editor.view().look.shading).filter(|field| field.is_of_shape())
     }
 
     /// Has the images decoded and uploaded when materials are first shown.
@@ -195,6 +195,6 @@ impl Application {
             self.workers.set_stage(stage.clone());
         }
         self.poses
-            .follow(self.editor.view().displacements, &self.viewport, &stage, &self.workers);
+            .follow(self.editor.view().drawn, &self.viewport, &stage, &self.workers);
     }
 }

@@ -1,5 +1,6 @@
 //! The 3D view's part of the window: its input, its pictures and what is painted over them.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Sense, vec2};
@@ -188,6 +189,10 @@ impl Application {
         {
             let at = rect.min + vec2(at_px.x as f32 + 22.0, at_px.y as f32 - 26.0);
             axis_ball::readout(ui.painter(), at, &readout.text);
+        }
+        if !Arc::ptr_eq(shown.drawn, shown.displacements) {
+            let at = rect.center_bottom() + vec2(-90.0, -34.0);
+            axis_ball::readout(ui.painter(), at, "Smooth base, at rest");
         }
         drop_target(ui, rect);
         if let Some(command) = axis_ball::show(ui, rect, shown.camera) {

@@ -47,7 +47,7 @@ impl Compare {
     /// Whether it shows what its method makes of the handles.
     pub fn is_settled(&self) -> bool {
         let view = self.editor.view();
-        view.settled && self.side.shows(view.displacements)
+        view.settled && self.side.shows(view.drawn)
     }
 
     /// Takes over what the first view and its editor have, and what has ended elsewhere.
@@ -60,12 +60,12 @@ impl Compare {
                     posed
                 }
                 message => {
-                    self.side.take(message, self.editor.view().displacements, stage);
+                    self.side.take(message, self.editor.view().drawn, stage);
                     None
                 }
             };
             if let Some(posed) = posed {
-                self.side.show_pose(posed, self.editor.view().displacements);
+                self.side.show_pose(posed, self.editor.view().drawn);
             }
         }
         if let Some(leader) = leader.snapshot() {
@@ -74,7 +74,7 @@ impl Compare {
                 method: self.method.clone(),
             });
         }
-        self.side.follow(self.editor.view().displacements, first, stage);
+        self.side.follow(self.editor.view().drawn, first, stage);
     }
 
     /// Shows the view in `rect`. Returns whether it is worth a second drawing when nothing has changed for a while.

@@ -3,10 +3,11 @@
 
 use std::time::Duration;
 
+use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{self, Color32, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 use glam::DVec2;
 use pliant_deform::Method;
-use pliant_editor::{Alternative, Camera, Comparison, Editor, SceneView};
+use pliant_editor::{Alternative, Camera, Comparison, Editor, Look, SceneView};
 use pliant_render::RenderError;
 
 use super::side_view::SideView;
@@ -114,11 +115,19 @@ impl MethodViews {
 /// Draws a method's shape as the main view sees it, without what belongs to the pointer there.
 fn draw(ui: &Ui, rect: Rect, view: &mut SideView, editor: &Editor, smooth: Smoothness) -> Result<bool, RenderError> {
     let main = editor.view();
+    // Nothing but the shape: it is small enough.
+    let look = Look {
+        regions: false,
+        outlines: false,
+        grid: false,
+        ..main.look
+    };
     let viewport_px = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
     let camera = as_wide(main.camera, main.viewport_px, viewport_px);
     let scene = SceneView {
         camera: &camera,
         viewport_px,
+        look,
         brush_ring: &[],
         gizmo: &[],
         overlay_revision: 0,
@@ -127,9 +136,10 @@ fn draw(ui: &Ui, rect: Rect, view: &mut SideView, editor: &Editor, smooth: Smoot
     view.viewport.paint(ui, rect, &scene, editor, smooth)
 }
 
-/// The camera that shows in `to` at least what `camera` shows in `from`, in the same perspective.
+/// The camera that shows in `to` at least what `camera` shows in `from`, in the same perspective; of what is wider than
+/// high, the square in the middle.
 fn as_wide(camera: &Camera, from: DVec2, to: DVec2) -> Camera {
-    let wider = ((from.x / from.y) / (to.x / to.y)).max(1.0);
+    let wider = ((from.x / from.y).min(1.0) / (to.x / to.y)).max(1.0);
     Camera {
         fov_y_rad: 2.0 * ((0.5 * camera.fov_y_rad).tan() * wider).atan(),
         ..*camera
@@ -142,8 +152,9 @@ fn caption(ui: &Ui, cell: Rect, picture: Rect, alternative: &Alternative, proble
     let visuals = ui.visuals();
     let (strong, weak) = (visuals.strong_text_color(), visuals.weak_text_color());
     let write = |at: Pos2, text: &str, size: f32, colour: Color32| {
-        let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(size), colour);
-        painter.galley(at, galley, colour);
+        let mut line = LayoutJob::simple_singleline(text.to_owned(), FontId::proportional(size), colour);
+        line.wrap = TextWrapping::truncate_at_width(picture.width() - 4.0);
+        painter.galley(at, painter.layout_job(line), colour);
     };
     let at = picture.left_bottom() + vec2(4.0, 2.0);
     let title = alternative.method.declaration().title;
@@ -183,7 +194,8 @@ fn button(ui: &Ui, cell: Rect, number: usize, alternative: &Alternative, is_own:
         (false, false) => Stroke::NONE,
     };
     ui.painter().rect_stroke(cell, 4.0, stroke, StrokeKind::Inside);
-    response.on_hover_text(declaration.when_to_use).clicked()
+    let says = format!("{}. {}", declaration.title, declaration.when_to_use);
+    response.on_hover_text(says).clicked()
 }
 
 #[cfg(test)]
@@ -191,12 +203,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_narrow_view_shows_as_much_as_a_wide_one() {
+    fn a_narrow_view_shows_the_middle_of_a_wide_one() {
         let camera = Camera::default();
-        let (main, cell) = (DVec2::new(1200.0, 700.0), DVec2::new(150.0, 200.0));
-        let narrow = as_wide(&camera, main, cell);
-        let widest = |camera: &Camera, size: DVec2| (0.5 * camera.fov_y_rad).tan() * size.x / size.y;
-        assert!((widest(&narrow, cell) - widest(&camera, main)).abs() < 1e-12);
-        assert_eq!(as_wide(&camera, cell, main).fov_y_rad, camera.fov_y_rad);
+        let cell = DVec2::new(150.0, 200.0);
+        let width = |camera: &Camera, size: DVec2| (0.5 * camera.fov_y_rad).tan() * size.x / size.y;
+        for main in [DVec2::new(1200.0, 700.0), DVec2::new(650.0, 700.0)] {
+            let square = DVec2::new(main.x.min(main.y), main.y);
+            let narrow = as_wide(&camera, main, cell);
+            assert!((width(&narrow, cell) - width(&camera, square)).abs() < 1e-12);
+            assert_eq!(as_wide(&camera, cell, main).fov_y_rad, camera.fov_y_rad);
+        }
     }
 }

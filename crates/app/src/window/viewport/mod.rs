@@ -184,10 +184,11 @@ impl Viewport {
     }
 
     /// The look that can be shown now: clay in place of materials whose images are still to come, because without
-    /// them they are nothing but white.
+    /// them they are nothing but white, and in place of weights where there are none.
     fn present_look(&self, look: Look) -> Look {
         let shading = match look.shading {
             Shading::Material if self.awaits_images() => Shading::Clay,
+            Shading::Weights if self.field() != Some(Field::Weight) => Shading::Clay,
             shading => shading,
         };
         Look { shading, ..look }
@@ -203,6 +204,7 @@ impl Viewport {
         match self.surface.as_ref()?.colours {
             Colours::Field(field) => Some(field),
             Colours::Stiffness(_) => Some(Field::Stiffness),
+            Colours::Weights(_) => Some(Field::Weight),
             Colours::None | Colours::Regions(_) => None,
         }
     }

@@ -61,6 +61,10 @@ impl Shown {
         let wanted = match drawing::field(view.look.shading) {
             None => Colours::Regions(view.regions_revision),
             Some(Field::Stiffness) => Colours::Stiffness(view.regions_revision),
+            Some(Field::Weight) => match view.weights {
+                Some(weights) => Colours::Weights(Arc::as_ptr(weights) as usize),
+                None => Colours::Regions(view.regions_revision),
+            },
             // These come with the shape that they belong to.
             Some(_) => return Ok(()),
         };
@@ -89,10 +93,14 @@ impl Shown {
             self.surface.update_some_regions(&renderer, colours, &ranges)?;
         } else {
             let mut colours = Vec::new();
-            if let Colours::Stiffness(_) = wanted {
-                let scale = Arc::new(Scale::of(Field::Stiffness, model));
-                let displacements = &self.displacements;
-                colours = drawing::colours(Field::Stiffness, &scale, model, displacements, stiffness);
+            let values = match wanted {
+                Colours::Stiffness(_) => Some((Field::Stiffness, stiffness)),
+                Colours::Weights(_) => Some((Field::Weight, view.weights.map(|weights| weights.as_slice()))),
+                _ => None,
+            };
+            if let Some((field, values)) = values {
+                let scale = Arc::new(Scale::of(field, model));
+                colours = drawing::colours(field, &scale, model, &self.displacements, values);
                 self.scale = Some(scale);
             } else {
                 editor.region_colours(&mut colours);
@@ -131,6 +139,8 @@ pub enum Colours {
     Field(Field),
     /// The stiffness, as of a revision of the editor's regions.
     Stiffness(u64),
+    /// A handle's weights, by their address.
+    Weights(usize),
 }
 
 /// What tells two lists of triangles apart; 0 for all of them.

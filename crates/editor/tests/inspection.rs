@@ -1,0 +1,114 @@
+//! What can be seen of a binding: the weights of the selected handle, and the smooth base.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
+
+mod rig;
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use pliant_deform::{Method, OptionValue, Role};
+use pliant_editor::{Command, Key, Shading, ToolMode};
+use pliant_mesh::shapes;
+use rig::{CENTRE_PX, Rig};
+
+fn tube() -> Rig {
+    Rig::open(shapes::tube(16, 24, 3.0))
+}
+
+fn set(rig: &mut Rig, method: &str, option: &str, value: &'static str) {
+    let method = Method::from_name(method).unwrap();
+    let method = method.with([(option, OptionValue::Name(value))]).unwrap();
+    rig.command(Command::SetMethod(method));
+    rig.drain();
+}
+
+fn why_not(rig: &Rig, command: &Command) -> String {
+    rig.editor.unavailable_because(command).unwrap_or_default().into_owned()
+}
+
+#[test]
+fn the_weights_are_those_of_the_selected_handle_and_follow_method_and_options() {
+    let show = Command::SetShading(Shading::Weights);
+    let mut rig = tube();
+    assert!(why_not(&rig, &show).contains("No handle is selected"));
+    rig.choose("poisson");
+    rig.paint_handle();
+    rig.command(Command::NewHandle);
+    rig.paint(ToolMode::PaintHandle, &[CENTRE_PX + DVec2::new(0.0, 90.0)]);
+    rig.drain();
+    assert_eq!(rig.editor.document().handles().len(), 2);
+    assert_eq!(rig.editor.view().weights, None, "nobody asked");
+    rig.command(show.clone());
+    rig.drain();
+    let mut seen: Vec<Arc<Vec<f64>>> = Vec::new();
+    for _ in 0..2 {
+        rig.command(Command::NextHandle);
+        rig.drain();
+        let view = rig.editor.view();
+        let ids = rig.editor.document().handles().iter().map(|handle| handle.id);
+        let selected = ids.into_iter().position(|id| Some(id) == view.selected).unwrap();
+        let weights = view.weights.expect("the method has some");
+        for (weight, role) in weights.iter().zip(rig.editor.roles()) {
+            match role {
+                Role::Handle(handle) => {
+                    let own = if usize::from(*handle) == selected { 1.0 } else { 0.0 };
+                    assert_eq!(*weight, own);
+                }
+                Role::Fixed => assert_eq!(*weight, 0.0),
+                Role::Free => assert!((0.0..=1.0).contains(weight), "{weight}"),
+            }
+        }
+        assert!(weights.iter().any(|weight| 0.1 < *weight && *weight < 0.9));
+        seen.push(Arc::clone(weights));
+    }
+    assert_ne!(seen[0], seen[1]);
+    set(&mut rig, "poisson", "propagation", "harmonic");
+    let by_one = rig.editor.view().weights.unwrap().to_vec();
+    set(&mut rig, "poisson", "propagation", "geodesic");
+    assert_ne!(*rig.editor.view().weights.unwrap().as_ref(), by_one);
+    // Without weights nothing is shown, and the reason names the method.
+    rig.choose("arap");
+    assert_eq!(rig.editor.view().weights, None);
+    assert!(why_not(&rig, &show).contains("As rigid as possible uses no weights"), "{}", why_not(&rig, &show));
+    rig.undo();
+    rig.drain();
+    assert!(rig.editor.view().weights.is_some());
+    rig.command(Command::Deselect);
+    assert_eq!(rig.editor.view().weights, None);
+}
+
+#[test]
+fn the_smooth_base_is_shown_in_place_of_the_surface_and_nothing_else_changes() {
+    let mut rig = tube();
+    assert!(why_not(&rig, &Command::ToggleBase).contains("Nothing is bound"));
+    rig.choose("bilaplacian");
+    rig.paint_handle();
+    rig.drain();
+    assert!(why_not(&rig, &Command::ToggleBase).contains("option detail"));
+    set(&mut rig, "bilaplacian", "detail", "normal-displacements");
+    rig.type_keys("gz.3");
+    rig.key(Key::Enter);
+    rig.drain();
+    let before = (rig.fingerprint(), rig.drawn());
+    rig.command(Command::ToggleBase);
+    rig.drain();
+    let view = rig.editor.view();
+    assert!(!Arc::ptr_eq(view.drawn, view.displacements));
+    let mut moved = 0;
+    for (way, role) in view.drawn.iter().zip(rig.editor.roles()) {
+        match role {
+            Role::Free => moved += usize::from(*way != DVec3::ZERO),
+            _ => assert_eq!(*way, DVec3::ZERO, "what is held is as it was"),
+        }
+    }
+    assert!(moved > 10, "{moved}");
+    assert_eq!((rig.fingerprint(), rig.drawn()), before);
+    // Where there is none, the surface is shown.
+    rig.choose("arap");
+    let view = rig.editor.view();
+    assert!(Arc::ptr_eq(view.drawn, view.displacements));
+    assert_eq!(rig.editor.unavailable_because(&Command::ToggleBase), None, "it can be turned off");
+    rig.command(Command::ToggleBase);
+    rig.drain();
+    assert!(!rig.editor.view().look.base);
+}
