@@ -69,7 +69,11 @@ fn the_weights_are_those_of_the_selected_handle_and_follow_method_and_options() 
     // Without weights nothing is shown, and the reason names the method.
     rig.choose("arap");
     assert_eq!(rig.editor.view().weights, None);
-    assert!(why_not(&rig, &show).contains("As rigid as possible uses no weights"), "{}", why_not(&rig, &show));
+    assert!(
+        why_not(&rig, &show).contains("As rigid as possible uses no weights"),
+        "{}",
+        why_not(&rig, &show)
+    );
     rig.undo();
     rig.drain();
     assert!(rig.editor.view().weights.is_some());
@@ -107,7 +111,11 @@ fn the_smooth_base_is_shown_in_place_of_the_surface_and_nothing_else_changes() {
     rig.choose("arap");
     let view = rig.editor.view();
     assert!(Arc::ptr_eq(view.drawn, view.displacements));
-    assert_eq!(rig.editor.unavailable_because(&Command::ToggleBase), None, "it can be turned off");
+    assert_eq!(
+        rig.editor.unavailable_because(&Command::ToggleBase),
+        None,
+        "it can be turned off"
+    );
     rig.command(Command::ToggleBase);
     rig.drain();
     assert!(!rig.editor.view().look.base);

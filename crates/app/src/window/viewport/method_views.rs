@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{self, Color32, FontId, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
-use glam::DVec2;
+use glam::{BVec3, DVec2, DVec3};
 use pliant_deform::Method;
-use pliant_editor::{Alternative, Camera, Comparison, Editor, Look, SceneView};
+use pliant_editor::{Alternative, Camera, Comparison, Editor, Look, SceneView, Shading};
 use pliant_render::RenderError;
 
 use super::side_view::SideView;
@@ -115,15 +115,19 @@ impl MethodViews {
 /// Draws a method's shape as the main view sees it, without what belongs to the pointer there.
 fn draw(ui: &Ui, rect: Rect, view: &mut SideView, editor: &Editor, smooth: Smoothness) -> Result<bool, RenderError> {
     let main = editor.view();
-    // Nothing but the shape: it is small enough.
+    // Nothing but the shape: it is small enough. Weights are the document's own method's.
     let look = Look {
+        shading: match main.look.shading {
+            Shading::Weights => Shading::Clay,
+            shading => shading,
+        },
         regions: false,
         outlines: false,
         grid: false,
         ..main.look
     };
     let viewport_px = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
-    let camera = as_wide(main.camera, main.viewport_px, viewport_px);
+    let camera = as_wide(main.camera, main.viewport_px, share_of_width(&main), viewport_px);
     let scene = SceneView {
         camera: &camera,
         viewport_px,
@@ -136,14 +140,32 @@ fn draw(ui: &Ui, rect: Rect, view: &mut SideView, editor: &Editor, smooth: Smoot
     view.viewport.paint(ui, rect, &scene, editor, smooth)
 }
 
-/// The camera that shows in `to` at least what `camera` shows in `from`, in the same perspective; of what is wider than
-/// high, the square in the middle.
-fn as_wide(camera: &Camera, from: DVec2, to: DVec2) -> Camera {
-    let wider = ((from.x / from.y).min(1.0) / (to.x / to.y)).max(1.0);
+/// The camera that shows in `to` at least the middle `share` of the width of what `camera` shows in `from`, and all of
+/// its height, in the same perspective.
+fn as_wide(camera: &Camera, from: DVec2, share: f64, to: DVec2) -> Camera {
+    let wider = ((share * from.x / from.y) / (to.x / to.y)).max(1.0);
     Camera {
         fov_y_rad: 2.0 * ((0.5 * camera.fov_y_rad).tan() * wider).atan(),
         ..*camera
     }
+}
+
+/// The share of the main view's width, about its middle, that holds what is seen of the model there.
+fn share_of_width(main: &SceneView<'_>) -> f64 {
+    let size_px = main.viewport_px;
+    let bounds = main.model.and_then(|model| model.bounds());
+    let shares = bounds.into_iter().flat_map(|bounds| {
+        let corner = move |number: u32| {
+            let is_high = [0, 1, 2].map(|axis| number >> axis & 1 == 1);
+            DVec3::select(BVec3::from_array(is_high), bounds.max, bounds.min)
+        };
+        (0..8).map(move |number| {
+            let seen = main.camera.project(corner(number), size_px);
+            seen.map_or(1.0, |at_px| (2.0 * at_px.x / size_px.x - 1.0).abs())
+        })
+    });
+    // With a little room at both sides.
+    (1.1 * shares.fold(0.0, f64::max)).clamp(0.2, 1.0)
 }
 
 /// Writes a method's name and figures beneath its picture, or why there is none in the picture's place.
@@ -205,13 +227,12 @@ mod tests {
     #[test]
     fn a_narrow_view_shows_the_middle_of_a_wide_one() {
         let camera = Camera::default();
-        let cell = DVec2::new(150.0, 200.0);
+        let (main, cell) = (DVec2::new(1200.0, 700.0), DVec2::new(150.0, 200.0));
         let width = |camera: &Camera, size: DVec2| (0.5 * camera.fov_y_rad).tan() * size.x / size.y;
-        for main in [DVec2::new(1200.0, 700.0), DVec2::new(650.0, 700.0)] {
-            let square = DVec2::new(main.x.min(main.y), main.y);
-            let narrow = as_wide(&camera, main, cell);
-            assert!((width(&narrow, cell) - width(&camera, square)).abs() < 1e-12);
-            assert_eq!(as_wide(&camera, cell, main).fov_y_rad, camera.fov_y_rad);
+        for share in [0.5, 1.0] {
+            let narrow = as_wide(&camera, main, share, cell);
+            assert!((width(&narrow, cell) - share * width(&camera, main)).abs() < 1e-12);
+            assert_eq!(as_wide(&camera, cell, share, main).fov_y_rad, camera.fov_y_rad);
         }
     }
 }

@@ -147,6 +147,7 @@ impl Viewport {
             rims: None,
             scale: None,
             materials: None,
+            weights: None,
             materials_revision: 0,
             shown: None,
         });

@@ -27,6 +27,8 @@ pub struct Shown {
     pub awaits_images: bool,
     /// Its materials with their images, once there are any.
     pub materials: Option<Materials>,
+    /// The weights that its colours show, kept so that others have another address.
+    pub weights: Option<Arc<Vec<f64>>>,
     /// How often its materials changed.
     pub materials_revision: u64,
     /// The triangles that are drawn.
@@ -108,6 +110,7 @@ impl Shown {
             self.drawn_colours = drawing::drawn_colours(model, &colours);
             self.surface.update_regions(&renderer, &self.drawn_colours)?;
         }
+        self.weights = view.weights.filter(|_| matches!(wanted, Colours::Weights(_))).cloned();
         self.colours = wanted;
         Ok(())
     }
