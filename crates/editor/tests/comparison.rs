@@ -169,6 +169,13 @@ fn what_is_not_wanted_any_more_is_stopped_and_dropped() {
     rig.send(Event::JobDone(running.run()));
     rig.drain();
     assert!(rig.editor.comparison().is_none());
+    // So does what leaves nothing to bend.
+    rig.command(Command::CompareMethods);
+    rig.drain();
+    assert!(rig.editor.comparison().unwrap().is_current());
+    rig.command(Command::ClearRegions);
+    rig.drain();
+    assert!(rig.editor.comparison().is_none());
 }
 
 /// An executor that lets a binding have only as much memory.

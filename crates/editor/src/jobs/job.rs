@@ -10,7 +10,7 @@ use glam::{DVec3, Mat3};
 use pliant_deform::{Bound, Budget, Ordering};
 use pliant_mesh::{Bvh, Cancel, Progress, SurfaceVertex};
 
-use super::comparison::Compared;
+use super::alternative::Compared;
 use super::inspection::{Inspectable, Inspected};
 use super::region::Region;
 use crate::document::KeptShape;

@@ -1,5 +1,6 @@
 //! What follows from the document and is computed beside the window: the jobs, their queues and their last results.
 
+mod alternative;
 mod comparison;
 mod computed;
 mod inline_executor;
@@ -12,7 +13,8 @@ mod scheduler;
 mod solving;
 mod work;
 
-pub use comparison::{Alternative, Compared, Comparison, Figures};
+pub use alternative::{Alternative, Compared, Figures};
+pub use comparison::Comparison;
 pub(crate) use computed::Computed;
 pub use inline_executor::InlineExecutor;
 pub(crate) use inspection::Asked;

@@ -326,8 +326,11 @@ impl Jobs {
         }
         let awaited = [JobKind::Order, JobKind::Region, JobKind::Bind, JobKind::Compare];
         let is_awaited = awaited.into_iter().any(|kind| self.queues[kind as usize].is_busy());
-        if is_awaited || self.region_revision != self.problem_revision || self.computed.region.handles.is_empty() {
+        if is_awaited || self.region_revision != self.problem_revision {
             return;
+        }
+        if self.computed.region.handles.is_empty() {
+            return self.end_comparing();
         }
         if let Some(power) = comparison.missing_ordering(&self.computed) {
             if self.given_up[JobKind::Order as usize] == Some(self.model_revision) {

@@ -1,0 +1,230 @@
+//! What one method makes of the present edit: its binding, its shape, and what they took.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use glam::DVec3;
+use pliant_deform::{Bound, Method};
+use pliant_mesh::{Distortion, Model, SurfaceVertex};
+
+use super::comparison::Edit;
+use super::computed::Computed;
+use super::job::{Carried, Executor, JobOutcome, Solved, Work};
+use super::solving::Wanted;
+use crate::Setup;
+use crate::document::Document;
+
+/// What is said of a method whose job a person has stopped.
+const STOPPED: &str = "it was stopped: compare again to go on";
+
+/// What one method makes of the present edit.
+#[derive(Debug)]
+pub struct Alternative {
+    /// The method: the document's own with its options, every other with what a person begins with.
+    pub method: Method,
+    /// Per surface vertex, from the file's shape. Another allocation for every other shape.
+    pub shape: Arc<Vec<DVec3>>,
+    /// About the last shape that was solved to its end; `None` before that.
+    pub figures: Option<Figures>,
+    /// Why there is no shape for the present edit, in one sentence.
+    pub refusal: Option<String>,
+    /// Whether shape or refusal belong to the present edit.
+    pub is_current: bool,
+    binding: Option<Binding>,
+    /// Which edit the shape or the refusal belongs to, once it is final.
+    answers: Option<Edit>,
+}
+
+/// What a method took and how much its shape is stretched.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Figures {
+    /// The time of binding in milliseconds.
+    pub bind_ms: f64,
+    /// The time from new transforms to the shape in milliseconds.
+    pub frame_ms: f64,
+    /// The mean over the edges of the larger of new by old length and old by new.
+    pub edge_stretch_mean: f64,
+    /// The largest.
+    pub edge_stretch_max: f64,
+}
+
+/// A bound method and where its steps are.
+#[derive(Clone, Debug)]
+struct Binding {
+    bound: Arc<Mutex<Bound>>,
+    /// The edit that it was last used for.
+    of: Edit,
+    bind_ms: f64,
+    /// The last shape, from the rest shape.
+    from_rest: Arc<Vec<DVec3>>,
+    carried: Option<Carried>,
+    /// The time spent on the present transforms so far.
+    frame_ms: f64,
+}
+
+/// What a job of the comparison brings.
+#[derive(Debug)]
+pub struct Compared {
+    binding: Binding,
+    /// The shape, or why there is none.
+    shape: Result<Arc<Vec<DVec3>>, String>,
+    /// Once the shape is solved to its end.
+    figures: Option<Figures>,
+}
+
+impl Alternative {
+    /// A method of which nothing is bound; it shows what the document shows.
+    pub(super) fn new(method: Method, document: &Document) -> Self {
+        Self {
+            method,
+            shape: Arc::clone(&document.from_file),
+            figures: None,
+            refusal: None,
+            is_current: false,
+            binding: None,
+            answers: None,
+        }
+    }
+
+    /// Follows the document: what belongs to another edit is dropped, and everything where the method is the document's
+    /// own and has other options by now. Whether it is that.
+    pub(super) fn follow(&mut self, document: &Document, present: &Edit) -> bool {
+        let own = &document.method;
+        let has_other_options = self.method.name() == own.name() && self.method != *own;
+        if has_other_options {
+            self.method = own.clone();
+        }
+        let is_stale = |of: &Edit| has_other_options || of.is_other_problem(present);
+        self.binding.take_if(|binding| is_stale(&binding.of));
+        self.answers.take_if(|of| is_stale(of));
+        // What can't be bound can't be bound for other transforms either.
+        let is_unbound = self.binding.is_none();
+        let is_answer = |of: &Edit| is_unbound || of.has_targets_of(present);
+        self.is_current = self.answers.as_ref().is_some_and(is_answer);
+        has_other_options
+    }
+
+    /// Binds the method where it is not, and takes the next steps; `None` where the ordering is missing.
+    pub(super) fn work(&self, document: &Document, computed: &Computed, executor: &dyn Executor) -> Option<Work> {
+        let model = computed.model.clone()?;
+        let ordering = match self.method.ordering_power() {
+            Some(power) => Some(computed.ordering(power)?),
+            None => None,
+        };
+        let rest = || Arc::new(vec![DVec3::ZERO; document.from_rest.len()]);
+        let from_rest = self
+            .binding
+            .as_ref()
+            .map_or_else(rest, |binding| Arc::clone(&binding.from_rest));
+        let carried = self.binding.as_ref().and_then(|binding| binding.carried.as_ref());
+        let wanted = Wanted::of(document, &computed.region.handles, &from_rest, carried)?;
+        let (document, region, binding) = (document.clone(), computed.region.clone(), self.binding.clone());
+        let method = self.method.clone();
+        let of = Edit::of(&document);
+        let (budget, clock_ms) = (executor.budget(), executor.clock_ms());
+        Some(Box::new(move |progress, cancel| {
+            let known = |vertex| model.first_file_vertex(SurfaceVertex(vertex)).0;
+            let start_ms = clock_ms();
+            let binding = match binding {
+                Some(binding) if binding.of.has_targets_of(&of) => binding,
+                Some(binding) => Binding {
+                    frame_ms: 0.0,
+                    of,
+                    ..binding
+                },
+                None => {
+                    let setup = Setup {
+                        method,
+                        ..Setup::of_document(&document, &region)
+                    };
+                    let problem = setup.problem(&model);
+                    let bound = problem.bind_within(ordering.as_deref(), budget(), progress, cancel);
+                    match bound {
+                        Ok(bound) => Binding {
+                            bound: Arc::new(Mutex::new(bound)),
+                            of,
+                            bind_ms: clock_ms() - start_ms,
+                            from_rest,
+                            carried: None,
+                            frame_ms: 0.0,
+                        },
+                        Err(_) if cancel.is_cancelled() => return JobOutcome::Cancelled,
+                        Err(error) => return JobOutcome::Failed(error.renumbered(known).to_string()),
+                    }
+                }
+            };
+            let start_ms = clock_ms();
+            let mut bound = binding.bound.lock().unwrap_or_else(PoisonError::into_inner);
+            let solved = wanted.solve(&mut bound, cancel);
+            drop(bound);
+            let frame_ms = binding.frame_ms + clock_ms() - start_ms;
+            JobOutcome::Compared(Box::new(match solved {
+                Err(error) => Compared {
+                    shape: Err(error.renumbered(known).to_string()),
+                    figures: None,
+                    binding,
+                },
+                Ok(solved) => binding.after(solved, frame_ms, &model),
+            }))
+        }))
+    }
+
+    /// Takes what a job for this edit has brought.
+    pub(super) fn take(&mut self, outcome: JobOutcome, of: Edit) {
+        match outcome {
+            JobOutcome::Compared(compared) => {
+                self.binding = Some(compared.binding);
+                match compared.shape {
+                    Err(sentence) => self.refuse(sentence, of),
+                    Ok(shape) => {
+                        self.shape = shape;
+                        self.refusal = None;
+                        if compared.figures.is_some() {
+                            self.figures = compared.figures;
+                        }
+                        self.answers = compared.figures.map(|_| of);
+                    }
+                }
+            }
+            JobOutcome::Failed(sentence) => self.refuse(sentence, of),
+            // Somebody else stopped it: beginning again at once would go on for ever.
+            _ => self.refuse(STOPPED.to_owned(), of),
+        }
+    }
+
+    /// Leaves it as it is until the edit changes.
+    pub(super) fn stop(&mut self, document: &Document) {
+        self.refuse(STOPPED.to_owned(), Edit::of(document));
+    }
+
+    fn refuse(&mut self, sentence: String, of: Edit) {
+        self.refusal = Some(sentence);
+        self.answers = Some(of);
+    }
+}
+
+impl Binding {
+    /// The binding after a solve, with the shape, and with figures if that is the last one.
+    fn after(self, solved: Solved, frame_ms: f64, model: &Model) -> Compared {
+        let figures = solved.finished.then(|| {
+            let rest = model.surface.positions.iter();
+            let moved: Vec<DVec3> = rest.zip(solved.from_file.iter()).map(|(p, d)| *p + *d).collect();
+            let distortion = Distortion::of(&model.surface, &model.topology, &moved);
+            Figures {
+                bind_ms: self.bind_ms,
+                frame_ms,
+                edge_stretch_mean: distortion.edge_stretch_mean,
+                edge_stretch_max: distortion.edge_stretch_max,
+            }
+        });
+        Compared {
+            binding: Self {
+                from_rest: solved.from_rest,
+                carried: solved.carried,
+                frame_ms,
+                ..self
+            },
+            shape: Ok(solved.from_file),
+            figures,
+        }
+    }
+}
