@@ -3,12 +3,12 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
-use pliant_deform::{Bound, Method};
+use pliant_deform::Method;
 use pliant_mesh::{Distortion, Model, SurfaceVertex};
 
-use super::comparison::Edit;
+use super::compared::{Binding, Compared, Edit, Figures};
 use super::computed::Computed;
-use super::job::{Carried, Executor, JobOutcome, Solved, Work};
+use super::job::{Executor, JobOutcome, Solved, Work};
 use super::solving::Wanted;
 use crate::Setup;
 use crate::document::Document;
@@ -32,43 +32,6 @@ pub struct Alternative {
     binding: Option<Binding>,
     /// Which edit the shape or the refusal belongs to, once it is final.
     answers: Option<Edit>,
-}
-
-/// What a method took and how much its shape is stretched.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Figures {
-    /// The time of binding in milliseconds.
-    pub bind_ms: f64,
-    /// The time from new transforms to the shape in milliseconds.
-    pub frame_ms: f64,
-    /// The mean over the edges of the larger of new by old length and old by new.
-    pub edge_stretch_mean: f64,
-    /// The largest.
-    pub edge_stretch_max: f64,
-}
-
-/// A bound method and where its steps are.
-#[derive(Clone, Debug)]
-struct Binding {
-    bound: Arc<Mutex<Bound>>,
-    /// The edit that it was last used for.
-    of: Edit,
-    bind_ms: f64,
-    /// The last shape, from the rest shape.
-    from_rest: Arc<Vec<DVec3>>,
-    carried: Option<Carried>,
-    /// The time spent on the present transforms so far.
-    frame_ms: f64,
-}
-
-/// What a job of the comparison brings.
-#[derive(Debug)]
-pub struct Compared {
-    binding: Binding,
-    /// The shape, or why there is none.
-    shape: Result<Arc<Vec<DVec3>>, String>,
-    /// Once the shape is solved to its end.
-    figures: Option<Figures>,
 }
 
 impl Alternative {
@@ -163,7 +126,7 @@ impl Alternative {
                     figures: None,
                     binding,
                 },
-                Ok(solved) => binding.after(solved, frame_ms, &model),
+                Ok(solved) => after(binding, solved, frame_ms, &model),
             }))
         }))
     }
@@ -202,29 +165,27 @@ impl Alternative {
     }
 }
 
-impl Binding {
-    /// The binding after a solve, with the shape, and with figures if that is the last one.
-    fn after(self, solved: Solved, frame_ms: f64, model: &Model) -> Compared {
-        let figures = solved.finished.then(|| {
-            let rest = model.surface.positions.iter();
-            let moved: Vec<DVec3> = rest.zip(solved.from_file.iter()).map(|(p, d)| *p + *d).collect();
-            let distortion = Distortion::of(&model.surface, &model.topology, &moved);
-            Figures {
-                bind_ms: self.bind_ms,
-                frame_ms,
-                edge_stretch_mean: distortion.edge_stretch_mean,
-                edge_stretch_max: distortion.edge_stretch_max,
-            }
-        });
-        Compared {
-            binding: Self {
-                from_rest: solved.from_rest,
-                carried: solved.carried,
-                frame_ms,
-                ..self
-            },
-            shape: Ok(solved.from_file),
-            figures,
+/// The binding after a solve, with the shape, and with figures if that is the last one.
+fn after(binding: Binding, solved: Solved, frame_ms: f64, model: &Model) -> Compared {
+    let figures = solved.finished.then(|| {
+        let rest = model.surface.positions.iter();
+        let moved: Vec<DVec3> = rest.zip(solved.from_file.iter()).map(|(p, d)| *p + *d).collect();
+        let distortion = Distortion::of(&model.surface, &model.topology, &moved);
+        Figures {
+            bind_ms: binding.bind_ms,
+            frame_ms,
+            edge_stretch_mean: distortion.edge_stretch_mean,
+            edge_stretch_max: distortion.edge_stretch_max,
         }
+    });
+    Compared {
+        binding: Binding {
+            from_rest: solved.from_rest,
+            carried: solved.carried,
+            frame_ms,
+            ..binding
+        },
+        shape: Ok(solved.from_file),
+        figures,
     }
 }

@@ -3,15 +3,13 @@
 //! One job runs at a time: it binds a method, or takes the next steps with what is bound. The methods take turns, so
 //! that all of them follow a drag.
 
-use std::sync::Arc;
-
-use glam::DAffine3;
 use pliant_deform::METHODS;
 
 use super::alternative::Alternative;
+use super::compared::Edit;
 use super::computed::Computed;
 use super::job::{Executor, JobOutcome, Work};
-use crate::document::{Document, HandleId, KeptShape, Versions};
+use crate::document::Document;
 
 /// What each method makes of the present edit.
 #[derive(Debug)]
@@ -21,14 +19,6 @@ pub struct Comparison {
     under_way: Option<(usize, Edit)>,
     /// Whose turn it is.
     next: usize,
-}
-
-/// The edit that something was made for, its method apart.
-#[derive(Clone, Debug)]
-pub(super) struct Edit {
-    versions: Versions,
-    targets: Vec<(HandleId, DAffine3)>,
-    kept: Option<Arc<KeptShape>>,
 }
 
 impl Comparison {
@@ -114,27 +104,5 @@ impl Comparison {
         let count = self.alternatives.len();
         let mut numbers = (0..count).map(|step| (self.next + step) % count);
         numbers.find(|&number| !self.alternatives[number].is_current)
-    }
-}
-
-impl Edit {
-    pub(super) fn of(document: &Document) -> Self {
-        let handles = document.handles().iter();
-        Self {
-            versions: *document.versions(),
-            targets: handles.map(|handle| (handle.id, handle.affine())).collect(),
-            kept: document.kept.clone(),
-        }
-    }
-
-    /// Whether a binding for one is no good for the other.
-    pub(super) fn is_other_problem(&self, other: &Self) -> bool {
-        self.versions.are_other_edit(&other.versions)
-    }
-
-    /// Whether the same is to be solved for.
-    pub(super) fn has_targets_of(&self, other: &Self) -> bool {
-        let addresses = [self, other].map(|edit| edit.kept.as_ref().map(Arc::as_ptr));
-        self.targets == other.targets && addresses[0] == addresses[1]
     }
 }

@@ -5,8 +5,9 @@ use std::sync::{Arc, Mutex};
 use pliant_deform::{Bound, Ordering, ReusableFactor};
 use pliant_mesh::Model;
 
-use super::inspection::{Inspectable, Inspected};
-use super::job::{Carried, Pickable, ShownTriangles};
+use super::carried::Carried;
+use super::inspected::{Inspectable, Inspected};
+use super::job::{Pickable, ShownTriangles};
 use super::region::{FileContacts, Region};
 use crate::warning::HandleWarning;
 

@@ -10,10 +10,10 @@ use glam::{DVec3, Mat3};
 use pliant_deform::{Bound, Budget, Ordering};
 use pliant_mesh::{Bvh, Cancel, Progress, SurfaceVertex};
 
-use super::alternative::Compared;
-use super::inspection::{Inspectable, Inspected};
+use super::carried::Carried;
+use super::compared::Compared;
+use super::inspected::{Inspectable, Inspected};
 use super::region::Region;
-use crate::document::KeptShape;
 use crate::warning::HandleWarning;
 
 /// The jobs the editor hands out, by what they make.
@@ -222,19 +222,6 @@ pub struct Solved {
     pub finished: bool,
     /// How far an iterative method's descent is; `None` for a method that is done in one step.
     pub descent: Option<Descent>,
-}
-
-/// What a solve from a kept shape goes on from.
-#[derive(Clone, Debug)]
-pub(crate) struct Carried {
-    /// The shape that was kept.
-    pub(crate) kept: Arc<KeptShape>,
-    /// The solution for the transforms at which it was kept.
-    pub(crate) at_first: Arc<Vec<DVec3>>,
-    /// The solution for the present transforms, without what is carried along.
-    pub(crate) solution: Arc<Vec<DVec3>>,
-    /// What is shown of it.
-    pub(crate) shown: Arc<Vec<DVec3>>,
 }
 
 /// How far a descent is.

@@ -1,9 +1,12 @@
 //! What follows from the document and is computed beside the window: the jobs, their queues and their last results.
 
 mod alternative;
+mod carried;
+mod compared;
 mod comparison;
 mod computed;
 mod inline_executor;
+mod inspected;
 mod inspection;
 mod job;
 mod job_queue;
@@ -13,12 +16,13 @@ mod scheduler;
 mod solving;
 mod work;
 
-pub use alternative::{Alternative, Compared, Figures};
+pub use alternative::Alternative;
+pub use compared::{Compared, Figures};
 pub use comparison::Comparison;
 pub(crate) use computed::Computed;
 pub use inline_executor::InlineExecutor;
-pub(crate) use inspection::Asked;
-pub use inspection::{Inspectable, Inspected};
+pub(crate) use inspected::Asked;
+pub use inspected::{Inspectable, Inspected};
 pub(crate) use job::Pickable;
 pub use job::{Descent, Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
 pub use job_queue::{JobQueue, Running};

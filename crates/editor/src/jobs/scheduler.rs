@@ -12,7 +12,8 @@ use pliant_mesh::{Model, SurfaceVertex};
 
 use super::comparison::Comparison;
 use super::computed::Computed;
-use super::inspection::{Asked, Inspected, inspect_work};
+use super::inspected::{Asked, Inspected};
+use super::inspection::inspect_work;
 use super::job::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, ShownTriangles, Solved, Work};
 use super::job_queue::{JobQueue, Running};
 use super::region::{Region, region_input};

@@ -6,8 +6,9 @@ use glam::{DAffine3, DVec3};
 use pliant_deform::{Bound, Solve, SolveError, Step};
 use pliant_mesh::{Cancel, SurfaceVertex};
 
+use super::carried::Carried;
 use super::computed::Computed;
-use super::job::{Carried, Descent, JobOutcome, Solved, Work};
+use super::job::{Descent, JobOutcome, Solved, Work};
 use crate::document::{Document, HandleId, KeptShape, sum_of_shapes};
 use crate::warning::HandleWarning;
 

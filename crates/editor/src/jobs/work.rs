@@ -6,7 +6,7 @@ use pliant_deform::{BindError, Budget, Ordering, Problem};
 use pliant_mesh::{Bvh, Model, SurfaceVertex};
 
 use super::computed::Computed;
-use super::inspection::Inspectable;
+use super::inspected::Inspectable;
 use super::job::{JobOutcome, Pickable, Work};
 use super::region::{Region, RegionInput};
 use crate::Setup;

@@ -1,0 +1,76 @@
+//! What a job of the comparison brings: a binding, a shape, and what they took.
+
+use std::sync::{Arc, Mutex};
+
+use glam::{DAffine3, DVec3};
+use pliant_deform::Bound;
+
+use super::carried::Carried;
+use crate::document::{Document, HandleId, KeptShape, Versions};
+
+/// What a job of the comparison brings.
+#[derive(Debug)]
+pub struct Compared {
+    pub(super) binding: Binding,
+    /// The shape, or why there is none.
+    pub(super) shape: Result<Arc<Vec<DVec3>>, String>,
+    /// Once the shape is solved to its end.
+    pub(super) figures: Option<Figures>,
+}
+
+/// What a method took and how much its shape is stretched.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Figures {
+    /// The time of binding in milliseconds.
+    pub bind_ms: f64,
+    /// The time from new transforms to the shape in milliseconds.
+    pub frame_ms: f64,
+    /// The mean over the edges of the larger of new by old length and old by new.
+    pub edge_stretch_mean: f64,
+    /// The largest.
+    pub edge_stretch_max: f64,
+}
+
+/// A bound method and where its steps are.
+#[derive(Clone, Debug)]
+pub(super) struct Binding {
+    pub(super) bound: Arc<Mutex<Bound>>,
+    /// The edit that it was last used for.
+    pub(super) of: Edit,
+    pub(super) bind_ms: f64,
+    /// The last shape, from the rest shape.
+    pub(super) from_rest: Arc<Vec<DVec3>>,
+    pub(super) carried: Option<Carried>,
+    /// The time spent on the present transforms so far.
+    pub(super) frame_ms: f64,
+}
+
+/// The edit that something was made for, its method apart.
+#[derive(Clone, Debug)]
+pub(super) struct Edit {
+    versions: Versions,
+    targets: Vec<(HandleId, DAffine3)>,
+    kept: Option<Arc<KeptShape>>,
+}
+
+impl Edit {
+    pub(super) fn of(document: &Document) -> Self {
+        let handles = document.handles().iter();
+        Self {
+            versions: *document.versions(),
+            targets: handles.map(|handle| (handle.id, handle.affine())).collect(),
+            kept: document.kept.clone(),
+        }
+    }
+
+    /// Whether a binding for one is no good for the other.
+    pub(super) fn is_other_problem(&self, other: &Self) -> bool {
+        self.versions.are_other_edit(&other.versions)
+    }
+
+    /// Whether the same is to be solved for.
+    pub(super) fn has_targets_of(&self, other: &Self) -> bool {
+        let addresses = [self, other].map(|edit| edit.kept.as_ref().map(Arc::as_ptr));
+        self.targets == other.targets && addresses[0] == addresses[1]
+    }
+}
