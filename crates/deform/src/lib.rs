@@ -8,13 +8,14 @@
 //! matrix in the restricted [`Ordering`], which is factored (`sparse`), and to the method: `bilaplacian` gives
 //! [`HandleBases`], so that a frame is a product with them; `arap` shares everything up to the factor and takes as many
 //! steps as it needs; `primo` steps with rigid prisms; `poisson` spreads the handles' turns and solves for what fits
-//! them, `laplacian` does so with differential coordinates, and `frames` solves for the turns first. `rbf` bends the space
-//! around points, connected or not (`space`).
+//! them, `laplacian` does so with differential coordinates, and `frames` solves for the turns first. `rbf`, `mls`,
+//! `embedded`, `lattice` and `cage` bend the space around points, connected or not (`space`).
 
 mod arap;
 mod bilaplacian;
 mod bound;
 mod budget;
+mod cage;
 mod embedded;
 mod error;
 mod frames;
@@ -42,6 +43,7 @@ pub use arap::{Arap, ArapEnergy};
 pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Detail, Discretisation, TriangulationKind};
 pub use bound::{Bound, ReusableFactor, Step};
 pub use budget::{Budget, Limit};
+pub use cage::{Cage, CageCoordinates};
 pub use embedded::Embedded;
 pub use error::{BindError, Crowded, SolveError};
 pub use frames::Frames;

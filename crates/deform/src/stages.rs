@@ -2,6 +2,8 @@
 
 use pliant_mesh::Cancel;
 
+pub use crate::cage::parts as cage;
+
 use crate::bilaplacian::assembly::assemble_bilaplacian;
 use crate::bilaplacian::hubs::Hubs;
 use crate::bilaplacian::operator::BilaplacianOperator;

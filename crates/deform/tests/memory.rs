@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
 use pliant_deform::{
-    Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, Constraints, Detail, Frames, Limit, Loose,
+    Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, CageCoordinates, Constraints, Detail, Frames, Limit, Loose,
     Method, OptionValue, Primo, Problem, Propagation, Rbf, Role, Transforms,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
@@ -163,6 +163,9 @@ fn methods() -> Vec<Method> {
     methods.push(Method::from_name("mls").unwrap());
     methods.push(Method::from_name("embedded").unwrap());
     methods.push(Method::from_name("lattice").unwrap());
+    for coordinates in CageCoordinates::ALL {
+        methods.push(with("cage", "coordinates", coordinates.name()));
+    }
     methods
 }
 

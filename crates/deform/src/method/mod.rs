@@ -28,6 +28,7 @@ pub const METHODS: &[&MethodDeclaration] = &[
     &crate::mls::DECLARATION,
     &crate::embedded::DECLARATION,
     &crate::lattice::DECLARATION,
+    &crate::cage::DECLARATION,
     #[cfg(feature = "identity-method")]
     &crate::identity::DECLARATION,
 ];

@@ -96,7 +96,7 @@ impl<S: Simd> Vector<S> {
     }
 
     #[inline(always)]
-    pub(super) fn abs(self) -> Self {
+    pub(crate) fn abs(self) -> Self {
         Self {
             numbers: self.simd.abs_f64s(self.numbers),
             ..self
@@ -110,7 +110,7 @@ impl<S: Simd> Vector<S> {
 
     /// Its own numbers where `mask` is set, else the other's.
     #[inline(always)]
-    pub(super) fn or(self, mask: Mask<S>, other: Self) -> Self {
+    pub(crate) fn or(self, mask: Mask<S>, other: Self) -> Self {
         Self {
             numbers: self.simd.select_f64s(mask.lanes, self.numbers, other.numbers),
             ..self
@@ -119,7 +119,7 @@ impl<S: Simd> Vector<S> {
 
     /// Where it is less; false where either is not a number.
     #[inline(always)]
-    pub(super) fn less(self, other: Self) -> Mask<S> {
+    pub(crate) fn less(self, other: Self) -> Mask<S> {
         Mask {
             simd: self.simd,
             lanes: self.simd.less_than_f64s(self.numbers, other.numbers),
@@ -129,7 +129,7 @@ impl<S: Simd> Vector<S> {
 
 /// Which cells of a vector.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Mask<S: Simd> {
+pub(crate) struct Mask<S: Simd> {
     pub(crate) simd: S,
     lanes: S::m64s,
 }

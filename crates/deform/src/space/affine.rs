@@ -1,5 +1,6 @@
-//! The affine map that fits the samples best. Methods whose own field would rather not move solve for it first, so that
-//! what moves affinely as a whole does so exactly.
+//! The affine map that fits the samples best where nothing is fixed. Methods whose own field would rather not move solve
+//! for it first, so that what moves affinely as a whole does so exactly. Where something is fixed it would take along
+//! what is far from the handles, so there is none.
 
 use faer::Mat;
 use glam::DVec3;
@@ -23,9 +24,15 @@ pub(crate) struct AffineParts {
 impl AffineParts {
     /// For each handle h and column k the affine function a that minimises
     /// Σ w (a(p) − b(p))² + ε Σ w u² |∇a − ∇b|², where b is the handle's coordinate k at its own samples and 0 at all
-    /// others, and u is `world_unit`, about the size of the region. If all handles have the same affine motion and
-    /// nothing is fixed, the sum over the handles is just that motion.
+    /// others, and u is `world_unit`, about the size of the region. If all handles have the same affine motion, the sum
+    /// over the handles is just that motion. It is zero where a sample is fixed.
     pub fn fitted(samples: &[Sample], handles: &[Handle], world_origin: DVec3, world_unit: f64) -> Self {
+        if samples.iter().any(|sample| sample.handle.is_none()) {
+            return Self {
+                world_origin,
+                parts: vec![Default::default(); handles.len()],
+            };
+        }
         let mut matrix = Mat::<f64>::zeros(4, 4);
         let mut right = Mat::<f64>::zeros(4, 4 * handles.len());
         let all: f64 = samples.iter().map(|sample| sample.weight).sum();

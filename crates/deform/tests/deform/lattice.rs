@@ -94,17 +94,27 @@ fn it_is_the_dense_definition() {
             ];
             let scene = bar(basis.with(values).unwrap());
             let target = turned(DVec3::X, 0.8, DVec3::new(0.1, 0.4, -0.2));
-            let expected = by_definition(&scene, &target, cells as usize, norm == "bending");
-            let displacements = scene.moved(&[target]);
-            for ((role, expected), d) in scene.roles.iter().zip(&expected).zip(&displacements) {
-                let error = d.distance(*expected);
-                assert!(*role == Role::Fixed || error < 1e-8, "{:?}: {error:e}", scene.method);
+            let mut held = bar(scene.method.clone());
+            for role in &mut held.roles {
+                if *role == Role::Fixed {
+                    *role = Role::Handle(1);
+                }
+            }
+            held.handle_count = 2;
+            for (scene, targets) in [(scene, vec![target]), (held, vec![target, DAffine3::IDENTITY])] {
+                let expected = by_definition(&scene, &target, cells as usize, norm == "bending");
+                let displacements = scene.moved(&targets);
+                for ((role, expected), d) in scene.roles.iter().zip(&expected).zip(&displacements) {
+                    let error = d.distance(*expected);
+                    assert!(*role == Role::Fixed || error < 1e-8, "{:?}: {error:e}", scene.method);
+                }
             }
         }
     }
 }
 
-/// The field of the textbook: an affine map, then a lattice by normal equations, all dense.
+/// The field of the textbook: where nothing is fixed an affine map, then a lattice by normal equations, all dense. The
+/// second handle rests.
 fn by_definition(scene: &Scene, target: &DAffine3, cells: usize, bending: bool) -> Vec<DVec3> {
     let method = &scene.method;
     let moving = scene.roles.iter().zip(scene.positions());
@@ -122,7 +132,7 @@ fn by_definition(scene: &Scene, target: &DAffine3, cells: usize, bending: bool) 
         .fold((low, high), |(low, high), p| (low.min(*p), high.max(*p)));
     let (low, high) = (low - 0.05 * diagonal, high + 0.05 * diagonal);
     let mut samples = Vec::new();
-    for role in [Role::Handle(0), Role::Fixed] {
+    for role in [Role::Handle(0), Role::Handle(1), Role::Fixed] {
         let own = scene
             .roles
             .iter()
@@ -132,8 +142,8 @@ fn by_definition(scene: &Scene, target: &DAffine3, cells: usize, bending: bool) 
         let own: Vec<DVec3> = own.map(|(_, p)| *p).filter(inside).collect();
         for &p in &own {
             let wanted = match role {
-                Role::Fixed => DVec3::ZERO,
-                _ => target.transform_point3(p) - p,
+                Role::Handle(0) => target.transform_point3(p) - p,
+                _ => DVec3::ZERO,
             };
             samples.push((p, wanted, 1.0 / own.len() as f64));
         }
@@ -159,7 +169,13 @@ fn by_definition(scene: &Scene, target: &DAffine3, cells: usize, bending: bool) 
         }
     }
     let affine = eliminated(a, b);
-    let affine = |p: DVec3| -> DVec3 { affine.iter().zip(terms(p)).map(|(a, term)| *a * term).sum() };
+    let is_held = scene.roles.contains(&Role::Fixed);
+    let affine = |p: DVec3| -> DVec3 {
+        if is_held {
+            return DVec3::ZERO;
+        }
+        affine.iter().zip(terms(p)).map(|(a, term)| *a * term).sum()
+    };
     // The lattice.
     let per_axis = (0..100).take_while(|&number| {
         let nonzero = |step: u32| function(method, cells, number, (f64::from(step) + 0.5) / 64.0) > 0.0;

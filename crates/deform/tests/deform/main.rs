@@ -4,6 +4,8 @@
 mod anisotropy;
 mod arap;
 mod bilaplacian;
+mod cage;
+mod cage_coordinates;
 mod components;
 mod continuity;
 mod detail;

@@ -19,6 +19,12 @@ pub fn methods() -> Vec<Method> {
         set("lattice", "basis", OptionValue::Name("bernstein")),
         set("lattice", "norm", OptionValue::Name("displacement")),
         set("lattice", "falloff", OptionValue::Number(0.0)),
+        with("cage"),
+        set("cage", "detail", OptionValue::Whole(3)),
+        set("cage", "coordinates", OptionValue::Name("harmonic"))
+            .with([("detail", OptionValue::Whole(3))])
+            .unwrap(),
+        set("cage", "coordinates", OptionValue::Name("green")),
     ];
     for transforms in MlsTransforms::ALL {
         methods.push(set("mls", "transforms", OptionValue::Name(transforms.name())));
@@ -124,8 +130,9 @@ fn handles_are_met_or_the_distance_is_told() {
 
 #[test]
 fn turning_the_whole_problem_turns_the_result() {
-    // A lattice's box is turned with the axes of space.
-    for method in methods().iter().filter(|method| method.name() != "lattice") {
+    // A lattice's box, and the voxels that a cage is made of, lie along the axes of space.
+    let is_free = |method: &&Method| !["lattice", "cage"].contains(&method.name());
+    for method in methods().iter().filter(is_free) {
         // Of centres that are equally good, rounding chooses: only where all are taken does that not matter.
         let exact = method.with([("tolerance", OptionValue::Number(1e-9))]);
         let method = &exact.unwrap_or_else(|_| method.clone());

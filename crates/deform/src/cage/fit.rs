@@ -1,0 +1,90 @@
+//! How the handles drive the cage: min Σ w |d(p) − target|² + λ |L D|² over the displacements D of the cage's vertices,
+//! with L the difference from the mean of the neighbours. So the cage bends smoothly between the handles.
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, Par};
+use glam::DVec3;
+
+use super::mesh::CageMesh;
+use crate::handles::Handle;
+use crate::numerical::dense::solved;
+use crate::space::affine::AffineParts;
+use crate::space::fit_samples::Sample;
+
+/// λ.
+const REGULARISATION: f64 = 1e-6;
+
+/// Where these differences leave a choice, least displacements decide, with this factor.
+const RIDGE: f64 = 1e-3;
+
+/// The weight of a soft handle of weight 1: about as much as the cage resists.
+pub(super) fn soft_unit(cage: &CageMesh) -> f64 {
+    REGULARISATION * cage.vertices.len() as f64 * 0.1
+}
+
+/// Bytes that the fit takes.
+pub(super) fn fit_bytes(vertex_count: usize, sample_count: usize) -> u64 {
+    let (vertices, samples) = (vertex_count as u64, sample_count as u64);
+    8 * vertices * (2 * vertices + 4 * samples + 64)
+}
+
+/// How each vertex moves as each sample misses its target by a unit: a row a vertex and a column a sample. `rows` has
+/// the coordinates, a row a sample.
+pub(super) fn response(cage: &CageMesh, rows: &Mat<f64>, samples: &[Sample]) -> Mat<f64> {
+    let (count, sample_count) = (cage.vertices.len(), samples.len());
+    let weighted = Mat::from_fn(count, sample_count, |vertex, sample| {
+        rows[(sample, vertex)] * samples[sample].weight
+    });
+    let mut matrix = Mat::<f64>::zeros(count, count);
+    matmul(
+        matrix.as_mut(),
+        Accum::Replace,
+        weighted.as_ref(),
+        rows.as_ref(),
+        1.0,
+        Par::Seq,
+    );
+    for (vertex, neighbours) in cage.neighbours().iter().enumerate() {
+        let share = -1.0 / neighbours.len() as f64;
+        let own = neighbours.iter().map(|&other| (other as usize, share));
+        let terms: Vec<(usize, f64)> = own.chain([(vertex, 1.0)]).collect();
+        for &(row, a) in &terms {
+            for &(column, b) in &terms {
+                matrix[(row, column)] += REGULARISATION * a * b;
+            }
+        }
+        matrix[(vertex, vertex)] += REGULARISATION * RIDGE;
+    }
+    solved(matrix, weighted)
+}
+
+/// The vertices' displacements that are linear in the handles' motions: a row a vertex and four columns a handle.
+/// `world_vertices` are where they rest.
+pub(super) fn controls(
+    response: &Mat<f64>,
+    samples: &[Sample],
+    handles: &[Handle],
+    affine: &AffineParts,
+    world_vertices: &[DVec3],
+) -> Mat<f64> {
+    let misses = Mat::from_fn(samples.len(), 4 * handles.len(), |sample, column| {
+        let (handle, k) = (column / 4, column % 4);
+        let target = match samples[sample].handle {
+            Some((own, coordinates)) if own == handle => coordinates[k],
+            _ => 0.0,
+        };
+        target - affine.at(handle, samples[sample].world_point)[k]
+    });
+    let mut controls = Mat::from_fn(world_vertices.len(), 4 * handles.len(), |vertex, column| {
+        affine.at(column / 4, world_vertices[vertex])[column % 4]
+    });
+    matmul(
+        controls.as_mut(),
+        Accum::Add,
+        response.as_ref(),
+        misses.as_ref(),
+        1.0,
+        Par::Seq,
+    );
+    controls
+}

@@ -1,0 +1,24 @@
+//! Deformation by a cage: d(p) = Σ λ_i(p) D_i, with coordinates λ of p in a coarse closed triangle mesh around the
+//! region. The handles drive the cage: its vertices' displacements are those with which the field fits the handles in
+//! the least-squares sense, and of these the smoothest ones.
+//!
+//! `voxels` and `offset` make the cage. The coordinates are those of `mean_value` [JSW05], of `harmonic` functions
+//! [JMD+07] and of `green` [LLC08]; `fit` solves for the cage's vertices.
+
+mod conformal;
+mod crossings;
+mod declaration;
+mod fit;
+mod green;
+mod harmonic;
+mod linear;
+mod mean_value;
+mod mean_value_at;
+mod mesh;
+mod offset;
+mod options;
+pub mod parts;
+mod voxels;
+
+pub(crate) use self::declaration::DECLARATION;
+pub use self::options::{Cage, CageCoordinates};

@@ -1,0 +1,106 @@
+//! A cage made for a region: the surface of voxels around it, smoothed.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec3, I64Vec3};
+
+use super::mesh::CageMesh;
+use super::voxels::Voxels;
+
+/// How far a vertex may move from its voxels while the cage is smoothed, in voxels. The region lies at least one voxel
+/// within their surface, so at least 0.7 voxels within the cage: as far as the splines of harmonic coordinates reach
+/// over their grid, 2 √3 steps of a fifth of a voxel.
+const SMOOTHING: f64 = 0.3;
+
+/// How often vertices move to the middle of their neighbours.
+const ROUNDS: usize = 3;
+
+/// A cage, and how large its voxels are.
+#[derive(Clone, Debug)]
+pub(crate) struct OffsetCage {
+    pub mesh: CageMesh,
+    pub voxel: f64,
+}
+
+/// A closed 2-manifold around all of the points and along the triangles between them, with `detail` voxels on the
+/// longest side of the points' box. It has a part for each group of points that are far apart.
+pub(crate) fn offset_cage(points: &[DVec3], triangles: impl Iterator<Item = [DVec3; 3]>, detail: u32) -> OffsetCage {
+    let (low, high) = points
+        .iter()
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &point| {
+            (low.min(point), high.max(point))
+        });
+    let (low, high) = if low.is_finite() {
+        (low, high)
+    } else {
+        (DVec3::ZERO, DVec3::ZERO)
+    };
+    let longest = (high - low).max_element();
+    let voxel = if longest > 0.0 {
+        longest / f64::from(detail)
+    } else {
+        1.0
+    };
+    let along = triangles.flat_map(|corners| spread(corners, 0.5 * voxel));
+    let voxels = Voxels::around(points.iter().copied().chain(along), low, high - low, voxel);
+    let mesh = smoothed(surface(&voxels), SMOOTHING * voxel);
+    OffsetCage { mesh, voxel }
+}
+
+/// Points on a triangle that are no farther apart than about `step`.
+fn spread([a, b, c]: [DVec3; 3], step: f64) -> impl Iterator<Item = DVec3> {
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let count = (longest / step).ceil().max(1.0) as usize;
+    let at = move |share: usize| share as f64 / count as f64;
+    (0..=count).flat_map(move |i| (0..=count - i).map(move |j| a + (b - a) * at(i) + (c - a) * at(j)))
+}
+
+/// The faces between voxels of the set and others, two triangles each.
+fn surface(voxels: &Voxels) -> CageMesh {
+    let mut numbers: BTreeMap<[i64; 3], u32> = BTreeMap::new();
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    for cell in voxels.cells() {
+        for axis in 0..3 {
+            let [along, a, b] = [0, 1, 2].map(|turn| I64Vec3::AXES[(axis + turn) % 3]);
+            for is_ahead in [true, false] {
+                if voxels.contains(if is_ahead { cell + along } else { cell - along }) {
+                    continue;
+                }
+                let first = if is_ahead { cell + along } else { cell };
+                // Counterclockwise seen from outside.
+                let (a, b) = if is_ahead { (a, b) } else { (b, a) };
+                let corners = [first, first + a, first + a + b, first + b].map(|corner| {
+                    *numbers.entry(corner.to_array()).or_insert_with(|| {
+                        vertices.push(voxels.low + corner.as_dvec3() * voxels.size);
+                        vertices.len() as u32 - 1
+                    })
+                });
+                let [p, q, r, s] = corners;
+                // Diagonals alternate, so that the cage leans to no side.
+                if (first.x + first.y + first.z) % 2 == 0 {
+                    faces.extend([[p, q, r], [p, r, s]]);
+                } else {
+                    faces.extend([[p, q, s], [q, r, s]]);
+                }
+            }
+        }
+    }
+    CageMesh::new(vertices, faces)
+}
+
+/// Vertices move to the middle of their neighbours, and at most so far from where they were.
+fn smoothed(mut mesh: CageMesh, most: f64) -> CageMesh {
+    let neighbours = mesh.neighbours();
+    let rest = mesh.vertices.clone();
+    for _ in 0..ROUNDS {
+        let middles = neighbours.iter().map(|own| {
+            let sum: DVec3 = own.iter().map(|&other| mesh.vertices[other as usize]).sum();
+            sum / own.len() as f64
+        });
+        let middles: Vec<DVec3> = middles.collect();
+        for ((vertex, middle), rest) in mesh.vertices.iter_mut().zip(middles).zip(&rest) {
+            *vertex = *rest + (0.5 * (*vertex + middle) - *rest).clamp_length_max(most);
+        }
+    }
+    mesh
+}
