@@ -164,7 +164,9 @@ fn methods() -> Vec<Method> {
     methods.push(Method::from_name("embedded").unwrap());
     methods.push(Method::from_name("lattice").unwrap());
     for coordinates in CageCoordinates::ALL {
-        methods.push(with("cage", "coordinates", coordinates.name()));
+        let detail = OptionValue::Whole(3);
+        let cage = with("cage", "coordinates", coordinates.name());
+        methods.push(cage.with([("detail", detail)]).unwrap());
     }
     methods
 }

@@ -101,7 +101,7 @@ impl DeformMethod for Cage {
         let budget = input.partition.budget.without(bytes).map_err(over)?;
         let affine = AffineParts::fitted(&samples, input.handles, within.middle(), within.diagonal);
         let world_vertices: Vec<DVec3> = cage.vertices.iter().map(|vertex| unit.world(*vertex)).collect();
-        let controls_of = |response: &Mat<f64>| controls(response, &samples, input.handles, &affine, &world_vertices);
+        let controls_of = |rows: &Mat<f64>| controls(&cage, rows, &samples, input.handles, &affine, &world_vertices);
         let vertices = moving(HandleFit::LeastSquares, input);
         let falloff = Falloff::of(input.problem, &vertices, self.falloff * within.diagonal);
         let fit = HandleFit::LeastSquares;
@@ -131,7 +131,7 @@ impl DeformMethod for Cage {
                     .map(|sample| harmonic.at(unit.local(sample.world_point)))
                     .collect();
                 let rows = Mat::from_fn(samples.len(), cage.vertices.len(), |sample, vertex| own[sample][vertex]);
-                let controls = controls_of(&response(&cage, &rows, &samples));
+                let controls = controls_of(&rows);
                 let map = HarmonicMap::new(unit, &harmonic, &controls);
                 Field::Linear(LinearField::bind(&map, &falloff, fit, input)?)
             }

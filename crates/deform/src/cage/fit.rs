@@ -28,22 +28,15 @@ pub(super) fn fit_bytes(vertex_count: usize, sample_count: usize) -> u64 {
     8 * vertices * (2 * vertices + 4 * samples + 64)
 }
 
-/// How each vertex moves as each sample misses its target by a unit: a row a vertex and a column a sample. `rows` has
-/// the coordinates, a row a sample.
-pub(super) fn response(cage: &CageMesh, rows: &Mat<f64>, samples: &[Sample]) -> Mat<f64> {
+/// The normal equations: their matrix, and what multiplies the samples' misses, a row a vertex and a column a sample.
+/// `rows` has the coordinates, a row a sample.
+fn normal_equations(cage: &CageMesh, rows: &Mat<f64>, samples: &[Sample]) -> (Mat<f64>, Mat<f64>) {
     let (count, sample_count) = (cage.vertices.len(), samples.len());
     let weighted = Mat::from_fn(count, sample_count, |vertex, sample| {
         rows[(sample, vertex)] * samples[sample].weight
     });
     let mut matrix = Mat::<f64>::zeros(count, count);
-    matmul(
-        matrix.as_mut(),
-        Accum::Replace,
-        weighted.as_ref(),
-        rows.as_ref(),
-        1.0,
-        Par::Seq,
-    );
+    multiply(&mut matrix, &weighted, rows);
     for (vertex, neighbours) in cage.neighbours().iter().enumerate() {
         let share = -1.0 / neighbours.len() as f64;
         let own = neighbours.iter().map(|&other| (other as usize, share));
@@ -55,13 +48,20 @@ pub(super) fn response(cage: &CageMesh, rows: &Mat<f64>, samples: &[Sample]) -> 
         }
         matrix[(vertex, vertex)] += REGULARISATION * RIDGE;
     }
+    (matrix, weighted)
+}
+
+/// How each vertex moves as each sample misses its target by a unit: a row a vertex and a column a sample.
+pub(super) fn response(cage: &CageMesh, rows: &Mat<f64>, samples: &[Sample]) -> Mat<f64> {
+    let (matrix, weighted) = normal_equations(cage, rows, samples);
     solved(matrix, weighted)
 }
 
 /// The vertices' displacements that are linear in the handles' motions: a row a vertex and four columns a handle.
 /// `world_vertices` are where they rest.
 pub(super) fn controls(
-    response: &Mat<f64>,
+    cage: &CageMesh,
+    rows: &Mat<f64>,
     samples: &[Sample],
     handles: &[Handle],
     affine: &AffineParts,
@@ -75,16 +75,16 @@ pub(super) fn controls(
         };
         target - affine.at(handle, samples[sample].world_point)[k]
     });
-    let mut controls = Mat::from_fn(world_vertices.len(), 4 * handles.len(), |vertex, column| {
-        affine.at(column / 4, world_vertices[vertex])[column % 4]
-    });
-    matmul(
-        controls.as_mut(),
-        Accum::Add,
-        response.as_ref(),
-        misses.as_ref(),
-        1.0,
-        Par::Seq,
-    );
-    controls
+    let (matrix, weighted) = normal_equations(cage, rows, samples);
+    let mut right = Mat::zeros(cage.vertices.len(), misses.ncols());
+    multiply(&mut right, &weighted, &misses);
+    let solution = solved(matrix, right);
+    Mat::from_fn(world_vertices.len(), misses.ncols(), |vertex, column| {
+        solution[(vertex, column)] + affine.at(column / 4, world_vertices[vertex])[column % 4]
+    })
+}
+
+/// On one thread, so that the bits do not depend on how many there are.
+fn multiply(out: &mut Mat<f64>, a: &Mat<f64>, b: &Mat<f64>) {
+    matmul(out.as_mut(), Accum::Replace, a.as_ref(), b.as_ref(), 1.0, Par::Seq);
 }

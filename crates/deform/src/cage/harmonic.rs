@@ -1,29 +1,20 @@
 //! Harmonic coordinates [JMD+07]: each vertex' function is harmonic inside the cage and, on it, the hat function of the
 //! vertex.
 //!
-//! They are solved for on a grid inside the cage. A node's balance is Σ (u_neighbour − u) / θ = 0 over its six
-//! directions, where θ is the distance in steps to the next node or, where the cage comes first, to the cage, whose
-//! value is taken there [GFCK02]. All differences quotients of a linear function are alike, so linear functions are
-//! reproduced exactly, and no coordinate is negative. Between the nodes cubic B-splines are put over their values, which
-//! keep both and have continuous curvature.
+//! They are solved for on a grid inside the cage (`balance`). Between the nodes cubic B-splines are put over their values,
+//! which keep linear functions and signs and have continuous curvature.
 
-use glam::{DVec3, I64Vec3, USizeVec3};
+use glam::{DVec3, I64Vec3};
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
+use super::balance::{AT_ONCE, Balance, OUTSIDE, matrix, nodes_inside};
 use super::crossings::{Crossings, GridFrame};
 use super::mesh::CageMesh;
 use crate::budget::{Budget, bytes_of, filled};
 use crate::sparse::cholesky::Factor;
 use crate::sparse::factor_error::FactorError;
-use crate::sparse::matrix::ScaledMatrix;
 use crate::sparse::ordering::graph::elimination;
-
-/// Coordinates that are solved for at once.
-const AT_ONCE: usize = 8;
-
-/// A node that does not lie in the cage.
-const OUTSIDE: u32 = u32::MAX;
 
 /// The coordinates at the nodes inside a cage.
 #[derive(Debug)]
@@ -35,17 +26,6 @@ pub(super) struct Harmonic {
     vertex_count: usize,
     /// For each eight vertices their coordinates at the nodes.
     values: Vec<Vec<[f64; AT_ONCE]>>,
-}
-
-/// What a node's balance consists of.
-struct Balance {
-    /// Its weight, the sum of all.
-    diagonal: Vec<f64>,
-    offsets: Vec<u32>,
-    /// The nodes beside each, in compressed rows.
-    neighbours: Vec<u32>,
-    /// For each eight vertices: node, vertex among the eight, and the weight of its value on the cage.
-    on_cage: Vec<Vec<(u32, usize, f64)>>,
 }
 
 impl Harmonic {
@@ -69,7 +49,7 @@ impl Harmonic {
         let inside = nodes_inside(&frame, &crossings);
         let node_count = inside.iter().filter(|node| **node != OUTSIDE).count();
         let budget = budget.without(bytes_of(node_count, 8 * AT_ONCE * (blocks + 4) + 200))?;
-        let balance = balance(cage, &frame, &crossings, &inside, node_count);
+        let balance = Balance::of(cage, &frame, &crossings, &inside, node_count);
         let order = elimination(&balance.offsets, &balance.neighbours, cancel).map_err(|_| FactorError::Cancelled)?;
         progress.set(0.2);
         let mut column_of = vec![0_u32; node_count];
@@ -189,95 +169,4 @@ fn cubic(t: f64) -> [(f64, f64); 4] {
         ((4.0 - 6.0 * s * s + 3.0 * s * s * s) / 6.0, 2.0 * s - 1.5 * s * s),
         (t * t * t / 6.0, 0.5 * t * t),
     ]
-}
-
-/// The numbers of the nodes inside, by how often the line along x crosses the cage before them.
-fn nodes_inside(frame: &GridFrame, crossings: &Crossings) -> Vec<u32> {
-    let mut inside = vec![OUTSIDE; frame.count()];
-    let mut count = 0;
-    for node in nodes(frame) {
-        let before = crossings.along(frame, 0, node).iter();
-        if before.filter(|crossing| crossing.at < node.x as f64).count() % 2 == 1 {
-            inside[frame.number(node)] = count;
-            count += 1;
-        }
-    }
-    inside
-}
-
-fn nodes(frame: &GridFrame) -> impl Iterator<Item = USizeVec3> + use<> {
-    let counts = frame.counts;
-    let row = move |y, z| (0..counts.x).map(move |x| USizeVec3::new(x, y, z));
-    (0..counts.z).flat_map(move |z| (0..counts.y).flat_map(move |y| row(y, z)))
-}
-
-fn balance(cage: &CageMesh, frame: &GridFrame, crossings: &Crossings, inside: &[u32], node_count: usize) -> Balance {
-    /// Nearer to the cage a node has its value to all digits.
-    const NEAREST: f64 = 1e-9;
-    let mut balance = Balance {
-        diagonal: Vec::with_capacity(node_count),
-        offsets: vec![0],
-        neighbours: Vec::new(),
-        on_cage: vec![Vec::new(); cage.vertices.len().div_ceil(AT_ONCE)],
-    };
-    for node in nodes(frame).filter(|node| inside[frame.number(*node)] != OUTSIDE) {
-        let own = inside[frame.number(node)];
-        let mut diagonal = 0.0;
-        for axis in 0..3 {
-            let line = crossings.along(frame, axis, node);
-            let here = node[axis] as f64;
-            let ahead = line.partition_point(|crossing| crossing.at < here);
-            let met = [ahead.checked_sub(1).map(|place| &line[place]), line.get(ahead)];
-            for (met, is_ahead) in met.into_iter().zip([false, true]) {
-                if let Some(crossing) = met.filter(|crossing| (crossing.at - here).abs() <= 1.0) {
-                    let weight = (crossing.at - here).abs().max(NEAREST).recip();
-                    diagonal += weight;
-                    for (vertex, share) in cage.faces[crossing.face as usize].iter().zip(crossing.barycentric) {
-                        let vertex = *vertex as usize;
-                        balance.on_cage[vertex / AT_ONCE].push((own, vertex % AT_ONCE, weight * share.max(0.0)));
-                    }
-                    continue;
-                }
-                let mut next = node;
-                next[axis] = if is_ahead { node[axis] + 1 } else { node[axis] - 1 };
-                let other = inside[frame.number(next)];
-                if other != OUTSIDE {
-                    diagonal += 1.0;
-                    balance.neighbours.push(other);
-                }
-            }
-        }
-        balance.diagonal.push(diagonal);
-        let start = balance.offsets[balance.offsets.len() - 1] as usize;
-        balance.neighbours[start..].sort_unstable();
-        balance.offsets.push(balance.neighbours.len() as u32);
-    }
-    balance
-}
-
-/// The balances' matrix in the order of elimination.
-fn matrix(balance: &Balance, order: &[u32], column_of: &[u32]) -> ScaledMatrix {
-    let mut matrix = ScaledMatrix {
-        scale: order
-            .iter()
-            .map(|&node| balance.diagonal[node as usize].sqrt().recip())
-            .collect(),
-        lower_offsets: vec![0],
-        lower_rows: Vec::new(),
-        lower_values: Vec::new(),
-    };
-    for (column, &node) in order.iter().enumerate() {
-        let node = node as usize;
-        let neighbours = &balance.neighbours[balance.offsets[node] as usize..balance.offsets[node + 1] as usize];
-        let mut rows: Vec<u32> = neighbours.iter().map(|&other| column_of[other as usize]).collect();
-        rows.retain(|&row| row as usize > column);
-        rows.sort_unstable();
-        matrix.lower_rows.push(column as u32);
-        matrix.lower_values.push(balance.diagonal[node]);
-        matrix.lower_values.extend(rows.iter().map(|_| -1.0));
-        matrix.lower_rows.extend(rows);
-        matrix.lower_offsets.push(matrix.lower_rows.len() as u32);
-    }
-    matrix.scale_values();
-    matrix
 }

@@ -2,6 +2,7 @@
 
 use faer::Mat;
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::harmonic::Harmonic;
 use super::mean_value::MeanValue;
@@ -65,7 +66,8 @@ impl<'a> HarmonicMap<'a> {
     pub fn new(unit: Unit, harmonic: &'a Harmonic, controls: &Mat<f64>) -> Self {
         let handle_count = controls.ncols() / 4;
         let mut nodes = vec![[0.0; 4]; harmonic.node_count() * handle_count];
-        for (node, own) in nodes.chunks_exact_mut(handle_count.max(1)).enumerate() {
+        let of_nodes = nodes.par_chunks_exact_mut(handle_count.max(1)).enumerate();
+        of_nodes.for_each(|(node, own)| {
             for vertex in 0..controls.nrows() {
                 let value = harmonic.value(node, vertex);
                 for (handle, own) in own.iter_mut().enumerate() {
@@ -74,7 +76,7 @@ impl<'a> HarmonicMap<'a> {
                     }
                 }
             }
-        }
+        });
         Self {
             unit,
             harmonic,

@@ -5,6 +5,7 @@
 //! `voxels` and `offset` make the cage. The coordinates are those of `mean_value` [JSW05], of `harmonic` functions
 //! [JMD+07] and of `green` [LLC08]; `fit` solves for the cage's vertices.
 
+mod balance;
 mod conformal;
 mod crossings;
 mod declaration;
