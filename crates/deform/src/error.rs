@@ -2,8 +2,7 @@
 
 use pliant_mesh::{Cancelled, SurfaceVertex, Topology};
 
-use crate::method::space_methods;
-use crate::{Budget, Limit};
+use crate::{Budget, Limit, alternatives};
 
 /// A problem could not be bound. Vertices are the surface's, until they are [`BindError::renumbered`].
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
@@ -93,7 +92,7 @@ pub enum BindError {
     /// The system is not positive definite, even with a little regularisation.
     #[error(
         "component {component} cannot be solved for at vertex {vertex}: fix vertices around it, repair the triangles there, or take {}",
-        space_methods()
+        alternatives::of_space()
     )]
     NotPositiveDefinite {
         /// The component, as `cli.md` numbers them.
@@ -104,7 +103,7 @@ pub enum BindError {
     /// The factor does not reproduce a constant.
     #[error(
         "component {component} is solved only to {error:.1e} near vertex {vertex}: fix vertices around it, repair the triangles there, or take {}",
-        space_methods()
+        alternatives::of_space()
     )]
     Inaccurate {
         /// The component, as `cli.md` numbers them.
@@ -127,7 +126,7 @@ pub enum BindError {
         "vertex {vertex} lies {edges} edges from all that holds it, too far to be solved for: fix vertices on the way, make \
          the mesh coarser, {}or take {}",
         .order.map_or(String::new(), |order| format!("lower the method's `order` from {order}, ")),
-        space_methods()
+        alternatives::of_space()
     )]
     Slender {
         /// The vertex that is farthest.
@@ -185,7 +184,7 @@ fn over_budget(free_count: usize, limit: Limit, crowded: Option<&Crowded>) -> St
     };
     let remedy = match (crowded, limit) {
         (Some(Crowded { vertex, neighbours }), _) => {
-            let space = space_methods();
+            let space = alternatives::of_space();
             format!(
                 "split vertex {vertex}, which has {neighbours} neighbours, make the region smaller, or take {space}"
             )
@@ -193,7 +192,7 @@ fn over_budget(free_count: usize, limit: Limit, crowded: Option<&Crowded>) -> St
         (None, Limit::Bytes(_)) => "make the region smaller or the mesh coarser".to_owned(),
         (None, Limit::Operations(_)) => format!(
             "make the region smaller or the mesh coarser, move apart vertices that coincide by accident, or take {}",
-            space_methods()
+            alternatives::of_space()
         ),
     };
     format!("solving for {free_count} free vertices takes more than the {allowed} allowed: {remedy}")

@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
 use pliant_deform::{
-    Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, CageCoordinates, Constraints, Detail, Frames, Limit, Loose,
-    Method, OptionValue, Primo, Problem, Propagation, Rbf, Role, Transforms,
+    Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, CageCoordinates, Constraints, Detail, Frames,
+    Limit, Loose, Method, OptionValue, Primo, Problem, Propagation, Rbf, Role, Transforms,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 

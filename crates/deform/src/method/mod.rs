@@ -33,14 +33,6 @@ pub const METHODS: &[&MethodDeclaration] = &[
     &crate::identity::DECLARATION,
 ];
 
-/// The first methods that bend space and need no surface, for messages of those that do.
-pub(crate) fn space_methods() -> String {
-    let of_space = METHODS
-        .iter()
-        .filter(|declaration| (declaration.default)().needs() == Needs::Points);
-    option::joined(of_space.take(2).map(|declaration| declaration.name.to_owned()), "or")
-}
-
 /// A method with its options: how a surface follows its handles.
 pub struct Method(Box<dyn DeformMethod>);
 

@@ -8,10 +8,8 @@
 use pliant_mesh::SurfaceVertex;
 
 use crate::budget::bytes_of;
-use crate::method::option::joined;
-use crate::method::space_methods;
 use crate::operators::triangulation::{Graph, Triangulation};
-use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, METHODS, Needs, Problem, Role, Warning};
+use crate::{BindError, Budget, CONTINUITY_RANGE, ConstraintKind, Loose, Needs, Problem, Role, Warning, alternatives};
 
 /// The vertices by what happens to them, all lists ascending.
 #[derive(Debug)]
@@ -223,11 +221,7 @@ fn unheeded(problem: &Problem) -> Vec<Warning> {
     let is_painted = problem.stiffness.iter().any(|&value| value != 1.0);
     let declaration = problem.method.declaration();
     let name = declaration.name;
-    let remedy = |kind: ConstraintKind, purpose: &str| {
-        let others = METHODS.iter().filter(|other| other.heeds(kind));
-        let others = joined(others.map(|other| other.name.to_owned()), "or");
-        format!("take {others} for {purpose}")
-    };
+    let remedy = |kind: ConstraintKind, purpose: &str| format!("take {} for {purpose}", alternatives::heeding(kind));
     let is_unheeded = |kind: ConstraintKind, is_asked: bool| is_asked && !declaration.heeds(kind);
     let mut warnings = Vec::new();
     if let Some(handle) = soft.filter(|_| is_unheeded(ConstraintKind::SoftHandles, true)) {
@@ -286,7 +280,7 @@ fn warnings(problem: &Problem, loose: &[u32], loose_of: &[Loose], unheld: &[u32]
                 alike.len(),
                 sum(&alike),
                 alike[0],
-                space_methods(),
+                alternatives::of_space(),
             ));
             continue;
         }
