@@ -108,11 +108,7 @@ impl DeformMethod for Cage {
         let field = match self.coordinates {
             CageCoordinates::MeanValue => {
                 let coordinates = MeanValue::new(&cage);
-                let controls = controls_of(&response(
-                    &cage,
-                    &mean_value_rows(&coordinates, &samples, unit),
-                    &samples,
-                ));
+                let controls = controls_of(&mean_value_rows(&coordinates, &samples, unit));
                 input.progress.set(0.2);
                 let map = MeanValueMap {
                     unit,
@@ -138,12 +134,8 @@ impl DeformMethod for Cage {
             CageCoordinates::Green => {
                 let bytes = bytes_of(vertices.len(), row_bytes(&cage));
                 budget.without(bytes).map_err(over)?;
-                let response = response(
-                    &cage,
-                    &mean_value_rows(&MeanValue::new(&cage), &samples, unit),
-                    &samples,
-                );
-                let controls = controls_of(&response);
+                let rows = mean_value_rows(&MeanValue::new(&cage), &samples, unit);
+                let (response, controls) = (response(&cage, &rows, &samples), controls_of(&rows));
                 let rows = green_rows(&cage, &samples, unit);
                 input.progress.set(0.2);
                 Field::Conformal(Box::new(Conformal::bind(
