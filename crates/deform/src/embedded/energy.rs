@@ -7,7 +7,7 @@ use crate::Role;
 use crate::handles::Motion;
 use crate::method::BindInput;
 use crate::space::nearest::NearestPoints;
-use crate::space::samples::{farthest, thinned};
+use crate::space::samples::{EQUAL, farthest, thinned};
 use rayon::prelude::*;
 
 /// Weights of the terms beside the rigidity's, which is 1 [SSP07, section 5].
@@ -95,7 +95,7 @@ pub(super) fn constrained(input: &BindInput<'_>, moving: &[u32], world_reach: f6
             input.problem.roles[vertex as usize] == Role::Fixed
                 && nearest
                     .nearest(positions[vertex as usize])
-                    .is_some_and(|(_, distance)| distance <= world_reach)
+                    .is_some_and(|(_, distance)| distance <= world_reach * (1.0 + EQUAL))
         })
         .collect();
     sets.push(ConstrainedSet {

@@ -8,6 +8,7 @@ use crate::BindError;
 use crate::method::BindInput;
 use crate::numerical::sums::CHUNKS_A_TASK;
 use crate::space::blend::{Share, normalised};
+use crate::space::joining::joins;
 use crate::space::neighbours::Neighbours;
 use crate::sparse::Elimination;
 use crate::sparse::ordering::graph::elimination;
@@ -17,7 +18,7 @@ const NEAREST: usize = 5;
 
 /// The distance that ends the influence is a little larger than the fifth node's, so that some weight is left where
 /// all five are equally far.
-const BEYOND: f64 = 1.0 + 1e-3;
+const BEYOND: f64 = 1.0 + 1e-5;
 
 /// The mean over the nodes of the sum of a node's α.
 const JOINED: f64 = 6.0;
@@ -190,45 +191,4 @@ fn influence(tree: &Neighbours, world_nodes: &[DVec3], world_point: DVec3) -> Ve
         (node, left * left, change * (2.0 * left))
     };
     normalised(&nearest.iter().map(raw).collect::<Vec<_>>())
-}
-
-/// Pairs of nodes, the nearest first, that join all parts which `firm` pairs do not.
-fn joins(nodes: &[DVec3], firm: &[[u32; 2]]) -> Vec<[u32; 2]> {
-    let mut part: Vec<usize> = (0..nodes.len()).collect();
-    let mut parts = nodes.len();
-    for [one, other] in firm {
-        let [one, other] = [one, other].map(|&node| root(&mut part, node as usize));
-        parts -= usize::from(one != other);
-        part[one.max(other)] = one.min(other);
-    }
-    let mut joins = Vec::new();
-    if parts <= 1 {
-        return joins;
-    }
-    let mut pairs: Vec<(f64, [u32; 2])> = Vec::new();
-    for one in 0..nodes.len() {
-        for other in one + 1..nodes.len() {
-            if root(&mut part, one) != root(&mut part, other) {
-                pairs.push((nodes[one].distance(nodes[other]), [one as u32, other as u32]));
-            }
-        }
-    }
-    pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    for (_, pair) in pairs {
-        let [one, other] = pair.map(|node| root(&mut part, node as usize));
-        if one != other {
-            part[one.max(other)] = one.min(other);
-            joins.push(pair);
-        }
-    }
-    joins
-}
-
-/// The lowest node of a part, as far as it is known.
-fn root(part: &mut [usize], mut node: usize) -> usize {
-    while part[node] != node {
-        part[node] = part[part[node]];
-        node = part[node];
-    }
-    node
 }

@@ -7,11 +7,7 @@ use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
 
 use crate::method::BindInput;
-use crate::space::samples::{farthest, thinned};
-
-/// A vertex is farther than another only if it is so by more than this share: of equal ones the first is taken, also
-/// where rounding makes a difference.
-const EQUAL: f64 = 1e-9;
+use crate::space::samples::{EQUAL, farthest, thinned};
 
 /// If more than this share of the nodes were needed for one in each component, they are spread in space.
 const PIECES: f64 = 0.25;

@@ -3,13 +3,15 @@
 //! d(p) = Σ_k w_k(p) (M_k (p − c_k) + t_k) + Σ_i u_i(p) r_i: the motions k of nodes or cells with weights that sum to 1,
 //! and the residuals r_i of constrained vertices, by which the first sum misses where their handle takes them. The
 //! weights u_i are those of Shepard's interpolation [She68] among the nearest constrained vertices, faded out over a distance.
-//! So handles are met exactly, what is fixed rests, and the surface joins both without a crack.
+//! So handles are met exactly, what is fixed rests, and the surface joins both without a crack. Of constrained vertices
+//! that are very close to each other one stands for all.
 
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use rayon::prelude::*;
 
 use super::moving::Moving;
 use super::neighbours::Neighbours;
+use super::samples::apart;
 use crate::handles::Motion;
 use crate::method::{BindInput, Finite};
 use crate::{BindError, Role};
@@ -64,6 +66,10 @@ struct Anchor {
     handle: Option<(usize, [f64; 4])>,
 }
 
+/// Constrained vertices that carry their residuals are so far apart, as a share of how far these are carried: among
+/// points in one place the nearest few would not say how the residuals change.
+const APART: f64 = 0.1;
+
 /// So many constrained vertices carry their residuals to a point, less one, whose weight is zero.
 const CARRIERS: usize = 7;
 
@@ -103,6 +109,9 @@ impl Blend {
         };
         let constrained: Vec<Anchor> = input.problem.roles.iter().enumerate().filter_map(handle_at).collect();
         let places: Vec<DVec3> = constrained.iter().map(|anchor| anchor.world_place).collect();
+        let kept = apart(&places, APART * width);
+        let constrained: Vec<Anchor> = kept.iter().map(|&number| constrained[number]).collect();
+        let places: Vec<DVec3> = kept.iter().map(|&number| places[number]).collect();
         let tree = Neighbours::of(&places);
         let mut carry = Shares::of(&world_places, input, |place| carriers(place, &tree, &places, width))?;
         // Only anchors that something hangs on are evaluated.
@@ -277,4 +286,4 @@ fn carriers(place: DVec3, tree: &Neighbours, places: &[DVec3], width: f64) -> Ve
 }
 
 /// A little less than 1, so that the weights of points that are equally far do not vanish.
-const OPEN: f64 = 1.0 - 1e-3;
+const OPEN: f64 = 1.0 - 1e-5;

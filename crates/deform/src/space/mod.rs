@@ -10,6 +10,7 @@ pub(crate) mod blend;
 pub(crate) mod falloff;
 pub(crate) mod field;
 pub(crate) mod fit_samples;
+pub(crate) mod joining;
 pub(crate) mod moving;
 pub(crate) mod nearest;
 pub(crate) mod neighbours;
