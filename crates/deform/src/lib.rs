@@ -35,6 +35,7 @@ mod problem;
 mod rbf;
 mod region;
 mod space;
+mod space_primo;
 mod sparse;
 #[doc(hidden)]
 pub mod stages;
@@ -63,5 +64,6 @@ pub use primo::Primo;
 pub use problem::{Loose, Problem, Role};
 pub use rbf::Rbf;
 pub use region::constraints::{CONTINUITY_RANGE, Constraints};
+pub use space_primo::SpacePrimo;
 pub use sparse::Ordering;
 pub use warning::Warning;

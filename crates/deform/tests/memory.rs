@@ -168,6 +168,7 @@ fn methods() -> Vec<Method> {
         let cage = with("cage", "coordinates", coordinates.name());
         methods.push(cage.with([("detail", detail)]).unwrap());
     }
+    methods.push(Method::from_name("space-primo").unwrap());
     methods
 }
 

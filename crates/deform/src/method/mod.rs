@@ -29,6 +29,7 @@ pub const METHODS: &[&MethodDeclaration] = &[
     &crate::embedded::DECLARATION,
     &crate::lattice::DECLARATION,
     &crate::cage::DECLARATION,
+    &crate::space_primo::DECLARATION,
     #[cfg(feature = "identity-method")]
     &crate::identity::DECLARATION,
 ];

@@ -75,7 +75,7 @@ impl BoundMethod for PrimoSolver {
     }
 
     fn rest(&mut self) {
-        PrimoSolver::rest(self);
+        self.bodies.rest();
     }
 
     // `energy_of` stays `None`: the energy is the prisms', not the vertices'.
@@ -85,7 +85,7 @@ impl BoundMethod for PrimoSolver {
     }
 
     fn factor_len(&self) -> usize {
-        PrimoSolver::factor_len(self)
+        self.bodies.factor_len()
     }
 
     /// A step took 17 ms on the bar of [BS08] (5,122 solved vertices, two cores), so a window shows every step.

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
+use super::bodies::{Bodies, State};
 use super::hierarchy::Preconditioner;
-use super::{PrimoSolver, State};
 use crate::numerical::line_search::Trial;
 use crate::numerical::sums::{Field, dot};
 use crate::operators::CHUNK;
@@ -20,7 +20,7 @@ const RENEWAL: u32 = 20;
 /// Energies below this share of the surface's area are rounding.
 const NOTHING: f64 = 1e-26;
 
-impl PrimoSolver {
+impl Bodies {
     /// Takes one step that lowers the energy, or finds that there is none to take.
     ///
     /// A pose has converged if the quadratic model promises a decrease below the tolerance's share of the energy and
@@ -30,6 +30,7 @@ impl PrimoSolver {
             self.age = 0;
             if let Preconditioner::Direct(factored) = &mut self.preconditioner {
                 factored.renew(&self.joints, &self.current);
+                self.is_renewed = true;
             }
         }
         self.age += 1;
@@ -43,7 +44,7 @@ impl PrimoSolver {
             if slope < 0.0 && self.search(&uphill, slope) {
                 let (gained, enough) = (
                     before - self.current.energy,
-                    self.options.tolerance * self.current.energy + NOTHING * self.joints.area,
+                    self.tolerance * self.current.energy + NOTHING * self.joints.area,
                 );
                 if -0.5 * slope <= enough && gained <= enough {
                     self.state = State::Converged;

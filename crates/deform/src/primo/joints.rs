@@ -114,6 +114,24 @@ impl Joints {
         joints
     }
 
+    /// Of bodies around these centres, which those of the grounds follow: the joints of each, in an order to eliminate
+    /// them whose supernodes end at `block_ends`. `size` is what the energy is measured by.
+    pub fn of_rows(rows: Vec<Vec<Side>>, centres: Vec<DVec3>, size: f64, block_ends: Vec<u32>) -> Self {
+        let mut joints = Self {
+            offsets: vec![0],
+            sides: Vec::new(),
+            centres,
+            order: (0..rows.len() as u32).collect(),
+            area: size,
+            block_ends,
+        };
+        for row in rows {
+            joints.sides.extend(row);
+            joints.offsets.push(joints.sides.len() as u32);
+        }
+        joints
+    }
+
     /// How many prisms are solved for.
     pub fn count(&self) -> usize {
         self.offsets.len() - 1

@@ -17,19 +17,20 @@
 //! descent direction: on a scan of 86,482 faces binding took 0.75 instead of more than 3 s, a step 0.13 instead of 0.3
 //! s, and the number of steps was the same.
 //!
-//! Parts: `edges` finds which triangles meet, `prisms` sorts them, `quad` is the integral over a shared quad, `joints`
+//! Parts: `bodies` are rigid bodies on joints, here the prisms, and their descent. `edges` finds which triangles meet, `prisms` sorts them, `quad` is the integral over a shared quad, `joints`
 //! are the couplings, `pose` is where the prisms are and their energy, `system` and `factored` make the matrices,
 //! `hierarchy` the cells, `start` chooses where to begin, `sweep` unfolds, `descent` takes a step, and `vertices` takes
 //! the prisms' mean.
 
+pub(crate) mod bodies;
 mod declaration;
 mod descent;
 mod edges;
 mod factored;
 mod hierarchy;
-mod joints;
+pub(crate) mod joints;
 mod options;
-mod pose;
+pub(crate) mod pose;
 mod prisms;
 mod quad;
 mod springs;
@@ -44,17 +45,12 @@ use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
 pub(crate) use self::declaration::DECLARATION;
 pub use self::options::Primo;
 
+use self::bodies::Bodies;
 use self::edges::Edges;
-use self::hierarchy::{DIRECT, Preconditioner};
 use self::joints::{Joints, Material};
-use self::pose::Pose;
 use self::prisms::Prisms;
-use self::springs::Springs;
-use self::sweep::Colours;
 use self::vertices::Vertices;
-use crate::handles::blend::HandleFrame;
 use crate::handles::{Handle, Motion};
-use crate::numerical::lbfgs::Memory;
 use crate::region::partition::Partition;
 use crate::region::slender;
 use crate::sparse::Elimination;
@@ -65,37 +61,10 @@ use crate::{BindError, Problem};
 /// The bound method, with the pose it is at.
 #[derive(Debug)]
 pub(crate) struct PrimoSolver {
-    options: Primo,
-    joints: Joints,
+    bodies: Bodies,
     vertices: Vertices,
-    colours: Colours,
-    springs: Springs,
-    preconditioner: Preconditioner,
-    /// Handles' harmonic weights, one row a solved prism.
-    weights: Vec<f64>,
-    /// The handles in coordinates relative to the first one's centre.
-    handles: Vec<HandleFrame>,
     /// Of each handle: its surface vertices with their coordinates.
     prescribed: Vec<Vec<(u32, [f64; 4])>>,
-    current: Pose,
-    trial: Pose,
-    memory: Memory,
-    /// The motions that `current` is a pose for.
-    motions: Vec<Motion>,
-    state: State,
-    /// Steps towards the present targets since the matrix was last factored.
-    age: u32,
-}
-
-/// How far the present targets are.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum State {
-    /// Prisms are folded onto their neighbours: local sweeps first.
-    Folded(u32),
-    /// On its way.
-    Descending,
-    /// At a minimum, to the tolerance.
-    Converged,
 }
 
 impl PrimoSolver {
@@ -143,23 +112,29 @@ impl PrimoSolver {
         };
         let refused = |error| bind_error(error, partition.free_count, component);
         let unheld = |prism: usize| !partition.held[component(prism).0 as usize];
-        let springs = Springs::of(&joints, partition.budget, cancel).map_err(refused)?;
-        let weights = springs.weights(&joints, handles.len(), unheld);
-        cancel.check()?;
-        progress.set(0.4);
-        let at_rest = Pose::at_rest(joints.count(), world_grounds.len());
-        let preconditioner = Preconditioner::of(&joints, DIRECT, partition.budget, cancel).map_err(refused)?;
+        let bodies = Bodies::of(
+            joints,
+            handles,
+            world_origin,
+            unheld,
+            options.tolerance,
+            partition.budget,
+            cancel,
+        );
+        let bodies = bodies.map_err(refused)?;
         progress.set(1.0);
         let world_rest = |vertex: u32| surface.positions[vertex as usize];
+        let vertices = Vertices::of(
+            surface,
+            topology,
+            problem.roles,
+            &prisms,
+            &bodies.joints.centres,
+            world_origin,
+        );
         Ok(Self {
-            options: options.clone(),
-            vertices: Vertices::of(surface, topology, problem.roles, &prisms, &joints.centres, world_origin),
-            colours: Colours::of(&joints),
-            joints,
-            springs,
-            preconditioner,
-            weights,
-            handles: HandleFrame::of_all(handles, world_origin),
+            bodies,
+            vertices,
             prescribed: handles
                 .iter()
                 .map(|handle| {
@@ -167,35 +142,7 @@ impl PrimoSolver {
                     handle.vertices.iter().map(of).collect()
                 })
                 .collect(),
-            current: at_rest.clone(),
-            trial: at_rest,
-            memory: Memory::default(),
-            motions: vec![Motion::default(); handles.len()],
-            state: State::Converged,
-            age: 0,
         })
-    }
-
-    /// How many numbers the factor stores.
-    pub fn factor_len(&self) -> usize {
-        self.preconditioner.stored()
-    }
-
-    /// The energy in units of the solved prisms' area, so that it does not depend on the model's scale.
-    fn relative(&self, energy: f64) -> f64 {
-        if self.joints.area > 0.0 {
-            energy / self.joints.area
-        } else {
-            0.0
-        }
-    }
-
-    /// Back to the rest pose.
-    pub fn rest(&mut self) {
-        self.motions.fill(Motion::default());
-        self.current = Pose::at_rest(self.joints.count(), 1 + self.handles.len());
-        self.memory.clear();
-        self.state = State::Converged;
     }
 
     /// One step towards `motions`: writes the displacements of solved prisms' free vertices. Returns whether it
@@ -203,23 +150,10 @@ impl PrimoSolver {
     pub fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> (bool, f64) {
         // The pool is entered once: otherwise each of the many short loops would wait for it.
         rayon::scope(|_| {
-            if self.motions != motions {
-                self.start(motions);
-            }
-            match self.state {
-                State::Folded(left) => self.unfold(left),
-                State::Descending => self.descend(),
-                State::Converged => {}
-            }
-            self.vertices.write(&self.current, displacements);
+            self.bodies.advance(motions);
+            self.vertices.write(&self.bodies.current, displacements);
         });
-        let energy = self.current.energy;
-        if !energy.is_finite() {
-            // The gate refuses it; the next targets begin afresh.
-            self.rest();
-            return (true, energy);
-        }
-        (self.state == State::Converged, self.relative(energy))
+        self.bodies.outcome()
     }
 }
 
@@ -243,8 +177,9 @@ mod tests {
     use glam::{DAffine3, DMat3, DQuat, DVec3};
     use pliant_mesh::{Cancel, Drawn, Progress, shapes};
 
+    use super::bodies::State;
     use super::pose::tests::noise;
-    use super::{Primo, PrimoSolver, State};
+    use super::{Primo, PrimoSolver};
     use crate::handles::{Handle, Motion};
     use crate::region::partition::Partition;
     use crate::{Constraints, Loose, Method, Problem, Role};
@@ -306,19 +241,22 @@ mod tests {
             let (mut solver, motions, count) = solver(drawn);
             let expected = least(&mut solver, &motions, count);
             // By triangle, so that the order of elimination doesn't matter.
-            for (place, &prism) in solver.joints.order.iter().enumerate() {
+            for (place, &prism) in solver.bodies.joints.order.iter().enumerate() {
                 let prism = prism as usize;
                 let random = |k: usize| noise(3 * place + k);
                 let turn = DQuat::from_scaled_axis(DVec3::new(random(0), random(1), random(2)) * 3.0);
-                solver.current.rotations[prism] = turn;
-                solver.current.turns[prism] = DMat3::from_quat(turn);
+                solver.bodies.current.rotations[prism] = turn;
+                solver.bodies.current.turns[prism] = DMat3::from_quat(turn);
             }
-            solver.current.settle(&solver.joints, &solver.springs);
-            solver.current.evaluate(&solver.joints);
-            solver.memory.clear();
-            solver.state = solver.how_folded();
-            assert!(matches!(solver.state, State::Folded(_)));
-            assert!(solver.current.energy / solver.joints.area > 5.0 * expected);
+            solver
+                .bodies
+                .current
+                .settle(&solver.bodies.joints, &solver.bodies.springs);
+            solver.bodies.current.evaluate(&solver.bodies.joints);
+            solver.bodies.memory.clear();
+            solver.bodies.state = solver.bodies.how_folded();
+            assert!(matches!(solver.bodies.state, State::Folded(_)));
+            assert!(solver.bodies.current.energy / solver.bodies.joints.area > 5.0 * expected);
             let again = least(&mut solver, &motions, count);
             assert!((again - expected).abs() < 1e-4 * expected, "{again} {expected}");
         }

@@ -3,12 +3,12 @@
 use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
 
-use super::PrimoSolver;
+use super::bodies::Bodies;
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
 use crate::operators::CHUNK;
 
-impl PrimoSolver {
+impl Bodies {
     /// Makes the better of two starts the current pose for `motions`.
     pub(super) fn start(&mut self, motions: &[Motion]) {
         let was_at_rest = self.motions.iter().all(Motion::is_rest);

@@ -7,9 +7,9 @@
 use glam::{DMat3, DQuat};
 use rayon::prelude::*;
 
+use super::bodies::{Bodies, State};
 use super::joints::Joints;
 use super::pose::Pose;
-use super::{PrimoSolver, State};
 use crate::numerical::rotation::fit;
 use crate::operators::CHUNK;
 
@@ -91,7 +91,7 @@ impl Pose {
     }
 }
 
-impl PrimoSolver {
+impl Bodies {
     /// What the present pose needs.
     pub(super) fn how_folded(&self) -> State {
         if self.current.is_folded(&self.joints) {

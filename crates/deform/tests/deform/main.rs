@@ -30,4 +30,5 @@ mod rig;
 mod robust;
 mod soft;
 mod space;
+mod space_primo;
 mod strip;

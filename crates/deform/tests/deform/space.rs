@@ -34,6 +34,11 @@ pub fn methods() -> Vec<Method> {
         ("tolerance", OptionValue::Number(1e-9)),
     ];
     methods.push(with("embedded").with(few).unwrap());
+    let few = [
+        ("cells", OptionValue::Whole(100)),
+        ("tolerance", OptionValue::Number(1e-9)),
+    ];
+    methods.push(with("space-primo").with(few).unwrap());
     methods
 }
 
@@ -41,7 +46,7 @@ pub fn methods() -> Vec<Method> {
 fn interpolating() -> impl Iterator<Item = Method> {
     methods()
         .into_iter()
-        .filter(|method| ["rbf", "mls", "embedded"].contains(&method.name()))
+        .filter(|method| ["rbf", "mls", "embedded", "space-primo"].contains(&method.name()))
 }
 
 fn scene(drawn: Drawn, method: &Method) -> Scene {
@@ -130,8 +135,8 @@ fn handles_are_met_or_the_distance_is_told() {
 
 #[test]
 fn turning_the_whole_problem_turns_the_result() {
-    // A lattice's box, and the voxels that a cage is made of, lie along the axes of space.
-    let is_free = |method: &&Method| !["lattice", "cage"].contains(&method.name());
+    // A lattice's box, the voxels that a cage is made of, and rigid cells lie along the axes of space.
+    let is_free = |method: &&Method| !["lattice", "cage", "space-primo"].contains(&method.name());
     for method in methods().iter().filter(is_free) {
         // Of centres that are equally good, rounding chooses: only where all are taken does that not matter.
         let exact = method.with([("tolerance", OptionValue::Number(1e-9))]);

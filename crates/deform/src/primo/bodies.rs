@@ -1,0 +1,139 @@
+//! Rigid bodies that joints couple, and how they come to rest: prisms of a surface, or cells of space.
+
+use glam::DVec3;
+use pliant_mesh::Cancel;
+
+use super::hierarchy::{DIRECT, Preconditioner};
+use super::joints::Joints;
+use super::pose::Pose;
+use super::springs::Springs;
+use super::sweep::Colours;
+use crate::Budget;
+use crate::handles::blend::HandleFrame;
+use crate::handles::{Handle, Motion};
+use crate::numerical::lbfgs::Memory;
+use crate::sparse::factor_error::FactorError;
+
+/// The bodies, with the pose they are in.
+#[derive(Debug)]
+pub(crate) struct Bodies {
+    pub joints: Joints,
+    pub(super) colours: Colours,
+    pub(super) springs: Springs,
+    pub(super) preconditioner: Preconditioner,
+    /// Handles' harmonic weights, one row a solved body.
+    pub(super) weights: Vec<f64>,
+    /// The handles in coordinates relative to the origin.
+    pub(super) handles: Vec<HandleFrame>,
+    pub current: Pose,
+    pub(super) trial: Pose,
+    pub(super) memory: Memory,
+    /// The motions that `current` is a pose for.
+    pub(super) motions: Vec<Motion>,
+    pub(super) state: State,
+    /// Steps towards the present targets since the matrix was last factored.
+    pub(super) age: u32,
+    /// Whether the matrix was factored at another pose than the rest pose.
+    pub(super) is_renewed: bool,
+    /// The relative decrease of the energy below which a step was the last one.
+    pub(super) tolerance: f64,
+}
+
+/// How far the present targets are.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum State {
+    /// Prisms are folded onto their neighbours: local sweeps first.
+    Folded(u32),
+    /// On its way.
+    Descending,
+    /// At a minimum, to the tolerance.
+    Converged,
+}
+
+impl Bodies {
+    /// Factors, and solves for the weights of `handles`; all coordinates are relative to `world_origin`. Nothing is
+    /// fixed around the bodies that are `unheld`.
+    ///
+    /// # Errors
+    /// As [`crate::sparse::cholesky::Factor::to_descend_by`]; a pivot is named by its body.
+    pub fn of(
+        joints: Joints,
+        handles: &[Handle],
+        world_origin: DVec3,
+        unheld: impl Fn(usize) -> bool,
+        tolerance: f64,
+        budget: Budget,
+        cancel: &Cancel,
+    ) -> Result<Self, FactorError> {
+        let springs = Springs::of(&joints, budget, cancel)?;
+        let weights = springs.weights(&joints, handles.len(), unheld);
+        let at_rest = Pose::at_rest(joints.count(), 1 + handles.len());
+        let preconditioner = Preconditioner::of(&joints, DIRECT, budget, cancel)?;
+        Ok(Self {
+            colours: Colours::of(&joints),
+            joints,
+            springs,
+            preconditioner,
+            weights,
+            handles: HandleFrame::of_all(handles, world_origin),
+            current: at_rest.clone(),
+            trial: at_rest,
+            memory: Memory::default(),
+            motions: vec![Motion::default(); handles.len()],
+            state: State::Converged,
+            age: 0,
+            is_renewed: false,
+            tolerance,
+        })
+    }
+
+    /// How many numbers the factor stores.
+    pub fn factor_len(&self) -> usize {
+        self.preconditioner.stored()
+    }
+
+    /// The energy in units of the solved prisms' area, so that it does not depend on the model's scale.
+    fn relative(&self, energy: f64) -> f64 {
+        if self.joints.area > 0.0 {
+            energy / self.joints.area
+        } else {
+            0.0
+        }
+    }
+
+    /// Back to the rest pose.
+    pub fn rest(&mut self) {
+        self.motions.fill(Motion::default());
+        self.current = Pose::at_rest(self.joints.count(), 1 + self.handles.len());
+        self.memory.clear();
+        self.state = State::Converged;
+        // What comes next is to be the same as after binding.
+        if std::mem::take(&mut self.is_renewed)
+            && let Preconditioner::Direct(factored) = &mut self.preconditioner
+        {
+            factored.renew(&self.joints, &self.current);
+        }
+    }
+
+    /// One step towards `motions`.
+    pub fn advance(&mut self, motions: &[Motion]) {
+        if self.motions != motions {
+            self.start(motions);
+        }
+        match self.state {
+            State::Folded(left) => self.unfold(left),
+            State::Descending => self.descend(),
+            State::Converged => {}
+        }
+    }
+
+    /// Whether the last step converged, and its energy. If it is not finite the next targets begin afresh.
+    pub fn outcome(&mut self) -> (bool, f64) {
+        let energy = self.current.energy;
+        if !energy.is_finite() {
+            self.rest();
+            return (true, energy);
+        }
+        (self.state == State::Converged, self.relative(energy))
+    }
+}

@@ -1,0 +1,167 @@
+//! Rigid cells as one of the methods.
+
+use glam::{DMat3, DVec3, Mat3};
+
+use super::SpacePrimo;
+use super::coupling::joined;
+use super::octree::Octree;
+use super::weights::weigh;
+use crate::handles::Motion;
+use crate::method::{
+    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
+};
+use crate::primo::bodies::Bodies;
+use crate::space::blend::{Affine, Blend, Share};
+use crate::space::neighbours::Neighbours;
+use crate::sparse::factor_error::FactorError;
+use crate::{BindError, SolveError};
+
+pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
+    name: "space-primo",
+    title: "Rigid cells",
+    when_to_use: "The space around the shape bends like rubber, step by step, and keeps the shape's thickness: for even \
+                  bends and twists of closed shapes, of loose or broken pieces, and of points.",
+    keywords: "space primo rigid cells octree botsch rubber solid nonlinear points soup",
+    options: SpacePrimo::OPTIONS,
+    heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
+    default: || SpacePrimo::default().into(),
+    first_choice: || SpacePrimo::default().into(),
+};
+
+/// How far the cells' misses are carried off, in sides of the small cells.
+const REACH: f64 = 2.0;
+
+/// The bound method.
+#[derive(Debug)]
+pub(super) struct BoundCells {
+    pub bodies: Bodies,
+    /// The cells' middles.
+    world_centres: Vec<DVec3>,
+    blend: Blend,
+    /// The cells' motions of the last step.
+    affine: Vec<Affine>,
+}
+
+impl DeformMethod for SpacePrimo {
+    fn declaration(&self) -> &'static MethodDeclaration {
+        &DECLARATION
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::Points
+    }
+
+    fn solve(&self) -> Solve {
+        Solve::Iterative {
+            max_iterations: self.max_iterations,
+        }
+    }
+
+    fn row_bytes(&self) -> usize {
+        // Up to some twenty shares of cells and seven of residuals, twice while they are collected.
+        300 + 60 * size_of::<Share>()
+    }
+
+    fn handle_row_bytes(&self) -> usize {
+        0
+    }
+
+    fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
+        Ok(Box::new(bound(self, input)?))
+    }
+}
+
+/// Cuts space into cells, joins them, factors, and weighs every vertex.
+pub(super) fn bound(options: &SpacePrimo, input: &BindInput<'_>) -> Result<BoundCells, BindError> {
+    let mut octree = Octree::of(input, options.cells as usize);
+    input.cancel.check()?;
+    input.progress.set(0.3);
+    let world_origin = input.handles.first().map_or(DVec3::ZERO, |handle| handle.world_centre);
+    let joints = joined(&mut octree, input, world_origin)?;
+    let free_count = input.partition.solved.len();
+    let is_held = (0..joints.count()).any(|cell| {
+        let mut sides = joints.sides(cell).iter();
+        sides.any(|side| side.other as usize == joints.count())
+    });
+    input.progress.set(0.4);
+    let bodies = Bodies::of(
+        joints,
+        input.handles,
+        world_origin,
+        |_| !is_held,
+        options.tolerance,
+        input.partition.budget,
+        input.cancel,
+    );
+    let bodies = bodies.map_err(|error| match error {
+        FactorError::Budget(limit) => BindError::budget(free_count, limit),
+        FactorError::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
+        FactorError::Memory | FactorError::Pivot(_) => BindError::OutOfMemory { free_count },
+    })?;
+    input.progress.set(0.7);
+    let world_centres: Vec<DVec3> = (0..octree.cells.len()).map(|cell| octree.world_centre(cell)).collect();
+    let tree = Neighbours::of(&world_centres);
+    let blend = Blend::bind(input, REACH * octree.world_side, |place| weigh(&octree, &tree, place))?;
+    input.progress.set(1.0);
+    let mut bound = BoundCells {
+        bodies,
+        world_centres,
+        blend,
+        affine: Vec::new(),
+    };
+    bound.affine = bound.motions();
+    Ok(bound)
+}
+
+impl BoundCells {
+    /// The cells' motions at the present pose.
+    fn motions(&self) -> Vec<Affine> {
+        let pose = &self.bodies.current;
+        let cells = self.world_centres.iter().enumerate();
+        cells
+            .map(|(cell, &world_centre)| Affine {
+                world_centre,
+                linear: pose.turns[cell] - DMat3::IDENTITY,
+                shift: pose.shifts[cell],
+            })
+            .collect()
+    }
+}
+
+impl BoundMethod for BoundCells {
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        // The pool is entered once: otherwise each of the many short loops would wait for it.
+        rayon::scope(|_| {
+            self.bodies.advance(motions);
+            self.affine = self.motions();
+            self.blend.frame(&self.affine, motions, displacements);
+        });
+        let (converged, energy) = self.bodies.outcome();
+        Ok(Stepped {
+            converged,
+            energy,
+            finite: Finite::Unknown,
+        })
+    }
+
+    fn rest(&mut self) {
+        self.bodies.rest();
+    }
+
+    fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) -> bool {
+        self.blend.jacobians(&self.affine, motions, out);
+        true
+    }
+
+    fn solved_count(&self) -> usize {
+        self.blend.row_count()
+    }
+
+    fn factor_len(&self) -> usize {
+        self.bodies.factor_len()
+    }
+
+    fn step_cost(&self) -> usize {
+        self.blend.row_count() + 100 * self.world_centres.len()
+    }
+}

@@ -1,0 +1,276 @@
+//! The cells: cubes of one size where the surface is, and larger ones inside.
+
+use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
+
+use glam::{DVec3, IVec3};
+use rayon::prelude::*;
+
+use super::overlap::overlap;
+use crate::Role;
+use crate::method::BindInput;
+
+/// The most small cubes along an axis.
+const FINEST: i32 = 128;
+
+/// A cube is a little smaller for triangles, so that one that lies in its side belongs to one cube alone.
+const SHRUNK: f64 = 1.0 - 1e-6;
+
+/// No cell.
+const NONE: u32 = u32::MAX;
+
+const EMPTY: u8 = 0;
+const FILLED: u8 = 1;
+const OUTSIDE: u8 = 2;
+
+/// The cells in a grid of small cubes with an empty layer around.
+#[derive(Clone, Debug)]
+pub(super) struct Octree {
+    world_low: DVec3,
+    /// The side of a small cube, in world units.
+    pub world_side: f64,
+    counts: IVec3,
+    /// The cell of each small cube.
+    cell_of: Vec<u32>,
+    pub cells: Vec<Cell>,
+}
+
+/// A cube of `size` small ones along each axis.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Cell {
+    pub low: IVec3,
+    pub size: i32,
+}
+
+impl Octree {
+    /// The finest one with no more than about so many cells around the vertices that move and their triangles.
+    pub fn of(input: &BindInput<'_>, most: usize) -> Self {
+        let (mut enough, mut finer) = (Self::with(input, 1), 2);
+        while finer <= FINEST {
+            let tried = Self::with(input, finer);
+            if tried.cells.len() > most {
+                break;
+            }
+            (enough, finer) = (tried, 2 * finer);
+        }
+        let (mut low, mut high) = (finer / 2, finer.min(FINEST + 1));
+        while high - low > 1 {
+            let middle = low.midpoint(high);
+            let tried = Self::with(input, middle);
+            if tried.cells.len() > most {
+                high = middle;
+            } else {
+                (enough, low) = (tried, middle);
+            }
+        }
+        enough
+    }
+
+    /// With so many small cubes along the longest axis.
+    fn with(input: &BindInput<'_>, along: i32) -> Self {
+        let (surface, roles) = (input.problem.surface, input.problem.roles);
+        let moves = |vertex: usize| roles[vertex] != Role::Fixed;
+        let moving = || (0..roles.len()).filter(|&vertex| moves(vertex));
+        let bounds = moving().map(|vertex| surface.positions[vertex]);
+        let (low, high) = bounds.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), point| {
+            (low.min(point), high.max(point))
+        });
+        let extent = if low.is_finite() { high - low } else { DVec3::ZERO };
+        let middle = if low.is_finite() {
+            low + 0.5 * extent
+        } else {
+            DVec3::ZERO
+        };
+        let longest = extent.max_element();
+        let world_side = if longest > 0.0 { longest / f64::from(along) } else { 1.0 };
+        // Two more on each side: one for what is fixed beside, and an empty one.
+        let counts = (extent / world_side * SHRUNK).ceil().as_ivec3().max(IVec3::ONE) + 4;
+        let mut octree = Self {
+            world_low: middle - 0.5 * world_side * counts.as_dvec3(),
+            world_side,
+            counts,
+            cell_of: Vec::new(),
+            cells: Vec::new(),
+        };
+        let filled: Vec<AtomicU8> = (0..octree.cube_count()).map(|_| AtomicU8::new(EMPTY)).collect();
+        let mark = |cube: IVec3| filled[octree.index(cube)].store(FILLED, Relaxed);
+        (0..roles.len())
+            .into_par_iter()
+            .with_min_len(4096)
+            .filter(|&vertex| moves(vertex))
+            .for_each(|vertex| mark(octree.cube(surface.positions[vertex])));
+        surface.triangles.par_iter().with_min_len(1024).for_each(|corners| {
+            if corners.iter().any(|corner| moves(corner.index())) {
+                octree.cubes_of(corners.map(|corner| surface.positions[corner.index()]), mark);
+            }
+        });
+        let mut filled: Vec<u8> = filled.into_iter().map(AtomicU8::into_inner).collect();
+        octree.add_fixed(input, &mut filled);
+        octree.fill(&mut filled);
+        octree
+    }
+
+    /// The small cubes that hold fixed vertices beside one that is filled.
+    fn add_fixed(&self, input: &BindInput<'_>, filled: &mut [u8]) {
+        let positions = &input.problem.surface.positions;
+        let beside = |cube: IVec3| {
+            let around = neighbourhood(1).any(|step| {
+                let other = cube + step;
+                self.has(other) && filled[self.index(other)] == FILLED
+            });
+            self.has(cube) && around
+        };
+        let cubes = input.problem.roles.iter().zip(positions);
+        let cubes: Vec<usize> = cubes
+            .filter(|(role, _)| **role == Role::Fixed)
+            .map(|(_, &position)| self.cube(position))
+            .filter(|&cube| beside(cube))
+            .map(|cube| self.index(cube))
+            .collect();
+        cubes.into_iter().for_each(|cube| filled[cube] = FILLED);
+    }
+
+    /// Makes cells: one of each filled cube, and inside the largest ones that fit.
+    fn fill(&mut self, filled: &mut [u8]) {
+        let mut queue = vec![IVec3::ZERO];
+        filled[0] = OUTSIDE;
+        while let Some(cube) = queue.pop() {
+            for step in SIDES {
+                let other = cube + step;
+                if self.has(other) && filled[self.index(other)] == EMPTY {
+                    let index = self.index(other);
+                    filled[index] = OUTSIDE;
+                    queue.push(other);
+                }
+            }
+        }
+        self.cell_of = vec![NONE; self.cube_count()];
+        let largest = (self.counts.max_element() as u32).next_power_of_two() as i32;
+        let mut size = largest;
+        while size >= 1 {
+            for low in boxed(IVec3::ZERO, (self.counts - 1) / size) {
+                let low = low * size;
+                let fits = boxed(low, low + (size - 1)).all(|cube| {
+                    self.has(cube) && {
+                        let index = self.index(cube);
+                        self.cell_of[index] == NONE
+                            && (filled[index] == EMPTY || (size == 1 && filled[index] == FILLED))
+                    }
+                });
+                if fits {
+                    for cube in boxed(low, low + (size - 1)) {
+                        let index = self.index(cube);
+                        self.cell_of[index] = self.cells.len() as u32;
+                    }
+                    self.cells.push(Cell { low, size });
+                }
+            }
+            size /= 2;
+        }
+    }
+
+    /// The common faces of the cells: the two cells, the lower first, and the middle of a small cube's side, in world
+    /// units, with the axis across it.
+    pub fn faces(&self, mut visit: impl FnMut([u32; 2], DVec3, usize)) {
+        for cube in boxed(IVec3::ZERO, self.counts - 2) {
+            let own = self.cell_of[self.index(cube)];
+            for axis in 0..3 {
+                let other = self.cell_of[self.index(cube + IVec3::AXES[axis])];
+                if own != NONE && other != NONE && own != other {
+                    let middle = cube.as_dvec3() + 0.5 + 0.5 * DVec3::AXES[axis];
+                    visit(
+                        [own.min(other), own.max(other)],
+                        self.world_low + self.world_side * middle,
+                        axis,
+                    );
+                }
+            }
+        }
+    }
+
+    /// The cells that reach a point: those with a small cube in the small cubes around.
+    pub fn around(&self, world_point: DVec3) -> Vec<u32> {
+        let cube = self.cube(world_point);
+        let mut found = Vec::new();
+        for step in neighbourhood(1) {
+            if self.has(cube + step) {
+                let cell = self.cell_of[self.index(cube + step)];
+                if cell != NONE && !found.contains(&cell) {
+                    found.push(cell);
+                }
+            }
+        }
+        found
+    }
+
+    /// The cell that holds a point.
+    pub fn cell_at(&self, world_point: DVec3) -> Option<u32> {
+        let cube = self.cube(world_point);
+        let cell = self.has(cube).then(|| self.cell_of[self.index(cube)])?;
+        (cell != NONE).then_some(cell)
+    }
+
+    /// The middle of a cell, in world units.
+    pub fn world_centre(&self, cell: usize) -> DVec3 {
+        let Cell { low, size } = self.cells[cell];
+        self.world_low + self.world_side * (low.as_dvec3() + 0.5 * f64::from(size))
+    }
+
+    /// The side of a cell, in world units.
+    pub fn world_size(&self, cell: usize) -> f64 {
+        self.world_side * f64::from(self.cells[cell].size)
+    }
+
+    /// Renumbers the cells: `order` lists the present numbers.
+    pub fn reorder(&mut self, order: &[u32]) {
+        let mut number_of = vec![NONE; order.len()];
+        for (number, &cell) in (0..).zip(order) {
+            number_of[cell as usize] = number;
+        }
+        self.cells = order.iter().map(|&cell| self.cells[cell as usize]).collect();
+        for cell in self.cell_of.iter_mut().filter(|cell| **cell != NONE) {
+            *cell = number_of[*cell as usize];
+        }
+    }
+
+    /// Visits the small cubes that a triangle meets.
+    fn cubes_of(&self, corners: [DVec3; 3], visit: impl Fn(IVec3)) {
+        let [a, b, c] = corners;
+        let inside = |cube: IVec3| cube.clamp(IVec3::ZERO, self.counts - 1);
+        let (low, high) = (inside(self.cube(a.min(b).min(c))), inside(self.cube(a.max(b).max(c))));
+        for cube in boxed(low, high) {
+            let middle = self.world_low + self.world_side * (cube.as_dvec3() + 0.5);
+            if overlap(corners.map(|corner| corner - middle), 0.5 * SHRUNK * self.world_side) {
+                visit(cube);
+            }
+        }
+    }
+
+    fn cube(&self, world_point: DVec3) -> IVec3 {
+        ((world_point - self.world_low) / self.world_side).floor().as_ivec3()
+    }
+
+    fn has(&self, cube: IVec3) -> bool {
+        cube.cmpge(IVec3::ZERO).all() && cube.cmplt(self.counts).all()
+    }
+
+    fn index(&self, cube: IVec3) -> usize {
+        ((cube.z * self.counts.y + cube.y) * self.counts.x + cube.x) as usize
+    }
+
+    fn cube_count(&self) -> usize {
+        self.counts.as_usizevec3().element_product()
+    }
+}
+
+const SIDES: [IVec3; 6] = [IVec3::X, IVec3::NEG_X, IVec3::Y, IVec3::NEG_Y, IVec3::Z, IVec3::NEG_Z];
+
+/// The cubes from `low` to `high`, both included.
+fn boxed(low: IVec3, high: IVec3) -> impl Iterator<Item = IVec3> {
+    (low.z..=high.z)
+        .flat_map(move |z| (low.y..=high.y).flat_map(move |y| (low.x..=high.x).map(move |x| IVec3::new(x, y, z))))
+}
+
+/// All steps by at most so many along each axis.
+fn neighbourhood(reach: i32) -> impl Iterator<Item = IVec3> {
+    boxed(IVec3::splat(-reach), IVec3::splat(reach))
+}

@@ -1,0 +1,21 @@
+//! The options of rigid cells.
+
+use crate::method::iteration::{MAX_ITERATIONS, TOLERANCE};
+use crate::method::option::{Whole, options};
+
+options! {
+    /// Options of rigid cells.
+    pub struct SpacePrimo {
+        /// About how many cells the space around the part that moves is cut into.
+        cells: u32 = Whole {
+            default: 2000,
+            range: [8, 20_000],
+            help: "about how many cells the space around the part that moves is cut into: more follow the shape more \
+                   closely, and take longer",
+        },
+        /// Where iteration ends.
+        tolerance: f64 = TOLERANCE,
+        /// The most steps.
+        max_iterations: u32 = MAX_ITERATIONS,
+    }
+}
