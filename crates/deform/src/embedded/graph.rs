@@ -173,21 +173,20 @@ impl Graph {
     }
 }
 
-/// (1 − d/d₅)² over their sum, with gradients.
+/// (1 − d²/d₅²)² over their sum, with gradients.
 fn influence(tree: &Neighbours, world_nodes: &[DVec3], world_point: DVec3) -> Vec<Share> {
     let nearest = tree.nearest(world_point, NEAREST);
     let Some(&(last, most)) = nearest.last() else {
         return Vec::new();
     };
-    let slope = |node: u32, distance: f64| match distance > 0.0 {
-        true => (world_point - world_nodes[node as usize]) / distance,
-        false => DVec3::ZERO,
-    };
-    let end = if most > 0.0 { most * BEYOND } else { 1.0 };
-    let end_slope = slope(last, most) * BEYOND;
+    let from = |node: u32| world_point - world_nodes[node as usize];
+    let end = if most > 0.0 { (most * BEYOND).powi(2) } else { 1.0 };
+    // Of the square's.
+    let end_slope = from(last) * (2.0 * BEYOND * BEYOND);
     let raw = |&(node, distance): &(u32, f64)| {
-        let left = 1.0 - distance / end;
-        let change = (end_slope * (distance / end) - slope(node, distance)) / end;
+        let share = distance * distance / end;
+        let left = 1.0 - share;
+        let change = (end_slope * share - from(node) * 2.0) / end;
         (node, left * left, change * (2.0 * left))
     };
     normalised(&nearest.iter().map(raw).collect::<Vec<_>>())

@@ -2,7 +2,7 @@
 //! vertex.
 //!
 //! A node at g with the linear map A = I + X and the shift t takes a point p to A (p − g) + g + t; a vertex takes the
-//! mean of its four nearest nodes' with the weights (1 − d/d₅)², d₅ being the distance of the fifth. The nodes'
+//! mean of its four nearest nodes' with the weights (1 − d²/d₅²)², d₅ being the distance of the fifth. The nodes'
 //! maps minimise, in the unit of the mean distance of joined nodes,
 //!
 //! E = Σ_j ρ_j ‖A_jᵀ A_j − I‖² + 10 Σ_jk α_jk |X_j (g_k − g_j) + t_j − t_k|² + Σ_l w_l |d(v_l) − u(v_l)|²:
@@ -10,6 +10,7 @@
 //! each node's rigidity, the regularity of neighbours, and the constraints v_l, which are samples of the handles and of
 //! what is fixed near the part that moves. The differences from the paper:
 //!
+//! - The weights have d² in place of d, so that they have no peak at a node and normals are smooth.
 //! - The rigidity counts the angles between A's columns twice, so that it does not depend on the axes of space.
 //! - α_jk is Σ_v s_v w_j w_k over the vertices, s the painted stiffness, over the root of the two nodes' own sums
 //!   without s, and ρ_j the mean of s around the node: neighbours that share more are joined more firmly, and nodes in

@@ -233,16 +233,15 @@ mod tests {
         2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract()
     }
 
-    /// Calls `test` with a ball whose top is a handle and whose bottom is fixed.
+    /// Calls `test` with a ball whose top is a handle and whose lowest vertex is fixed.
     fn with_ball(test: impl Fn(&SpacePrimo, &BindInput<'_>)) {
         let model = shapes::model(shapes::icosphere(3));
         let positions = &model.surface.positions;
-        let role = |p: &DVec3| match p.z {
-            z if z > 0.7 => Role::Handle(0),
-            z if z < -0.7 => Role::Fixed,
-            _ => Role::Free,
-        };
-        let roles: Vec<Role> = positions.iter().map(role).collect();
+        let handle = |p: &DVec3| if p.z > 0.7 { Role::Handle(0) } else { Role::Free };
+        let mut roles: Vec<Role> = positions.iter().map(handle).collect();
+        // One vertex alone, so that the cells enclose the inside.
+        let lowest = (0..roles.len()).min_by(|&a, &b| positions[a].z.total_cmp(&positions[b].z));
+        roles[lowest.unwrap()] = Role::Fixed;
         let options = SpacePrimo {
             cells: 800,
             tolerance: 1e-12,
