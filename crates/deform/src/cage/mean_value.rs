@@ -11,7 +11,7 @@
 use glam::DVec3;
 use pulp::{Arch, Simd, WithSimd};
 
-use super::mean_value_at::{COPLANAR, Weight, at_any};
+use super::mean_value_at::{COPLANAR, Weight, at_any, normalised};
 use super::mesh::CageMesh;
 use crate::numerical::lanes::{LANES, Lanes, Vector};
 
@@ -76,20 +76,6 @@ impl<'a> MeanValue<'a> {
             }
         }
     }
-}
-
-/// λ = w / Σ w with its gradient. False where that is no number.
-pub(super) fn normalised(weights: &mut [Weight]) -> bool {
-    let (mut sum, mut slope) = (0.0, DVec3::ZERO);
-    for (value, gradient) in weights.iter() {
-        sum += value;
-        slope += *gradient;
-    }
-    for (value, gradient) in weights.iter_mut() {
-        *value /= sum;
-        *gradient = (*gradient - slope * *value) / sum;
-    }
-    sum.is_finite() && sum.abs() > f64::MIN_POSITIVE && slope.is_finite()
 }
 
 /// Up to eight points.

@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::mean_value::normalised;
 use super::mesh::CageMesh;
 
 /// A coordinate and its gradient.
@@ -74,4 +73,18 @@ fn values(cage: &CageMesh, point: DVec3, size: f64, out: &mut [Weight]) {
         out.fill((0.0, DVec3::ZERO));
         out[nearest].0 = 1.0;
     }
+}
+
+/// λ = w / Σ w with its gradient. False where that is no number.
+pub(super) fn normalised(weights: &mut [Weight]) -> bool {
+    let (mut sum, mut slope) = (0.0, DVec3::ZERO);
+    for (value, gradient) in weights.iter() {
+        sum += value;
+        slope += *gradient;
+    }
+    for (value, gradient) in weights.iter_mut() {
+        *value /= sum;
+        *gradient = (*gradient - slope * *value) / sum;
+    }
+    sum.is_finite() && sum.abs() > f64::MIN_POSITIVE && slope.is_finite()
 }

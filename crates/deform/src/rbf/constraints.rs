@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::system::directions;
+use super::directions::directions;
 use crate::Role;
 use crate::method::BindInput;
 use crate::space::samples::thinned;

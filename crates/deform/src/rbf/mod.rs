@@ -8,6 +8,7 @@
 mod centres;
 mod constraints;
 mod declaration;
+mod directions;
 mod kernel;
 mod options;
 mod system;
