@@ -53,7 +53,7 @@ pub use handles::bases::HandleBases;
 pub use laplacian::{LaplacianEditing, LocalScale, Transforms};
 pub use lattice::{Lattice, LatticeBasis, LatticeNorm};
 pub use method::{
-    ConstraintKind, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused,
+    ConstraintKind, HandleFit, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused,
     OptionValue, Solve,
 };
 pub use mls::{Mls, MlsTransforms};

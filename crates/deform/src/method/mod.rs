@@ -13,7 +13,8 @@ use pliant_mesh::{Cancel, Cancelled, Progress, Topology};
 
 pub use self::declaration::{ConstraintKind, MethodDeclaration, Needs, Solve};
 pub use self::option::{OptionDeclaration, OptionKind, OptionRefused, OptionValue};
-pub(crate) use self::traits::{BindInput, BoundMethod, DeformMethod, Finite, HandleFit, Options, Stepped};
+pub use self::traits::HandleFit;
+pub(crate) use self::traits::{BindInput, BoundMethod, DeformMethod, Finite, Options, Stepped};
 use crate::Ordering;
 
 /// Every method, in the order in which they are shown. A new one adds its line here.
@@ -87,6 +88,11 @@ impl Method {
     /// How it comes to its shape, with its present options.
     pub fn solve(&self) -> Solve {
         self.0.solve()
+    }
+
+    /// How hard handles hold their vertices, with its present options.
+    pub fn handle_fit(&self) -> HandleFit {
+        self.0.handle_fit()
     }
 
     /// What an option is set to; `None` if the method has none of this name.

@@ -185,7 +185,7 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
 
 /// How hard handles hold their vertices.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum HandleFit {
+pub enum HandleFit {
     /// They go exactly where the handle's transform takes them.
     Exact,
     /// The method brings them there as well as it can.

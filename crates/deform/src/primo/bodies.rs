@@ -3,11 +3,11 @@
 use glam::DVec3;
 use pliant_mesh::Cancel;
 
+use super::colours::Colours;
 use super::hierarchy::{DIRECT, Preconditioner};
 use super::joints::Joints;
 use super::pose::Pose;
 use super::springs::Springs;
-use super::sweep::Colours;
 use crate::Budget;
 use crate::handles::blend::HandleFrame;
 use crate::handles::{Handle, Motion};

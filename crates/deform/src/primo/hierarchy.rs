@@ -9,10 +9,10 @@ use glam::{DMat3, DVec3};
 use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
+use super::colours::Colours;
 use super::factored::Factored;
 use super::joints::Joints;
 use super::pose::Pose;
-use super::sweep::Colours;
 use super::system::{Block, own_block};
 use crate::budget::Budget;
 use crate::operators::CHUNK;

@@ -23,6 +23,7 @@
 //! the prisms' mean.
 
 pub(crate) mod bodies;
+mod colours;
 mod declaration;
 mod descent;
 mod edges;

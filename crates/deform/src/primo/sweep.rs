@@ -8,6 +8,7 @@ use glam::{DMat3, DQuat};
 use rayon::prelude::*;
 
 use super::bodies::{Bodies, State};
+use super::colours::Colours;
 use super::joints::Joints;
 use super::pose::Pose;
 use crate::numerical::rotation::fit;
@@ -16,45 +17,10 @@ use crate::operators::CHUNK;
 /// The most sweeps before Newton's method goes on with what there is.
 const SWEEPS: u32 = 200;
 
-/// Prisms that turn without touching each other.
-#[derive(Debug)]
-pub(crate) struct Colours {
-    classes: Vec<Vec<u32>>,
-}
-
-impl Colours {
-    /// Colours the solved prisms one by one.
-    pub fn of(joints: &Joints) -> Self {
-        const NONE: usize = usize::MAX;
-        let mut colour_of = vec![NONE; joints.count()];
-        let mut classes: Vec<Vec<u32>> = Vec::new();
-        for prism in 0..joints.count() {
-            let taken = |colour: usize| {
-                let mut others = joints.sides(prism).iter().map(|side| side.other as usize);
-                others.any(|other| other < joints.count() && colour_of[other] == colour)
-            };
-            let colour = (0..classes.len())
-                .find(|&colour| !taken(colour))
-                .unwrap_or(classes.len());
-            if colour == classes.len() {
-                classes.push(Vec::new());
-            }
-            classes[colour].push(prism as u32);
-            colour_of[prism] = colour;
-        }
-        Self { classes }
-    }
-
-    /// The prisms of each colour.
-    pub fn classes(&self) -> &[Vec<u32>] {
-        &self.classes
-    }
-}
-
 impl Pose {
     /// Turns every prism once.
     pub fn sweep(&mut self, joints: &Joints, colours: &Colours) {
-        for class in &colours.classes {
+        for class in colours.classes() {
             let turned: Vec<DQuat> = class
                 .par_iter()
                 .with_min_len(CHUNK)
@@ -126,8 +92,8 @@ impl Bodies {
 mod tests {
     use pliant_mesh::shapes;
 
+    use super::super::colours::Colours;
     use super::super::pose::tests::{joints_of, scattered};
-    use super::Colours;
 
     #[test]
     fn prisms_of_one_colour_share_no_joint_and_a_sweep_lowers_the_energy() {
@@ -135,7 +101,7 @@ mod tests {
             let joints = joints_of(drawn);
             let colours = Colours::of(&joints);
             let mut seen = 0;
-            for class in &colours.classes {
+            for class in colours.classes() {
                 seen += class.len();
                 for &prism in class {
                     let mut others = joints.sides(prism as usize).iter().map(|side| side.other);
