@@ -211,6 +211,7 @@ fn report(loaded: &Loaded, setup: &Setup, solution: Solution, times: FileTimes, 
         iterations: solution.iterations,
         converged: solution.converged,
         energy: solution.energy,
+        handle_residual: solution.handle_residual,
         distortion: Distortion {
             edge_stretch_mean: finite_or(distortion.edge_stretch_mean, 1.0),
             edge_stretch_max: finite_or(distortion.edge_stretch_max, f64::MAX),
@@ -234,6 +235,7 @@ struct Solution {
     iterations: f64,
     converged: bool,
     energy: Energy,
+    handle_residual: f64,
     warnings: Vec<String>,
 }
 
@@ -250,6 +252,7 @@ impl Solution {
             iterations: 0.0,
             converged: true,
             energy: Energy::default(),
+            handle_residual: 0.0,
             warnings: Vec::new(),
         }
     }
@@ -288,6 +291,7 @@ fn solve(
         frames: bent.frames,
         iterations: bent.iterations,
         converged: bent.last.converged,
+        handle_residual: bent.last.handle_residual,
         energy: Energy {
             // Every method's energy is 0 at rest.
             rest: 0.0,

@@ -33,6 +33,9 @@ pub struct Report {
     pub converged: bool,
     /// The deformation energy.
     pub energy: Energy,
+    /// The largest distance of a hard handle's vertex from where the handle takes it, in world units: 0 for methods that
+    /// hold handles exactly.
+    pub handle_residual: f64,
     /// How much the shape was distorted.
     pub distortion: Distortion,
     /// What a person should know, as sentences.

@@ -31,6 +31,8 @@ pub struct Bound {
     /// First those of the binding, then what the present targets ask for and the method can't follow.
     warnings: Vec<Warning>,
     binding_warnings: usize,
+    /// How many there are before those about the last step.
+    target_warnings: usize,
 }
 
 /// The factor of a bound linear method. [`Problem::rebind`] reuses the parts of it that are unchanged. Cheap to clone.
@@ -114,7 +116,7 @@ impl Bound {
         })?;
         let residual = match problem.method.implementation().handle_fit() {
             HandleFit::Exact => HandleResidual::default(),
-            HandleFit::LeastSquares => HandleResidual::new(&handles, &partition.soft, positions),
+            HandleFit::LeastSquares => HandleResidual::new(problem.method.name(), &handles, &partition.soft, positions),
         };
         let mut warnings = partition.warnings;
         warnings.extend(method.warnings().into_iter().map(Warning::from));
@@ -136,6 +138,7 @@ impl Bound {
             )?,
             residual,
             binding_warnings: warnings.len(),
+            target_warnings: warnings.len(),
             warnings,
         })
     }
@@ -173,6 +176,7 @@ impl Bound {
         self.motions = motions;
         self.warnings.truncate(self.binding_warnings);
         self.warnings.extend(self.method.blind_to(&self.motions));
+        self.target_warnings = self.warnings.len();
         Ok(())
     }
 
@@ -236,6 +240,8 @@ impl Bound {
             gate(displacements)?;
         }
         step.handle_residual = self.residual.of(motions, displacements);
+        self.warnings.truncate(self.target_warnings);
+        self.warnings.extend(self.residual.warning(step.handle_residual).map(Warning::from));
         if !step.energy.is_finite() {
             displacements.fill(DVec3::ZERO);
             return Err(SolveError::EnergyNotFinite);
@@ -292,8 +298,8 @@ impl Bound {
         self.solve
     }
 
-    /// Sentences for a person: what components without a handle or a fixed vertex do, what was repaired, and what the
-    /// present targets ask for that the method can't follow.
+    /// Sentences for a person: what components without a handle or a fixed vertex do, what was repaired, what the present
+    /// targets ask for that the method can't follow, and how far the last step misses handles that are only fitted.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }

@@ -1,31 +1,58 @@
 //! How far hard handles' vertices are from where their transforms take them, for methods that only fit them.
 
 use glam::DVec3;
+use pliant_mesh::bounding_box;
 
 use super::{Handle, Motion};
+use crate::alternatives;
+
+/// Handles that are missed by less than this share of the model's diagonal look as if they were met.
+const UNSEEN: f64 = 1e-3;
 
 /// The hard handles' vertices and their coordinates; empty where handles are held exactly.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct HandleResidual(Vec<Vec<(u32, [f64; 4])>>);
+pub(crate) struct HandleResidual {
+    handles: Vec<Vec<(u32, [f64; 4])>>,
+    method: &'static str,
+    diagonal: f64,
+}
 
 impl HandleResidual {
     /// Of those handles that are not soft.
-    pub fn new(handles: &[Handle], soft: &[Option<f64>], positions: &[DVec3]) -> Self {
+    pub fn new(method: &'static str, handles: &[Handle], soft: &[Option<f64>], positions: &[DVec3]) -> Self {
         let own = |(handle, soft): (&Handle, &Option<f64>)| {
             let vertices = handle.vertices.iter().filter(|_| soft.is_none());
             vertices
                 .map(|&vertex| (vertex, handle.coordinates(positions[vertex as usize])))
                 .collect()
         };
-        Self(handles.iter().zip(soft).map(own).collect())
+        Self {
+            handles: handles.iter().zip(soft).map(own).collect(),
+            method,
+            diagonal: bounding_box(positions).map_or(0.0, |bounds| bounds.diagonal()),
+        }
     }
 
     /// The largest distance, in world units.
     pub fn of(&self, motions: &[Motion], displacements: &[DVec3]) -> f64 {
-        let own = self.0.iter().zip(motions).flat_map(|(own, motion)| {
+        let own = self.handles.iter().zip(motions).flat_map(|(own, motion)| {
             own.iter()
                 .map(|&(vertex, coordinates)| displacements[vertex as usize].distance(motion.displace(coordinates)))
         });
         own.fold(0.0, f64::max)
+    }
+
+    /// A sentence on a distance that can be seen.
+    pub fn warning(&self, distance: f64) -> Option<String> {
+        let share = distance / self.diagonal;
+        (share > UNSEEN).then(|| {
+            format!(
+                "{} only fits the handles and misses them by up to {:.1}% of the model's diagonal: refine it by its options, \
+                 or take {}, which meets them",
+                self.method,
+                100.0 * share,
+                alternatives::of_space()
+            )
+        })
     }
 }
