@@ -241,7 +241,8 @@ impl Bound {
         }
         step.handle_residual = self.residual.of(motions, displacements);
         self.warnings.truncate(self.target_warnings);
-        self.warnings.extend(self.residual.warning(step.handle_residual).map(Warning::from));
+        self.warnings
+            .extend(self.residual.warning(step.handle_residual).map(Warning::from));
         if !step.energy.is_finite() {
             displacements.fill(DVec3::ZERO);
             return Err(SolveError::EnergyNotFinite);

@@ -20,11 +20,22 @@ const TIED: f64 = 100.0;
 const SOFT: f64 = 1.0;
 
 /// A patch: its area, its mean and the second moment about it.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Patch {
     weight: f64,
     first: DVec3,
     second: DMat3,
+}
+
+impl Default for Patch {
+    /// Nothing: a matrix's own default is the identity.
+    fn default() -> Self {
+        Self {
+            weight: 0.0,
+            first: DVec3::ZERO,
+            second: DMat3::ZERO,
+        }
+    }
 }
 
 impl Patch {

@@ -141,7 +141,19 @@ fn turning_the_whole_problem_turns_the_result() {
         // Of centres that are equally good, rounding chooses: only where all are taken does that not matter.
         let exact = method.with([("tolerance", OptionValue::Number(1e-9))]);
         let method = &exact.unwrap_or_else(|_| method.clone());
-        for (name, drawn) in shapes::classes() {
+        for (name, mut drawn) in shapes::classes() {
+            // Of nodes that are equally far apart, too: symmetric shapes are made uneven.
+            let (centre, size) = (shapes::model(drawn.clone()).bounds().unwrap().centre(), 0.3);
+            for p in &mut drawn.positions {
+                let q = (*p - centre) / size;
+                *p += 0.02
+                    * size
+                    * DVec3::new(
+                        (q.y + 0.7 * q.z).sin(),
+                        (1.1 * q.z + q.x).sin(),
+                        (q.x - 0.8 * q.y).sin(),
+                    );
+            }
             let here = scene(drawn.clone(), method).with_ends(true);
             // Two points do not say how space turns about the line through them.
             if here.roles.iter().filter(|role| **role != Role::Free).count() < 3 {
