@@ -28,7 +28,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "cage",
     title: "Cage",
     when_to_use: "Bends the space in a coarse cage around the surface, which the handles drive: for broad bends of \
-                  anything inside it, points and loose pieces included; with harmonic coordinates limbs that are near \
+                  anything inside it, loose pieces included; with harmonic coordinates limbs that are near \
                   each other stay apart. It fits the handles as well as the cage can, not exactly.",
     keywords: "cage mean value harmonic green coordinates conformal space",
     options: Cage::OPTIONS,

@@ -20,7 +20,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "embedded",
     title: "Embedded graph",
     when_to_use: "A few hundred nodes bend as rigidly as they can and carry everything around them, step by step: for \
-                  large bends of scans of millions of vertices, of loose or broken pieces, and of points.",
+                  large bends of large scans, and of loose or broken pieces.",
     keywords: "embedded deformation graph nodes sumner rigid nonlinear space points soup",
     options: Embedded::OPTIONS,
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],

@@ -165,7 +165,7 @@ impl Solver {
                 .sum::<f64>();
         let mut length = 1.0;
         for _ in 0..TRIALS {
-            if !(slope < 0.0) {
+            if slope >= 0.0 || slope.is_nan() {
                 break;
             }
             let maps: Vec<NodeMap> = self

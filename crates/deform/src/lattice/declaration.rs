@@ -19,7 +19,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "lattice",
     title: "Lattice",
     when_to_use: "Bends a box around the surface by a coarse lattice: for broad, soft bends and stretches of anything, \
-                  points and loose pieces included. It fits the handles as well as the lattice can, not exactly.",
+                  loose pieces included. It fits the handles as well as the lattice can, not exactly.",
     keywords: "lattice ffd free-form deformation box spline space",
     options: Lattice::OPTIONS,
     heeds: &[ConstraintKind::SoftHandles],

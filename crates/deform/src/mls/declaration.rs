@@ -18,7 +18,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "mls",
     title: "Moving least squares",
     when_to_use: "Each place turns and moves as the handles around it do, at once: for quick poses of scans of loose or \
-                  broken pieces and of points; what is near in space moves along, whether it is connected or not.",
+                  broken pieces; what is near in space moves along, whether it is connected or not.",
     keywords: "mls moving least squares schaefer rigid similarity affine space points soup warp",
     options: Mls::OPTIONS,
     heeds: &[ConstraintKind::SoftHandles],

@@ -17,7 +17,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "rbf",
     title: "Radial basis functions",
     when_to_use: "Bends the space around the surface as smoothly as can be, at once: for scans of loose or broken \
-                  pieces, and for points. What is near in space moves along, whether it is connected or not.",
+                  pieces. What is near in space moves along, whether it is connected or not.",
     keywords: "rbf radial triharmonic space points soup warp",
     options: Rbf::OPTIONS,
     heeds: &[],

@@ -31,7 +31,7 @@ pub(crate) fn thinned(vertices: &[u32], positions: &[DVec3], most: usize) -> Vec
 
 /// Those of the points, by their numbers, that are not nearer than `least` to one before them.
 pub(crate) fn apart(points: &[DVec3], least: f64) -> Vec<usize> {
-    if !(least > 0.0) {
+    if least <= 0.0 || least.is_nan() {
         return (0..points.len()).collect();
     }
     let cell = |point: DVec3| (point / least).floor().as_i64vec3();

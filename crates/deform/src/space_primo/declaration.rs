@@ -19,8 +19,8 @@ use crate::{BindError, SolveError};
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "space-primo",
     title: "Rigid cells",
-    when_to_use: "The space around the shape bends like rubber, step by step, and keeps the shape's thickness: for even \
-                  bends and twists of closed shapes, of loose or broken pieces, and of points.",
+    when_to_use: "The space around the shape bends like rubber, step by step: for even bends and twists of closed \
+                  shapes, and of loose or broken pieces.",
     keywords: "space primo rigid cells octree botsch rubber solid nonlinear points soup",
     options: SpacePrimo::OPTIONS,
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
