@@ -162,6 +162,6 @@ impl BoundMethod for BoundCells {
     }
 
     fn step_cost(&self) -> usize {
-        self.blend.row_count() + 100 * self.world_centres.len()
+        self.blend.row_count() + 5 * self.world_centres.len()
     }
 }
