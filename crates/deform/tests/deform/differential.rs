@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
-use crate::rig::{Scene, apart, far, scaled, step, turned};
-use glam::{DAffine3, DMat3, DVec3};
+use crate::rig::{Scene, apart, far, step, turned};
+use crate::shared;
+use glam::{DAffine3, DVec3};
 use pliant_deform::{Method, OptionValue, Role};
 use pliant_mesh::{Drawn, shapes};
 
@@ -115,22 +116,8 @@ fn handles_go_where_they_are_told_and_what_rests_stays_to_the_bit() {
 fn turning_the_whole_problem_turns_the_result() {
     for method in methods() {
         for (name, drawn) in shapes::classes() {
-            let here = scene(drawn.clone(), &method).with_ends(true);
-            let world = turned(DVec3::ONE, 2.2, DVec3::new(3.0, -2.0, 1.0));
-            let mut there = scene(drawn, &method).with_ends(true);
-            for p in &mut there.model.surface.positions {
-                *p = world.transform_point3(*p);
-            }
-            there.roles.clone_from(&here.roles);
-            let targets = far(&here);
-            let carried: Vec<DAffine3> = targets.iter().map(|t| world * *t * world.inverse()).collect();
-            let expected: Vec<DVec3> = here
-                .moved(&targets)
-                .iter()
-                .map(|d| world.transform_vector3(*d))
-                .collect();
-            let error = apart(&there.moved(&carried), &expected) / here.diagonal();
-            assert!(error < 1e-6, "{name} {method:?}: {error:e}");
+            let with_ends = |drawn| scene(drawn, &method).with_ends(true);
+            shared::turned_problem_turns_the_result(drawn, with_ends, step, &format!("{name} {method:?}"));
         }
     }
 }
@@ -140,17 +127,13 @@ fn the_result_is_the_same_bit_for_bit_on_any_number_of_threads() {
     for method in methods() {
         // Enough for more than one chunk.
         let scene = scene(shapes::torus(90, 40), &method).with_ends(true);
-        let run = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| {
-                let bound = &mut scene.bind();
-                let frame = step(bound, &far(&scene));
-                let energy = bound.step(&mut frame.clone()).unwrap().energy;
-                (frame, energy)
-            })
+        let result = || {
+            let bound = &mut scene.bind();
+            let frame = step(bound, &far(&scene));
+            let energy = bound.step(&mut frame.clone()).unwrap().energy;
+            (frame, energy)
         };
-        let one = run(1);
-        assert!(one == run(2) && one == run(3), "{method:?}");
+        shared::same_on_any_number_of_threads(result, method.name());
     }
 }
 
@@ -159,32 +142,7 @@ fn extreme_targets_give_finite_shapes_and_do_not_spoil_the_next() {
     for method in methods() {
         for (name, drawn) in shapes::classes() {
             let scene = scene(drawn, &method).with_ends(true);
-            let (centre, size) = (scene.model.bounds().unwrap().centre(), scene.diagonal());
-            let expected = scene.moved(&far(&scene));
-            let bound = &mut scene.bind();
-            for target in [
-                DAffine3::from_translation(DVec3::new(-3.0, 0.1, 0.0) * size),
-                turned(centre, PI, DVec3::ZERO),
-                scaled(centre, DVec3::ZERO),
-                scaled(centre, DVec3::splat(-1.0)),
-                scaled(centre, DVec3::new(1.0, 1.0, -2.0)),
-                scaled(centre, DVec3::splat(1e4)),
-                DAffine3::from_mat3(DMat3::ZERO),
-                DAffine3::from_translation(DVec3::X * 1e6 * size),
-            ] {
-                assert!(
-                    step(bound, &vec![target; scene.handle_count])
-                        .iter()
-                        .all(|d| d.is_finite())
-                );
-            }
-            let beyond = vec![DAffine3::from_scale(DVec3::splat(1e200)); scene.handle_count];
-            bound.set_targets(&beyond).unwrap();
-            let mut out = vec![DVec3::NAN; scene.roles.len()];
-            let refused = bound.step(&mut out).is_err();
-            assert!(out.iter().all(|d| d.is_finite()) && (!refused || out.iter().all(|d| *d == DVec3::ZERO)));
-            step(bound, &vec![DAffine3::IDENTITY; scene.handle_count]);
-            assert!(step(bound, &far(&scene)) == expected, "{name} {method:?}");
+            shared::extremes_leave_no_trace(&scene, step, &format!("{name} {method:?}"));
         }
     }
 }

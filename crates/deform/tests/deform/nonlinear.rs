@@ -1,7 +1,8 @@
 //! The laws that every method that iterates obeys.
 
-use crate::rig::{Scene, apart, far, mirrored, scaled, settle, turned};
-use glam::{DAffine3, DMat3, DVec3};
+use crate::rig::{Scene, apart, far, mirrored, settle, turned};
+use crate::shared;
+use glam::{DAffine3, DVec3};
 use pliant_deform::{Arap, ArapEnergy, Method, Primo, Role};
 use pliant_mesh::{Drawn, SurfaceVertex, shapes};
 
@@ -102,19 +103,12 @@ fn the_result_is_the_same_bit_for_bit_on_any_number_of_threads() {
         };
         let mut scene = scene(shapes::torus(around, across), method).with_ends(true);
         scene.method = method.ending_at(1e-4);
-        let results: Vec<_> = [1, 2, 3]
-            .into_iter()
-            .map(|threads| {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                pool.install(|| {
-                    let bound = &mut scene.bind();
-                    (0..2)
-                        .map(|k| settle(bound, &[far(&scene)[k % scene.handle_count]]))
-                        .collect::<Vec<_>>()
-                })
-            })
-            .collect();
-        assert!(results.iter().all(|result| *result == results[0]));
+        let results = || {
+            let bound = &mut scene.bind();
+            let targets = [0, 1].map(|k| far(&scene)[k % scene.handle_count]);
+            targets.map(|target| settle(bound, &[target]))
+        };
+        shared::same_on_any_number_of_threads(results, &format!("{method:?}"));
     }
 }
 
@@ -155,26 +149,13 @@ fn extreme_targets_give_finite_shapes_and_do_not_spoil_the_next() {
                 Iterative::Arap(_) | Iterative::Led(_) => 1e-6,
                 Iterative::Primo => 1e-5,
             });
-            let (centre, size) = (scene.model.bounds().unwrap().centre(), scene.diagonal());
             let bound = &mut scene.bind();
-            for target in [
-                DAffine3::from_translation(DVec3::new(-3.0, 0.1, 0.0) * size),
-                turned(centre, std::f64::consts::PI, DVec3::ZERO),
-                scaled(centre, DVec3::ZERO),
-                scaled(centre, DVec3::splat(-1.0)),
-                scaled(centre, DVec3::new(1.0, 1.0, -2.0)),
-                scaled(centre, DVec3::splat(1e4)),
-                DAffine3::from_mat3(DMat3::ZERO),
-                DAffine3::from_translation(DVec3::X * 1e6 * size),
-            ] {
+            for target in shared::extreme(&scene) {
                 let (_, energies) = settle(bound, &vec![target; scene.handle_count]);
                 assert!(energies.windows(2).all(|pair| pair[1] <= pair[0]), "{name}");
             }
-            let beyond = vec![DAffine3::from_translation(DVec3::X * 1e200); scene.handle_count];
-            bound.set_targets(&beyond).unwrap();
-            let mut out = vec![DVec3::NAN; scene.roles.len()];
-            let refused = bound.step(&mut out).is_err();
-            assert!(out.iter().all(|d| d.is_finite()) && (!refused || out.iter().all(|d| *d == DVec3::ZERO)));
+            let beyond = DAffine3::from_translation(DVec3::X * 1e200);
+            shared::finite_beyond_all_bounds(bound, beyond, scene.handle_count);
             settle(bound, &far(&scene));
         }
     }

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-use crate::rig::{Scene, apart, far, scaled, settle, turned};
+use crate::rig::{Scene, apart, far, settle, turned};
+use crate::shared;
 use glam::{DAffine3, DMat3, DVec3};
 use pliant_deform::{Bound, Method, MlsTransforms, OptionValue, Role};
 use pliant_mesh::{Drawn, DrawnVertex, shapes};
@@ -55,9 +56,14 @@ fn scene(drawn: Drawn, method: &Method) -> Scene {
     scene
 }
 
-/// Binds, moves the handles until nothing changes any more, and returns the displacements.
+/// Moves the handles until nothing changes any more, and returns the displacements.
+fn settled(bound: &mut Bound, targets: &[DAffine3]) -> Vec<DVec3> {
+    settle(bound, targets).0
+}
+
+/// The same on a new binding.
 fn moved(scene: &Scene, targets: &[DAffine3]) -> Vec<DVec3> {
-    settle(&mut scene.bind(), targets).0
+    settled(&mut scene.bind(), targets)
 }
 
 #[test]
@@ -154,25 +160,13 @@ fn turning_the_whole_problem_turns_the_result() {
                         (q.x - 0.8 * q.y).sin(),
                     );
             }
-            let here = scene(drawn.clone(), method).with_ends(true);
+            let with_ends = |drawn| scene(drawn, method).with_ends(true);
             // Two points do not say how space turns about the line through them.
+            let here = with_ends(drawn.clone());
             if here.roles.iter().filter(|role| **role != Role::Free).count() < 3 {
                 continue;
             }
-            let world = turned(DVec3::ONE, 2.2, DVec3::new(3.0, -2.0, 1.0));
-            let mut there = scene(drawn, method).with_ends(true);
-            for p in &mut there.model.surface.positions {
-                *p = world.transform_point3(*p);
-            }
-            there.roles.clone_from(&here.roles);
-            let targets = far(&here);
-            let carried: Vec<DAffine3> = targets.iter().map(|t| world * *t * world.inverse()).collect();
-            let expected: Vec<DVec3> = moved(&here, &targets)
-                .iter()
-                .map(|d| world.transform_vector3(*d))
-                .collect();
-            let error = apart(&moved(&there, &carried), &expected) / here.diagonal();
-            assert!(error < 1e-6, "{name} {method:?}: {error:e}");
+            shared::turned_problem_turns_the_result(drawn, with_ends, settled, &format!("{name} {method:?}"));
         }
     }
 }
@@ -182,15 +176,11 @@ fn the_result_is_the_same_bit_for_bit_on_any_number_of_threads() {
     for method in methods() {
         // Enough for more than one chunk.
         let scene = scene(shapes::torus(90, 50), &method).with_ends(true);
-        let run = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| {
-                let bound = &mut scene.bind();
-                (settle(bound, &far(&scene)).0, bound.jacobians())
-            })
+        let result = || {
+            let bound = &mut scene.bind();
+            (settle(bound, &far(&scene)).0, bound.jacobians())
         };
-        let one = run(1);
-        assert!(one == run(2) && one == run(3), "{method:?}");
+        shared::same_on_any_number_of_threads(result, method.name());
     }
 }
 
@@ -199,29 +189,7 @@ fn extreme_targets_give_finite_shapes_and_do_not_spoil_the_next() {
     for method in methods() {
         for (name, drawn) in shapes::classes() {
             let scene = scene(drawn, &method).with_ends(true);
-            let (centre, size) = (scene.model.bounds().unwrap().centre(), scene.diagonal());
-            let expected = moved(&scene, &far(&scene));
-            let bound = &mut scene.bind();
-            for target in [
-                DAffine3::from_translation(DVec3::new(-3.0, 0.1, 0.0) * size),
-                turned(centre, PI, DVec3::ZERO),
-                scaled(centre, DVec3::ZERO),
-                scaled(centre, DVec3::splat(-1.0)),
-                scaled(centre, DVec3::new(1.0, 1.0, -2.0)),
-                scaled(centre, DVec3::splat(1e4)),
-                DAffine3::from_mat3(DMat3::ZERO),
-                DAffine3::from_translation(DVec3::X * 1e6 * size),
-            ] {
-                let (shape, _) = settle(bound, &vec![target; scene.handle_count]);
-                assert!(shape.iter().all(|d| d.is_finite()), "{name} {method:?}");
-            }
-            let beyond = vec![DAffine3::from_scale(DVec3::splat(1e200)); scene.handle_count];
-            bound.set_targets(&beyond).unwrap();
-            let mut out = vec![DVec3::NAN; scene.roles.len()];
-            let refused = bound.step(&mut out).is_err();
-            assert!(out.iter().all(|d| d.is_finite()) && (!refused || out.iter().all(|d| *d == DVec3::ZERO)));
-            settle(bound, &vec![DAffine3::IDENTITY; scene.handle_count]);
-            assert!(settle(bound, &far(&scene)).0 == expected, "{name} {method:?}");
+            shared::extremes_leave_no_trace(&scene, settled, &format!("{name} {method:?}"));
         }
     }
 }
