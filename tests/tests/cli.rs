@@ -388,6 +388,12 @@ fn foreign_text_neither_steers_the_terminal_nor_fills_it() {
 }
 
 #[test]
+fn vectors_that_there_are_not_are_refused() {
+    let apply = ["apply", "a.ply", "--edit", "e.json", "--output", "b.ply"];
+    run(apply.into_iter().chain(["--vectors", "avx1024"])).refused(2, &["--vectors", "avx512, avx2, baseline"]);
+}
+
+#[test]
 fn more_threads_than_make_sense_are_refused() {
     let folder = Folder::new();
     let mesh = folder.write_mesh("mesh.off", &shapes::torus(12, 8));

@@ -11,7 +11,7 @@ mod common;
 use std::path::Path;
 use std::time::Instant;
 
-use common::{edit, median, ms, name, one_handle, read, timed};
+use common::{edit, median, ms, name, one_handle, pool, read, timed};
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{Arap, ArapEnergy, Bound, Method, Step};
 use pliant_mesh::{Cancel, Model, Progress};
@@ -26,7 +26,7 @@ fn main() {
     };
     let threads = threads.parse().unwrap();
     let energy = *ArapEnergy::ALL.iter().find(|known| known.name() == energy).unwrap();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = pool(threads);
     pool.install(|| measure(Path::new(file), threads, energy, reach.first()));
 }
 

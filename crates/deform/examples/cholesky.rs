@@ -10,7 +10,7 @@ mod common;
 
 use std::path::Path;
 
-use common::{forget_peak, median, name, one_handle, peak_mb, peers_edit, read, timed};
+use common::{forget_peak, median, name, one_handle, peak_mb, peers_edit, pool, read, timed};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::prelude::Mat;
@@ -28,7 +28,7 @@ fn main() {
         panic!("usage: cholesky MESH.off THREADS ours|faer");
     };
     let threads: usize = threads.parse().unwrap();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = pool(threads);
     pool.install(|| {
         let file = Path::new(file);
         let (operator, matrix) = system(file);

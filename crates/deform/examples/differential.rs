@@ -9,7 +9,7 @@ mod common;
 
 use std::path::Path;
 
-use common::{median, name, one_handle, peers_edit, read, timed};
+use common::{median, name, one_handle, peers_edit, pool, read, timed};
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{Bilaplacian, Detail, Frames, LaplacianEditing, Method, Poisson, Role};
 use pliant_mesh::{Cancel, Model, Progress, vertex_normals};
@@ -27,7 +27,7 @@ fn main() {
         panic!("usage: differential MESH.off THREADS [METHOD..]");
     };
     let threads = threads.parse().unwrap();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = pool(threads);
     let mut chosen = methods();
     chosen.retain(|(name, _)| wanted.is_empty() || wanted.iter().any(|wanted| wanted == name));
     pool.install(|| measure(Path::new(file), threads, &chosen));

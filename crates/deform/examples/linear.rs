@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use common::{median, ms, name, one_handle, peak_mb, peers_edit, read, stroke};
+use common::{median, ms, name, one_handle, peak_mb, peers_edit, pool, read, stroke};
 use glam::DVec3;
 use pliant_deform::stages::Operator;
 use pliant_deform::{Bilaplacian, Method, Ordering};
@@ -23,7 +23,7 @@ fn main() {
     let usage = "usage: linear MESH.off THREADS [cpu]";
     let file = words.next().unwrap_or_else(|| panic!("{usage}"));
     let threads = words.next().and_then(|word| word.parse().ok()).unwrap_or(1);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = pool(threads);
     let clock: fn() -> f64 = match words.next().as_deref() {
         Some("cpu") => processor_ms,
         _ => wall_ms,

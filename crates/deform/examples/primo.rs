@@ -11,7 +11,7 @@ mod common;
 use std::path::Path;
 use std::time::Instant;
 
-use common::{edit, ms, name, one_handle, read};
+use common::{edit, ms, name, one_handle, pool, read};
 use glam::{DAffine3, DQuat, DVec3};
 use pliant_deform::{Bound, Method, Primo};
 use pliant_mesh::{Cancel, Progress};
@@ -24,7 +24,7 @@ fn main() {
     let thickness = words
         .next()
         .map_or(Primo::default().thickness, |word| word.parse().unwrap());
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = pool(threads);
     pool.install(|| measure(Path::new(&scene), threads, thickness));
 }
 

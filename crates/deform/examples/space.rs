@@ -2,11 +2,16 @@
 //!
 //! Points are spread over a bumpy ball; a cap is the handle, the lower third is fixed. One JSON object: binding, the
 //! median frame of a drag and the median of its Jacobians, from which normals are turned, in milliseconds.
-#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    clippy::unwrap_used,
+    reason = "a program that measures"
+)]
 
 mod common;
 
-use common::{median, one_handle, timed};
+use common::{median, one_handle, pool, timed};
 use glam::{DAffine3, DVec3};
 use pliant_deform::{Method, OptionKind, OptionValue, Role};
 use pliant_mesh::{Cancel, Progress, shapes};
@@ -33,7 +38,7 @@ fn main() {
         method.with([(option, value)]).unwrap()
     });
     let threads = threads.parse().unwrap();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = pool(threads);
     pool.install(|| measure(vertices.parse().unwrap(), threads, &method));
 }
 
@@ -71,12 +76,14 @@ fn measure(vertices: usize, threads: usize, method: &Method) {
     }
     println!(
         "{{\"vertices\": {}, \"method\": \"{}\", \"threads\": {threads}, \"free\": {}, \"bind\": {bind_ms:.0}, \
-         \"frame\": {:.2}, \"jacobians\": {:.2}, \"warnings\": {:?}}}",
+         \"frame\": {:.2}, \"jacobians\": {:.2}}}",
         roles.len(),
         method.name(),
         bound.solved_count(),
         median(&mut frames[1..]),
         median(&mut jacobians[1..]),
-        bound.warnings(),
     );
+    for warning in bound.warnings() {
+        eprintln!("{warning:?}");
+    }
 }

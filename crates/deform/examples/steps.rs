@@ -7,7 +7,7 @@ mod common;
 
 use std::path::Path;
 
-use common::{median, name, one_handle, peers_edit, read, timed};
+use common::{median, name, one_handle, peers_edit, pool, read, timed};
 use glam::DVec3;
 use pliant_deform::{Arap, ArapEnergy, Method, Problem};
 use pliant_mesh::{Cancel, Progress};
@@ -26,7 +26,7 @@ fn main() {
         method = options.into();
     }
     let threads = threads.parse().unwrap();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = pool(threads);
     pool.install(|| measure(Path::new(file), threads, &method));
 }
 

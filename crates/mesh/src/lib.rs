@@ -18,6 +18,7 @@ mod progress;
 pub mod shapes;
 mod surface;
 mod topology;
+mod vectors;
 mod weld;
 
 pub use bvh::{Bvh, Hit};
@@ -34,3 +35,4 @@ pub use surface::Surface;
 pub use topology::{
     Component, Contact, ContourLine, Crossing, Faces, FanKind, Topology, component_areas, contacts, contours,
 };
+pub use vectors::{Vectors, vectors};

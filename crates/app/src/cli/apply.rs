@@ -20,7 +20,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         morph_weight,
         frames,
         method,
-        threads,
+        compute,
     } = arguments;
     let output_name = output.to_string_lossy();
     Format::of_name(&output_name).map_err(|error| AppError::Arguments(format!("--output: {error}")))?;
@@ -51,7 +51,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         morph,
     };
     let (watch, staging) = (&console.watch, &console.staging);
-    on_threads(*threads, || engine::apply(&job, watch, staging))??;
+    on_threads(*compute, || engine::apply(&job, watch, staging))??;
     Ok(())
 }
 

@@ -6,6 +6,7 @@ use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use pliant_deform::{ConstraintKind, METHODS};
 use pliant_editor::Clay;
+use pliant_mesh::Vectors;
 
 use crate::version::VERSION;
 
@@ -86,10 +87,9 @@ pub(crate) struct ApplyArguments {
     /// Use this method instead of the edit's, with its defaults or with options set: NAME[:OPTION=VALUE..]
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
-    /// How many threads to use (at most four a core); without it, all cores. The result is the same whatever their
-    /// number
-    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=65_536))]
-    pub threads: Option<usize>,
+    /// On how many threads, and with which vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
 }
 
 #[derive(Args, Debug)]
@@ -118,10 +118,30 @@ pub(crate) struct CompareArguments {
     /// From where, and in which colours.
     #[command(flatten)]
     pub look: LookArguments,
-    /// How many threads to use (at most four a core); without it, all cores. The shapes are the same whatever their
+    /// On how many threads, and with which vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
+}
+
+/// What is computed with. The result is the same whatever it is.
+#[derive(Args, Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct ComputeArguments {
+    /// How many threads to use (at most four a core); without it, all cores. The result is the same whatever their
     /// number
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=65_536))]
     pub threads: Option<usize>,
+    /// Which of the processor's vectors to use: avx512, avx2 or baseline; without it, the widest. The result is the
+    /// same whichever they are
+    #[arg(long, value_name = "VECTORS", value_parser = vectors)]
+    pub vectors: Option<Vectors>,
+}
+
+/// Vectors by name.
+fn vectors(name: &str) -> Result<Vectors, String> {
+    Vectors::from_name(name).ok_or_else(|| {
+        let names = Vectors::ALL.map(Vectors::name).join(", ");
+        format!("there are {names}")
+    })
 }
 
 /// From where a picture looks, and in which colours.

@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &CompareArguments, console: &mut Console<'_>) -> Re
         Destination::of(report)?;
     }
     let watch = &console.watch;
-    let Compared { sheet, report, table } = on_threads(arguments.threads, || compare(arguments, &methods, watch))??;
+    let Compared { sheet, report, table } = on_threads(arguments.compute, || compare(arguments, &methods, watch))??;
     if watch.cancel.is_cancelled() {
         return Err(AppError::Interrupted);
     }

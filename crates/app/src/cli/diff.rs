@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 use pliant_io::{Difference, What};
 use serde_json::{Value, json};
 
-use super::arguments::DiffArguments;
+use super::arguments::{ComputeArguments, DiffArguments};
 use super::{Console, on_threads, print, print_json};
 use crate::{AppError, engine};
 
 pub(super) fn run(arguments: &DiffArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     let watch = &console.watch;
-    let differences = on_threads(None, || {
+    let differences = on_threads(ComputeArguments::default(), || {
         let [first, second] = [&arguments.first, &arguments.second].map(|path| engine::open(path, watch));
         let (first, second) = (first?, second?);
         Ok::<_, AppError>(first.scene.differences(&first.drawn, &second.scene, &second.drawn))

@@ -7,7 +7,7 @@ use pliant_io::{Scene, SceneAndDrawn};
 use pliant_mesh::{FindingKind, Inspection, WeldOptions};
 use serde_json::{Value, json};
 
-use super::arguments::InfoArguments;
+use super::arguments::{ComputeArguments, InfoArguments};
 use super::{Console, on_threads, print, print_json};
 use crate::AppError;
 use crate::engine;
@@ -19,7 +19,7 @@ const LISTED_COMPONENTS: usize = 12;
 
 pub(super) fn run(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     let watch = &console.watch;
-    let looked_at = on_threads(None, || look_at(&arguments.file, watch))??;
+    let looked_at = on_threads(ComputeArguments::default(), || look_at(&arguments.file, watch))??;
     if arguments.json {
         print_json(console.out, &as_json(&looked_at))
     } else {

@@ -17,11 +17,12 @@ use std::process::ExitCode;
 pub use arguments::{LookArguments, PictureSize, RenderArguments, Shading, Up, View};
 
 use pliant_io::steers;
+use pliant_mesh::Vectors;
 
 use crate::AppError;
 use crate::files::Staging;
 use crate::watch::Watch;
-use arguments::Command;
+use arguments::{Command, ComputeArguments};
 
 /// A command's output streams, and how it is watched and stopped.
 pub struct Console<'a> {
@@ -117,8 +118,18 @@ fn write_out(out: &mut dyn Write, text: &str) -> Result<(), AppError> {
 /// The most threads per core: more cost memory and gain nothing.
 const MOST_THREADS_A_CORE: usize = 4;
 
-/// Runs `work` on a pool of its own with `threads` threads, or one per core.
-fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T, AppError> {
+/// Runs `work` on a pool of its own, with as many threads and with the vectors that are asked for.
+fn on_threads<T: Send>(asked: ComputeArguments, work: impl FnOnce() -> T + Send) -> Result<T, AppError> {
+    let ComputeArguments { threads, vectors } = asked;
+    if let Some(vectors) = vectors.filter(|vectors| !vectors.choose()) {
+        let others = Vectors::ALL.into_iter().filter(|other| other.is_available());
+        let others: Vec<&str> = others.map(Vectors::name).collect();
+        return Err(AppError::Arguments(format!(
+            "--vectors {}: this processor does not have them; leave it out, or give {}",
+            vectors.name(),
+            others.join(" or ")
+        )));
+    }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let most = MOST_THREADS_A_CORE * cores;
     if let Some(threads) = threads.filter(|&threads| threads > most) {

@@ -12,7 +12,7 @@ use pliant_mesh::{Cancel, Model, WeldOptions};
 use pliant_render::{Background, Frame, Headless, RenderError, Renderer, Samples, Surface, SurfaceLine};
 
 use super::apply::read_edit;
-use super::arguments::{self, PictureSize, ProjectionName, RenderArguments, Up, View};
+use super::arguments::{self, ComputeArguments, PictureSize, ProjectionName, RenderArguments, Up, View};
 use super::{Console, on_threads, print};
 use crate::drawing::{self, Drawing, Pose, Scale};
 use crate::engine::{self, Loaded};
@@ -31,7 +31,7 @@ pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Res
         // What is no file is refused before anything is drawn.
         Destination::of(path)?;
     }
-    let Pictures { pngs, notes } = on_threads(None, || pictures(arguments, &paths, watch))??;
+    let Pictures { pngs, notes } = on_threads(ComputeArguments::default(), || pictures(arguments, &paths, watch))??;
     if watch.cancel.is_cancelled() {
         return Err(AppError::Interrupted);
     }

@@ -6,7 +6,18 @@ use std::time::Instant;
 
 use glam::{DAffine3, DMat3, DVec3};
 use pliant_deform::{Constraints, Loose, Method, Problem, Role};
-use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, WeldOptions};
+use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, Vectors, WeldOptions};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// A pool of so many threads. The environment variable `PLIANT_VECTORS` names the vectors that loops run with from now
+/// on (`avx512`, `avx2`, `baseline`); without it they are the widest that the processor has.
+pub fn pool(threads: usize) -> ThreadPool {
+    if let Ok(name) = std::env::var("PLIANT_VECTORS") {
+        let vectors = Vectors::from_name(&name).unwrap_or_else(|| panic!("there are no vectors {name}"));
+        assert!(vectors.choose(), "this processor has no {name}");
+    }
+    ThreadPoolBuilder::new().num_threads(threads).build().unwrap()
+}
 
 /// The mesh of an OFF file of triangles.
 pub fn read(off: &Path) -> Model {

@@ -11,7 +11,8 @@
 //! model: a direction needs no more digits, and slope and energy are not computed from them. The time of an iteration
 //! is that of reading its fields from memory, so they have three numbers per vertex, not four.
 
-use pulp::{Arch, Simd, WithSimd};
+use pliant_mesh::vectors;
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::numerical::sums::CHUNKS_A_TASK;
@@ -214,7 +215,7 @@ impl History {
                 let range = chunk * CHUNK..chunk * CHUNK + direction.len();
                 direction.copy_from_slice(&self.mapped[range.clone()]);
                 for (k, pair) in self.pairs.iter().enumerate() {
-                    Arch::new().dispatch(AddPair {
+                    vectors().dispatch(AddPair {
                         to: direction.as_flattened_mut(),
                         fields: [&pair.direction, &pair.mapped].map(|field| field[range.clone()].as_flattened()),
                         factors: [-pair.length * factors.steps[k], factors.changes[k]].map(|factor| factor as f32),
@@ -277,7 +278,7 @@ fn difference(to: &mut [[f32; 3]], a: &[[f32; 3]], b: &[[f32; 3]]) {
 /// a · b. **f32**: products and the sums of eight of them, like the fields themselves; all else is summed in double
 /// precision.
 fn dot(a: &[[f32; 3]], b: &[[f32; 3]]) -> f64 {
-    Arch::new().dispatch(Dot {
+    vectors().dispatch(Dot {
         a: a.as_flattened(),
         b: b.as_flattened(),
     })

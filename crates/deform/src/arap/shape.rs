@@ -4,7 +4,7 @@
 //! at once, and sums the energy; the second gathers the ring's rotations into the gradient, and is skipped for a shape
 //! that new targets replace (see `fit_pass` and `gradient_pass`).
 
-use pulp::Arch;
+use pliant_mesh::vectors;
 use rayon::prelude::*;
 
 use super::cells::{Cells, Quad, minus};
@@ -111,7 +111,7 @@ impl Cells {
         let Scratch { turns, laplacians } = scratch;
         turns.resize(self.count(), [[0.0; 4]; 3]);
         laplacians.resize(self.count(), [0.0; 4]);
-        let arch = Arch::new();
+        let arch = vectors();
         let partial: Vec<f64> = rotations
             .par_chunks_mut(CHUNK)
             .zip(turns.par_chunks_mut(CHUNK))
@@ -156,7 +156,7 @@ impl Cells {
     }
 
     fn gradient_pass(&self, gradient: &mut [[f32; 3]], turns: &[Turn], laplacians: Laplacians<'_>) {
-        let arch = Arch::new();
+        let arch = vectors();
         gradient
             .par_chunks_mut(CHUNK)
             .enumerate()

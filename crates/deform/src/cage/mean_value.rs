@@ -9,7 +9,8 @@
 //! are computed one by one in [`super::mean_value_at`].
 
 use glam::DVec3;
-use pulp::{Arch, Simd, WithSimd};
+use pliant_mesh::vectors;
+use pulp::{Simd, WithSimd};
 
 use super::mean_value_at::{COPLANAR, Weight, at_any, normalised};
 use super::mesh::CageMesh;
@@ -55,7 +56,7 @@ impl<'a> MeanValue<'a> {
             weights: vec![Default::default(); count],
             doubts: Lanes::default(),
         };
-        let arch = Arch::new();
+        let arch = vectors();
         let mut own: Vec<Weight> = vec![Default::default(); count];
         for (group, points) in points.chunks(LANES).enumerate() {
             arch.dispatch(Group {

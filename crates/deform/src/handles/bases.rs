@@ -10,7 +10,8 @@
 use std::collections::TryReserveError;
 
 use glam::{DMat3, DVec3};
-use pulp::{Arch, Simd, WithSimd};
+use pliant_mesh::vectors;
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::budget::filled;
@@ -212,7 +213,7 @@ pub(crate) fn frame<T: Stored>(
     displacements: &mut [DVec3],
 ) -> Finite {
     let tables = Tables::of(motions, bases);
-    let arch = Arch::new();
+    let arch = vectors();
     let is_finite = displacements
         .par_chunks_mut(FRAME_CHUNK)
         .enumerate()

@@ -1,7 +1,8 @@
 //! The transformations that carry the vertices' rings best from rest to a shape [BS08, section 3.2.5], eight at a time.
 
 use glam::{DMat3, DQuat, DVec3};
-use pulp::{Arch, Simd, WithSimd};
+use pliant_mesh::vectors;
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::LocalScale;
@@ -31,7 +32,7 @@ pub(super) struct Estimate<'a> {
 impl Estimate<'_> {
     /// Fills `changes` with (T − I) L p: zero to the last bit where a ring keeps its place or is moved as a whole.
     pub fn transform(self, changes: &mut [DVec3]) {
-        let arch = Arch::new();
+        let arch = vectors();
         changes.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, changes)| {
             arch.dispatch(Pass {
                 estimate: self,

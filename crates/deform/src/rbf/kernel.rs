@@ -1,7 +1,8 @@
 //! Sums of the kernel |p − x|³ over all centres, and their gradients, eight points at a time.
 
 use glam::DVec3;
-use pulp::{Arch, Simd, WithSimd};
+use pliant_mesh::vectors;
+use pulp::{Simd, WithSimd};
 
 use crate::numerical::lanes::{LANES, Lanes, Vector};
 
@@ -22,7 +23,7 @@ pub(super) type Sum = [[f64; 4]; 4];
 impl Weights {
     /// The field of one handle at points.
     pub fn evaluate(&self, handle: usize, points: &[DVec3], out: &mut [Sum]) {
-        let arch = Arch::new();
+        let arch = vectors();
         for (points, out) in points.chunks(LANES).zip(out.chunks_mut(LANES)) {
             arch.dispatch(Group {
                 weights: self,

@@ -7,10 +7,11 @@
 //! looked up. Lengths are computed many at a time, by loops compiled for the machine's vectors.
 
 use glam::DVec3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::surface::corners;
+use crate::vectors::vectors;
 use crate::{FanKind, SurfaceVertex, Topology};
 
 /// Vertices that one task takes.
@@ -33,7 +34,7 @@ pub fn vertex_normals(
         topology,
         positions,
     };
-    let arch = Arch::new();
+    let arch = vectors();
     out.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, normals)| {
         arch.dispatch(Fill {
             around,

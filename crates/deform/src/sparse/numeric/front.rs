@@ -3,7 +3,7 @@
 //! The factorisation is left-looking: for a strip's next eight columns all columns before them are multiplied at once,
 //! in registers. Large fronts are cut, by size alone, into runs of strips that are processed in parallel.
 
-use pliant_mesh::Cancel;
+use pliant_mesh::{Cancel, vectors};
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::sparse::factor_error::FactorError;
@@ -18,7 +18,7 @@ const TASK: usize = 1 << 20;
 
 /// Factors a supernode's `panel`, which has this shape. The error is the column of the pivot that is not positive.
 pub(crate) fn factor_panel(shape: Shape, panel: &mut [Line], cancel: &Cancel) -> Result<(), FactorError> {
-    let arch = Arch::new();
+    let arch = vectors();
     for first in (0..shape.own()).step_by(BLOCK) {
         if cancel.is_cancelled() {
             return Err(FactorError::Cancelled);
@@ -119,7 +119,7 @@ impl WithSimd for Rows<'_> {
 pub(crate) fn update_matrix(shape: Shape, panel: &[Line], square: &mut [Line], cancel: &Cancel) {
     let below = &panel[shape.start(shape.own())..];
     let strips = 0..shape.strips() - shape.own();
-    square_rows(Arch::new(), below, shape.width, strips, square, cancel);
+    square_rows(vectors(), below, shape.width, strips, square, cancel);
 }
 
 fn square_rows(

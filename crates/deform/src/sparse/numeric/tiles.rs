@@ -1,7 +1,7 @@
 //! Products of strips, in registers: the loops in which a factorisation spends its time.
 //!
 //! A tile is some strips by some columns of another strip's rows. Each of its sums runs over all columns in order, so
-//! the bits do not depend on how a front is cut into tiles.
+//! the bits do not depend on how a front is cut into tiles, nor on the vectors, which decide how large tiles are.
 
 use pulp::Simd;
 
@@ -66,7 +66,8 @@ fn multiply<S: Simd, const V: usize, const R: usize, const C: usize>(
 }
 
 /// Finishes the columns from 8 `block` on of some strips, given the same of the block's own strip, `other`, whose
-/// diagonal has its inverses.
+/// diagonal has its inverses. What the columns before the block contribute is summed first and taken off at once; the
+/// block's own columns are taken off one by one. However few of them a tile has, this order stays.
 #[inline(always)]
 fn finish<S: Simd, const V: usize, const R: usize, const C: usize>(
     simd: S,
@@ -79,17 +80,26 @@ fn finish<S: Simd, const V: usize, const R: usize, const C: usize>(
     for first in (0..count).step_by(C) {
         let until = done + first;
         let sums: Tile<S::f64s, V, R, C> =
-            product::<S, V, R, C>(simd, rows.each_ref().map(|row| &row[..until]), &other[..until], first);
+            product::<S, V, R, C>(simd, rows.each_ref().map(|row| &row[..done]), &other[..done], first);
         let mut values = sums;
         for c in 0..C {
             if first + c >= count {
                 break;
             }
-            let column = &other[until..until + c + 1];
+            let (before, column) = other[done..until + c + 1].split_at(first);
             for r in 0..R {
                 let own = vectors::<S, V>(&rows[r][until + c]);
                 for v in 0..V {
                     values[c][r][v] = simd.sub_f64s(own[v], sums[c][r][v]);
+                }
+            }
+            for b in 0..first {
+                let factor = simd.splat_f64s(-before[b].0[first + c]);
+                for r in 0..R {
+                    let finished = vectors::<S, V>(&rows[r][done + b]);
+                    for v in 0..V {
+                        values[c][r][v] = simd.mul_add_f64s(finished[v], factor, values[c][r][v]);
+                    }
                 }
             }
             for b in 0..c {

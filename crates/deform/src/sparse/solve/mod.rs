@@ -12,7 +12,7 @@ pub(crate) mod substitution;
 
 use std::sync::{Mutex, PoisonError};
 
-use pulp::Arch;
+use pliant_mesh::vectors;
 
 use crate::sparse::numeric::Numbers;
 use crate::sparse::numeric::line::{LANES, Line, Shape};
@@ -117,7 +117,7 @@ fn forward<const K: usize>(
         return;
     }
     room.begin(shape, &x[own.clone()]);
-    Arch::new().dispatch(Forward {
+    vectors().dispatch(Forward {
         shape,
         panel,
         x: &mut room.x,
@@ -153,7 +153,7 @@ fn backward<const K: usize>(
             }
         }
     }
-    Arch::new().dispatch(Backward {
+    vectors().dispatch(Backward {
         shape,
         panel,
         x: &mut room.x,

@@ -6,7 +6,8 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use pulp::{Arch, Simd, WithSimd};
+use pliant_mesh::vectors;
+use pulp::{Simd, WithSimd};
 
 use crate::budget::reserved;
 use crate::sparse::factor_error::FactorError;
@@ -82,7 +83,7 @@ impl<T: Real> Substitution<T> {
 
     /// Solves L Lᵀ x = b in place, with one row per column of the factor.
     pub fn solve(&self, x: &mut [Rhs<T>], room: &mut Room<T>) {
-        let arch = Arch::new();
+        let arch = vectors();
         let Room { part_rows, below } = room;
         let spare = &*below;
         let pass = |part: usize, way: Way, x: &mut [Rhs<T>]| {
