@@ -14,7 +14,9 @@ mod linear;
 mod meshes;
 mod peers;
 mod primo;
+mod space;
 mod table;
+mod vectors;
 mod view;
 
 use table::Row;
@@ -65,6 +67,16 @@ const SECTIONS: &[Section] = &[
         name: "differential",
         title: "The differential methods and details beside the bi-Laplacian, medians of a drag: milliseconds; binding as a multiple of its",
         rows: differential::rows,
+    },
+    Section {
+        name: "space",
+        title: "The methods that bend space, medians of a drag, beside Blender's: milliseconds",
+        rows: space::rows,
+    },
+    Section {
+        name: "vectors",
+        title: "The same with each of the processor's vectors: milliseconds, medians",
+        rows: vectors::rows,
     },
     Section {
         name: "files",
