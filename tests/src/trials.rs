@@ -194,6 +194,7 @@ impl Trial {
             },
             loose: self.loose,
             method: &self.method,
+            attachments: &[],
             revision: 0,
         };
         let ordering = self.method.ordering_power().map(|power| subject.ordering(power));

@@ -29,6 +29,7 @@ fn bent(drawn: Drawn) -> (Model, Vec<DVec3>, Vec<Mat3>) {
         constraints: Constraints::default(),
         loose: Loose::Follow,
         method: &method,
+        attachments: &[],
         revision: 0,
     };
     let mut bound = problem.bind(None, &Progress::new(), &Cancel::new()).unwrap();

@@ -49,6 +49,7 @@ impl<'a> Setting<'a> {
             constraints: Constraints::default(),
             loose: Loose::Follow,
             method: &Method::default(),
+            attachments: &[],
             revision: 0,
         };
         problem.bind(self.ordering, &Progress::new(), &Cancel::new()).unwrap()

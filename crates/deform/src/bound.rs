@@ -8,11 +8,12 @@ use rayon::prelude::*;
 
 use crate::handles::residual::HandleResidual;
 use crate::handles::{FRAME_CHUNK, Handle, Motion, clear};
+use crate::method::attachment::finite;
 use crate::method::{BindInput, BoundMethod, Finite, HandleFit, Solve};
 use crate::region::follow::{Followers, followers};
 use crate::region::partition::Partition;
 use crate::sparse::refactorisation::{Refactorisation, RenewableFactor};
-use crate::{BindError, Budget, HandleBases, Ordering, Problem, SolveError, Warning};
+use crate::{Attachment, AttachmentRefused, BindError, Budget, HandleBases, Ordering, Problem, SolveError, Warning};
 
 /// A bound problem: everything that does not depend on the handles' transforms is solved.
 #[derive(Debug)]
@@ -25,6 +26,8 @@ pub struct Bound {
     iteration: u32,
     solve: Solve,
     method: Box<dyn BoundMethod>,
+    /// What the method's control points belong to: its name, and what a person calls it.
+    attachment: Option<(&'static str, &'static str)>,
     followers: Followers,
     /// Of hard handles that the method only fits.
     residual: HandleResidual,
@@ -105,15 +108,27 @@ impl Bound {
             .iter()
             .map(|vertices| Handle::new(vertices.clone(), positions))
             .collect();
-        let method = problem.method.implementation().bind(&BindInput {
+        let declaration = problem.method.declaration();
+        let brought = problem.attachment();
+        if let Some((name, attachment)) = brought {
+            let title = declaration.attachment(name).map_or(name, |declared| declared.title);
+            let checked = problem.method.check_attachment(name, attachment);
+            checked.map_err(|refused| BindError::Attachment { title, refused })?;
+        }
+        let mut method = problem.method.implementation().bind(&BindInput {
             problem,
             partition: &partition,
             handles: &handles,
+            attachment: brought.map(|(_, attachment)| attachment),
             ordering,
             refactorisation,
             progress,
             cancel,
         })?;
+        if let (Some((_, attachment)), Some(controls)) = (brought, method.controls_mut()) {
+            controls.move_to(Arc::clone(attachment.moved()));
+        }
+        let attachment = declaration.attachments.first();
         let residual = match problem.method.implementation().handle_fit() {
             HandleFit::Exact => HandleResidual::default(),
             HandleFit::LeastSquares => HandleResidual::new(problem.method.name(), &handles, &partition.soft, positions),
@@ -129,6 +144,7 @@ impl Bound {
             iteration: 0,
             solve: problem.method.solve(),
             method,
+            attachment: attachment.map(|declared| (declared.name, declared.title)),
             followers: followers(
                 problem.surface,
                 problem.topology,
@@ -180,6 +196,53 @@ impl Bound {
         Ok(())
     }
 
+    /// Sets where the control points of the attachment that the problem brought are moved to by hand: one world position
+    /// for each. What the hand does adds to what the handles do: the control points take on the hand's displacements,
+    /// and the handles, which are met as before, correct them by as little as they can.
+    ///
+    /// # Errors
+    /// A wrong count, a position that is not finite, or a binding without brought control points; the previous places
+    /// stay.
+    pub fn set_controls(&mut self, moved: &Arc<Vec<DVec3>>) -> Result<(), SolveError> {
+        let controls = self.method.controls_mut().filter(|controls| controls.hand.is_some());
+        let (Some(controls), Some((_, title))) = (controls, self.attachment) else {
+            return Err(SolveError::NoControls);
+        };
+        let (found, expected) = (moved.len(), controls.rest.len());
+        let checked = match found == expected {
+            true => finite(moved),
+            false => Err(AttachmentRefused::MovedCount { found, expected }),
+        };
+        checked.map_err(|refused| SolveError::Controls { title, refused })?;
+        if self.solve == Solve::Direct || controls.attachment.moved() != moved {
+            self.iteration = 0;
+        }
+        controls.move_to(Arc::clone(moved));
+        Ok(())
+    }
+
+    /// The cage or lattice in force, by its declared name: what the problem brought, with its points where the hand has
+    /// moved them, or else what the method has made for itself, at rest. `None` for a method without one.
+    pub fn attachment(&self) -> Option<(&'static str, &Attachment)> {
+        let (name, _) = self.attachment?;
+        Some((name, &self.method.controls()?.attachment))
+    }
+
+    /// Where its points are with the present targets, moved by handles and by hand: world positions, empty for a method
+    /// without control points.
+    pub fn control_positions(&self) -> Vec<DVec3> {
+        match self.method.controls() {
+            Some(controls) if self.is_at_rest() => controls.rest.clone(),
+            _ => self.method.control_positions(&self.motions),
+        }
+    }
+
+    /// Whether neither a handle nor the hand moves anything.
+    fn is_at_rest(&self) -> bool {
+        let are_moved = self.method.controls().is_some_and(|controls| controls.are_moved());
+        !are_moved && self.motions.iter().all(Motion::is_rest)
+    }
+
     /// One step towards the targets: fills `displacements`, one per surface vertex, in world units.
     ///
     /// A hard handle's vertices get exactly what its transform says; vertices that nothing moves get zero to the last
@@ -217,12 +280,12 @@ impl Bound {
             iteration: self.iteration,
             handle_residual: 0.0,
         };
-        let motions = &self.motions;
-        if motions.iter().all(Motion::is_rest) {
+        if self.is_at_rest() {
             clear(displacements);
             self.method.rest();
             return Ok(step);
         }
+        let motions = &self.motions;
         let stepped = match way {
             Way::Shortest => self.method.step(motions, displacements),
             Way::BackSubstitution => self.method.step_by_back_substitution(motions, displacements),
@@ -283,7 +346,7 @@ impl Bound {
     pub fn jacobians_into(&self, jacobians: &mut Vec<Mat3>) -> bool {
         jacobians.resize(self.vertex_count, Mat3::ZERO);
         let are_known = self.method.jacobians(&self.motions, jacobians);
-        if self.motions.iter().all(Motion::is_rest) {
+        if self.is_at_rest() {
             jacobians.fill(Mat3::ZERO);
         }
         are_known

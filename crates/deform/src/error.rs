@@ -2,7 +2,7 @@
 
 use pliant_mesh::{Cancelled, SurfaceVertex, Topology};
 
-use crate::{Budget, Limit, alternatives};
+use crate::{AttachmentRefused, Budget, Limit, alternatives};
 
 /// A problem could not be bound. Vertices are the surface's, until they are [`BindError::renumbered`].
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
@@ -62,6 +62,14 @@ pub enum BindError {
         vertex: u32,
         /// What it has.
         value: f64,
+    },
+    /// What was brought beside the handles can't be taken.
+    #[error("the {title} {refused}")]
+    Attachment {
+        /// What a person calls it.
+        title: &'static str,
+        /// What is wrong with it.
+        refused: AttachmentRefused,
     },
     /// The ordering was made for another mesh or another power.
     #[error(
@@ -290,6 +298,17 @@ pub enum SolveError {
         /// The handle.
         handle: usize,
     },
+    /// The moved control points do not fit those of the binding.
+    #[error("the {title} {refused}")]
+    Controls {
+        /// What a person calls what they belong to.
+        title: &'static str,
+        /// What is wrong with them.
+        refused: AttachmentRefused,
+    },
+    /// Control points were moved, and none were brought to the binding.
+    #[error("control points were moved that the binding does not have: bind with a cage or a lattice")]
+    NoControls,
     /// The output has another length than the surface.
     #[error("room for {found} displacements was given for {expected} surface vertices: give one for each")]
     OutputLength {

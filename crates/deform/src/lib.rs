@@ -53,8 +53,9 @@ pub use handles::bases::HandleBases;
 pub use laplacian::{LaplacianEditing, LocalScale, Transforms};
 pub use lattice::{Lattice, LatticeBasis, LatticeNorm};
 pub use method::{
-    ConstraintKind, HandleFit, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused,
-    OptionValue, Solve,
+    Attachment, AttachmentDeclaration, AttachmentKind, AttachmentRefused, ConstraintKind, ControlLattice, ControlMesh,
+    HandleFit, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused, OptionValue,
+    Solve,
 };
 pub use mls::{Mls, MlsTransforms};
 pub use numerical::rigid_fit::RigidMotion;

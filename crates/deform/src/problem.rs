@@ -4,7 +4,7 @@ use pliant_mesh::{Cancel, Progress, Surface, Topology};
 
 use crate::budget::bytes_of;
 use crate::sparse::refactorisation::Refactorisation;
-use crate::{BindError, Bound, Budget, Constraints, Method, Ordering, ReusableFactor};
+use crate::{Attachment, BindError, Bound, Budget, Constraints, Method, Ordering, ReusableFactor};
 
 /// What a surface vertex does.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -53,6 +53,9 @@ pub struct Problem<'a> {
     pub loose: Loose,
     /// The method and its options.
     pub method: &'a Method,
+    /// What was brought beside the handles, by the names that methods declare. The method makes for itself what is not
+    /// here, and what others declare it leaves alone.
+    pub attachments: &'a [(&'static str, Attachment)],
     /// The caller's stamp, handed back by [`Bound::revision`].
     pub revision: u64,
 }
@@ -61,6 +64,16 @@ pub struct Problem<'a> {
 const ORDERING_ROW: usize = 230;
 
 impl Problem<'_> {
+    /// What was brought of what the method declares.
+    pub(crate) fn attachment(&self) -> Option<(&'static str, &Attachment)> {
+        let declared = self.method.declaration();
+        let own = self
+            .attachments
+            .iter()
+            .find(|(name, _)| declared.attachment(name).is_some());
+        own.map(|(name, attachment)| (*name, attachment))
+    }
+
     /// What each component does if nothing holds it.
     pub(crate) fn loose_by_component(&self) -> Vec<Loose> {
         let mut loose = vec![self.loose; self.topology.components().len()];

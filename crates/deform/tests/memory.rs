@@ -118,6 +118,7 @@ impl Scene {
             constraints: Constraints::default(),
             loose: Loose::Follow,
             method: &self.method,
+            attachments: &[],
             revision: 0,
         };
         let (progress, cancel) = (Progress::new(), Cancel::new());

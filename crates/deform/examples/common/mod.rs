@@ -50,6 +50,7 @@ pub fn one_handle<'a>(model: &'a Model, roles: &'a [Role], stiffness: &'a [f64],
         constraints: Constraints::default(),
         loose: Loose::Rest,
         method,
+        attachments: &[],
         revision: 0,
     }
 }

@@ -132,6 +132,7 @@ mod tests {
                 constraints: Constraints::default(),
                 loose: Loose::Rest,
                 method: &Method::from(Arap::default()),
+                attachments: &[],
                 revision: 0,
             };
             let domain = Domain::of(&model.surface, &model.topology, &order);

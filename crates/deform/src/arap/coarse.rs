@@ -72,6 +72,7 @@ impl Coarse {
             },
             loose: Loose::Rest,
             method: &method,
+            attachments: &[],
             revision: problem.revision,
         };
         let partition = Partition::of(&coarse).ok()?;

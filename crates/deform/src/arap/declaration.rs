@@ -17,6 +17,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   energy \"smooth\" it bends and twists evenly, with \"spokes-and-rims\" it binds sooner and may crease.",
     keywords: "arap as-rigid-as-possible",
     options: Arap::OPTIONS,
+    attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
     default: || Arap::default().into(),
     first_choice: || Arap::first_choice().into(),

@@ -20,6 +20,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     when_to_use: "Bends like a thin plate, at once: for small turns and smooth bulges.",
     keywords: "bilaplacian bi-laplacian biharmonic linear shell laplacian",
     options: Bilaplacian::OPTIONS,
+    attachments: &[],
     heeds: &[
         ConstraintKind::SoftHandles,
         ConstraintKind::Continuity,

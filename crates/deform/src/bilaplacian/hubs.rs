@@ -307,6 +307,7 @@ mod tests {
             constraints: Constraints::default(),
             loose: Loose::Rest,
             method: &method,
+            attachments: &[],
             revision: 0,
         };
         let partition = Partition::of(&problem).unwrap();

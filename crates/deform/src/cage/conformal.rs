@@ -14,8 +14,10 @@ use crate::BindError;
 use crate::budget::filled;
 use crate::handles::Motion;
 use crate::numerical::rigid_fit::RigidMotion;
+use crate::space::controls::Controls;
 use crate::space::falloff::Falloff;
 use crate::space::fit_samples::Sample;
+use crate::space::hand_field::outer;
 
 /// Points that one task takes.
 const CHUNK: usize = 256;
@@ -37,8 +39,6 @@ pub(super) struct Conformal {
     samples: Vec<Sample>,
     sample_rows: Mat<f64>,
     response: Mat<f64>,
-    /// As [`super::fit::controls`]: where the corrections begin.
-    controls: Mat<f64>,
 }
 
 /// A moved cage: a rigid motion and what differs from it.
@@ -63,7 +63,6 @@ impl Conformal {
         samples: Vec<Sample>,
         sample_rows: Mat<f64>,
         response: Mat<f64>,
-        controls: Mat<f64>,
         (vertices, falloff): (Vec<u32>, Falloff),
         positions: &[DVec3],
         progress: &Progress,
@@ -98,13 +97,12 @@ impl Conformal {
             samples,
             sample_rows,
             response,
-            controls,
         })
     }
 
-    /// Fills all of `displacements`.
-    pub fn frame(&self, motions: &[Motion], displacements: &mut [DVec3]) {
-        let moved = self.moved_cage(motions);
+    /// Fills all of `displacements`. The corrections begin at where `controls` say that the cage's vertices go.
+    pub fn frame(&self, controls: &Controls, motions: &[Motion], displacements: &mut [DVec3]) {
+        let (moved, _) = self.moved_cage(controls, motions);
         let count = moved.differences.len();
         let mut own = vec![DVec3::ZERO; self.points.len()];
         own.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, own)| {
@@ -123,8 +121,8 @@ impl Conformal {
 
     /// The Jacobians of the displacements. The gradients of the coordinates are computed anew each time, because they
     /// are three times as many numbers as the coordinates themselves.
-    pub fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) {
-        let moved = self.moved_cage(motions);
+    pub fn jacobians(&self, controls: &Controls, motions: &[Motion], out: &mut [Mat3]) {
+        let (moved, _) = self.moved_cage(controls, motions);
         let green = Green::new(&self.cage);
         let mut own = vec![Mat3::ZERO; self.points.len()];
         own.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, own)| {
@@ -148,27 +146,38 @@ impl Conformal {
         }
     }
 
-    /// Moves the cage so that the field meets the handles as well as it can.
-    fn moved_cage(&self, motions: &[Motion]) -> MovedCage {
+    /// Where the cage's vertices are, in world units.
+    pub fn control_positions(&self, controls: &Controls, motions: &[Motion]) -> Vec<DVec3> {
+        let (_, shifts) = self.moved_cage(controls, motions);
+        let places = controls.rest.iter().zip(shifts);
+        places.map(|(rest, shift)| *rest + shift * self.unit.length).collect()
+    }
+
+    /// Moves the cage so that the field meets the handles as well as it can; with it the displacements of its vertices.
+    fn moved_cage(&self, controls: &Controls, motions: &[Motion]) -> (MovedCage, Vec<DVec3>) {
+        let by_hand = controls.corrected();
         let mut shifts: Vec<DVec3> = (0..self.cage.vertices.len())
             .map(|vertex| {
-                let columns = motions.iter().flat_map(|motion| {
-                    let DMat3 { x_axis, y_axis, z_axis } = motion.linear;
-                    [x_axis, y_axis, z_axis, motion.shift]
-                });
-                let sum: DVec3 = columns
-                    .enumerate()
-                    .map(|(column, motion)| motion * self.controls[(vertex, column)])
-                    .sum();
-                sum / self.unit.length
+                let by_hand = by_hand.map_or(DVec3::ZERO, |by_hand| by_hand[vertex]);
+                (controls.driven(vertex, motions) + by_hand) / self.unit.length
             })
             .collect();
-        let target = |sample: &Sample| match sample.handle {
-            Some((handle, coordinates)) => motions[handle].displace(coordinates) / self.unit.length,
-            None => DVec3::ZERO,
+        if motions.is_empty() {
+            return (MovedCage::new(&self.cage, &shifts), shifts);
+        }
+        // Handles are fitted by what the hand leaves; so what is fixed has the hand's displacement for its target.
+        let by_hand = controls.displacements().map(|by_hand| {
+            let shifts: Vec<DVec3> = by_hand.iter().map(|shift| *shift / self.unit.length).collect();
+            MovedCage::new(&self.cage, &shifts)
+        });
+        let row = |number: usize| (0..self.sample_rows.ncols()).map(move |column| self.sample_rows[(number, column)]);
+        let target = |(number, sample): (usize, &Sample)| match (sample.handle, &by_hand) {
+            (Some((handle, coordinates)), _) => motions[handle].displace(coordinates) / self.unit.length,
+            (None, Some(by_hand)) => by_hand.at(self.unit.local(sample.world_point), row(number)),
+            (None, None) => DVec3::ZERO,
         };
-        let targets: Vec<DVec3> = self.samples.iter().map(target).collect();
-        let mut best = (f64::INFINITY, MovedCage::new(&self.cage, &shifts));
+        let targets: Vec<DVec3> = self.samples.iter().enumerate().map(target).collect();
+        let mut best = (f64::INFINITY, (MovedCage::new(&self.cage, &shifts), shifts.clone()));
         for _ in 0..CORRECTIONS {
             let moved = MovedCage::new(&self.cage, &shifts);
             let misses: Vec<DVec3> = self
@@ -176,10 +185,7 @@ impl Conformal {
                 .iter()
                 .zip(&targets)
                 .enumerate()
-                .map(|(number, (sample, target))| {
-                    let row = (0..self.sample_rows.ncols()).map(|column| self.sample_rows[(number, column)]);
-                    *target - moved.at(self.unit.local(sample.world_point), row)
-                })
+                .map(|(number, (sample, target))| *target - moved.at(self.unit.local(sample.world_point), row(number)))
                 .collect();
             let squares = misses.iter().zip(&self.samples);
             let error: f64 = squares
@@ -188,7 +194,7 @@ impl Conformal {
             // Not less by a hundredth: this is as good as it gets.
             let is_better = error < 0.99 * best.0;
             if error < best.0 {
-                best = (error, moved);
+                best = (error, (moved, shifts.clone()));
             }
             if !is_better {
                 break;
@@ -241,9 +247,4 @@ impl MovedCage {
 
 fn displaced(rigid: Option<&RigidMotion>, point: DVec3) -> DVec3 {
     rigid.map_or(DVec3::ZERO, |rigid| rigid.displace(point))
-}
-
-/// a bᵀ.
-fn outer(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }

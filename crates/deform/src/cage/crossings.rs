@@ -101,7 +101,7 @@ impl Crossings {
 }
 
 /// The weights of a projected face's corners at a point in it. Faces that share an edge decide about it alike.
-fn met(face: &[u32; 3], corners: [[f64; 2]; 3], point: [f64; 2]) -> Option<[f64; 3]> {
+pub(super) fn met(face: &[u32; 3], corners: [[f64; 2]; 3], point: [f64; 2]) -> Option<[f64; 3]> {
     let area = |k: usize| {
         let (a, b) = ((k + 1) % 3, (k + 2) % 3);
         let (low, high, sign) = if face[a] < face[b] { (a, b, 1.0) } else { (b, a, -1.0) };

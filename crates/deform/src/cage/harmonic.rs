@@ -98,6 +98,13 @@ impl Harmonic {
         self.node_count
     }
 
+    /// How many of the 64 nodes that a point's coordinates are made of lie in the cage.
+    pub fn nodes_around(&self, point: DVec3) -> usize {
+        let first = self.frame.steps(point).floor().as_i64vec3() - 1;
+        let around = (0..64).map(|step| first + I64Vec3::new(step % 4, step / 4 % 4, step / 16));
+        around.filter(|node| self.node(*node).is_some()).count()
+    }
+
     /// A node's coordinate of a vertex.
     pub fn value(&self, node: usize, vertex: usize) -> f64 {
         self.values[vertex / AT_ONCE][node][vertex % AT_ONCE]

@@ -2,10 +2,13 @@
 //! region. The handles drive the cage: its vertices' displacements are those with which the field fits the handles in
 //! the least-squares sense, and of these the smoothest ones.
 //!
-//! `voxels` and `offset` make the cage. The coordinates are those of `mean_value` [JSW05], of `harmonic` functions
+//! `voxels` and `offset` make the cage, and `brought` checks one that a person gives. The coordinates are those of `mean_value` [JSW05], of `harmonic` functions
 //! [JMD+07] and of `green` [LLC08]; `fit` solves for the cage's vertices.
 
 mod balance;
+mod brought;
+mod by_hand;
+mod chosen;
 mod conformal;
 mod crossings;
 mod declaration;
@@ -19,6 +22,7 @@ mod mesh;
 mod offset;
 mod options;
 pub mod parts;
+mod rows;
 mod voxels;
 
 pub(crate) use self::declaration::DECLARATION;

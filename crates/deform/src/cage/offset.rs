@@ -15,36 +15,38 @@ const SMOOTHING: f64 = 0.3;
 /// How often vertices move to the middle of their neighbours.
 const ROUNDS: usize = 3;
 
-/// A cage, and how large its voxels are.
-#[derive(Clone, Debug)]
-pub(crate) struct OffsetCage {
-    pub mesh: CageMesh,
-    pub voxel: f64,
-}
-
 /// A closed 2-manifold around all of the points and along the triangles between them, with `detail` voxels on the
 /// longest side of the points' box. It has a part for each group of points that are far apart.
-pub(crate) fn offset_cage(points: &[DVec3], triangles: impl Iterator<Item = [DVec3; 3]>, detail: u32) -> OffsetCage {
+pub(crate) fn offset_cage(points: &[DVec3], triangles: impl Iterator<Item = [DVec3; 3]>, detail: u32) -> CageMesh {
+    let (low, high) = bounds(points);
+    let voxel = voxel_size(points, detail);
+    let along = triangles.flat_map(|corners| spread(corners, 0.5 * voxel));
+    let voxels = Voxels::around(points.iter().copied().chain(along), low, high - low, voxel);
+    smoothed(surface(&voxels), SMOOTHING * voxel)
+}
+
+/// The side of the voxels of which `detail` lie along the longest side of the points' box.
+pub(crate) fn voxel_size(points: &[DVec3], detail: u32) -> f64 {
+    let (low, high) = bounds(points);
+    let longest = (high - low).max_element();
+    if longest > 0.0 {
+        longest / f64::from(detail)
+    } else {
+        1.0
+    }
+}
+
+/// The points' box; the origin without points.
+fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
     let (low, high) = points
         .iter()
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &point| {
             (low.min(point), high.max(point))
         });
-    let (low, high) = if low.is_finite() {
-        (low, high)
-    } else {
-        (DVec3::ZERO, DVec3::ZERO)
-    };
-    let longest = (high - low).max_element();
-    let voxel = if longest > 0.0 {
-        longest / f64::from(detail)
-    } else {
-        1.0
-    };
-    let along = triangles.flat_map(|corners| spread(corners, 0.5 * voxel));
-    let voxels = Voxels::around(points.iter().copied().chain(along), low, high - low, voxel);
-    let mesh = smoothed(surface(&voxels), SMOOTHING * voxel);
-    OffsetCage { mesh, voxel }
+    match low.is_finite() {
+        true => (low, high),
+        false => (DVec3::ZERO, DVec3::ZERO),
+    }
 }
 
 /// Points on a triangle that are no farther apart than about `step`.

@@ -16,7 +16,7 @@ pub type Mesh = (Vec<DVec3>, Vec<[u32; 3]>);
 
 /// The cage made for points and the triangles between them, with so many cells on its longest side.
 pub fn made(points: &[DVec3], triangles: &[[DVec3; 3]], detail: u32) -> Mesh {
-    let mesh = offset_cage(points, triangles.iter().copied(), detail).mesh;
+    let mesh = offset_cage(points, triangles.iter().copied(), detail);
     (mesh.vertices, mesh.faces)
 }
 

@@ -23,6 +23,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   large bends of large scans, and of loose or broken pieces.",
     keywords: "embedded deformation graph nodes sumner rigid nonlinear space points soup",
     options: Embedded::OPTIONS,
+    attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
     default: || Embedded::default().into(),
     first_choice: || Embedded::default().into(),

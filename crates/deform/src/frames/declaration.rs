@@ -16,6 +16,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   half a turn, at once. A handle that is only moved turns nothing unless `iterations` are added.",
     keywords: "frames rotation-invariant coordinates local frames linear",
     options: Frames::OPTIONS,
+    attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
     default: || Frames::default().into(),
     first_choice: || Frames::default().into(),

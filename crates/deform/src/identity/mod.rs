@@ -16,6 +16,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     when_to_use: "Moves the handles and leaves the rest where it is.",
     keywords: "identity nothing",
     options: Identity::OPTIONS,
+    attachments: &[],
     heeds: &[],
     default: || Identity::default().into(),
     first_choice: || Identity::default().into(),

@@ -17,6 +17,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   and shrinks unless `steps` divides the way.",
     keywords: "laplacian differential coordinates detail similarity implicit",
     options: LaplacianEditing::OPTIONS,
+    attachments: &[],
     heeds: &[
         ConstraintKind::SoftHandles,
         ConstraintKind::Continuity,

@@ -2,17 +2,20 @@
 
 use glam::{DVec3, Mat3};
 
-use super::Lattice;
 use super::fit::{fit_bytes, fitted, soft_unit};
 use super::grid::Grid;
+use super::{Lattice, brought};
 use crate::handles::Motion;
 use crate::method::{
-    BindInput, BoundMethod, ConstraintKind, DeformMethod, HandleFit, MethodDeclaration, Needs, Solve, Stepped,
+    Attachment, AttachmentDeclaration, AttachmentKind, AttachmentRefused, BindInput, BoundMethod, ConstraintKind,
+    ControlLattice, DeformMethod, Finite, HandleFit, MethodDeclaration, Needs, Solve, Stepped,
 };
 use crate::space::affine::AffineParts;
+use crate::space::controls::{Controls, Hand, hand_bytes};
 use crate::space::falloff::Falloff;
 use crate::space::field::{Coefficients, FIELD_ROW, LinearField, SpaceMap, moving};
 use crate::space::fit_samples::{RegionBox, samples};
+use crate::space::hand_field::HandField;
 use crate::{BindError, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
@@ -22,6 +25,14 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   loose pieces included. It fits the handles as well as the lattice can, not exactly.",
     keywords: "lattice ffd free-form deformation box spline space",
     options: Lattice::OPTIONS,
+    attachments: &[AttachmentDeclaration {
+        name: "lattice",
+        title: "lattice",
+        help: "a lattice of your own: its `counts` of control points along x, y and z, its `box` with `min` and `max`, and \
+               where its points are `moved` to, x running fastest; without it, one around the region with the cells of \
+               `resolution`",
+        kind: AttachmentKind::ControlLattice,
+    }],
     heeds: &[ConstraintKind::SoftHandles],
     default: || Lattice::default().into(),
     first_choice: || Lattice::default().into(),
@@ -34,7 +45,11 @@ const SAMPLES: usize = 20_000;
 #[derive(Debug)]
 struct BoundLattice {
     field: LinearField,
+    controls: Controls,
+    /// Where the lattice was brought.
+    by_hand: Option<HandField<Grid>>,
     solved_count: usize,
+    warnings: Vec<String>,
 }
 
 /// The field of the control points' displacements.
@@ -83,11 +98,25 @@ impl DeformMethod for Lattice {
         FIELD_ROW
     }
 
+    fn lattice_points(&self, lattice: &ControlLattice) -> Vec<DVec3> {
+        brought::points(self, lattice)
+    }
+
+    fn check_attachment(&self, attachment: &Attachment) -> Result<(), AttachmentRefused> {
+        brought::check(self, attachment)
+    }
+
     fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
         let within = RegionBox::of(input);
-        let grid = Grid::new(self, within);
+        let lattice = match input.attachment {
+            Some(Attachment::Lattice(lattice)) => lattice.clone(),
+            _ => brought::made(self, &within),
+        };
+        let is_brought = input.attachment.is_some();
+        let grid = brought::grid(self, &lattice);
         let solved_count = input.partition.solved.len();
-        let bytes = fit_bytes(&grid, input.handles.len());
+        let of_hand = if is_brought { hand_bytes(grid.count()) } else { 0 };
+        let bytes = fit_bytes(&grid, input.handles.len()) + of_hand;
         let budget = input.partition.budget.without(bytes);
         budget.map_err(|limit| BindError::budget(solved_count, limit))?;
         let samples = samples(input, &within, soft_unit(&grid, self.norm), SAMPLES);
@@ -103,23 +132,76 @@ impl DeformMethod for Lattice {
             handle_count: input.handles.len(),
         };
         let field = LinearField::bind(&map, &falloff, HandleFit::LeastSquares, input)?;
+        let positions = &input.problem.surface.positions;
+        let world_points: Vec<DVec3> = vertices.iter().map(|&vertex| positions[vertex as usize]).collect();
+        let warnings = if is_brought {
+            outside(&lattice, &world_points)
+        } else {
+            None
+        };
+        let hand = is_brought.then(|| {
+            Hand::new(grid.count(), &samples, |sample, visit| {
+                grid.weights(samples[sample].world_point, |control, weight, _| visit(control, weight));
+            })
+        });
+        let by_hand = is_brought.then(|| HandField::new(grid, vertices, world_points, falloff));
         input.progress.set(1.0);
-        Ok(Box::new(BoundLattice { field, solved_count }))
+        Ok(Box::new(BoundLattice {
+            field,
+            controls: Controls {
+                rest: brought::points(self, &lattice),
+                attachment: Attachment::Lattice(lattice),
+                driven: controls,
+                hand,
+            },
+            by_hand,
+            solved_count,
+            warnings: warnings.into_iter().collect(),
+        }))
     }
+}
+
+/// What to say of points outside of a lattice's box, where its outermost polynomials go on.
+fn outside(lattice: &ControlLattice, world_points: &[DVec3]) -> Option<String> {
+    let is_in = |point: &&DVec3| point.cmpge(lattice.low).all() && point.cmple(lattice.high).all();
+    let count = world_points.len() - world_points.iter().filter(is_in).count();
+    (count > 0).then(|| {
+        format!("{count} vertices lie outside the lattice's box and may move against it: enlarge the box around them")
+    })
 }
 
 impl BoundMethod for BoundLattice {
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        let mut finite = self.field.frame(motions, displacements);
+        if let (Some(by_hand), Some(moves)) = (&self.by_hand, self.controls.corrected()) {
+            by_hand.add(moves, displacements);
+            finite = Finite::Unknown;
+        }
         Ok(Stepped {
             converged: true,
             energy: 0.0,
-            finite: self.field.frame(motions, displacements),
+            finite,
         })
     }
 
     fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) -> bool {
         self.field.jacobians(motions, out);
+        if let (Some(by_hand), Some(moves)) = (&self.by_hand, self.controls.corrected()) {
+            by_hand.add_jacobians(moves, out);
+        }
         true
+    }
+
+    fn controls(&self) -> Option<&Controls> {
+        Some(&self.controls)
+    }
+
+    fn controls_mut(&mut self) -> Option<&mut Controls> {
+        Some(&mut self.controls)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
     }
 
     fn solved_count(&self) -> usize {

@@ -3,32 +3,20 @@
 use glam::{DVec3, USizeVec3};
 
 use super::basis::Axis;
-use super::{Lattice, LatticeBasis};
-use crate::space::fit_samples::RegionBox;
+use crate::space::hand_field::ControlMap;
 
 /// A lattice of control points over a box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grid {
-    within: RegionBox,
+    low: DVec3,
+    extent: DVec3,
     axes: [Axis; 3],
 }
 
 impl Grid {
-    /// As the options say, over this box.
-    pub fn new(options: &Lattice, within: RegionBox) -> Self {
-        let own = [options.resolution_x, options.resolution_y, options.resolution_z];
-        let axes = own.map(|own| {
-            let cells = if own == 0 { options.resolution } else { own } as usize;
-            Axis {
-                basis: options.basis,
-                degree: match options.basis {
-                    LatticeBasis::BSpline => options.degree as usize,
-                    LatticeBasis::Bernstein => cells,
-                },
-                cells,
-            }
-        });
-        Self { within, axes }
+    /// Of these functions over the box from `low` over `extent`.
+    pub fn new(axes: [Axis; 3], low: DVec3, extent: DVec3) -> Self {
+        Self { low, extent, axes }
     }
 
     /// How many control points it has along each axis.
@@ -58,12 +46,12 @@ impl Grid {
     /// Where a control point rests.
     pub fn rest(&self, place: USizeVec3) -> DVec3 {
         let at: [f64; 3] = std::array::from_fn(|axis| self.axes[axis].greville(place[axis]));
-        self.within.low + self.within.extent * DVec3::from_array(at)
+        self.low + self.extent * DVec3::from_array(at)
     }
 
     /// Visits the control points with a weight at a point: number, weight, and the weight's gradient per world unit.
     pub fn weights(&self, world_point: DVec3, mut visit: impl FnMut(usize, f64, DVec3)) {
-        let t = (world_point - self.within.low) / self.within.extent;
+        let t = (world_point - self.low) / self.extent;
         let [x, y, z] = std::array::from_fn(|axis| self.axes[axis].at(t[axis]));
         for k in 0..z.count {
             for j in 0..y.count {
@@ -75,9 +63,15 @@ impl Grid {
                 let row = self.number(USizeVec3::new(x.first, y.first + j, z.first + k));
                 for i in 0..x.count {
                     let gradient = DVec3::new(x.slopes[i] * yz, x.values[i] * slope_y, x.values[i] * slope_z);
-                    visit(row + i, x.values[i] * yz, gradient / self.within.extent);
+                    visit(row + i, x.values[i] * yz, gradient / self.extent);
                 }
             }
         }
+    }
+}
+
+impl ControlMap for Grid {
+    fn weights(&self, _: usize, world_point: DVec3, visit: impl FnMut(usize, f64, DVec3)) {
+        Self::weights(self, world_point, visit);
     }
 }

@@ -2,10 +2,11 @@
 //! Bernstein functions over a box around what moves. The displacements D of the control points are those with which the
 //! field fits the handles in the least-squares sense, and of these the ones of least norm or least bending [HHK92].
 //!
-//! Parts: `basis` has the functions of one axis, `grid` their products, `fit` solves for the control points. Frames are
+//! Parts: `brought` has the lattice that a person gives, or makes one; `basis` has the functions of one axis, `grid` their products, `fit` solves for the control points. Frames are
 //! those of `space::field`.
 
 mod basis;
+mod brought;
 mod declaration;
 mod fit;
 mod grid;

@@ -1,5 +1,6 @@
 //! A method's declaration: everything that lists, explains or offers methods reads it.
 
+use super::attachment::AttachmentDeclaration;
 use super::{Method, OptionDeclaration};
 
 /// A method, as it is listed and explained. Each method's folder has one, and [`super::METHODS`] has them all.
@@ -15,6 +16,8 @@ pub struct MethodDeclaration {
     pub keywords: &'static str,
     /// Its options, in the order in which they are shown.
     pub options: &'static [OptionDeclaration],
+    /// What it takes beside handles, such as a cage. It makes for itself what is not brought.
+    pub attachments: &'static [AttachmentDeclaration],
     /// Which constraints it supports beyond handles and fixed vertices.
     pub heeds: &'static [ConstraintKind],
     /// The method with the defaults of the edit format.
@@ -63,6 +66,11 @@ pub enum Solve {
 }
 
 impl MethodDeclaration {
+    /// The attachment of this name, if the method takes it.
+    pub fn attachment(&self, name: &str) -> Option<&'static AttachmentDeclaration> {
+        self.attachments.iter().find(|attachment| attachment.name == name)
+    }
+
     /// Whether it heeds this.
     pub fn heeds(&self, constraint: ConstraintKind) -> bool {
         self.heeds.contains(&constraint)

@@ -2,6 +2,7 @@
 //!
 //! `README.md` beside the sources says how a method is added and what later ones will bring along.
 
+pub(crate) mod attachment;
 mod declaration;
 pub(crate) mod iteration;
 pub(crate) mod option;
@@ -9,8 +10,12 @@ mod traits;
 
 use std::fmt;
 
+use glam::DVec3;
 use pliant_mesh::{Cancel, Cancelled, Progress, Topology};
 
+pub use self::attachment::{
+    Attachment, AttachmentDeclaration, AttachmentKind, AttachmentRefused, ControlLattice, ControlMesh,
+};
 pub use self::declaration::{ConstraintKind, MethodDeclaration, Needs, Solve};
 pub use self::option::{OptionDeclaration, OptionKind, OptionRefused, OptionValue};
 pub use self::traits::HandleFit;
@@ -93,6 +98,28 @@ impl Method {
     /// How hard handles hold their vertices, with its present options.
     pub fn handle_fit(&self) -> HandleFit {
         self.0.handle_fit()
+    }
+
+    /// Where the points of an attachment rest, in world units; one for each. A lattice's depend on the options.
+    pub fn control_rest(&self, attachment: &Attachment) -> Vec<DVec3> {
+        match attachment {
+            Attachment::Mesh(mesh) => mesh.rest.to_vec(),
+            Attachment::Lattice(lattice) => self.0.lattice_points(lattice),
+        }
+    }
+
+    /// Whether a binding can take an attachment that it declares by this name, as far as that does not depend on the
+    /// surface.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn check_attachment(&self, name: &str, attachment: &Attachment) -> Result<(), AttachmentRefused> {
+        let declared = self.declaration().attachment(name);
+        if declared.is_none_or(|declared| declared.kind != attachment.kind()) {
+            return Err(AttachmentRefused::Kind);
+        }
+        self.0.check_attachment(attachment)?;
+        attachment.check()
     }
 
     /// What an option is set to; `None` if the method has none of this name.
@@ -179,6 +206,11 @@ mod tests {
                 "{name}"
             );
             assert_eq!(declaration.keywords, declaration.keywords.to_lowercase());
+            for attachment in declaration.attachments {
+                let is_option = declaration.options.iter().any(|option| option.name == attachment.name);
+                assert!(!is_option && attachment.name != "name", "{name}: {}", attachment.name);
+                assert_eq!(declaration.attachment(attachment.name), Some(attachment), "{name}");
+            }
         }
         assert_eq!(Method::from_name("no such method"), None);
         assert_ne!(Method::from_name("arap"), Method::from_name("primo"));

@@ -6,10 +6,13 @@ use std::fmt::Debug;
 use glam::{DVec3, Mat3};
 use pliant_mesh::{Cancel, Progress};
 
-use super::{MethodDeclaration, Needs, OptionRefused, OptionValue, Solve};
+use super::{
+    Attachment, AttachmentRefused, ControlLattice, MethodDeclaration, Needs, OptionRefused, OptionValue, Solve,
+};
 use crate::handles::{Handle, Motion};
 use crate::operators::triangulation::Triangulation;
 use crate::region::partition::Partition;
+use crate::space::controls::Controls;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{BindError, HandleBases, Ordering, Problem, ReusableFactor, SolveError, Warning};
 
@@ -41,6 +44,17 @@ pub(crate) trait DeformMethod: Options {
 
     /// Refuses options that exclude each other. The range of each option was checked before.
     fn check(&self) -> Result<(), OptionRefused> {
+        Ok(())
+    }
+
+    /// Where the control points of a lattice rest, for a method that takes one.
+    fn lattice_points(&self, _lattice: &ControlLattice) -> Vec<DVec3> {
+        Vec::new()
+    }
+
+    /// Refuses an attachment of a declared kind that can't be bound with these options, whatever the surface. Its table
+    /// `moved` and what is not finite are checked afterwards.
+    fn check_attachment(&self, _attachment: &Attachment) -> Result<(), AttachmentRefused> {
         Ok(())
     }
 
@@ -76,6 +90,8 @@ pub(crate) struct BindInput<'a> {
     /// Who is solved for, who is prescribed.
     pub partition: &'a Partition<'a>,
     pub handles: &'a [Handle],
+    /// What was brought of what the method takes, checked by [`DeformMethod::check_attachment`].
+    pub attachment: Option<&'a Attachment>,
     /// The one that [`Needs`] asks for.
     pub ordering: Option<&'a Ordering>,
     /// What of the factor is kept or taken over, where there is one that can be.
@@ -109,7 +125,8 @@ impl<'a> BindInput<'a> {
 
 /// A bound method: motions of the handles in, displacements out.
 ///
-/// `motions` has one entry per handle, `displacements` one per surface vertex. At least one handle moves.
+/// `motions` has one entry per handle, `displacements` one per surface vertex. At least one handle moves, or the hand
+/// has moved a control point.
 pub(crate) trait BoundMethod: Debug + Send + Sync {
     /// One step: fills *all* of `displacements`, handles' vertices and zeros included.
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError>;
@@ -157,6 +174,23 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
     /// The factor, where the next binding can take over parts of it.
     fn reusable_factor(&self) -> Option<ReusableFactor> {
         None
+    }
+
+    /// Its control points, where it has some.
+    fn controls(&self) -> Option<&Controls> {
+        None
+    }
+
+    /// The same, to be moved by hand.
+    fn controls_mut(&mut self) -> Option<&mut Controls> {
+        None
+    }
+
+    /// Where its control points are while the handles have these motions.
+    fn control_positions(&self, motions: &[Motion]) -> Vec<DVec3> {
+        self.controls()
+            .map(|controls| controls.positions(motions))
+            .unwrap_or_default()
     }
 
     /// How many vertices are solved for.

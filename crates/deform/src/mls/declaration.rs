@@ -21,6 +21,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   broken pieces; what is near in space moves along, whether it is connected or not.",
     keywords: "mls moving least squares schaefer rigid similarity affine space points soup warp",
     options: Mls::OPTIONS,
+    attachments: &[],
     heeds: &[ConstraintKind::SoftHandles],
     default: || Mls::default().into(),
     first_choice: || Mls::default().into(),

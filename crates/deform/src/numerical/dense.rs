@@ -2,19 +2,58 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
+use faer::perm::PermRef;
 use faer::{Mat, Par};
 
-/// A⁻¹ B for a square matrix, by Gaussian elimination with row pivoting. What is singular gives numbers that are not
-/// finite. On one thread, so that the bits do not depend on how many there are.
-pub(crate) fn solved(mut a: Mat<f64>, mut b: Mat<f64>) -> Mat<f64> {
-    let size = a.nrows();
-    let (mut rows, mut rows_inverse) = (vec![0_usize; size], vec![0_usize; size]);
-    let parameters = Default::default();
-    let scratch = factor::lu_in_place_scratch::<usize, f64>(size, size, Par::Seq, parameters)
-        .or(solve::solve_in_place_scratch::<usize, f64>(size, b.ncols(), Par::Seq));
-    let mut room = MemBuffer::new(scratch);
-    let room = MemStack::new(&mut room);
-    let (_, rows) = factor::lu_in_place(a.as_mut(), &mut rows, &mut rows_inverse, Par::Seq, room, parameters);
-    solve::solve_in_place(a.as_ref(), a.as_ref(), rows, b.as_mut(), Par::Seq, room);
-    b
+/// A square matrix, factored by Gaussian elimination with row pivoting. On one thread, so that the bits do not depend
+/// on how many there are.
+#[derive(Debug)]
+pub(crate) struct Lu {
+    factors: Mat<f64>,
+    rows: Vec<usize>,
+    rows_inverse: Vec<usize>,
+}
+
+impl Lu {
+    /// Of this matrix. What is singular gives solutions that are not finite.
+    pub fn of(mut a: Mat<f64>) -> Self {
+        let size = a.nrows();
+        let (mut rows, mut rows_inverse) = (vec![0_usize; size], vec![0_usize; size]);
+        let parameters = Default::default();
+        let scratch = factor::lu_in_place_scratch::<usize, f64>(size, size, Par::Seq, parameters);
+        let mut room = MemBuffer::new(scratch);
+        let room = MemStack::new(&mut room);
+        factor::lu_in_place(a.as_mut(), &mut rows, &mut rows_inverse, Par::Seq, room, parameters);
+        Self {
+            factors: a,
+            rows,
+            rows_inverse,
+        }
+    }
+
+    /// A⁻¹ B.
+    pub fn solved(&self, mut b: Mat<f64>) -> Mat<f64> {
+        if b.ncols() == 0 {
+            return b;
+        }
+        let size = self.rows.len();
+        let scratch = solve::solve_in_place_scratch::<usize, f64>(size, b.ncols(), Par::Seq);
+        let mut room = MemBuffer::new(scratch);
+        let room = MemStack::new(&mut room);
+        let rows = PermRef::new_checked(&self.rows, &self.rows_inverse, size);
+        solve::solve_in_place(
+            self.factors.as_ref(),
+            self.factors.as_ref(),
+            rows,
+            b.as_mut(),
+            Par::Seq,
+            room,
+        );
+        b
+    }
+}
+
+/// A⁻¹ B for a square matrix, as [`Lu`] solves it.
+pub(crate) fn solved(a: Mat<f64>, b: Mat<f64>) -> Mat<f64> {
+    Lu::of(a).solved(b)
 }

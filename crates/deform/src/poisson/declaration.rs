@@ -17,6 +17,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   and twists of detailed shapes. A handle that is only moved turns nothing, and details shear there.",
     keywords: "poisson gradient harmonic geodesic material propagation",
     options: Poisson::OPTIONS,
+    attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
     default: || Poisson::default().into(),
     first_choice: || Poisson::default().into(),

@@ -15,6 +15,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     when_to_use: "Bends like a rubber sheet of a thickness you choose, step by step: for even bends and twists.",
     keywords: "primo rubber nonlinear shell",
     options: Primo::OPTIONS,
+    attachments: &[],
     heeds: &[ConstraintKind::Stiffness],
     default: || Primo::default().into(),
     first_choice: || Primo::default().into(),

@@ -20,6 +20,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   pieces. What is near in space moves along, whether it is connected or not.",
     keywords: "rbf radial triharmonic space points soup warp",
     options: Rbf::OPTIONS,
+    attachments: &[],
     heeds: &[],
     default: || Rbf::default().into(),
     first_choice: || Rbf::default().into(),

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::falloff::Falloff;
 use crate::budget::filled;
 use crate::handles::bases::frame;
-use crate::handles::{FRAME_CHUNK, Motion};
+use crate::handles::{FRAME_CHUNK, Motion, clear};
 use crate::method::{BindInput, Finite, HandleFit};
 use crate::{BindError, HandleBases, Role};
 
@@ -98,6 +98,10 @@ impl LinearField {
 
     /// Fills all of `displacements`.
     pub fn frame(&self, motions: &[Motion], displacements: &mut [DVec3]) -> Finite {
+        if motions.is_empty() {
+            clear(displacements);
+            return Finite::Yes;
+        }
         let vertex = |vertex: u32| vertex as usize;
         frame(&self.bases, &self.prescribed, vertex, motions, displacements)
     }

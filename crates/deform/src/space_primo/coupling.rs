@@ -268,6 +268,7 @@ mod tests {
             constraints: Constraints::default(),
             loose: Loose::Rest,
             method: &method,
+            attachments: &[],
             revision: 0,
         };
         let partition = Partition::of(&problem).unwrap();
@@ -278,6 +279,7 @@ mod tests {
                 problem: &problem,
                 partition: &partition,
                 handles: &handles,
+                attachment: None,
                 ordering: None,
                 refactorisation: Refactorisation::Never,
                 progress: &Progress::new(),

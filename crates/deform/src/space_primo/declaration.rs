@@ -23,6 +23,7 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
                   shapes, and of loose or broken pieces.",
     keywords: "space primo rigid cells octree botsch rubber solid nonlinear points soup",
     options: SpacePrimo::OPTIONS,
+    attachments: &[],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
     default: || SpacePrimo::default().into(),
     first_choice: || SpacePrimo::default().into(),

@@ -9,6 +9,7 @@ mod cage;
 mod cage_coordinates;
 mod components;
 mod continuity;
+mod controls;
 mod detail;
 mod differential;
 mod energies;

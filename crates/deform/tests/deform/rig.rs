@@ -1,7 +1,7 @@
 //! A problem on a shape, and the verbs the laws need.
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Bound, Constraints, Loose, Method, Problem, Role};
+use pliant_deform::{Attachment, Bound, Constraints, Loose, Method, Problem, Role};
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, SurfaceVertex, shapes};
 
 /// A shape and the roles, stiffness and options on it.
@@ -15,6 +15,7 @@ pub struct Scene {
     pub loose: Loose,
     pub parts: Vec<(u32, Loose)>,
     pub method: Method,
+    pub attachments: Vec<(&'static str, Attachment)>,
 }
 
 impl Scene {
@@ -32,6 +33,7 @@ impl Scene {
             loose: Loose::Follow,
             parts: Vec::new(),
             method: Method::default(),
+            attachments: Vec::new(),
         }
     }
 
@@ -96,6 +98,7 @@ impl Scene {
             },
             loose: self.loose,
             method,
+            attachments: &self.attachments,
             revision: 7,
         }
     }

@@ -85,6 +85,7 @@ impl Setup {
             },
             loose: self.loose,
             method: &self.method,
+            attachments: &[],
             revision: 0,
         }
     }

@@ -345,6 +345,7 @@ impl Rig {
             },
             loose: document.loose(),
             method,
+            attachments: &[],
             revision: 0,
         };
         let mut bound = problem.bind(ordering.as_ref(), &progress, &cancel).unwrap();

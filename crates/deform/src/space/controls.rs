@@ -1,0 +1,179 @@
+//! Control points that handles drive and that a person moves by hand: where they rest, and where they are.
+//!
+//! The hand's displacements H are applied to the control points as they are. With d(p) = Σ_i λ_i(p) D_i the handles then
+//! solve for what is left: to the displacements that they ask for without the hand comes the smallest correction C that
+//! takes the hand's share away at the handles, min Σ_handles w |Σ λ_i (H_i + C_i)|² + Σ_fixed w |Σ λ_i C_i|² + ε |C|².
+//! So handles are met as well as without the hand, what is fixed stays, and without handles every point is where the
+//! hand has put it.
+
+use std::sync::Arc;
+
+use faer::Mat;
+use glam::{DMat3, DVec3};
+
+use super::fit_samples::Sample;
+use crate::handles::Motion;
+use crate::method::Attachment;
+use crate::numerical::dense::Lu;
+
+/// The control points of a bound method.
+#[derive(Debug)]
+pub(crate) struct Controls {
+    /// How they rest, and where the hand has moved them.
+    pub attachment: Attachment,
+    /// Where they rest, in world units.
+    pub rest: Vec<DVec3>,
+    /// Row-major: the coefficients of one control point and handle, as [`crate::HandleBases`] has them.
+    pub driven: Vec<[f64; 4]>,
+    /// What the hand does, where the attachment was brought.
+    pub hand: Option<Hand>,
+}
+
+/// What the hand does to control points.
+#[derive(Debug)]
+pub(crate) struct Hand {
+    correction: Option<Correction>,
+    /// H.
+    displacements: Vec<DVec3>,
+    /// H + C.
+    corrected: Vec<DVec3>,
+}
+
+/// What makes C of H.
+#[derive(Debug)]
+struct Correction {
+    matrix: Lu,
+    /// Σ_handles w λ λᵀ.
+    pull: Mat<f64>,
+}
+
+/// ε.
+const LEAST: f64 = 1e-8;
+
+impl Controls {
+    /// Where the points are while the handles have these motions.
+    pub fn positions(&self, motions: &[Motion]) -> Vec<DVec3> {
+        let rest = self.rest.iter().enumerate();
+        let positions = rest.map(|(point, rest)| *rest + self.driven(point, motions) + self.by_hand(point));
+        positions.collect()
+    }
+
+    /// How far the handles take a control point.
+    pub fn driven(&self, point: usize, motions: &[Motion]) -> DVec3 {
+        let own = &self.driven[point * motions.len()..][..motions.len()];
+        let terms = own.iter().zip(motions).map(|(coefficients, motion)| {
+            let DMat3 { x_axis, y_axis, z_axis } = motion.linear;
+            let columns = [x_axis, y_axis, z_axis, motion.shift];
+            columns
+                .iter()
+                .zip(coefficients)
+                .map(|(column, c)| *column * *c)
+                .sum::<DVec3>()
+        });
+        terms.sum()
+    }
+
+    /// Sets where the hand has moved the points: one place for each.
+    pub fn move_to(&mut self, moved: Arc<Vec<DVec3>>) {
+        if let Some(hand) = &mut self.hand {
+            let displacements = self.rest.iter().zip(moved.iter()).map(|(rest, moved)| *moved - *rest);
+            hand.displacements = displacements.collect();
+            hand.corrected = hand.corrected();
+        }
+        self.attachment = self.attachment.with_moved(moved);
+    }
+
+    /// Whether the hand has moved a point.
+    pub fn are_moved(&self) -> bool {
+        let moves = |hand: &Hand| {
+            hand.displacements
+                .iter()
+                .any(|displacement| *displacement != DVec3::ZERO)
+        };
+        self.hand.as_ref().is_some_and(moves)
+    }
+
+    /// H, if the hand has moved a point.
+    pub fn displacements(&self) -> Option<&[DVec3]> {
+        let hand = self.hand.as_ref().filter(|_| self.are_moved());
+        hand.map(|hand| &*hand.displacements)
+    }
+
+    /// H + C, if the hand has moved a point.
+    pub fn corrected(&self) -> Option<&[DVec3]> {
+        let hand = self.hand.as_ref().filter(|_| self.are_moved());
+        hand.map(|hand| &*hand.corrected)
+    }
+
+    fn by_hand(&self, point: usize) -> DVec3 {
+        let hand = self.hand.as_ref();
+        hand.and_then(|hand| hand.corrected.get(point).copied())
+            .unwrap_or_default()
+    }
+}
+
+impl Hand {
+    /// For so many control points; `weights` visits those with a weight at a sample.
+    pub fn new(count: usize, samples: &[Sample], weights: impl Fn(usize, &mut dyn FnMut(usize, f64))) -> Self {
+        Self {
+            correction: Correction::new(count, samples, weights),
+            displacements: Vec::new(),
+            corrected: Vec::new(),
+        }
+    }
+
+    fn corrected(&self) -> Vec<DVec3> {
+        let Some(Correction { matrix, pull }) = &self.correction else {
+            return self.displacements.clone();
+        };
+        let count = self.displacements.len();
+        let pulled = |row: usize| {
+            let terms = self.displacements.iter().enumerate();
+            terms.map(|(column, own)| *own * pull[(row, column)]).sum::<DVec3>()
+        };
+        let pulled: Vec<DVec3> = (0..count).map(pulled).collect();
+        let correction = matrix.solved(Mat::from_fn(count, 3, |row, axis| pulled[row][axis]));
+        let own = self.displacements.iter().enumerate();
+        own.map(|(row, own)| *own - DVec3::from_array([0, 1, 2].map(|axis| correction[(row, axis)])))
+            .collect()
+    }
+}
+
+impl Correction {
+    /// `None` without handles.
+    fn new(count: usize, samples: &[Sample], weights: impl Fn(usize, &mut dyn FnMut(usize, f64))) -> Option<Self> {
+        samples.iter().find(|sample| sample.handle.is_some())?;
+        let mut matrix = Mat::<f64>::zeros(count, count);
+        let mut pull = Mat::<f64>::zeros(count, count);
+        let mut near: Vec<(usize, f64)> = Vec::new();
+        for (number, sample) in samples.iter().enumerate() {
+            near.clear();
+            weights(number, &mut |control, weight| near.push((control, weight)));
+            let into = if sample.handle.is_some() {
+                &mut pull
+            } else {
+                &mut matrix
+            };
+            for &(column, b) in &near {
+                for &(row, a) in &near {
+                    into[(row, column)] += sample.weight * a * b;
+                }
+            }
+        }
+        for column in 0..count {
+            for row in 0..count {
+                matrix[(row, column)] += pull[(row, column)];
+            }
+            matrix[(column, column)] += LEAST;
+        }
+        Some(Self {
+            matrix: Lu::of(matrix),
+            pull,
+        })
+    }
+}
+
+/// Bytes that the hand takes at so many control points: the factored matrix and the handles' pull.
+pub(crate) fn hand_bytes(count: usize) -> u64 {
+    16 * (count as u64) * (count as u64 + 64)
+}
