@@ -341,6 +341,9 @@ fn bend(
         let targets = setup.targets(frame as f64 / count as f64);
         let start = Instant::now();
         bound.set_targets(&targets).map_err(refuse)?;
+        if let Some(moved) = setup.controls(frame as f64 / count as f64) {
+            bound.set_controls(&moved).map_err(refuse)?;
+        }
         last = bound.step(&mut displacements).map_err(refuse)?;
         // The method's own options limit the steps.
         while !last.finished && !watch.cancel.is_cancelled() {

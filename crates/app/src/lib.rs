@@ -1,6 +1,7 @@
 //! The program: the command line, the window, files, threads and the clock. `pliant` itself is a thin binary over it.
 
 pub mod cli;
+pub mod control_mesh;
 pub mod drawing;
 pub mod engine;
 mod error;

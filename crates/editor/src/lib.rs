@@ -28,8 +28,8 @@ pub use document::{
 pub use editor::Editor;
 pub use event::Event;
 pub use format::{
-    Axis, Beginning, EDIT_VERSION, EditError, EditFile, ExportError, FieldEntry, HandleEntry, HandleSetup,
-    MeshReference, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, geometry_hash,
+    AttachmentEntry, Axis, Beginning, EDIT_VERSION, EditError, EditFile, ExportError, FieldEntry, HandleEntry,
+    HandleSetup, MeshReference, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, geometry_hash,
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{

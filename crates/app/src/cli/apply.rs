@@ -1,6 +1,6 @@
 //! `pliant apply`: an edit applied to a file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use pliant_editor::{Beginning, Project};
 use pliant_io::{Format, MorphTarget};
@@ -8,7 +8,8 @@ use pliant_io::{Format, MorphTarget};
 use super::arguments::ApplyArguments;
 use super::method_argument::method_argument;
 use super::{Console, on_threads};
-use crate::{AppError, engine, files};
+use crate::watch::Watch;
+use crate::{AppError, control_mesh, engine, files};
 
 pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     let ApplyArguments {
@@ -31,7 +32,12 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         let others = [("FILE", &**file), ("--edit", edit_path), ("--output", output)];
         files::refuse_shared(("--report", report), others)?;
     }
-    let mut edit = read_edit(edit_path)?;
+    let (mut edit, named) = read_edit(edit_path, &console.watch)?;
+    let named = || named.iter().map(|path| ("a file that --edit needs", &**path));
+    files::refuse_shared(("--output", output), named())?;
+    if let Some(report) = report {
+        files::refuse_shared(("--report", report), named())?;
+    }
     if let Some(method) = method {
         edit.set_method(method);
     }
@@ -55,16 +61,18 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     Ok(())
 }
 
-/// Reads the file of an edit or of a project.
-pub(super) fn read_edit(path: &Path) -> Result<Beginning, AppError> {
+/// Reads the file of an edit or of a project, and those that it names. With it the paths of these.
+pub(super) fn read_edit(path: &Path, watch: &Watch) -> Result<(Beginning, Vec<PathBuf>), AppError> {
     let text = files::read_text(path)?;
     let read = if engine::is_project(path) {
         Project::parse(&text).map(Beginning::from)
     } else {
         Beginning::parse(&text)
     };
-    read.map_err(|source| AppError::Edit {
+    let mut edit = read.map_err(|source| AppError::Edit {
         edit: path.to_owned(),
         source,
-    })
+    })?;
+    let named = control_mesh::bring(&mut edit, path, watch)?;
+    Ok((edit, named))
 }

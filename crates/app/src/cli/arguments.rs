@@ -312,6 +312,9 @@ fn methods_help() -> String {
                 help += &format!("\n      {}: {}", option.name, option.sentence(default));
             }
         }
+        for attachment in declaration.attachments {
+            help += &format!("\n      {}: {}", attachment.name, attachment.help);
+        }
     }
     let heeding = |kind: ConstraintKind| {
         let methods = METHODS.iter().filter(|declaration| declaration.heeds(kind));

@@ -134,7 +134,7 @@ fn compare(arguments: &CompareArguments, methods: &[Asked], watch: &Watch) -> Re
     if model.surface.triangles.is_empty() {
         return Err(AppError::NoTriangles(arguments.file.clone()));
     }
-    let edit = render::resolved(&arguments.edit, model)?;
+    let edit = render::resolved(&arguments.edit, model, watch)?;
     let mut outcomes = Vec::with_capacity(methods.len());
     for method in methods {
         outcomes.push(outcome(arguments, &loaded, method, watch)?);
@@ -166,7 +166,7 @@ fn compare(arguments: &CompareArguments, methods: &[Asked], watch: &Watch) -> Re
 /// # Errors
 /// It was interrupted, or the edit can't be read a second time.
 fn outcome(arguments: &CompareArguments, loaded: &Loaded, asked: &Asked, watch: &Watch) -> Result<Outcome, AppError> {
-    let mut edit = read_edit(&arguments.edit)?;
+    let (mut edit, _) = read_edit(&arguments.edit, watch)?;
     if edit.method_name() != asked.name {
         edit.set_method(asked.method.clone());
     }

@@ -116,7 +116,7 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
     let edit = arguments
         .edit
         .as_deref()
-        .map(|path| resolved(path, model))
+        .map(|path| resolved(path, model, watch))
         .transpose()?;
     let posed = if edit.is_some() { Posed::Bent } else { Posed::AtRest };
     let shape = Shape::of(&arguments.file, &loaded, edit, posed, watch)?;
@@ -251,8 +251,8 @@ pub(super) fn looking(up_axis: Up, from: View, diagonal: f64) -> Camera {
 const ROOM_FOR_THE_EDIT: f64 = 1.2;
 
 /// Reads an edit that fits the model, with the same refusals as `apply`: the editor itself would accept any edit.
-pub(super) fn resolved(path: &Path, model: &Model) -> Result<Beginning, AppError> {
-    let edit = read_edit(path)?;
+pub(super) fn resolved(path: &Path, model: &Model, watch: &Watch) -> Result<Beginning, AppError> {
+    let (edit, _) = read_edit(path, watch)?;
     edit.resolve(model).map_err(|source| AppError::Edit {
         edit: path.to_owned(),
         source,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{Arap, Loose, Method};
+use pliant_deform::{Arap, Attachment, Loose, Method};
 
 use super::access::Access;
 use super::handle::{Handle, HandleId};
@@ -46,6 +46,9 @@ pub struct Content {
     /// With which continuity the surface joins what holds it; `None` is the highest everywhere.
     pub(crate) continuity: Option<Arc<Vec<f64>>>,
     pub(crate) method: Method,
+    /// What methods take beside handles, by the names that they declare: that of other methods than the present one is
+    /// kept for when they are chosen again.
+    pub(crate) attachments: Arc<BTreeMap<&'static str, Attachment>>,
     pub(crate) tips: Tips,
     pub(crate) loose: Loose,
     /// What single parts do that nothing holds, by their component's number, in place of `loose`.
@@ -77,6 +80,7 @@ impl Content {
             stiffness: None,
             continuity: None,
             method: Arap::first_choice().into(),
+            attachments: Arc::default(),
             tips: Tips::default(),
             loose: Loose::default(),
             loose_parts: Arc::default(),

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{Loose, Method};
+use pliant_deform::{Attachment, Loose, Method};
 
 use super::access::Access;
 use super::content::{Paint, Tips};
@@ -37,6 +37,8 @@ pub(crate) enum Change {
     Continuity(Option<Arc<Vec<f64>>>),
     /// Method and loose components.
     Options(Method, Loose, Arc<BTreeMap<u32, Loose>>),
+    /// What methods take beside handles.
+    Attachments(Arc<BTreeMap<&'static str, Attachment>>),
     /// The rest shape, and whether there is another than the file's.
     Rest(Sparse<DVec3>, bool),
     /// Whether tips come along.
@@ -72,6 +74,11 @@ impl Step {
                 Change::Access(access) => {
                     size_of::<Access>() + (access.hidden.len() + access.locked.len()) * size_of::<u32>()
                 }
+                // Tables that steps share are counted in each.
+                Change::Attachments(attachments) => attachments
+                    .values()
+                    .map(|own| 2 * own.point_count() * size_of::<DVec3>())
+                    .sum(),
                 Change::Kept(Some(kept)) => kept.shape.len() * size_of::<DVec3>(),
                 Change::Kept(None)
                 | Change::Continuity(None)
@@ -245,6 +252,7 @@ fn swap(change: &mut Change, document: &mut Document) {
         Change::Stiffness(sparse, is_field) => document.swap_stiffness(sparse, is_field),
         Change::Continuity(continuity) => document.swap_continuity(continuity),
         Change::Options(method, loose, parts) => document.swap_options(method, loose, parts),
+        Change::Attachments(attachments) => document.swap_attachments(attachments),
         Change::Tips(tips) => document.swap_tips(tips),
         Change::Rest(sparse, applied) => document.swap_rest(sparse, applied),
         Change::Access(access) => document.swap_access(access),

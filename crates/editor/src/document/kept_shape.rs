@@ -26,22 +26,26 @@ const FADES_WITHIN: f64 = 6.0;
 pub struct KeptShape {
     /// Each handle's map of rest positions.
     pub targets: BTreeMap<HandleId, DAffine3>,
+    /// Where the control points of the method's attachment were moved to; `None` where all rested.
+    pub controls: Option<Arc<Vec<DVec3>>>,
     /// Displacements from the rest shape, per surface vertex.
     pub shape: Arc<Vec<DVec3>>,
 }
 
 impl KeptShape {
-    /// What is seen with the handles as they stand.
-    pub(crate) fn of(handles: &[Handle], shape: &Arc<Vec<DVec3>>) -> Self {
+    /// What is seen with the handles and control points as they stand.
+    pub(crate) fn of(handles: &[Handle], controls: Option<Arc<Vec<DVec3>>>, shape: &Arc<Vec<DVec3>>) -> Self {
         Self {
+            controls,
             targets: handles.iter().map(|handle| (handle.id, handle.affine())).collect(),
             shape: Arc::clone(shape),
         }
     }
 
     /// Whether the same shape is seen with the same transforms.
-    pub(crate) fn is_of(&self, handles: &[Handle], shape: &Arc<Vec<DVec3>>) -> bool {
+    pub(crate) fn is_of(&self, handles: &[Handle], controls: Option<&Vec<DVec3>>, shape: &Arc<Vec<DVec3>>) -> bool {
         Arc::ptr_eq(&self.shape, shape)
+            && self.controls.as_deref() == controls
             && self.targets.len() == handles.len()
             && handles
                 .iter()
@@ -79,6 +83,7 @@ mod tests {
         let first = DVec3::new(0.1, 0.8, 0.1);
         let kept = KeptShape {
             targets: BTreeMap::new(),
+            controls: None,
             shape: Arc::new(vec![seen]),
         };
         let at = |way: f64| {

@@ -91,6 +91,9 @@ fn differences(before: &Document, after: &Document) -> Vec<Change> {
         let (loose, parts) = loose(before);
         changes.push(Change::Options(before.method.clone(), loose, parts));
     }
+    if !Arc::ptr_eq(&before.attachments, &after.attachments) && before.attachments != after.attachments {
+        changes.push(Change::Attachments(Arc::clone(&before.attachments)));
+    }
     if before.tips != after.tips {
         changes.push(Change::Tips(before.tips));
     }

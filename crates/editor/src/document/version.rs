@@ -15,6 +15,8 @@ pub(crate) enum Aspect {
     Continuity,
     /// The method and its options.
     Method,
+    /// How what methods take beside handles rests.
+    Attachments,
     /// Whether tips come along.
     Tips,
     /// What loose parts do.
@@ -33,18 +35,19 @@ pub(crate) enum Aspect {
     Handles,
     /// Which handles there are, how far they reach and how they hold.
     Constraints,
-    /// Where the handles want the surface.
+    /// Where the handles want the surface, and where control points are moved to by hand.
     Targets,
     /// How handles look: colours, what is shown.
     Appearance,
 }
 
 impl Aspect {
-    pub(crate) const ALL: [Self; 15] = [
+    pub(crate) const ALL: [Self; 16] = [
         Self::Paint,
         Self::Stiffness,
         Self::Continuity,
         Self::Method,
+        Self::Attachments,
         Self::Tips,
         Self::Loose,
         Self::Rest,
@@ -59,11 +62,12 @@ impl Aspect {
     ];
 
     /// What the region and the factorisation follow from.
-    const OF_PROBLEM: [Self; 9] = [
+    const OF_PROBLEM: [Self; 10] = [
         Self::Paint,
         Self::Stiffness,
         Self::Continuity,
         Self::Method,
+        Self::Attachments,
         Self::Tips,
         Self::Loose,
         Self::Rest,

@@ -1,5 +1,6 @@
 //! What a file is opened with: an edit, or a project that was saved.
 
+use glam::DVec3;
 use pliant_mesh::Model;
 
 use super::json::parse;
@@ -55,9 +56,30 @@ impl Beginning {
         }
     }
 
+    /// The files that are to be read before this is resolved: what they are attached as, and their names, relative to
+    /// the folder that this was read from. A project has all in itself.
+    pub fn attachment_files(&self) -> Vec<(&'static str, String)> {
+        match self {
+            Self::Edit(edit) => edit.attachment_files(),
+            Self::Project(_) => Vec::new(),
+        }
+    }
+
+    /// As [`EditFile::bring`].
+    ///
+    /// # Errors
+    /// As [`EditFile::bring`].
+    pub fn bring(&mut self, name: &'static str, mesh: (Vec<DVec3>, Vec<[u32; 3]>)) -> Result<(), EditError> {
+        match self {
+            Self::Edit(edit) => edit.bring(name, mesh),
+            Self::Project(_) => Ok(()),
+        }
+    }
+
     /// Chooses another method.
     pub fn set_method(&mut self, method: pliant_deform::Method) {
         match self {
+            // What the other method takes stays: it is left alone by this one, and not written with it.
             Self::Edit(edit) => edit.method = method,
             Self::Project(project) => project.set_method(&method),
         }

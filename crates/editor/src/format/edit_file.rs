@@ -1,9 +1,13 @@
 //! An edit as it stands in `EDIT.json`: regions, handles, stiffness and method, described so that they fit any mesh.
 
+use std::collections::BTreeMap;
+
+use glam::DVec3;
 use pliant_deform::{CONTINUITY_RANGE, Loose, Method};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use super::attachment::{AttachmentEntries, AttachmentEntry, of_file};
 use super::edit_error::EditError;
 use super::field::{FieldEntry, FieldKind};
 use super::json::parse;
@@ -28,6 +32,8 @@ pub const SOFT_RANGE: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 pub struct EditFile {
     /// The method and its options.
     pub method: Method,
+    /// What the method takes beside handles, by the names that it declares; it makes for itself what is not here.
+    pub attachments: BTreeMap<&'static str, AttachmentEntry>,
     /// The vertices that may move; those outside are fixed.
     pub region: Selector,
     /// The vertices that are held still; they win over `region`.
@@ -110,6 +116,7 @@ impl Default for EditFile {
     fn default() -> Self {
         Self {
             method: Method::default(),
+            attachments: AttachmentEntries::new(),
             region: everything(),
             fixed: nothing(),
             handles: Vec::new(),
@@ -151,7 +158,7 @@ impl EditFile {
 
     /// What serde can't check: options of the method, and values that are out of range or exclude each other.
     fn of_stored(stored: StoredEdit) -> Result<Self, EditError> {
-        let method = read_method(&stored.method).map_err(|error| error.under("method"))?;
+        let (method, attachments) = read_method(&stored.method).map_err(|error| error.under("method"))?;
         stored.region.check().map_err(|error| error.under("region"))?;
         stored.fixed.check().map_err(|error| error.under("fixed"))?;
         let mut handles = stored.handles;
@@ -204,6 +211,7 @@ impl EditFile {
         }
         Ok(Self {
             method,
+            attachments,
             region: stored.region,
             fixed: stored.fixed,
             handles,
@@ -222,7 +230,7 @@ impl EditFile {
         };
         let stored = StoredEdit {
             version: EDIT_VERSION,
-            method: method_to_value(&self.method),
+            method: method_to_value(&self.method, &self.attachments),
             region: self.region.clone(),
             fixed: self.fixed.clone(),
             handles: self.handles.clone(),
@@ -248,9 +256,38 @@ impl EditFile {
         format!("{:#}\n", self.to_value())
     }
 
-    /// Whether no handle of the edit moves anything.
+    /// Whether neither a handle of the edit nor a control point that was moved by hand moves anything.
     pub fn changes_nothing(&self) -> bool {
-        self.handles.iter().all(|handle| handle.transform.is_identity())
+        let own = self.attachments.iter();
+        let own = own.filter(|(name, _)| self.method.declaration().attachment(name).is_some());
+        let are_at_rest = own.map(|(_, entry)| match entry {
+            AttachmentEntry::File { moved, .. } => moved.is_none(),
+            AttachmentEntry::Given(attachment) => **attachment.moved() == self.method.control_rest(attachment),
+        });
+        are_at_rest.into_iter().all(|is| is) && self.handles.iter().all(|handle| handle.transform.is_identity())
+    }
+
+    /// The files that attachments name: each attachment's name, and the file's, relative to the edit's folder.
+    pub fn attachment_files(&self) -> Vec<(&'static str, String)> {
+        let entries = self.attachments.iter();
+        let files = entries.filter_map(|(name, entry)| match entry {
+            AttachmentEntry::File { file, .. } => Some((*name, file.clone())),
+            AttachmentEntry::Given(_) => None,
+        });
+        files.collect()
+    }
+
+    /// Puts a mesh, its vertices and triangles, in the place of the file that an attachment names.
+    ///
+    /// # Errors
+    /// What is wrong with the mesh, or with the moved points that stand beside the file's name.
+    pub fn bring(&mut self, name: &'static str, mesh: (Vec<DVec3>, Vec<[u32; 3]>)) -> Result<(), EditError> {
+        if let Some(AttachmentEntry::File { moved, .. }) = self.attachments.get(name) {
+            let attachment = of_file(&self.method, name, mesh, moved.clone());
+            let attachment = attachment.map_err(|error| error.under("method"))?;
+            self.attachments.insert(name, AttachmentEntry::Given(attachment));
+        }
+        Ok(())
     }
 }
 

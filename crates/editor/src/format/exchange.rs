@@ -6,6 +6,7 @@ use glam::DVec3;
 use pliant_deform::{CONTINUITY_RANGE, Role};
 use pliant_mesh::Model;
 
+use super::attachment::AttachmentEntry;
 use crate::document::followed;
 use crate::document::{Content, Document, Handle, HandleId, Paint, PivotPlace, Reach};
 use crate::jobs::{FileContacts, Region, region_input};
@@ -76,6 +77,11 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
     };
     let edit = EditFile {
         method: document.method.clone(),
+        attachments: document
+            .attachment()
+            .into_iter()
+            .map(|(name, attachment)| (name, AttachmentEntry::Given(attachment.clone())))
+            .collect(),
         region: ranges(Role::Free),
         fixed: Selector::None,
         handles,
@@ -143,9 +149,13 @@ pub(crate) fn import(edit: &EditFile, model: &Model) -> Result<Document, EditErr
     document.continuity = (!continuity.is_empty()).then(|| Arc::new(continuity));
     document.loose_parts = Arc::new(setup.loose_parts.into_iter().collect());
     document.method = setup.method;
+    document.attachments = Arc::new(setup.attachments.into_iter().collect());
     document.loose = setup.loose;
-    document.settled = !document.handles.iter().any(Handle::is_displaced);
-    Ok(document.into())
+    let mut document = Document::from(document);
+    if document.is_moved() {
+        document.unsettle();
+    }
+    Ok(document)
 }
 
 /// The transform without a pivot of its own: within a document the handle has it.

@@ -1,15 +1,17 @@
-//! A method and its options in an edit: `{"name": .., <options>}`, where what is left out has its default.
+//! A method and its options in an edit: `{"name": .., <options>, <attachments>}`, where what is left out has its
+//! default.
 //!
 //! The members follow from the method's name, by its declaration, so there is no type that could derive them.
 
-use pliant_deform::{METHODS, Method, OptionDeclaration, OptionKind, OptionValue};
+use pliant_deform::{METHODS, Method, MethodDeclaration, OptionDeclaration, OptionKind, OptionValue};
 use serde_json::{Map, Value, json};
 
+use super::attachment::{AttachmentEntries, attachment_to_value, read_attachment};
 use super::edit_error::EditError;
 use super::reader::{read, require};
 
-/// Reads a method.
-pub(crate) fn read_method(value: &Value) -> Result<Method, EditError> {
+/// Reads a method, and what it takes beside handles.
+pub(crate) fn read_method(value: &Value) -> Result<(Method, AttachmentEntries), EditError> {
     let Some(members) = value.as_object() else {
         return Err(EditError::wrong_kind(
             value,
@@ -22,25 +24,71 @@ pub(crate) fn read_method(value: &Value) -> Result<Method, EditError> {
         let names: Vec<&str> = METHODS.iter().map(|declaration| declaration.name).collect();
         EditError::unknown_name(name, &names).under("name")
     })?;
-    let options = method.declaration().options;
-    let mut values = Vec::new();
+    let MethodDeclaration {
+        options, attachments, ..
+    } = method.declaration();
+    let (mut values, mut attached) = (Vec::new(), Vec::new());
     for (member, value) in members.iter().filter(|(member, _)| *member != "name") {
-        let Some(option) = options.iter().find(|option| option.name == member) else {
-            let known: Vec<&str> = ["name"]
-                .into_iter()
-                .chain(options.iter().map(|option| option.name))
-                .collect();
+        if let Some(attachment) = attachments.iter().find(|attachment| attachment.name == member) {
+            attached.push((attachment, value));
+        } else if let Some(option) = options.iter().find(|option| option.name == member) {
+            let read = match axes_of(option, options).filter(|_| value.is_array()) {
+                Some(axes) => read_axes(option, axes, value, members),
+                None => read_option(option, value).map(|value| vec![(option.name, value)]),
+            };
+            values.extend(read.map_err(|error| error.under(member))?);
+        } else {
+            let options = options.iter().map(|option| option.name);
+            let attachments = attachments.iter().map(|attachment| attachment.name);
+            let known: Vec<&str> = ["name"].into_iter().chain(options).chain(attachments).collect();
             return Err(EditError::unknown_member(member, &known));
-        };
-        values.push((
-            option.name,
-            read_option(option, value).map_err(|error| error.under(member))?,
-        ));
+        }
     }
-    method.with(values).map_err(|refused| {
+    let method = method.with(values).map_err(|refused| {
         let value = members.get(&refused.option).unwrap_or(value);
         EditError::out_of_range(value, &refused.allowed).under(&refused.option)
-    })
+    })?;
+    // After the options: how a lattice rests depends on them.
+    let attached = attached.into_iter().map(|(attachment, value)| {
+        let entry = read_attachment(attachment, &method, value);
+        Ok((attachment.name, entry.map_err(|error| error.under(attachment.name))?))
+    });
+    let attached = attached.collect::<Result<_, EditError>>()?;
+    Ok((method, attached))
+}
+
+/// The options that say along x, y and z what this one says for all axes, if there are such.
+fn axes_of<'a>(option: &OptionDeclaration, options: &'a [OptionDeclaration]) -> Option<[&'a OptionDeclaration; 3]> {
+    let axis = |axis| {
+        let name = format!("{}_{axis}", option.name);
+        options.iter().find(|other| other.name == name)
+    };
+    Some([axis('x')?, axis('y')?, axis('z')?])
+}
+
+/// Reads an option as a list of what it is along each axis.
+fn read_axes(
+    option: &OptionDeclaration,
+    axes: [&OptionDeclaration; 3],
+    value: &Value,
+    members: &Map<String, Value>,
+) -> Result<Vec<(&'static str, OptionValue)>, EditError> {
+    if let Some(axis) = axes.iter().find(|axis| members.contains_key(axis.name)) {
+        return Err(EditError::custom(format!(
+            "is a list beside `{}`: keep one of them",
+            axis.name
+        )));
+    }
+    let counts: [u32; 3] = read(value)?;
+    let axes = axes.iter().zip(counts).enumerate().map(|(place, (axis, count))| {
+        let own = OptionValue::Whole(count);
+        if option.kind.takes(own) {
+            return Ok((axis.name, own));
+        }
+        let refused = EditError::out_of_range(&json!(count), &option.kind.allowed());
+        Err(refused.under(&format!("[{place}]")))
+    });
+    axes.collect()
 }
 
 fn read_option(option: &OptionDeclaration, value: &Value) -> Result<OptionValue, EditError> {
@@ -58,8 +106,8 @@ fn read_option(option: &OptionDeclaration, value: &Value) -> Result<OptionValue,
     }
 }
 
-/// The method as the edit format has it: its name and what differs from its defaults.
-pub(crate) fn method_to_value(method: &Method) -> Value {
+/// The method as the edit format has it: its name, what differs from its defaults, and what it takes beside handles.
+pub(crate) fn method_to_value(method: &Method, attachments: &AttachmentEntries) -> Value {
     let declaration = method.declaration();
     let default = (declaration.default)();
     let mut members = Map::new();
@@ -78,6 +126,11 @@ pub(crate) fn method_to_value(method: &Method) -> Value {
             members.insert((*name).to_owned(), value);
         }
     }
+    for (name, entry) in attachments {
+        if declaration.attachment(name).is_some() {
+            members.insert((*name).to_owned(), attachment_to_value(method, entry));
+        }
+    }
     Value::Object(members)
 }
 
@@ -89,7 +142,12 @@ mod tests {
     use super::*;
 
     fn parsed(value: &Value) -> Result<Method, EditError> {
-        read_method(value).map_err(|error| error.under("method"))
+        let read = read_method(value).map_err(|error| error.under("method"));
+        read.map(|(method, _)| method)
+    }
+
+    fn written(method: &Method) -> Value {
+        method_to_value(method, &AttachmentEntries::new())
     }
 
     #[test]
@@ -113,16 +171,41 @@ mod tests {
             json!({ "name": "primo", "thickness": 0.1, "tolerance": 1e-6, "max_iterations": 40 }),
         ] {
             let method = parsed(&value).unwrap();
-            assert_eq!(method_to_value(&method), value);
+            assert_eq!(written(&method), value);
             assert_eq!(method.declaration().options.len() + 1, value.as_object().unwrap().len());
         }
+    }
+
+    #[test]
+    fn a_resolution_is_one_count_or_a_list_of_three() {
+        let listed = parsed(&json!({ "name": "lattice", "resolution": [3, 2, 5] })).unwrap();
+        let spelled =
+            parsed(&json!({ "name": "lattice", "resolution_x": 3, "resolution_y": 2, "resolution_z": 5 })).unwrap();
+        assert_eq!(listed, spelled);
+        assert_eq!(parsed(&written(&listed)).unwrap(), listed);
+        for (value, said) in [
+            (json!([3, 0, 5]), "method.resolution[1] is 0"),
+            (json!([3, 2]), "a list of 3"),
+            (json!([3, "two", 5]), "method.resolution[1] must be a whole number"),
+            (json!("fine"), "a whole number"),
+        ] {
+            let refused = parsed(&json!({ "name": "lattice", "resolution": value })).unwrap_err();
+            assert!(refused.to_string().contains(said), "{refused}");
+        }
+        let twice = parsed(&json!({ "name": "lattice", "resolution": [3, 2, 5], "resolution_y": 4 })).unwrap_err();
+        assert!(twice.to_string().contains("`resolution_y`"), "{twice}");
+        let other = parsed(&json!({ "name": "cage", "detail": [3, 2, 5] })).unwrap_err();
+        assert!(
+            other.to_string().contains("method.detail must be a whole number"),
+            "{other}"
+        );
     }
 
     #[test]
     fn defaults_are_not_written() {
         for declaration in METHODS {
             let value = json!({ "name": declaration.name });
-            assert_eq!(method_to_value(&parsed(&value).unwrap()), value);
+            assert_eq!(written(&parsed(&value).unwrap()), value);
         }
         let spelled = json!({ "name": "bilaplacian", "order": 2, "bending": 1, "discretisation": "cotangent-area" });
         assert_eq!(parsed(&spelled).unwrap(), Method::default());

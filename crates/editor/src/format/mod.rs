@@ -1,10 +1,12 @@
 //! The edit format and the project format: what a document and an edit are as JSON, and an edit resolved on a model.
 //!
 //! `json` reads text, `reader` gives its values to what serde derives and names the place of whatever is refused
-//! (`refusal`); `edit_file` and `project` are the two formats, of `selector`s, `field`s, `transform`s and a `method`.
+//! (`refusal`); `edit_file` and `project` are the two formats, of `selector`s, `field`s, `transform`s and a `method`
+//! with its `attachment`s.
 //! `setup` is an edit or a document on a model, as the solver takes it, and `exchange` goes between documents and
 //! edits.
 
+mod attachment;
 mod beginning;
 mod edit_error;
 mod edit_file;
@@ -20,6 +22,7 @@ mod selector;
 mod setup;
 mod transform;
 
+pub use attachment::AttachmentEntry;
 pub use beginning::Beginning;
 pub use edit_error::EditError;
 pub use edit_file::{EDIT_VERSION, EditFile, HandleEntry, SOFT_RANGE, STIFFNESS_RANGE};

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{CONTINUITY_RANGE, Constraints, Loose, Method, Problem, Role, Warning};
+use pliant_deform::{Attachment, CONTINUITY_RANGE, Constraints, Loose, Method, Problem, Role, Warning};
 use pliant_mesh::{Model, Surface, SurfaceVertex};
 
+use super::attachment::given;
 use super::edit_error::EditError;
 use super::edit_file::EditFile;
 use super::exchange::with_pivot;
@@ -34,6 +35,8 @@ pub struct Setup {
     pub loose_parts: Vec<(u32, Loose)>,
     /// The method and its options.
     pub method: Method,
+    /// What was brought beside the handles, by its declared name.
+    pub attachments: Vec<(&'static str, Attachment)>,
     /// The shape that is bent, where it is another than the file's.
     pub rest: Option<Rest>,
 }
@@ -85,7 +88,7 @@ impl Setup {
             },
             loose: self.loose,
             method: &self.method,
-            attachments: &[],
+            attachments: &self.attachments,
             revision: 0,
         }
     }
@@ -113,6 +116,11 @@ impl Setup {
                 .map(|(part, loose)| (*part, *loose))
                 .collect(),
             method: document.method.clone(),
+            attachments: document
+                .attachments
+                .iter()
+                .map(|(name, attachment)| (*name, attachment.clone()))
+                .collect(),
             rest: region.rest_surface.as_ref().map(|surface| Rest {
                 displacements: Arc::clone(&document.rest),
                 surface: Arc::clone(surface),
@@ -125,6 +133,25 @@ impl Setup {
         let name = |number: usize| self.handles.get(number).map(|handle| &*handle.name);
         let sentence = |warning: &Warning| worded(warning, warning.handle().and_then(name));
         warnings.iter().map(sentence).collect()
+    }
+
+    /// Where the control points of the method's attachment are moved to at the share `t` of the way, 0 at rest and 1 at
+    /// their places; `None` where none was brought.
+    pub fn controls(&self, t: f64) -> Option<Arc<Vec<DVec3>>> {
+        let declared = self.method.declaration();
+        let own = self
+            .attachments
+            .iter()
+            .find(|(name, _)| declared.attachment(name).is_some());
+        let (_, attachment) = own?;
+        if t >= 1.0 {
+            return Some(Arc::clone(attachment.moved()));
+        }
+        let rest = self.method.control_rest(attachment);
+        let places = rest.iter().zip(attachment.moved().iter());
+        Some(Arc::new(
+            places.map(|(rest, moved)| *rest + (*moved - *rest) * t).collect(),
+        ))
     }
 
     /// Where the handles are at the share `t` of the way, 0 at rest and 1 at their targets.
@@ -199,8 +226,16 @@ impl EditFile {
             loose: self.loose,
             loose_parts: self.loose_parts_on(model)?,
             method: self.method.clone(),
+            attachments: self.attachments_in_numbers()?,
             rest: None,
         })
+    }
+
+    fn attachments_in_numbers(&self) -> Result<Vec<(&'static str, Attachment)>, EditError> {
+        let entries = self.attachments.iter();
+        let attachments = entries.map(|(name, entry)| Ok((*name, given(name, entry.clone())?)));
+        let attachments: Result<_, EditError> = attachments.collect();
+        attachments.map_err(|error| error.under("method"))
     }
 
     fn stiffness_on(&self, model: &Model) -> Result<Vec<f64>, EditError> {

@@ -1,9 +1,10 @@
 //! What a job of the comparison brings: a binding, a shape, and what they took.
 
+use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::Bound;
+use pliant_deform::{Attachment, Bound};
 
 use super::carried::Carried;
 use crate::document::{Document, HandleId, KeptShape, Versions};
@@ -50,6 +51,7 @@ pub(super) struct Binding {
 pub(super) struct Edit {
     versions: Versions,
     targets: Vec<(HandleId, DAffine3)>,
+    attachments: Arc<BTreeMap<&'static str, Attachment>>,
     kept: Option<Arc<KeptShape>>,
 }
 
@@ -59,6 +61,7 @@ impl Edit {
         Self {
             versions: *document.versions(),
             targets: handles.map(|handle| (handle.id, handle.affine())).collect(),
+            attachments: Arc::clone(&document.attachments),
             kept: document.kept.clone(),
         }
     }
@@ -71,6 +74,7 @@ impl Edit {
     /// Whether the same is to be solved for.
     pub(super) fn has_targets_of(&self, other: &Self) -> bool {
         let addresses = [self, other].map(|edit| edit.kept.as_ref().map(Arc::as_ptr));
-        self.targets == other.targets && addresses[0] == addresses[1]
+        let same_controls = Arc::ptr_eq(&self.attachments, &other.attachments) || self.attachments == other.attachments;
+        same_controls && self.targets == other.targets && addresses[0] == addresses[1]
     }
 }

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex};
 use pliant_deform::{Bound, Ordering, ReusableFactor};
 use pliant_mesh::Model;
 
+use super::bound_controls::BoundControls;
 use super::carried::Carried;
 use super::inspected::{Inspectable, Inspected};
 use super::job::{Pickable, ShownTriangles};
@@ -23,6 +24,8 @@ pub(crate) struct Computed {
     /// What the model's components touch.
     pub(super) contacts: FileContacts,
     pub(super) bound: Option<Arc<Mutex<Bound>>>,
+    /// The binding's control points.
+    pub(crate) controls: Option<BoundControls>,
     /// What a solve from a kept shape goes on from, with this factorisation.
     pub(super) carried: Option<Carried>,
     /// What of the binding can be looked at.
@@ -47,6 +50,7 @@ impl Default for Computed {
             region: Region::still(0),
             contacts: FileContacts::default(),
             bound: None,
+            controls: None,
             carried: None,
             inspectable: Inspectable::default(),
             inspected: Inspected::default(),

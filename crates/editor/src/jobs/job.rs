@@ -172,6 +172,8 @@ pub enum JobOutcome {
     Bound(Box<Bound>, Inspectable),
     /// A new shape.
     Solved(Solved),
+    /// Where the control points are.
+    Controls(Arc<Vec<DVec3>>),
     /// The vertices of a region's mirror image, ascending.
     Mirrored(Vec<usize>),
     /// The vertices that an outline holds, ascending.
@@ -194,6 +196,7 @@ impl std::fmt::Debug for JobOutcome {
             Self::Region(_) => "Region",
             Self::Bound(..) => "Bound",
             Self::Solved(_) => "Solved",
+            Self::Controls(_) => "Controls",
             Self::Mirrored(_) => "Mirrored",
             Self::Enclosed(_) => "Enclosed",
             Self::Compared(_) => "Compared",
@@ -214,6 +217,8 @@ pub struct Solved {
     /// The Jacobian of the displacements at each surface vertex, where the method knows it and `from_file` is what it has
     /// made: normals turn by it, whatever the triangles are.
     pub jacobians: Option<Vec<Mat3>>,
+    /// Where the method's control points are, moved by handles and by hand; empty if it has none.
+    pub controls: Arc<Vec<DVec3>>,
     /// The solution behind it, where it carries what was seen before along.
     pub(crate) carried: Option<Carried>,
     /// What the method can't follow of these targets.

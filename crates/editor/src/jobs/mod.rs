@@ -1,6 +1,7 @@
 //! What follows from the document and is computed beside the window: the jobs, their queues and their last results.
 
 mod alternative;
+mod bound_controls;
 mod carried;
 mod compared;
 mod comparison;

@@ -8,8 +8,10 @@
 
 use std::sync::{Arc, Mutex};
 
+use glam::DVec3;
 use pliant_mesh::{Model, SurfaceVertex};
 
+use super::bound_controls::BoundControls;
 use super::comparison::Comparison;
 use super::computed::Computed;
 use super::inspected::{Asked, Inspected};
@@ -17,7 +19,7 @@ use super::inspection::inspect_work;
 use super::job::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, ShownTriangles, Solved, Work};
 use super::job_queue::{JobQueue, Running};
 use super::region::{Region, region_input};
-use super::solving::solve_work;
+use super::solving::{controls_work, solve_work};
 use super::work::{bind_work, order_work, pick_work, region_work};
 use crate::document::Document;
 use crate::warning::HandleWarning;
@@ -54,6 +56,8 @@ pub(crate) struct Jobs {
     /// Another one for every region that was measured.
     pub(crate) roles_revision: Revision,
     bound_revision: Revision,
+    /// The targets with which the control points are where [`Computed::controls`] has them.
+    controls_revision: Revision,
     mirror_revision: Revision,
     enclose_revision: Revision,
     compare_revision: Revision,
@@ -105,6 +109,7 @@ impl Jobs {
             region_revision: Revision(0),
             roles_revision: Revision(0),
             bound_revision: Revision(0),
+            controls_revision: Revision(0),
             mirror_revision: Revision(0),
             enclose_revision: Revision(0),
             compare_revision: Revision(0),
@@ -302,7 +307,7 @@ impl Jobs {
                 self.want(JobKind::Region, |computed| {
                     region_work(region_input(&model, document, &computed.contacts))
                 });
-            } else if missing.is_none() && !self.is_bound() && !self.computed.region.handles.is_empty() {
+            } else if missing.is_none() && !self.is_bound() && self.binds_something(document) {
                 let (revision, budget) = (self.problem_revision.0, self.executor.budget());
                 self.want(JobKind::Bind, |computed| {
                     bind_work(computed, &model, document, revision, budget)
@@ -310,12 +315,22 @@ impl Jobs {
             }
             if self.is_bound() && !document.settled {
                 self.want(JobKind::Solve, |computed| solve_work(computed, document));
+            } else if self.is_bound()
+                && self.computed.controls.is_some()
+                && self.controls_revision != self.target_revision
+            {
+                self.want(JobKind::Solve, |computed| controls_work(computed, document));
             }
         }
         if activity != Activity::Painting {
             self.compare(document, &model);
         }
         self.start();
+    }
+
+    /// Whether there is something to bind: handles, or control points that move the surface without them.
+    fn binds_something(&self, document: &Document) -> bool {
+        !self.computed.region.handles.is_empty() || !document.method.declaration().attachments.is_empty()
     }
 
     /// Asks for the next shape of the comparison once the document's own binding is not waited for: what it needs of
@@ -387,11 +402,14 @@ impl Jobs {
                 let handles = &self.computed.region.handles;
                 self.computed.warnings = HandleWarning::list(bound.warnings(), handles);
                 self.computed.blind_to.clear();
+                self.computed.controls = BoundControls::of(&bound);
+                self.controls_revision = Revision(0);
                 self.computed.reusable_factor = bound.reusable_factor();
                 self.computed.bound = Some(Arc::new(Mutex::new(*bound)));
                 self.computed.carried = None;
                 self.bound_revision = stamp;
             }
+            JobOutcome::Controls(positions) if stamp >= self.solve_floor => self.put_controls(&positions, stamp),
             JobOutcome::Inspected(inspected) if stamp == self.inspect_revision => self.computed.inspected = inspected,
             JobOutcome::Mirrored(image) if stamp == self.mirror_revision => return Arrival::Mirrored(image),
             JobOutcome::Enclosed(vertices) if stamp == self.enclose_revision => return Arrival::Enclosed(vertices),
@@ -401,11 +419,22 @@ impl Jobs {
                     self.computed.carried.clone_from(&solved.carried);
                 }
                 self.computed.blind_to.clone_from(&solved.blind_to);
+                self.put_controls(&solved.controls, stamp);
                 return Arrival::Shape(solved, if last { Finality::Final } else { Finality::Preview });
             }
             _ => {}
         }
         Arrival::Nothing
+    }
+
+    /// The control points are here with the targets of this revision.
+    fn put_controls(&mut self, positions: &Arc<Vec<DVec3>>, stamp: Revision) {
+        if let Some(controls) = &mut self.computed.controls
+            && controls.positions.len() == positions.len()
+        {
+            controls.positions = Arc::clone(positions);
+            self.controls_revision = stamp;
+        }
     }
 
     /// The revision that a job of this kind would be made for now.

@@ -1,9 +1,10 @@
 //! Bending: steps towards the handles' targets, from what is shown or from what is carried along beside it.
 
+use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError};
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Bound, Solve, SolveError, Step};
+use pliant_deform::{Attachment, Bound, Solve, SolveError, Step};
 use pliant_mesh::{Cancel, SurfaceVertex};
 
 use super::carried::Carried;
@@ -50,11 +51,34 @@ pub(super) fn solve_work(computed: &Computed, document: &Document) -> Option<Wor
     }))
 }
 
+/// Asks where the control points are with the document's targets, whose shape is known; `None` while nothing is bound.
+pub(super) fn controls_work(computed: &Computed, document: &Document) -> Option<Work> {
+    let bound = computed.bound.clone()?;
+    let handles = targets(document, &computed.region.handles)?;
+    let attachments = Arc::clone(&document.attachments);
+    Some(Box::new(move |_, cancel| {
+        if cancel.is_cancelled() {
+            return JobOutcome::Cancelled;
+        }
+        let mut bound = bound.lock().unwrap_or_else(PoisonError::into_inner);
+        let own = bound.attachment().and_then(|(name, _)| attachments.get(name));
+        let targets = Targets {
+            handles: &handles,
+            controls: own.map(Attachment::moved),
+        };
+        match targets.set(&mut bound) {
+            Err(error) => JobOutcome::Failed(error.to_string()),
+            Ok(()) => JobOutcome::Controls(Arc::new(bound.control_positions())),
+        }
+    }))
+}
+
 /// What a solve is to find, and from where it goes on.
 pub(super) struct Wanted {
     handles: Vec<HandleId>,
     targets: Vec<DAffine3>,
     beginning: Beginning,
+    attachments: Arc<BTreeMap<&'static str, Attachment>>,
     /// What is shown.
     from_rest: Arc<Vec<DVec3>>,
     /// The rest shape, where it is not the file's.
@@ -74,6 +98,7 @@ impl Wanted {
             handles: handles.to_vec(),
             targets: targets(document, handles)?,
             beginning: Beginning::of(document, handles, from_rest, carried)?,
+            attachments: Arc::clone(&document.attachments),
             from_rest: Arc::clone(from_rest),
             rest: document.applied.then(|| Arc::clone(&document.rest)),
         })
@@ -81,10 +106,16 @@ impl Wanted {
 
     /// Takes steps until the shape is worth showing.
     pub(super) fn solve(self, bound: &mut Bound, cancel: &Cancel) -> Result<Solved, SolveError> {
-        let bent = self.beginning.solve(bound, &self.targets, &self.from_rest, cancel)?;
+        let own = bound.attachment().and_then(|(name, _)| self.attachments.get(name));
+        let targets = Targets {
+            handles: &self.targets,
+            controls: own.map(Attachment::moved),
+        };
+        let bent = self.beginning.solve(bound, &targets, &self.from_rest, cancel)?;
         let step = bent.step;
         Ok(Solved {
             jacobians: None,
+            controls: Arc::new(bound.control_positions()),
             from_file: sum_of_shapes(self.rest.as_ref(), &bent.shown),
             from_rest: bent.shown,
             carried: bent.carried,
@@ -96,6 +127,20 @@ impl Wanted {
                 finished: step.finished,
             }),
         })
+    }
+}
+
+/// Where handles and control points are to go.
+struct Targets<'a> {
+    handles: &'a [DAffine3],
+    /// What was brought to the binding and moved by hand.
+    controls: Option<&'a Arc<Vec<DVec3>>>,
+}
+
+impl Targets<'_> {
+    fn set(&self, bound: &mut Bound) -> Result<(), SolveError> {
+        bound.set_targets(self.handles)?;
+        self.controls.map_or(Ok(()), |moved| bound.set_controls(moved))
     }
 }
 
@@ -146,7 +191,7 @@ impl Beginning {
     fn solve(
         self,
         bound: &mut Bound,
-        targets: &[DAffine3],
+        targets: &Targets<'_>,
         from_rest: &Arc<Vec<DVec3>>,
         cancel: &Cancel,
     ) -> Result<Bent, SolveError> {
@@ -162,6 +207,13 @@ impl Beginning {
             }
             Self::Kept(kept, first) => {
                 let mut at_first = kept.shape.to_vec();
+                // Points of another attachment than the one in force say nothing of it.
+                let is_same = |kept: &&Arc<Vec<DVec3>>| targets.controls.is_some_and(|own| own.len() == kept.len());
+                let first_controls = kept.controls.as_ref().filter(is_same).or(targets.controls);
+                let first = Targets {
+                    handles: &first,
+                    controls: first_controls,
+                };
                 for _ in 0..MOST_FIRST_ROUNDS {
                     if steps(bound, &first, &mut at_first, cancel)?.finished || cancel.is_cancelled() {
                         break;
@@ -190,11 +242,11 @@ impl Beginning {
 /// Takes steps towards the targets until the shape is worth showing; it goes on from where the last solve ended.
 fn steps(
     bound: &mut Bound,
-    targets: &[DAffine3],
+    targets: &Targets<'_>,
     displacements: &mut [DVec3],
     cancel: &Cancel,
 ) -> Result<Step, SolveError> {
-    bound.set_targets(targets)?;
+    targets.set(bound)?;
     let mut step = bound.step(displacements)?;
     for _ in 1..(VERTEX_STEPS / bound.step_cost().max(1)).clamp(1, MOST_STEPS) {
         if step.finished || cancel.is_cancelled() {

@@ -5,7 +5,7 @@
 
 use super::colour_revisions::{ColouredBy, Sources};
 use super::state::Workspace;
-use crate::document::{Aspect, Handle, VertexAccess};
+use crate::document::{Aspect, VertexAccess};
 use crate::jobs::{Activity, Arrival, Asked, Finality, Solved};
 
 impl Workspace {
@@ -47,17 +47,19 @@ impl Workspace {
         }
     }
 
-    /// Handles that all rest need no solve: the rest shape is known. Nor is there anything to solve where all handles lie
+    /// Handles and control points that all rest need no solve: the rest shape is known. Nor is there anything to solve where all handles lie
     /// on what is locked: what is seen stays.
     fn settle_what_needs_no_solve(&mut self) {
         if self.document.is_settled() {
             return;
         }
-        let is_moved = self.document.handles().iter().any(Handle::is_displaced);
-        if self.document.kept.is_none() && !is_moved {
+        if self.document.kept.is_none() && !self.document.is_moved() {
             self.jobs.drop_solves();
             self.document.unbend();
-        } else if self.jobs.is_region_current() && self.computed().region.handles.is_empty() {
+        } else if self.jobs.is_region_current()
+            && self.computed().region.handles.is_empty()
+            && self.document.moved_controls().is_none()
+        {
             self.jobs.drop_solves();
             self.document.keep_shape();
         }

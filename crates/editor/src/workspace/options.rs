@@ -1,8 +1,9 @@
 //! What is chosen for the document as a whole: method, loose parts, stiffness; and its shape taken back.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use pliant_deform::{Loose, Method};
+use pliant_deform::{Attachment, Loose, Method};
 
 use super::painting::members;
 use super::state::Workspace;
@@ -25,6 +26,8 @@ pub(crate) fn reset_shape(workspace: &mut Workspace) {
     workspace.change("Reset shape", |document| {
         let was_applied = document.is_applied();
         document.forget_shapes();
+        let rested = at_rest(document);
+        document.set_attachments(rested);
         let positions = &model.surface.positions;
         let pivot = |id| centroid(positions, members(document, id).into_iter());
         let pivots: Vec<_> = document.handles().iter().map(|handle| pivot(handle.id)).collect();
@@ -37,6 +40,18 @@ pub(crate) fn reset_shape(workspace: &mut Workspace) {
             }
         });
     });
+}
+
+/// The document's attachments with the control points of the present method's at rest.
+pub(super) fn at_rest(document: &Document) -> Arc<BTreeMap<&'static str, Attachment>> {
+    let mut attachments = Arc::clone(&document.attachments);
+    if document.moved_controls().is_some()
+        && let Some((name, own)) = document.attachment()
+    {
+        let rested = own.with_moved(Arc::new(document.method().control_rest(own)));
+        Arc::make_mut(&mut attachments).insert(name, rested);
+    }
+    attachments
 }
 
 /// Removes all handles and regions; the shape stays as it is.
@@ -53,9 +68,30 @@ pub(crate) fn set_method(workspace: &mut Workspace, method: Method) {
     workspace.change("Change method", |document| {
         if *document.method() != method {
             document.unsettle_if_displaced();
+            let attachments = carried_over(document, &method);
             document.set_method(method);
+            document.set_attachments(attachments);
+            document.unsettle_if_displaced();
         }
     });
+}
+
+/// The document's attachments for another method or other options: where a lattice's points rest depends on its
+/// functions, and what was moved by hand keeps its displacements.
+fn carried_over(document: &Document, method: &Method) -> Arc<BTreeMap<&'static str, Attachment>> {
+    let mut attachments = Arc::clone(&document.attachments);
+    if let Some((name, own)) = document.attachment()
+        && method.declaration().attachment(name).is_some()
+    {
+        let (before, after) = (document.method().control_rest(own), method.control_rest(own));
+        if before != after && before.len() == after.len() {
+            let places = own.moved().iter().zip(&before).zip(&after);
+            let moved = places.map(|((moved, before), after)| *after + (*moved - *before));
+            let carried = own.with_moved(Arc::new(moved.collect()));
+            Arc::make_mut(&mut attachments).insert(name, carried);
+        }
+    }
+    attachments
 }
 
 /// Chooses whether the parts that a reach cuts off from the body come along.

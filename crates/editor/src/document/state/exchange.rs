@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{Loose, Method};
+use pliant_deform::{Attachment, Loose, Method};
 use pliant_mesh::SurfaceVertex;
 
 use super::{Document, Repainted, note};
@@ -110,6 +110,22 @@ impl Document {
         let (former, former_parts) = (self.content.loose, Arc::clone(&self.content.loose_parts));
         self.set_loose(*loose, (**parts).clone());
         (*loose, *parts) = (former, former_parts);
+    }
+
+    /// Another rest is another problem; points that are elsewhere are other targets.
+    pub(in crate::document) fn swap_attachments(&mut self, attachments: &mut Arc<BTreeMap<&'static str, Attachment>>) {
+        std::mem::swap(attachments, &mut self.content.attachments);
+        let (before, after) = (&**attachments, &*self.content.attachments);
+        let rest_alike = before.len() == after.len()
+            && after
+                .iter()
+                .all(|(name, own)| before.get(name).is_some_and(|other| own.rests_as(other)));
+        if !rest_alike {
+            self.marks.mark(&[Aspect::Attachments]);
+        }
+        if before != after {
+            self.marks.mark(&[Aspect::Targets]);
+        }
     }
 
     pub(in crate::document) fn swap_tips(&mut self, tips: &mut Tips) {

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use pliant_deform::{CONTINUITY_RANGE, Loose, Method};
+use pliant_deform::{Attachment, CONTINUITY_RANGE, Loose, Method};
 use pliant_mesh::SurfaceVertex;
 
 use glam::DVec3;
@@ -103,6 +103,26 @@ impl Document {
         &self.content.method
     }
 
+    /// What methods take beside handles, by the names that they declare.
+    pub fn attachments(&self) -> &BTreeMap<&'static str, Attachment> {
+        &self.content.attachments
+    }
+
+    /// What of that the present method takes.
+    pub fn attachment(&self) -> Option<(&'static str, &Attachment)> {
+        let declared = self.content.method.declaration();
+        let mut attachments = self.content.attachments.iter();
+        let (name, attachment) = attachments.find(|(name, _)| declared.attachment(name).is_some())?;
+        Some((name, attachment))
+    }
+
+    /// Where its control points were moved to, if any of them was.
+    pub fn moved_controls(&self) -> Option<&Arc<Vec<DVec3>>> {
+        let (_, attachment) = self.attachment()?;
+        let moved = attachment.moved();
+        (**moved != self.content.method.control_rest(attachment)).then_some(moved)
+    }
+
     /// Whether the parts that a reach cuts off from the body come along.
     pub fn tips(&self) -> Tips {
         self.content.tips
@@ -175,7 +195,12 @@ impl Document {
 
     /// Whether the present shape is another than the rest shape.
     pub fn is_displaced(&self) -> bool {
-        !self.content.settled || self.content.kept.is_some() || self.content.handles.iter().any(Handle::is_displaced)
+        !self.content.settled || self.content.kept.is_some() || self.is_moved()
+    }
+
+    /// Whether a handle or a control point is elsewhere than where it rests.
+    pub(crate) fn is_moved(&self) -> bool {
+        self.content.handles.iter().any(Handle::is_displaced) || self.moved_controls().is_some()
     }
 
     /// Which state of each aspect this is.
@@ -311,6 +336,11 @@ impl Document {
             self.content.method = method;
             self.marks.mark(&[Aspect::Method]);
         }
+    }
+
+    /// Puts what methods take beside handles in the place of what there is.
+    pub(crate) fn set_attachments(&mut self, mut attachments: Arc<BTreeMap<&'static str, Attachment>>) {
+        self.swap_attachments(&mut attachments);
     }
 
     /// Chooses whether tips come along.

@@ -10,7 +10,8 @@ use crate::document::kept_shape::KeptShape;
 use crate::document::version::Aspect;
 
 impl Document {
-    /// Makes the present shape the rest shape. No drawn vertex moves; the handles' pivots go along.
+    /// Makes the present shape the rest shape. No drawn vertex moves; the handles' pivots go along. Cages and lattices
+    /// fitted the former one and are taken away.
     pub(crate) fn apply_shape(&mut self) {
         if !self.is_displaced() {
             return;
@@ -22,6 +23,7 @@ impl Document {
         content.kept = None;
         content.settled = true;
         self.marks.mark(&[Aspect::Rest, Aspect::Shape]);
+        self.set_attachments(Arc::default());
         self.change_handles(|handles| {
             for handle in handles {
                 handle.pivot = handle.centre();
@@ -36,11 +38,14 @@ impl Document {
         if !self.is_displaced() {
             return;
         }
+        let controls = self.moved_controls().cloned();
         let content = &mut self.content;
         content.settled = true;
         let kept = content.kept.as_ref();
-        if kept.is_none_or(|kept| !kept.is_of(&content.handles, &content.from_rest)) {
-            content.kept = Some(Arc::new(KeptShape::of(&content.handles, &content.from_rest)));
+        let own = controls.as_deref();
+        if kept.is_none_or(|kept| !kept.is_of(&content.handles, own, &content.from_rest)) {
+            let kept = KeptShape::of(&content.handles, controls, &content.from_rest);
+            content.kept = Some(Arc::new(kept));
         }
     }
 
@@ -98,7 +103,9 @@ impl Document {
             .iter()
             .any(|displacement| *displacement != DVec3::ZERO)
         {
-            self.content.kept = Some(Arc::new(KeptShape::of(&self.content.handles, &self.content.from_rest)));
+            let controls = self.moved_controls().cloned();
+            let kept = KeptShape::of(&self.content.handles, controls, &self.content.from_rest);
+            self.content.kept = Some(Arc::new(kept));
         }
     }
 

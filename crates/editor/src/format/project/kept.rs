@@ -14,6 +14,9 @@ use crate::document::{HandleId, KeptShape};
 pub(super) struct StoredKept {
     /// Each handle's map of rest positions, by its number: three columns and the translation.
     handles: BTreeMap<u32, [f64; 12]>,
+    /// Where control points were moved to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    controls: Option<Vec<[f64; 3]>>,
     /// Displacements from the rest shape; `None` is the rest shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) shape: Option<Field>,
@@ -26,6 +29,10 @@ impl StoredKept {
             handles: handles
                 .map(|(id, map)| (u32::from(id.0), map.to_cols_array()))
                 .collect(),
+            controls: kept
+                .controls
+                .as_ref()
+                .map(|controls| controls.iter().map(|point| point.to_array()).collect()),
             shape,
         }
     }
@@ -41,6 +48,10 @@ impl StoredKept {
                     )
                 })
                 .collect(),
+            controls: self.controls.as_ref().map(|controls| {
+                let points = controls.iter().map(|point| DVec3::from_array(*point));
+                Arc::new(points.collect())
+            }),
             shape,
         }
     }

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{CONTINUITY_RANGE, Method};
+use pliant_deform::{CONTINUITY_RANGE, METHODS, Method};
 use pliant_mesh::{Cancel, Model};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -26,6 +26,7 @@ use self::field::{Field, Ranges, for_each_drawn, ranges_where};
 use self::handle::StoredHandle;
 use self::kept::StoredKept;
 use self::objects::{StoredObject, access, stored_objects};
+use super::attachment::{read_stored_attachments, stored_attachments};
 use super::edit_error::EditError;
 use super::json::parse;
 use super::loose::StoredLoose;
@@ -34,7 +35,7 @@ use super::reader::read;
 use super::refusal::shortened;
 use super::setup::Setup;
 use crate::document::bits_equal;
-use crate::document::{Content, Document, Handle, HandleId, Paint, Tips};
+use crate::document::{Content, Document, HandleId, Paint, Tips};
 use crate::jobs::{FileContacts, Region, region_input};
 use crate::{Camera, STIFFNESS_RANGE};
 
@@ -48,6 +49,9 @@ pub struct Project {
     version: u64,
     mesh: MeshReference,
     method: Value,
+    /// What methods take beside handles, by the names that they declare.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    attachments: BTreeMap<String, Value>,
     loose: StoredLoose,
     /// What single parts do in place of that, by their component's number.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -192,7 +196,8 @@ impl Project {
         Self {
             version: PROJECT_VERSION,
             mesh,
-            method: method_to_value(&document.method),
+            method: method_to_value(&document.method, &BTreeMap::new()),
+            attachments: stored_attachments(&document.method, &document.attachments),
             loose: document.loose.into(),
             loose_parts: document
                 .loose_parts
@@ -253,7 +258,7 @@ impl Project {
     }
 
     pub(crate) fn set_method(&mut self, method: &Method) {
-        self.method = method_to_value(method);
+        self.method = method_to_value(method, &BTreeMap::new());
         // The shape is another method's.
         self.kept = None;
         self.settled = false;
@@ -261,7 +266,17 @@ impl Project {
 
     /// Whether the shape is the file's.
     pub(crate) fn changes_nothing(&self) -> bool {
-        self.rest.is_none() && self.handles.iter().all(StoredHandle::is_at_rest)
+        let moves = |attachment: &Value| attachment.get("moved").is_some();
+        let own = |name: &str| {
+            METHODS
+                .iter()
+                .any(|method| method.name == self.method_name() && method.attachment(name).is_some())
+        };
+        let has_moved = self
+            .attachments
+            .iter()
+            .any(|(name, attachment)| own(name) && moves(attachment));
+        self.rest.is_none() && !has_moved && self.handles.iter().all(StoredHandle::is_at_rest)
     }
 
     /// The document on its mesh.
@@ -278,7 +293,10 @@ impl Project {
             });
         }
         let mut document = Content::new(model.surface.positions.len());
-        document.method = read_method(&self.method).map_err(|error| error.under("method"))?;
+        let (method, _) = read_method(&self.method).map_err(|error| error.under("method"))?;
+        let attachments = read_stored_attachments(&method, &self.attachments);
+        document.attachments = Arc::new(attachments.map_err(|error| error.under("attachments"))?);
+        document.method = method;
         document.loose = self.loose.into();
         document.tips = match self.tips {
             Some(StoredTips::Held) => Tips::Held,
@@ -316,8 +334,12 @@ impl Project {
             };
             document.kept = Some(Arc::new(kept.kept(shape)));
         }
-        document.settled = self.settled || !document.handles.iter().any(Handle::is_displaced);
-        Ok(document.into())
+        document.settled = self.settled;
+        let mut document = Document::from(document);
+        if !document.is_moved() {
+            document.settle();
+        }
+        Ok(document)
     }
 
     fn read_paint_and_handles(&self, model: &Model, document: &mut Content) -> Result<(), EditError> {

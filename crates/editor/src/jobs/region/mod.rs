@@ -4,6 +4,9 @@
 //! the reach cuts off from the body ([`tips`]). Everything else is held still. A component that carries no paint at all
 //! (an eye, a button, a strap's buckle) is left to the method as a loose part if what it touches moves ([`loose`]), and
 //! held still otherwise: nobody who moves a visor means the whole helmet.
+//!
+//! A method with control points (a cage, a lattice) bends without handles, too: then all is free that carries no paint,
+//! unless some of it was painted free.
 
 mod loose;
 mod reach;
@@ -36,6 +39,8 @@ pub(crate) struct RegionInput {
     pub(crate) loose_parts: Arc<BTreeMap<u32, Loose>>,
     pub(crate) access: Arc<Access>,
     pub(crate) contacts: FileContacts,
+    /// Whether the method has control points, which move the surface without handles, too.
+    pub(crate) has_controls: bool,
 }
 
 /// The vertices' roles, and the surface that they hold on.
@@ -133,6 +138,9 @@ impl Region {
                 .for_each(|(within, this)| *within |= this);
             within_this.fill(true);
             handles.push(*id);
+        }
+        if handles.is_empty() && input.has_controls && !input.paint.contains(&Paint::Free) {
+            roles.fill(Role::Free);
         }
         for (vertex, paint) in input.paint.iter().enumerate() {
             roles[vertex] = match *paint {
@@ -250,6 +258,7 @@ pub(crate) fn region_input(model: &Arc<Model>, document: &Document, contacts: &F
         loose_parts: Arc::clone(&document.loose_parts),
         access: Arc::clone(&document.access),
         contacts: contacts.clone(),
+        has_controls: !document.method.declaration().attachments.is_empty(),
     }
 }
 

@@ -33,6 +33,7 @@ fn sheet_with_disc(radius: f64, reach: Reach) -> RegionInput {
         loose_parts: Arc::default(),
         access: Arc::default(),
         contacts: FileContacts::default(),
+        has_controls: false,
     }
 }
 

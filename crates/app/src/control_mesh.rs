@@ -1,0 +1,66 @@
+//! The files of meshes that an edit names: cages.
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use pliant_editor::Beginning;
+use pliant_mesh::Drawn;
+
+use crate::AppError;
+use crate::loading::open;
+use crate::watch::Watch;
+
+/// Reads the meshes that an edit names, by names relative to its own folder, and puts them in their place. The paths
+/// that were read.
+///
+/// # Errors
+/// A file that can't be read, or a mesh that the method can't take.
+pub fn bring(edit: &mut Beginning, edit_path: &Path, watch: &Watch) -> Result<Vec<PathBuf>, AppError> {
+    let mut read = Vec::new();
+    for (name, file) in edit.attachment_files() {
+        let path = edit_path.parent().unwrap_or(Path::new("")).join(file);
+        let mesh = control_mesh(&path, watch)?;
+        edit.bring(name, mesh).map_err(|source| AppError::Edit {
+            edit: edit_path.to_owned(),
+            source,
+        })?;
+        read.push(path);
+    }
+    Ok(read)
+}
+
+/// The vertices and triangles of a mesh's file in world units: the file's own vertices in their order, those in the same
+/// place joined, those without a triangle left out.
+///
+/// # Errors
+/// As [`open`].
+pub fn control_mesh(path: &Path, watch: &Watch) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), AppError> {
+    Ok(joined(&open(path, watch)?.drawn))
+}
+
+fn joined(drawn: &Drawn) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    // By the file's vertex, which may be shown several times in different places.
+    let corners = drawn.triangles.iter().flatten();
+    let used: BTreeMap<(u32, u32), DVec3> = corners
+        .map(|vertex| {
+            let file_vertex = drawn.file_vertex[vertex.index()].0;
+            ((file_vertex, vertex.0), drawn.positions[vertex.index()])
+        })
+        .collect();
+    let mut vertices = Vec::new();
+    let mut by_place: HashMap<[u64; 3], u32> = HashMap::new();
+    let mut numbers: HashMap<u32, u32> = HashMap::new();
+    for ((_, vertex), position) in used {
+        // Adding zero makes one of the two zeros.
+        let place = (position + 0.0).to_array().map(f64::to_bits);
+        let number = *by_place.entry(place).or_insert_with(|| {
+            vertices.push(position);
+            vertices.len() as u32 - 1
+        });
+        numbers.insert(vertex, number);
+    }
+    let triangles = drawn.triangles.iter();
+    let triangles = triangles.map(|corners| corners.map(|vertex| numbers[&vertex.0]));
+    (vertices, triangles.collect())
+}

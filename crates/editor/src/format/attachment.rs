@@ -1,0 +1,250 @@
+//! What a method takes beside handles, in both formats: a cage as its numbers or a file's name, a lattice as its numbers.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::{
+    Attachment, AttachmentDeclaration, AttachmentKind, AttachmentRefused, ControlLattice, ControlMesh, METHODS, Method,
+};
+use serde::de::Error;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::edit_error::EditError;
+use super::reader::read;
+use super::transform::Numbers;
+
+/// An attachment as an edit has it.
+#[derive(Clone, PartialEq, Debug)]
+pub enum AttachmentEntry {
+    /// A mesh in a file, which is still to be read; its name is relative to the edit's folder.
+    File {
+        /// The name.
+        file: String,
+        /// Where its points are moved to, if they are.
+        moved: Option<Vec<DVec3>>,
+    },
+    /// Its numbers.
+    Given(Attachment),
+}
+
+/// The attachments of a method, by their declared names.
+pub(crate) type AttachmentEntries = BTreeMap<&'static str, AttachmentEntry>;
+
+/// The members of a control mesh as they stand.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredMesh {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    vertices: Option<Vec<Numbers<3>>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    triangles: Option<Vec<[u32; 3]>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    moved: Option<Vec<Numbers<3>>>,
+}
+
+/// The members of a control lattice.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredLattice {
+    counts: [u32; 3],
+    r#box: StoredBox,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    moved: Option<Vec<Numbers<3>>>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredBox {
+    min: Numbers<3>,
+    max: Numbers<3>,
+}
+
+/// Reads an attachment of a method; refusals name its place within the value.
+pub(super) fn read_attachment(
+    declared: &AttachmentDeclaration,
+    method: &Method,
+    value: &Value,
+) -> Result<AttachmentEntry, EditError> {
+    let attachment = match declared.kind {
+        AttachmentKind::ControlMesh => match read_mesh(value)? {
+            AttachmentEntry::Given(mesh) => mesh,
+            file @ AttachmentEntry::File { .. } => return Ok(file),
+        },
+        AttachmentKind::ControlLattice => read_lattice(method, declared.name, value)?,
+    };
+    let checked = method.check_attachment(declared.name, &attachment);
+    checked.map_err(|refused| sentence(&refused))?;
+    Ok(AttachmentEntry::Given(attachment))
+}
+
+/// An attachment as both formats have it; what is not moved is left out.
+pub(crate) fn attachment_to_value(method: &Method, entry: &AttachmentEntry) -> Value {
+    let numbers = |points: &[DVec3]| points.iter().map(|point| Numbers(point.to_array())).collect();
+    match entry {
+        AttachmentEntry::File { file, moved } => json!(StoredMesh {
+            file: Some(file.clone()),
+            vertices: None,
+            triangles: None,
+            moved: moved.as_deref().map(numbers),
+        }),
+        AttachmentEntry::Given(attachment) => {
+            let rest = method.control_rest(attachment);
+            let moved = (**attachment.moved() != rest).then(|| numbers(attachment.moved()));
+            match attachment {
+                Attachment::Mesh(mesh) => json!(StoredMesh {
+                    file: None,
+                    vertices: Some(numbers(&mesh.rest)),
+                    triangles: Some(mesh.triangles.to_vec()),
+                    moved,
+                }),
+                Attachment::Lattice(lattice) => json!(StoredLattice {
+                    counts: lattice.counts,
+                    r#box: StoredBox {
+                        min: Numbers(lattice.low.to_array()),
+                        max: Numbers(lattice.high.to_array()),
+                    },
+                    moved,
+                }),
+            }
+        }
+    }
+}
+
+/// The attachments of a document, of whatever methods: all that a project stores. Lattices rest as the document's own
+/// method has them, or as another does by its defaults.
+pub(crate) fn stored_attachments(
+    method: &Method,
+    attachments: &BTreeMap<&'static str, Attachment>,
+) -> BTreeMap<String, Value> {
+    let stored = attachments.iter().filter_map(|(name, attachment)| {
+        let (_, owner) = owner(method, name)?;
+        let entry = AttachmentEntry::Given(attachment.clone());
+        Some(((*name).to_owned(), attachment_to_value(&owner, &entry)))
+    });
+    stored.collect()
+}
+
+/// Reads what [`stored_attachments`] has written.
+pub(crate) fn read_stored_attachments(
+    method: &Method,
+    stored: &BTreeMap<String, Value>,
+) -> Result<BTreeMap<&'static str, Attachment>, EditError> {
+    let mut attachments = BTreeMap::new();
+    for (name, value) in stored {
+        let names: Vec<&str> = METHODS
+            .iter()
+            .flat_map(|declaration| declaration.attachments.iter().map(|attachment| attachment.name))
+            .collect();
+        let (declared, owner) = owner(method, name).ok_or_else(|| EditError::unknown_member(name, &names))?;
+        let entry = read_attachment(declared, &owner, value).map_err(|error| error.under(name))?;
+        attachments.insert(declared.name, given(declared.name, entry)?);
+    }
+    Ok(attachments)
+}
+
+/// The attachment in numbers.
+///
+/// # Errors
+/// Its file was not read.
+pub(super) fn given(name: &'static str, entry: AttachmentEntry) -> Result<Attachment, EditError> {
+    match entry {
+        AttachmentEntry::Given(attachment) => Ok(attachment),
+        AttachmentEntry::File { file, .. } => {
+            let unread = EditError::custom(format!(
+                "names the file {file:?}, which is not read here: give its numbers"
+            ));
+            Err(unread.under(name))
+        }
+    }
+}
+
+/// A control mesh that a file brings in place of its name.
+pub(super) fn of_file(
+    method: &Method,
+    name: &'static str,
+    (rest, triangles): (Vec<DVec3>, Vec<[u32; 3]>),
+    moved: Option<Vec<DVec3>>,
+) -> Result<Attachment, EditError> {
+    let rest = Arc::new(rest);
+    let attachment = Attachment::Mesh(ControlMesh {
+        moved: moved.map_or_else(|| Arc::clone(&rest), Arc::new),
+        rest,
+        triangles: Arc::new(triangles),
+    });
+    let checked = method.check_attachment(name, &attachment);
+    checked.map_err(|refused| sentence(&refused).under(name))?;
+    Ok(attachment)
+}
+
+/// The declaration of this name, with the method that reads it: the present one if it declares it.
+fn owner(method: &Method, name: &str) -> Option<(&'static AttachmentDeclaration, Method)> {
+    if let Some(declared) = method.declaration().attachment(name) {
+        return Some((declared, method.clone()));
+    }
+    METHODS.iter().find_map(|declaration| {
+        let declared = declaration.attachment(name)?;
+        Some((declared, (declaration.default)()))
+    })
+}
+
+fn read_mesh(value: &Value) -> Result<AttachmentEntry, EditError> {
+    let stored: StoredMesh = read(value)?;
+    let moved = stored.moved.map(points);
+    let missing = |member| EditError::missing_field(member);
+    match (stored.file, stored.vertices, stored.triangles) {
+        (Some(file), None, None) => Ok(AttachmentEntry::File { file, moved }),
+        (Some(_), vertices, _) => Err(EditError::custom(format!(
+            "has both `file` and `{}`: keep one of them",
+            if vertices.is_some() { "vertices" } else { "triangles" }
+        ))),
+        (None, None, None) => Err(EditError::custom(
+            "has neither a `file` nor `vertices` and `triangles`: give one of them",
+        )),
+        (None, None, Some(_)) => Err(missing("vertices")),
+        (None, Some(_), None) => Err(missing("triangles")),
+        (None, Some(vertices), Some(triangles)) => {
+            let rest = Arc::new(points(vertices));
+            Ok(AttachmentEntry::Given(Attachment::Mesh(ControlMesh {
+                moved: moved.map_or_else(|| Arc::clone(&rest), Arc::new),
+                rest,
+                triangles: Arc::new(triangles),
+            })))
+        }
+    }
+}
+
+fn read_lattice(method: &Method, name: &str, value: &Value) -> Result<Attachment, EditError> {
+    let stored: StoredLattice = read(value)?;
+    let moved = stored.moved.map(points);
+    let lattice = ControlLattice {
+        counts: stored.counts,
+        low: DVec3::from_array(stored.r#box.min.0),
+        high: DVec3::from_array(stored.r#box.max.0),
+        moved: Arc::new(moved.clone().unwrap_or_default()),
+    };
+    let attachment = Attachment::Lattice(lattice);
+    if moved.is_some() {
+        return Ok(attachment);
+    }
+    // Only what can be a lattice has a place where it rests.
+    match method.check_attachment(name, &attachment) {
+        Err(AttachmentRefused::MovedCount { .. }) => {}
+        checked => checked.map_err(|refused| sentence(&refused))?,
+    }
+    Ok(attachment.with_moved(Arc::new(method.control_rest(&attachment))))
+}
+
+fn points(numbers: Vec<Numbers<3>>) -> Vec<DVec3> {
+    numbers
+        .into_iter()
+        .map(|numbers| DVec3::from_array(numbers.0))
+        .collect()
+}
+
+fn sentence(refused: &AttachmentRefused) -> EditError {
+    EditError::custom(refused)
+}

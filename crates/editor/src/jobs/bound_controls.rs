@@ -1,0 +1,32 @@
+//! The control points of the present binding: the cage or lattice in force, and where its points are seen.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::{Attachment, Bound};
+
+/// A cage or a lattice.
+#[derive(Clone, Debug)]
+pub(crate) struct BoundControls {
+    /// Its declared name.
+    pub(crate) name: &'static str,
+    /// What was brought, or what the method has made for itself.
+    pub(crate) attachment: Attachment,
+    /// The lines between its points.
+    pub(crate) edges: Arc<Vec<[u32; 2]>>,
+    /// Where its points are, in world units, moved by handles and by hand.
+    pub(crate) positions: Arc<Vec<DVec3>>,
+}
+
+impl BoundControls {
+    /// Of a binding; `None` for a method without control points.
+    pub(super) fn of(bound: &Bound) -> Option<Self> {
+        let (name, attachment) = bound.attachment()?;
+        Some(Self {
+            name,
+            edges: Arc::new(attachment.edges()),
+            attachment: attachment.clone(),
+            positions: Arc::new(bound.control_positions()),
+        })
+    }
+}
