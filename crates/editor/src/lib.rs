@@ -33,10 +33,10 @@ pub use format::{
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{
-    Alternative, Compared, Comparison, Counts, Descent, Executor, Figures, InlineExecutor, Inspectable, Inspected, Job,
-    JobDone, JobKind, JobOutcome, JobQueue, Region, Revision, Rim, Running, Solved,
+    Alternative, Compared, Comparison, ControlPlaces, Counts, Descent, Executor, Figures, InlineExecutor, Inspectable,
+    Inspected, Job, JobDone, JobKind, JobOutcome, JobQueue, Region, Revision, Rim, Running, Solved,
 };
-pub use scene_view::{Cursor, Readout, SceneView};
+pub use scene_view::{ControlPoints, Cursor, Readout, SceneView};
 pub use selection::Selection;
 pub use snapshot::Snapshot;
 pub use status::thousands;
@@ -44,7 +44,7 @@ pub use tool::{
     BRUSH_RADIUS_PX, BrushMetric, Constraint, Depth, StiffnessAction, StiffnessBrush, StrokeShape, ToolMode,
 };
 pub use view::{
-    Camera, Clay, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look, NamedView, Orbit, Pick,
-    Projection, Ray, Shading, UpAxis, gizmo_shapes, hit_gizmo,
+    Camera, Clay, ControlShape, GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, Look, NamedView, Orbit,
+    Pick, Projection, Ray, Shading, UpAxis, gizmo_shapes, hit_gizmo,
 };
 pub use workspace::{RegionAction, SnapshotKey, stiffness_colour};

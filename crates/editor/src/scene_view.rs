@@ -10,7 +10,7 @@ use pliant_mesh::Model;
 use crate::document::{Handle, HandleId};
 use crate::jobs::{Counts, Descent, JobKind};
 use crate::tool::{BrushMetric, Depth, StiffnessBrush, StrokeShape, ToolMode};
-use crate::view::{Camera, GizmoOrientation, GizmoShape, Look, Orbit};
+use crate::view::{Camera, ControlShape, GizmoOrientation, GizmoShape, Look, Orbit};
 
 /// Everything the 3D view and the panels around it show.
 #[derive(Debug)]
@@ -45,6 +45,10 @@ pub struct SceneView<'a> {
     pub brush_ring: &'a [DVec3],
     /// The selected handle's gizmo, in world space; empty where none is shown.
     pub gizmo: &'a [GizmoShape],
+    /// The method's cage or lattice, in world space; empty where it has none.
+    pub controls: &'a [ControlShape],
+    /// What there is to say of it.
+    pub control_points: Option<ControlPoints>,
     /// How far an iterative method's descent to the present shape is; `None` where nothing is bent, or in one step.
     pub descent: Option<Descent>,
     /// How the surface is shown.
@@ -97,6 +101,19 @@ pub struct SceneView<'a> {
     pub unsaved: bool,
     /// Whether shape and regions are final: no job runs that could change them, and nothing is being dragged.
     pub settled: bool,
+}
+
+/// The cage or lattice that is shown.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct ControlPoints {
+    /// What a person calls it, in lower case.
+    pub title: &'static str,
+    /// How many points it has.
+    pub count: usize,
+    /// How many of them are selected.
+    pub selected: usize,
+    /// Whether it is the document's; else the method has made it.
+    pub is_own: bool,
 }
 
 /// A number to be shown beside the thing that is being dragged.

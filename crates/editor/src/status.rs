@@ -41,7 +41,11 @@ fn descent(workspace: &Workspace) -> Option<String> {
 /// What can be done when no gesture is active, and how many vertices have each role.
 fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
     let document = &workspace.document;
-    let hint = if document.handles().is_empty() {
+    let hint = if !workspace.controls.is_empty() {
+        "Drag the gizmo, or press G, R or S to move, turn or scale the points"
+    } else if document.handles().is_empty() && !document.method().declaration().attachments.is_empty() {
+        "Click a point of the cage or lattice and drag it, or paint a handle (1)"
+    } else if document.handles().is_empty() {
         match settings.mode {
             ToolMode::PaintHandle => "Paint what you want to move",
             ToolMode::PaintFree => "Paint what may bend, then a handle (1)",

@@ -13,6 +13,9 @@ const RING_COLOUR: [u8; 4] = [255, 255, 255, 220];
 /// Width of the brush ring in points.
 const RING_WIDTH_POINTS: f32 = 2.0;
 
+/// The width in points of a cage's or lattice's edges.
+const CONTROL_WIDTH_POINTS: f32 = 1.5;
+
 /// Widths in points of the gizmo's lines, and of those under the pointer.
 const GIZMO_WIDTH_POINTS: f32 = 2.5;
 const GIZMO_HIGHLIGHTED_POINTS: f32 = 4.0;
@@ -74,7 +77,7 @@ fn matcap(clay: Clay) -> Matcap {
     }
 }
 
-/// The overlays of a view, relative to `centre`: the brush ring, then the gizmo. `pixels_per_point` scales widths.
+/// The overlays of a view, relative to `centre`: the method's cage or lattice, the brush ring, then the gizmo. `pixels_per_point` scales widths.
 pub fn overlays(view: &SceneView<'_>, centre: DVec3, pixels_per_point: f32) -> Vec<Overlay> {
     let relative = |position: DVec3| (position - centre).as_vec3().to_array();
     let mut ring = Overlay {
@@ -110,5 +113,21 @@ pub fn overlays(view: &SceneView<'_>, centre: DVec3, pixels_per_point: f32) -> V
                 colours: [shape.colour; 3],
             }));
     }
-    vec![ring, gizmo]
+    let mut controls = Overlay {
+        hidden_share: HIDDEN_SHARE,
+        ..Overlay::default()
+    };
+    for shape in view.controls {
+        controls.lines.extend(shape.lines.iter().map(|ends| OverlayLine {
+            ends: ends.map(relative),
+            colours: [shape.colour; 2],
+            width_px: CONTROL_WIDTH_POINTS * pixels_per_point,
+        }));
+        let triangles = shape.triangles.iter();
+        controls.triangles.extend(triangles.map(|corners| OverlayTriangle {
+            corners: corners.map(relative),
+            colours: [shape.colour; 3],
+        }));
+    }
+    vec![controls, ring, gizmo]
 }

@@ -110,7 +110,7 @@ impl Application {
             status.response.rect,
             panel.response.rect,
         ];
-        (top.inner, layout)
+        (top.inner.or_else(|| commands.take_file()), layout)
     }
 
     /// What lies over the view and the panel: the palette, the log, the keys and the question that waits.

@@ -137,7 +137,10 @@ pub(super) const SELECT_HANDLE: Entry<HandleId> = Entry {
     listed: &[],
     scope: Scope::Document,
     unavailable: |state, id| state.gone(*id),
-    action: Action::Do(|context, id| context.workspace.selection.put_alone(Some(id))),
+    action: Action::Do(|context, id| {
+        context.workspace.controls.put([]);
+        context.workspace.selection.put_alone(Some(id));
+    }),
 };
 
 /// Adds a handle to those that are selected, or takes it from them.
@@ -145,7 +148,10 @@ pub(super) const TOGGLE_SELECTED: Entry<HandleId> = Entry {
     listed: &[],
     scope: Scope::Document,
     unavailable: |state, id| state.gone(*id),
-    action: Action::Do(|context, id| context.workspace.selection.toggle(id)),
+    action: Action::Do(|context, id| {
+        context.workspace.controls.put([]);
+        context.workspace.selection.toggle(id);
+    }),
 };
 
 /// Selects the next handle of the list.
@@ -164,6 +170,7 @@ pub(super) const NEXT_HANDLE: Entry<()> = Entry {
     },
     action: Action::Do(|context, ()| {
         let workspace = &mut *context.workspace;
+        workspace.controls.put([]);
         workspace.selection.put_next(&workspace.document);
     }),
 };

@@ -3,6 +3,7 @@
 //! Everything about a command stands in one entry of its room's file: how menus list it, what it concerns, when it can
 //! be done and why not, what it does. Here each command is bound to its entry; one without an entry does not compile.
 
+mod controls;
 mod document;
 mod entry;
 mod handle;

@@ -4,11 +4,11 @@ use std::borrow::Cow;
 use std::sync::LazyLock;
 
 use glam::DVec3;
-use pliant_deform::{Loose, Method};
+use pliant_deform::{Attachment, Loose, Method};
 
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
-use super::{document, handle, look, object, paint, region, transform, view};
+use super::{controls, document, handle, look, object, paint, region, transform, view};
 use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, Tips};
 use crate::tool::{BrushMetric, Context, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
@@ -98,6 +98,16 @@ commands! {
     SetLoose(loose: Loose) = document::SET_LOOSE;
     /// Chooses what one of them does, by its component's number; `None` is what all do.
     SetLoosePart(part: u32, loose: Option<Loose>) = document::SET_LOOSE_PART;
+    /// Takes a cage or lattice in place of the one there is.
+    BringAttachment(attachment: Attachment) = controls::BRING_ATTACHMENT;
+    /// Has the method make its cage or lattice, in place of the document's own.
+    MakeControls = controls::MAKE_CONTROLS;
+    /// Takes the control points back to where they rest.
+    ResetControls = controls::RESET_CONTROLS;
+    /// Selects all control points.
+    SelectControls = controls::SELECT_CONTROLS;
+    /// Lets go of all control points.
+    DeselectControls = controls::DESELECT_CONTROLS;
     /// Begins to compare what the methods make of the edit, or ends it.
     CompareMethods = document::COMPARE_METHODS;
     /// Stops the jobs that run; what needs them starts them again.

@@ -2,7 +2,9 @@
 
 use glam::{DVec2, DVec3};
 
-use super::entry::{Action, Entry, Scope, alt, always, character, item, shift, with_selected, with_unlocked};
+use super::entry::{
+    Action, Entry, Reason, Scope, State, alt, always, character, item, shift, with_selected, with_unlocked,
+};
 use crate::document::{HandleId, HandleTransform, PivotPlace};
 use crate::format::without_pivot;
 use crate::tool::{Constraint, Context, Gesture, TransformDrag, TransformKind};
@@ -82,12 +84,12 @@ pub(super) const MOVE: Entry<()> = Entry {
     listed: &[item(
         (),
         "Move",
-        "Moves the selected handle with the pointer.",
+        "Moves the selected handle, or the selected points of a cage or lattice, with the pointer.",
         "translate grab drag",
         &[character('g')],
     )],
     scope: Scope::Gesture,
-    unavailable: with_selected,
+    unavailable: with_something,
     action: Action::Begin(|context, ()| transform(context, TransformKind::Move)),
 };
 
@@ -96,12 +98,12 @@ pub(super) const TURN: Entry<()> = Entry {
     listed: &[item(
         (),
         "Turn",
-        "Turns the selected handle with the pointer.",
+        "Turns the selected handle, or the selected points of a cage or lattice, with the pointer.",
         "rotate spin",
         &[character('r')],
     )],
     scope: Scope::Gesture,
-    unavailable: with_selected,
+    unavailable: with_something,
     action: Action::Begin(|context, ()| transform(context, TransformKind::Turn)),
 };
 
@@ -110,12 +112,12 @@ pub(super) const SCALE: Entry<()> = Entry {
     listed: &[item(
         (),
         "Scale",
-        "Scales the selected handle with the pointer.",
+        "Scales the selected handle, or the selected points of a cage or lattice, with the pointer.",
         "size grow shrink",
         &[character('s')],
     )],
     scope: Scope::Gesture,
-    unavailable: with_selected,
+    unavailable: with_something,
     action: Action::Begin(|context, ()| transform(context, TransformKind::Scale)),
 };
 
@@ -164,7 +166,16 @@ pub(super) const SET_TURN: Entry<(HandleId, DVec3)> = Entry {
     action: Action::Do(|context, (id, turn_deg)| set_turn(context.workspace, id, turn_deg)),
 };
 
-/// Begins to move, turn or scale the selected handle with the pointer.
+/// What can be done with selected control points or a selected handle.
+fn with_something(state: &State<'_>, values: &()) -> Option<Reason> {
+    if state.workspace.controls.is_empty() {
+        with_selected(state, values)
+    } else {
+        None
+    }
+}
+
+/// Begins to move, turn or scale the selected control points or the selected handle with the pointer.
 fn transform(context: &mut Context<'_>, kind: TransformKind) -> Option<Box<dyn Gesture>> {
     let middle_px: DVec2 = context.view.viewport_px() * 0.5;
     let start_px = context.pointer.map_or(middle_px, |pointer| pointer.position_px);

@@ -210,6 +210,7 @@ impl Editor {
             }
             self.workspace.refusal = None;
             self.workspace.selection.wants_new_handle = false;
+            self.workspace.controls.put([]);
             self.settings.wants_pivot = false;
         } else if let Some(command) = self.key_map.command(key, modifiers) {
             self.execute(command);

@@ -13,7 +13,7 @@ use crate::command::{Command, Shortcut, State};
 use crate::document::{Document, History};
 use crate::format::{ExportError, export};
 use crate::jobs::{Comparison, JobKind, Revision, Rim};
-use crate::scene_view::{Cursor, SceneView};
+use crate::scene_view::{ControlPoints, Cursor, SceneView};
 use crate::snapshot::Snapshot;
 use crate::status::status;
 use crate::tool::{Gesture, ToolMode};
@@ -49,6 +49,8 @@ impl Editor {
             camera_revision: view.revision(),
             brush_ring: &self.overlay.ring,
             gizmo: &self.overlay.gizmo,
+            controls: &self.overlay.controls,
+            control_points: self.control_points(),
             descent: workspace.descent.filter(|_| document.is_displaced()),
             look: view.look,
             orbit: view.orbit(),
@@ -78,10 +80,21 @@ impl Editor {
         }
     }
 
+    fn control_points(&self) -> Option<ControlPoints> {
+        let declared = self.document().method().declaration().attachments.first()?;
+        let count = self.overlay.control_points.len();
+        (count > 0).then(|| ControlPoints {
+            title: declared.title,
+            count,
+            selected: self.workspace.controls.points().len(),
+            is_own: self.document().attachment().is_some(),
+        })
+    }
+
     fn cursor(&self) -> Cursor {
         match &self.gesture {
             Some(gesture) => gesture.cursor(),
-            None if self.overlay.hovered.is_some() => Cursor::Grab,
+            None if self.overlay.hovered.is_some() || self.overlay.pointed_control.is_some() => Cursor::Grab,
             None if self.overlay.is_over_surface && self.settings.mode != ToolMode::Select => Cursor::Brush,
             None => Cursor::Arrow,
         }

@@ -173,7 +173,7 @@ pub enum JobOutcome {
     /// A new shape.
     Solved(Solved),
     /// Where the control points are.
-    Controls(Arc<Vec<DVec3>>),
+    Controls(ControlPlaces),
     /// The vertices of a region's mirror image, ascending.
     Mirrored(Vec<usize>),
     /// The vertices that an outline holds, ascending.
@@ -217,8 +217,8 @@ pub struct Solved {
     /// The Jacobian of the displacements at each surface vertex, where the method knows it and `from_file` is what it has
     /// made: normals turn by it, whatever the triangles are.
     pub jacobians: Option<Vec<Mat3>>,
-    /// Where the method's control points are, moved by handles and by hand; empty if it has none.
-    pub controls: Arc<Vec<DVec3>>,
+    /// Where the method's control points are; `None` if it has none.
+    pub(crate) controls: Option<ControlPlaces>,
     /// The solution behind it, where it carries what was seen before along.
     pub(crate) carried: Option<Carried>,
     /// What the method can't follow of these targets.
@@ -227,6 +227,26 @@ pub struct Solved {
     pub finished: bool,
     /// How far an iterative method's descent is; `None` for a method that is done in one step.
     pub descent: Option<Descent>,
+}
+
+/// Where control points are.
+#[derive(Clone, Debug)]
+pub struct ControlPlaces {
+    /// Moved by handles and by hand.
+    pub(super) positions: Arc<Vec<DVec3>>,
+    /// Where the hand alone has moved them.
+    pub(super) moved: Arc<Vec<DVec3>>,
+}
+
+impl ControlPlaces {
+    /// With the present targets of a binding; `None` for a method without control points.
+    pub(super) fn of(bound: &Bound) -> Option<Self> {
+        let (_, attachment) = bound.attachment()?;
+        Some(Self {
+            positions: Arc::new(bound.control_positions()),
+            moved: Arc::clone(attachment.moved()),
+        })
+    }
 }
 
 /// How far a descent is.

@@ -18,6 +18,7 @@ mod solving;
 mod work;
 
 pub use alternative::Alternative;
+pub(crate) use bound_controls::BoundControls;
 pub use compared::{Compared, Figures};
 pub use comparison::Comparison;
 pub(crate) use computed::Computed;
@@ -25,7 +26,7 @@ pub use inline_executor::InlineExecutor;
 pub(crate) use inspected::Asked;
 pub use inspected::{Inspectable, Inspected};
 pub(crate) use job::Pickable;
-pub use job::{Descent, Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
+pub use job::{ControlPlaces, Descent, Executor, Job, JobDone, JobKind, JobOutcome, Revision, Solved};
 pub use job_queue::{JobQueue, Running};
 pub use region::{Counts, Region};
 pub(crate) use region::{FileContacts, centroid, reach_length, region_input};

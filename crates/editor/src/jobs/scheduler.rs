@@ -8,7 +8,6 @@
 
 use std::sync::{Arc, Mutex};
 
-use glam::DVec3;
 use pliant_mesh::{Model, SurfaceVertex};
 
 use super::bound_controls::BoundControls;
@@ -16,7 +15,7 @@ use super::comparison::Comparison;
 use super::computed::Computed;
 use super::inspected::{Asked, Inspected};
 use super::inspection::inspect_work;
-use super::job::{Executor, Job, JobDone, JobKind, JobOutcome, Revision, ShownTriangles, Solved, Work};
+use super::job::{ControlPlaces, Executor, Job, JobDone, JobKind, JobOutcome, Revision, ShownTriangles, Solved, Work};
 use super::job_queue::{JobQueue, Running};
 use super::region::{Region, region_input};
 use super::solving::{controls_work, solve_work};
@@ -409,7 +408,7 @@ impl Jobs {
                 self.computed.carried = None;
                 self.bound_revision = stamp;
             }
-            JobOutcome::Controls(positions) if stamp >= self.solve_floor => self.put_controls(&positions, stamp),
+            JobOutcome::Controls(places) if stamp >= self.solve_floor => self.put_controls(&places, stamp),
             JobOutcome::Inspected(inspected) if stamp == self.inspect_revision => self.computed.inspected = inspected,
             JobOutcome::Mirrored(image) if stamp == self.mirror_revision => return Arrival::Mirrored(image),
             JobOutcome::Enclosed(vertices) if stamp == self.enclose_revision => return Arrival::Enclosed(vertices),
@@ -419,7 +418,9 @@ impl Jobs {
                     self.computed.carried.clone_from(&solved.carried);
                 }
                 self.computed.blind_to.clone_from(&solved.blind_to);
-                self.put_controls(&solved.controls, stamp);
+                if let Some(places) = &solved.controls {
+                    self.put_controls(places, stamp);
+                }
                 return Arrival::Shape(solved, if last { Finality::Final } else { Finality::Preview });
             }
             _ => {}
@@ -428,11 +429,12 @@ impl Jobs {
     }
 
     /// The control points are here with the targets of this revision.
-    fn put_controls(&mut self, positions: &Arc<Vec<DVec3>>, stamp: Revision) {
+    fn put_controls(&mut self, places: &ControlPlaces, stamp: Revision) {
         if let Some(controls) = &mut self.computed.controls
-            && controls.positions.len() == positions.len()
+            && controls.positions.len() == places.positions.len()
         {
-            controls.positions = Arc::clone(positions);
+            controls.positions = Arc::clone(&places.positions);
+            controls.attachment = controls.attachment.with_moved(Arc::clone(&places.moved));
             self.controls_revision = stamp;
         }
     }

@@ -9,7 +9,7 @@ use pliant_mesh::{Cancel, SurfaceVertex};
 
 use super::carried::Carried;
 use super::computed::Computed;
-use super::job::{Descent, JobOutcome, Solved, Work};
+use super::job::{ControlPlaces, Descent, JobOutcome, Solved, Work};
 use crate::document::{Document, HandleId, KeptShape, sum_of_shapes};
 use crate::warning::HandleWarning;
 
@@ -68,7 +68,7 @@ pub(super) fn controls_work(computed: &Computed, document: &Document) -> Option<
         };
         match targets.set(&mut bound) {
             Err(error) => JobOutcome::Failed(error.to_string()),
-            Ok(()) => JobOutcome::Controls(Arc::new(bound.control_positions())),
+            Ok(()) => ControlPlaces::of(&bound).map_or(JobOutcome::Cancelled, JobOutcome::Controls),
         }
     }))
 }
@@ -115,7 +115,7 @@ impl Wanted {
         let step = bent.step;
         Ok(Solved {
             jacobians: None,
-            controls: Arc::new(bound.control_positions()),
+            controls: ControlPlaces::of(bound),
             from_file: sum_of_shapes(self.rest.as_ref(), &bent.shown),
             from_rest: bent.shown,
             carried: bent.carried,

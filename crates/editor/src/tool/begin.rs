@@ -1,7 +1,9 @@
-//! The gesture that a button begins: the gizmo comes first, then the surface, then the camera.
+//! The gesture that a button begins: the gizmo comes first, then control points, the surface
+//! and the camera.
 
 use super::constraint::Constraint;
 use super::context::Context;
+use super::control_box::ControlBox;
 use super::gesture::Gesture;
 use super::mode::{StrokeShape, ToolMode};
 use super::navigate::Navigate;
@@ -24,6 +26,15 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
     match button {
         Button::Secondary => return None,
         Button::Middle => return navigate(context, pointer, button),
+        Button::Primary
+            if !modifiers.alt
+                && let Some(point) = control_under(context, pointer) =>
+        {
+            return take_control(context, pointer, point);
+        }
+        Button::Primary if modifiers.ctrl && boxes_controls(context) => {
+            return Some(Box::new(ControlBox::begin(pointer, StrokeShape::Box)));
+        }
         Button::Primary if modifiers.alt || modifiers.shift => return navigate(context, pointer, button),
         Button::Primary => {}
     }
@@ -35,6 +46,9 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         return Some(drag);
     }
     let (mode, shape) = (context.settings.mode, context.settings.stroke_shape);
+    if matches!(shape, StrokeShape::Lasso | StrokeShape::Box) && boxes_controls(context) {
+        return Some(Box::new(ControlBox::begin(pointer, shape)));
+    }
     if mode != ToolMode::Select && matches!(shape, StrokeShape::Lasso | StrokeShape::Box) {
         return outline(context, pointer, shape);
     }
@@ -42,6 +56,10 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         return navigate(context, pointer, button);
     };
     context.workspace.refusal = None;
+    if mode != ToolMode::Select {
+        // The gizmo of what is painted is wanted next.
+        context.workspace.controls.put([]);
+    }
     if std::mem::take(&mut context.settings.wants_pivot) {
         if let Some(id) = context.workspace.selection.selected() {
             set_pivot(context.workspace, id, pick.point);
@@ -59,6 +77,32 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         }
         _ => Some(Box::new(PaintStroke::begin(context, pointer)?)),
     }
+}
+
+/// The control point under the pointer, if a press takes it: the gizmo lies before the points, and a brush paints what is
+/// behind them.
+fn control_under(context: &Context<'_>, pointer: Pointer) -> Option<u32> {
+    let point = context.overlay.pointed_control?;
+    let at_px = pointer.position_px;
+    let is_gizmo = context.overlay.grabbed(at_px, context.view, context.settings).is_some();
+    (!is_gizmo).then_some(point)
+}
+
+/// Whether a box or a lasso selects control points.
+fn boxes_controls(context: &Context<'_>) -> bool {
+    context.settings.mode == ToolMode::Select && !context.overlay.control_points.is_empty()
+}
+
+/// Selects a control point, and begins to drag it with those that are selected along with it.
+fn take_control(context: &mut Context<'_>, pointer: Pointer, point: u32) -> Begun {
+    context.workspace.refusal = None;
+    if pointer.modifiers.shift || pointer.modifiers.ctrl {
+        context.workspace.controls.toggle(point);
+        return None;
+    }
+    context.workspace.controls.click(point);
+    let drag = TransformDrag::begin(context, TransformKind::Move, Constraint::Free, pointer.position_px)?;
+    Some(Box::new(drag.held(Button::Primary, None)))
 }
 
 fn navigate(context: &mut Context<'_>, pointer: Pointer, button: Button) -> Begun {
@@ -95,6 +139,7 @@ fn select(context: &mut Context<'_>, pointer: Pointer, button: Button, pick: Pic
     let Some(Paint::Handle(handle)) = context.workspace.document.paint().get(pick.vertex.index()).copied() else {
         return navigate(context, pointer, button);
     };
+    context.workspace.controls.put([]);
     if pointer.modifiers.ctrl {
         context.workspace.selection.toggle(handle);
         return None;

@@ -1,4 +1,4 @@
-//! The overlay: the brush's ring and the selected handle's gizmo.
+//! The overlay: the brush's ring, the gizmo, and the method's cage or lattice.
 //!
 //! While a brush is active the gizmo is faded and strokes go through it: only the part that the pointer rests on is
 //! highlighted, and a press grabs it.
@@ -8,8 +8,12 @@ use glam::{DVec2, DVec3};
 use super::brush::ring;
 use super::mode::{StrokeShape, ToolMode};
 use super::settings::ToolSettings;
-use crate::view::{Camera, GizmoAxes, GizmoPart, GizmoShape, View, gizmo_shapes, hit_gizmo};
-use crate::workspace::Workspace;
+use crate::document::HandleTransform;
+use crate::view::{
+    Camera, ControlShape, GizmoAxes, GizmoPart, GizmoShape, ShownPoint, View, control_at, control_shapes, gizmo_shapes,
+    hit_gizmo,
+};
+use crate::workspace::{Workspace, middle};
 
 /// What of the overlay is shown, by what goes on.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -31,8 +35,23 @@ pub(crate) struct Overlay {
     pub(crate) hovered: Option<GizmoPart>,
     pub(crate) is_over_surface: bool,
     pub(crate) revision: u64,
+    /// The method's cage or lattice, and its points one by one.
+    pub(crate) controls: Vec<ControlShape>,
+    pub(crate) control_points: Vec<ShownPoint>,
+    /// The control point that a press takes.
+    pub(crate) pointed_control: Option<u32>,
+    /// What hides control points was looked at for these positions and this view.
+    hidden: HiddenPoints,
     /// The part that the pointer rests on.
     rested: Option<GizmoPart>,
+}
+
+/// Which control points the surface hides, kept because each takes a ray.
+#[derive(Debug, Default)]
+struct HiddenPoints {
+    seen_from: Option<(u64, u64, bool)>,
+    positions: Vec<DVec3>,
+    are_hidden: Vec<bool>,
 }
 
 /// How much of its colour the gizmo keeps while a brush is active.
@@ -97,15 +116,69 @@ impl Overlay {
         }
         self.hovered = highlighted.filter(|_| lit == Lit::Pointed);
         self.is_over_surface = is_over_surface;
-        if self.ring != line || self.gizmo != gizmo {
+        let takes_points = lit == Lit::Pointed && highlighted.is_none();
+        let pointer_px = pointer_px.filter(|_| takes_points && (settings.mode == ToolMode::Select || !is_over_surface));
+        let controls = self.renew_controls(workspace, view, pointer_px);
+        if self.ring != line || self.gizmo != gizmo || self.controls != controls {
             self.ring = line;
             self.gizmo = gizmo;
+            self.controls = controls;
             self.revision += 1;
         }
     }
+
+    /// The control points as they are seen, and their shapes; `pointer_px` is where the pointer may take one.
+    fn renew_controls(&mut self, workspace: &Workspace, view: &View, pointer_px: Option<DVec2>) -> Vec<ControlShape> {
+        self.pointed_control = None;
+        self.control_points.clear();
+        let Some(shown) = workspace.shown_controls() else {
+            return Vec::new();
+        };
+        self.hidden.look(&shown.positions, workspace, view);
+        let (camera, viewport_px) = (view.camera(), view.viewport_px());
+        let points = shown.positions.iter().zip(&self.hidden.are_hidden).zip(0..);
+        self.control_points
+            .extend(points.map(|((&position, &is_hidden), number)| ShownPoint {
+                position,
+                is_hidden,
+                is_selected: workspace.controls.contains(number),
+                is_pointed_at: false,
+            }));
+        let near = |px| control_at(&self.control_points, px, camera, viewport_px);
+        self.pointed_control = pointer_px.and_then(near);
+        if let Some(point) = self.pointed_control {
+            self.control_points[point as usize].is_pointed_at = true;
+        }
+        control_shapes(&self.control_points, &shown.edges, camera, viewport_px)
+    }
 }
 
-/// The selected handle's gizmo, if it is to be shown.
+impl HiddenPoints {
+    /// Looks anew where positions, view or surface have changed.
+    fn look(&mut self, positions: &[DVec3], workspace: &Workspace, view: &View) {
+        let is_current = workspace.jobs.is_picking_current();
+        let seen_from = Some((view.revision(), workspace.shape_revision(), is_current));
+        if self.seen_from == seen_from && self.positions == positions {
+            return;
+        }
+        let picking = workspace.picking(view);
+        let camera = view.camera();
+        let is_hidden = |position: &DVec3| {
+            let px = camera.project(*position, view.viewport_px())?;
+            let ray = camera.ray(px, view.viewport_px());
+            let hit = picking.as_ref()?.along(ray)?;
+            let depth = |point: DVec3| (point - ray.origin).dot(ray.direction);
+            Some(depth(hit.point) < depth(*position) * (1.0 - 1e-6))
+        };
+        self.are_hidden.clear();
+        self.are_hidden
+            .extend(positions.iter().map(|position| is_hidden(position).unwrap_or(false)));
+        self.positions = positions.to_vec();
+        self.seen_from = seen_from;
+    }
+}
+
+/// The gizmo of the selected control points, or else of the selected handle, if it is to be shown.
 fn gizmo(
     lit: Lit,
     workspace: &Workspace,
@@ -114,6 +187,25 @@ fn gizmo(
     settings: &ToolSettings,
     highlighted: Option<GizmoPart>,
 ) -> Option<Vec<GizmoShape>> {
+    if lit != Lit::Ring
+        && !workspace.controls.is_empty()
+        && let Some(shown) = workspace.shown_controls()
+    {
+        let points = workspace.controls.points().iter();
+        let seen: Vec<DVec3> = points
+            .filter_map(|point| shown.positions.get(*point as usize).copied())
+            .collect();
+        let axes = GizmoAxes::of(&HandleTransform::IDENTITY, settings.orientation, camera);
+        let centre = middle(seen.into_iter());
+        return Some(gizmo_shapes(
+            settings.gizmo_mode,
+            centre,
+            axes,
+            camera,
+            viewport_px,
+            highlighted,
+        ));
+    }
     let handle = workspace.selected()?;
     if lit == Lit::Ring || !handle.visible || handle.locked || handle.is_pin {
         return None;

@@ -1,4 +1,4 @@
-//! Moving, turning and scaling a handle, by its gizmo or by G, R and S: begin, preview, commit or abort.
+//! Moving, turning and scaling a handle or control points, by the gizmo or by G, R and S: begin, preview, commit or abort.
 //!
 //! A drag of the gizmo ends when its button goes up; a transform begun by a key follows the pointer without a button
 //! and ends with a click or Enter. Both understand x, y, z (with Shift: every axis but that one), typed numbers, and
@@ -9,6 +9,7 @@ use glam::{DVec2, DVec3};
 use super::constraint::{Constraint, rotation};
 use super::context::Context;
 use super::gesture::{Gesture, Next};
+use super::moved_controls::MovedControls;
 use super::overlay::Lit;
 use super::transform_measure::{Measure, TransformKind};
 use crate::document::{Handle, HandleId, HandleTransform, Transaction, accumulated};
@@ -34,26 +35,48 @@ enum Ending {
 #[derive(Debug)]
 pub(crate) struct TransformDrag {
     transaction: Transaction,
-    handle: HandleId,
-    /// Where the handle's pivot is on the rest shape.
-    pivot: DVec3,
+    subject: Subject,
     measure: Measure,
     ending: Ending,
     /// Whether the pointer has moved far enough.
     is_armed: bool,
-    /// Handles that go along, as they were when it began.
-    companions: Vec<Handle>,
+}
+
+/// What is moved.
+#[derive(Debug)]
+enum Subject {
+    Handle {
+        id: HandleId,
+        /// Where its pivot is on the rest shape.
+        pivot: DVec3,
+        /// Handles that go along, as they were when it began.
+        companions: Vec<Handle>,
+    },
+    Controls(MovedControls),
 }
 
 impl TransformDrag {
-    /// Begins with the selected handle; `None` if none is selected, or it is held. It ends with a click.
+    /// Begins with the selected control points, or else with the selected handle; `None` if none is selected, or it is
+    /// held. It ends with a click.
     pub(crate) fn begin(
         context: &mut Context<'_>,
         kind: TransformKind,
         constraint: Constraint,
         start_px: DVec2,
     ) -> Option<Self> {
+        let (orientation, camera) = (context.settings.orientation, context.view.camera());
         let workspace = &mut *context.workspace;
+        if let Some(controls) = MovedControls::of_selected(workspace) {
+            let axes = GizmoAxes::of(&HandleTransform::IDENTITY, orientation, camera);
+            let start = (HandleTransform::IDENTITY, controls.centre());
+            return Some(Self {
+                transaction: workspace.begin(format!("{} {}", kind.verb(), controls.designation())),
+                measure: Measure::begin(kind, constraint, start, axes.basis, start_px),
+                subject: Subject::Controls(controls),
+                ending: Ending::Click,
+                is_armed: true,
+            });
+        }
         let handle = workspace.selected()?.clone();
         if let Some(why) = held_because(workspace, handle.id) {
             workspace.refuse(why);
@@ -64,15 +87,18 @@ impl TransformDrag {
             .filter(|&&id| id != handle.id && handle.twin.is_none_or(|twin| twin.handle != id))
             .filter_map(|&id| workspace.document.handle(id).cloned())
             .collect();
-        let axes = GizmoAxes::of(&handle.transform, context.settings.orientation, context.view.camera());
+        let axes = GizmoAxes::of(&handle.transform, orientation, camera);
+        let start = (handle.transform, handle.centre());
         Some(Self {
             transaction: workspace.begin(format!("{} {}", kind.verb(), handle.name)),
-            handle: handle.id,
-            pivot: handle.pivot,
-            measure: Measure::begin(kind, constraint, &handle, axes.basis, start_px),
+            measure: Measure::begin(kind, constraint, start, axes.basis, start_px),
+            subject: Subject::Handle {
+                id: handle.id,
+                pivot: handle.pivot,
+                companions,
+            },
             ending: Ending::Click,
             is_armed: true,
-            companions,
         })
     }
 
@@ -108,38 +134,67 @@ impl TransformDrag {
             measure.constraint = Constraint::Free;
             measure.start_px = measure.last_px;
             measure.restart(view);
-            let handle = self.transaction.before().handle(self.handle);
-            let name = handle.map_or("", |handle| handle.name.as_str());
-            let name = format!("{} {name}", kind.verb());
-            self.transaction.rename(name);
+            let designation = match &self.subject {
+                Subject::Handle { id, .. } => {
+                    let handle = self.transaction.before().handle(*id);
+                    handle.map_or_else(String::new, |handle| handle.name.clone())
+                }
+                Subject::Controls(controls) => controls.designation(),
+            };
+            self.transaction.rename(format!("{} {designation}", kind.verb()));
         }
     }
 
-    /// Puts the handle, and those that go along, where the transform has come to.
+    /// Puts what is moved where the transform has come to.
     fn preview(&self, workspace: &mut Workspace, view: &View) {
         if !self.is_armed {
             return;
         }
+        match &self.subject {
+            Subject::Handle { id, pivot, companions } => self.preview_handle(workspace, view, *id, *pivot, companions),
+            Subject::Controls(controls) => {
+                let measure = &self.measure;
+                controls.put(workspace, |point| {
+                    let arm = point - measure.centre;
+                    match measure.kind {
+                        TransformKind::Move => measure.translation(view),
+                        TransformKind::Turn => rotation(measure.turn_axis(view), measure.angle_rad()) * arm - arm,
+                        TransformKind::Scale => measure.scale(view) * arm - arm,
+                    }
+                });
+            }
+        }
+    }
+
+    /// Puts the handle, and those that go along, where the transform has come to.
+    fn preview_handle(
+        &self,
+        workspace: &mut Workspace,
+        view: &View,
+        handle: HandleId,
+        pivot: DVec3,
+        companions: &[Handle],
+    ) {
         let (measure, start) = (&self.measure, self.measure.start);
         match measure.kind {
             TransformKind::Move => {
                 let way = measure.translation(view);
-                put_handle(workspace, self.handle, start.moved_by(way));
-                for other in &self.companions {
+                put_handle(workspace, handle, start.moved_by(way));
+                for other in companions {
                     put_handle(workspace, other.id, other.transform.moved_by(way));
                 }
             }
             TransformKind::Turn => {
                 let (axis, angle_rad) = (measure.turn_axis(view), measure.angle_rad());
                 let turn = rotation(axis, angle_rad);
-                put_handle(workspace, self.handle, start.turned_by(turn, self.pivot));
+                put_handle(workspace, handle, start.turned_by(turn, pivot));
                 if let (HandleTransform::Trs { rotation, .. }, Some(before)) =
-                    (start, self.transaction.before().handle(self.handle))
+                    (start, self.transaction.before().handle(handle))
                 {
                     let counted = accumulated(before.turn_deg, rotation, axis, angle_rad);
-                    count_turn(workspace, self.handle, counted);
+                    count_turn(workspace, handle, counted);
                 }
-                for other in &self.companions {
+                for other in companions {
                     let arm = other.centre() - measure.centre;
                     let way = turn * arm - arm;
                     put_handle(
@@ -151,8 +206,8 @@ impl TransformDrag {
             }
             TransformKind::Scale => {
                 let (factors, own) = (measure.scale(view), measure.own_rotation());
-                put_handle(workspace, self.handle, start.scaled_by(factors, self.pivot));
-                for other in &self.companions {
+                put_handle(workspace, handle, start.scaled_by(factors, pivot));
+                for other in companions {
                     let arm = other.centre() - measure.centre;
                     let way = own * (factors * (own.inverse() * arm)) - arm;
                     put_handle(
@@ -193,7 +248,10 @@ impl Gesture for TransformDrag {
     }
 
     fn readout(&self, workspace: &Workspace, view: &View) -> Option<Readout> {
-        let at = workspace.document.handle(self.handle)?.centre();
+        let at = match &self.subject {
+            Subject::Handle { id, .. } => workspace.document.handle(*id)?.centre(),
+            Subject::Controls(controls) => controls.centre_now(workspace)?,
+        };
         self.is_armed.then(|| Readout {
             at,
             text: self.measure.label(view),

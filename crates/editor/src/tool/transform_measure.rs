@@ -4,7 +4,7 @@ use glam::{DQuat, DVec2, DVec3};
 
 use super::constraint::{Constraint, along_axis, angle_about_axis_rad, on_plane, screen_angle_rad, short_turn_rad};
 use super::number_entry::NumberEntry;
-use crate::document::{Handle, HandleTransform};
+use crate::document::HandleTransform;
 use crate::view::{GizmoPart, View, axis_vector};
 
 /// The smallest factor that the pointer can scale by.
@@ -31,9 +31,9 @@ pub(super) struct Measure {
     pub(super) constraint: Constraint,
     /// The part of the gizmo that was grabbed.
     pub(super) part: Option<GizmoPart>,
-    /// The handle's transform when it began.
+    /// The handle's transform when it began; the identity for control points.
     pub(super) start: HandleTransform,
-    /// Where the handle's pivot was when it began.
+    /// Where the handle's pivot, or the points' middle, was when it began.
     pub(super) centre: DVec3,
     pub(super) start_px: DVec2,
     pub(super) last_px: DVec2,
@@ -47,11 +47,11 @@ pub(super) struct Measure {
 }
 
 impl Measure {
-    /// Nothing was done yet.
+    /// Nothing was done yet to what stands like this, about this centre.
     pub(super) fn begin(
         kind: TransformKind,
         constraint: Constraint,
-        handle: &Handle,
+        (start, centre): (HandleTransform, DVec3),
         basis: DQuat,
         start_px: DVec2,
     ) -> Self {
@@ -59,8 +59,8 @@ impl Measure {
             kind,
             constraint,
             part: None,
-            start: handle.transform,
-            centre: handle.centre(),
+            start,
+            centre,
             start_px,
             last_px: start_px,
             turned_rad: 0.0,

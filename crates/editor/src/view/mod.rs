@@ -3,6 +3,7 @@
 mod camera;
 mod camera_history;
 mod camera_motion;
+mod control_shapes;
 mod gizmo;
 mod look;
 mod picking;
@@ -11,6 +12,8 @@ mod state;
 
 pub use camera::{Camera, NamedView, Orbit, Projection, Ray, UpAxis};
 pub(crate) use camera_history::CameraStep;
+pub use control_shapes::ControlShape;
+pub(crate) use control_shapes::{ShownPoint, control_at, control_shapes};
 pub(crate) use gizmo::axis_vector;
 pub use gizmo::{GizmoAxes, GizmoMode, GizmoOrientation, GizmoPart, GizmoShape, gizmo_shapes, hit_gizmo};
 pub use look::{Clay, Look, Shading};

@@ -15,6 +15,10 @@ impl Workspace {
         self.settle_what_needs_no_solve();
         self.follow_versions(activity);
         self.selection.drop_lost(&self.document);
+        if !self.controls.is_empty() {
+            let count = self.shown_controls().map_or(0, |shown| shown.positions.len());
+            self.controls.drop_lost(count);
+        }
         self.jobs.inspect(asked);
         self.jobs.pump(&self.document, activity);
         let versions = self.document.versions();

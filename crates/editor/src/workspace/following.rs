@@ -27,7 +27,10 @@ impl Workspace {
         let is_known = self.document.method() == method
             && known.is_some_and(|known| {
                 let same = |aspect| !theirs.differ(&known, aspect);
-                !theirs.are_other_problem(&known) && same(Aspect::Handles) && same(Aspect::Access)
+                !theirs.are_other_problem(&known)
+                    && same(Aspect::Handles)
+                    && same(Aspect::Targets)
+                    && same(Aspect::Access)
             });
         if !is_known {
             self.document.follow(&leader.document, known.as_ref(), method);

@@ -3,6 +3,7 @@
 mod colour_revisions;
 mod colours;
 mod consequences;
+mod controls;
 mod dirty_colours;
 mod following;
 mod handle_values;
@@ -20,6 +21,9 @@ mod state;
 pub(crate) use colour_revisions::ColouredBy;
 pub use colours::stiffness_colour;
 pub(crate) use colours::{light_part, region_colour, rims};
+pub(crate) use controls::{
+    bring as bring_attachment, make as make_controls, middle, put_attachment, reset as reset_controls,
+};
 pub(crate) use handle_values::{set_continuity, set_reach, set_soft, set_turn, transform_handle};
 pub(crate) use handles::{
     change_handle, count_turn, delete_selected, held_because, pin_or_unpin_selected, put_handle, reset_region,

@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::{Model, SurfaceVertex};
 
 use super::colour_revisions::Colours;
+use super::controls::ControlSelection;
 use super::mirror_request::Mirroring;
 use super::selection::HandleSelection;
 use crate::document::{
@@ -22,6 +23,8 @@ pub(crate) struct Workspace {
     pub(crate) history: History,
     pub(crate) jobs: Jobs,
     pub(crate) selection: HandleSelection,
+    /// The selected points of the method's cage or lattice.
+    pub(crate) controls: ControlSelection,
     /// The last thing that was refused or went wrong, in one sentence.
     pub(crate) refusal: Option<String>,
     /// The open file's name.
@@ -59,6 +62,7 @@ impl Workspace {
             seen: *document.versions(),
             document,
             selection: HandleSelection::default(),
+            controls: ControlSelection::default(),
             refusal: None,
             file_name: String::new(),
             descent: None,
@@ -77,6 +81,7 @@ impl Workspace {
         self.document.replace(document);
         self.history = History::new(&self.document, HISTORY_BYTES);
         self.selection = HandleSelection::default();
+        self.controls = ControlSelection::default();
         self.selection
             .put(self.document.handles().first().map(|handle| handle.id));
         self.refusal = None;

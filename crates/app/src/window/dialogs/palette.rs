@@ -148,7 +148,7 @@ fn entries(context: &egui::Context, editor: &Editor, typed: &str) -> Vec<Entry> 
             .map(|shortcut| context.format_shortcut(&shortcut))
             .unwrap_or_default(),
         found: Found::File(command.clone()),
-        obstacle: None,
+        obstacle: command.unavailable_because(editor).map(str::to_owned),
     });
     let methods = METHODS.iter().map(|declaration| {
         let command = Command::SetMethod((declaration.first_choice)());

@@ -56,6 +56,13 @@ pub fn choose(purpose: Purpose, near: Option<&Path>, workers: &Workers) {
                 .save_file();
             workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
         }
+        Purpose::LoadCage => {
+            let answer = dialog
+                .set_title("Load a cage")
+                .add_filter("Models", &MODELS)
+                .pick_file();
+            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
+        }
         Purpose::SavePicture(_) => {
             let answer = dialog
                 .set_title("Save the picture as")
@@ -91,6 +98,7 @@ impl Question {
             Self::Path(Purpose::SaveProject, _) => "Save the project as",
             Self::Recover(_) => "Recover unsaved work?",
             Self::Path(Purpose::ExportEdit, _) => "Export the edit",
+            Self::Path(Purpose::LoadCage, _) => "Load a cage",
             Self::Path(Purpose::SavePicture(_), _) => "Save the picture as",
             Self::Replace(..) => "Replace the file?",
             Self::Discard(_) => "There is unsaved work",
@@ -203,6 +211,10 @@ fn path(ui: &mut egui::Ui, purpose: Purpose, typed: &mut String, answer: &mut Op
         ),
         Purpose::SaveProject => ("Save the project as", "The path of the .pliant file:"),
         Purpose::ExportEdit => ("Export the edit", "The path of the .json file:"),
+        Purpose::LoadCage => (
+            "Load a cage",
+            "The path of a closed mesh, a .glb, .gltf, .obj, .ply, .stl or .off file:",
+        ),
         Purpose::SavePicture(_) => ("Save the picture", "The path of the .png file:"),
     };
     ui.heading(heading);

@@ -1,20 +1,25 @@
 //! The window's file commands, the questions that they raise, and their results.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use eframe::egui;
-use pliant_editor::{Event, Revision};
+use glam::DVec3;
+use pliant_deform::{Attachment, ControlMesh};
+use pliant_editor::{Command, Event, Revision};
 
 use super::recovery::left;
 use super::session::{KeepOriginal, Source};
+use crate::control_mesh::control_mesh;
 use crate::engine::is_project;
 use crate::files::{is_same, shown};
+use crate::watch::Watch;
 use crate::window::application::Application;
 use crate::window::dialogs::palette::Palette;
 use crate::window::dialogs::question::{self, Answer, Question, Then};
 use crate::window::files::file_command::FileCommand;
 use crate::window::panels::notes::Note;
-use crate::window::threads::message::{Purpose, Written, WrittenKind};
+use crate::window::threads::message::{Message, Purpose, Written, WrittenKind};
 use crate::window::widgets::theme;
 
 impl Application {
@@ -54,6 +59,7 @@ impl Application {
                 Ok(edit) => self.session.export(path, edit, &self.workers),
                 Err(error) => self.fail(error.to_string()),
             },
+            (Purpose::LoadCage, Some(path)) => self.load_cage(path),
             (Purpose::SavePicture(kind), Some(path)) => match self.viewport.picture(&self.editor, kind) {
                 Ok(Some(image)) => self.session.save_picture(path, image, &self.workers),
                 Ok(None) => self.fail("the view is busy or empty: try again".to_owned()),
@@ -74,7 +80,7 @@ impl Application {
             (Purpose::ExportEdit, None) => "edit.json".to_owned(),
             (Purpose::SavePicture(_), Some(path)) => path.with_extension("png").display().to_string(),
             (Purpose::SavePicture(_), None) => "picture.png".to_owned(),
-            (Purpose::Open, _) => String::new(),
+            (Purpose::Open | Purpose::LoadCage, _) => String::new(),
         }
     }
 
@@ -87,7 +93,10 @@ impl Application {
         };
         let project = self.session.open.as_ref().and_then(|open| open.project.as_deref());
         let is_own = |own: Option<&Path>| own.is_some_and(|own| is_same(own, &path));
-        purpose != Purpose::Open && path.is_file() && !is_own(self.path()) && !is_own(project)
+        !matches!(purpose, Purpose::Open | Purpose::LoadCage)
+            && path.is_file()
+            && !is_own(self.path())
+            && !is_own(project)
     }
 
     fn may_write_over(&self) -> bool {
@@ -106,6 +115,10 @@ impl Application {
             },
             FileCommand::SaveProjectAs => question::choose(Purpose::SaveProject, self.path(), &self.workers),
             FileCommand::ExportEdit => question::choose(Purpose::ExportEdit, self.path(), &self.workers),
+            FileCommand::LoadCage => match command.unavailable_because(&self.editor) {
+                Some(why) => self.fail(why.to_owned()),
+                None => question::choose(Purpose::LoadCage, self.path(), &self.workers),
+            },
             FileCommand::Palette => self.palette = Some(Palette::default()),
             FileCommand::Log => self.log.open = true,
             FileCommand::Keys => self.keys.open = true,
@@ -124,6 +137,32 @@ impl Application {
             FileCommand::Hints => self.settings.change(|settings| settings.hints_seen = false),
             FileCommand::SavePicture(kind) => question::choose(Purpose::SavePicture(kind), self.path(), &self.workers),
             FileCommand::Quit => self.unless_unsaved(context, Then::Close),
+        }
+    }
+
+    /// Reads a cage, off the window's thread.
+    pub fn load_cage(&mut self, path: PathBuf) {
+        let read = move || {
+            let mesh = control_mesh(&path, &Watch::default());
+            Message::Cage(mesh.map_err(|error| error.to_string()))
+        };
+        self.workers
+            .spawn("cage", read, |sentence| Message::Cage(Err(sentence)));
+    }
+
+    /// Takes the cage that was read.
+    pub(in crate::window) fn take_cage(&mut self, mesh: Result<(Vec<DVec3>, Vec<[u32; 3]>), String>) {
+        match mesh {
+            Ok((rest, triangles)) => {
+                let rest = Arc::new(rest);
+                let cage = Attachment::Mesh(ControlMesh {
+                    moved: Arc::clone(&rest),
+                    rest,
+                    triangles: Arc::new(triangles),
+                });
+                self.command(Command::BringAttachment(cage));
+            }
+            Err(sentence) => self.fail(sentence),
         }
     }
 

@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use pliant_deform::AttachmentKind;
+use pliant_editor::Editor;
 
 use crate::window::threads::message::{Ground, PictureKind};
 
@@ -23,6 +25,8 @@ pub enum FileCommand {
     SaveProjectAs,
     /// Write the regions, handles and transforms as an edit for the command line.
     ExportEdit,
+    /// Take a cage from a file.
+    LoadCage,
     /// Find a command by its name.
     Palette,
     /// Show what was said.
@@ -44,6 +48,15 @@ pub enum FileCommand {
 }
 
 impl FileCommand {
+    /// Why it can't be done now; `None` where it can.
+    pub fn unavailable_because(&self, editor: &Editor) -> Option<&'static str> {
+        let takes_cage = || {
+            let attachments = editor.document().method().declaration().attachments;
+            attachments.iter().any(|own| own.kind == AttachmentKind::ControlMesh)
+        };
+        (*self == Self::LoadCage && !takes_cage()).then_some("The method takes no cage: choose the method Cage first.")
+    }
+
     /// The ones that have a key.
     pub const WITH_SHORTCUTS: [Self; 9] = [
         Self::SaveAs,
@@ -71,6 +84,7 @@ impl FileCommand {
             Self::Scale(1..) => command(Key::Num9),
             Self::Scale(_) => command(Key::Num0),
             Self::SaveProjectAs
+            | Self::LoadCage
             | Self::Log
             | Self::Keys
             | Self::NextTheme
@@ -82,13 +96,14 @@ impl FileCommand {
     }
 
     /// All that need no path, in the order of the menu.
-    pub const LISTED: [Self; 14] = [
+    pub const LISTED: [Self; 15] = [
         Self::Open,
         Self::Save,
         Self::SaveAs,
         Self::SaveProject,
         Self::SaveProjectAs,
         Self::ExportEdit,
+        Self::LoadCage,
         Self::SavePicture(PictureKind {
             scale: 1,
             ground: Ground::AsShown,
@@ -110,6 +125,7 @@ impl FileCommand {
             Self::SaveAs => "Save model as…",
             Self::SaveProject => "Save project",
             Self::SaveProjectAs => "Save project as…",
+            Self::LoadCage => "Load cage…",
             Self::Palette => "Find a command…",
             Self::Log => "Log…",
             Self::Keys => "Keys…",
@@ -129,6 +145,7 @@ impl FileCommand {
             Self::Open | Self::OpenPath(_) => "load import file",
             Self::Save | Self::SaveAs => "write file",
             Self::SaveProject | Self::SaveProjectAs => "pliant file document",
+            Self::LoadCage => "open import control mesh",
             Self::Palette => "palette search",
             Self::Log => "messages errors",
             Self::Keys => "shortcuts bindings keyboard rebind",

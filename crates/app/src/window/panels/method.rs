@@ -4,7 +4,8 @@ use eframe::egui::{self, ComboBox, DragValue, RichText};
 use pliant_deform::{METHODS, Method, OptionDeclaration, OptionKind, OptionValue};
 use pliant_editor::{Command, Editor};
 
-use crate::window::widgets::command_button::command_choice;
+use crate::window::files::file_command::FileCommand;
+use crate::window::widgets::command_button::{command_button, command_choice};
 use crate::window::widgets::number_field::number_field;
 use crate::window::widgets::outbox::Outbox;
 
@@ -29,6 +30,7 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     if command_choice(ui, editor, &Command::CompareMethods, editor.comparison().is_some()) {
         commands.push(Command::CompareMethods);
     }
+    control_points(ui, editor, commands);
     if declaration.options.is_empty() {
         return;
     }
@@ -47,6 +49,67 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
                 commands.push(Command::SetMethod(first_choice));
             }
         });
+}
+
+/// What there is of the method's cage or lattice, and what can be done with it.
+fn control_points(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let declaration = editor.document().method().declaration();
+    let Some(declared) = declaration.attachments.first() else {
+        return;
+    };
+    let title = title(declared.title);
+    let sentence = match editor.view().control_points {
+        None => format!("{title}: not there yet"),
+        Some(points) => {
+            let whose = if points.is_own {
+                "your own"
+            } else {
+                "made by the method"
+            };
+            format!(
+                "{title}: {} points, {} selected, {whose}",
+                points.count, points.selected
+            )
+        }
+    };
+    ui.label(sentence).on_hover_text(
+        "Click a point to take it, Shift adds one. With the Select tool Ctrl and a drag, or a box or lasso, takes many; \
+         the gizmo, G, R and S move them.",
+    );
+    ui.horizontal_wrapped(|ui| {
+        let make = ui.add_enabled(
+            editor.is_enabled(&Command::MakeControls),
+            egui::Button::new(format!("Make {}", declared.title)),
+        );
+        let why = editor.unavailable_because(&Command::MakeControls);
+        let make = make.on_hover_text(format!(
+            "Has one made around the region, in place of your own {}.",
+            declared.title
+        ));
+        if make
+            .on_disabled_hover_text(why.as_deref().unwrap_or_default())
+            .clicked()
+        {
+            commands.push(Command::MakeControls);
+        }
+        if FileCommand::LoadCage.unavailable_because(editor).is_none()
+            && ui
+                .button(FileCommand::LoadCage.name())
+                .on_hover_text("Takes a closed mesh around the region from a file.")
+                .clicked()
+        {
+            commands.push_file(FileCommand::LoadCage);
+        }
+        for command in [
+            Command::ResetControls,
+            Command::SelectControls,
+            Command::DeselectControls,
+        ] {
+            if command_button(ui, editor, &command) {
+                commands.push(command);
+            }
+        }
+    });
 }
 
 /// A list of all methods, and the one that was taken from it.

@@ -64,6 +64,7 @@ impl Application {
                         self.fail(sentence);
                     }
                 }
+                Message::Cage(mesh) => self.take_cage(mesh),
                 Message::Chosen(purpose, path) => self.chosen(purpose, path),
             }
         }

@@ -28,6 +28,8 @@ pub enum Message {
     Written(Revision, Result<Written, String>),
     /// The state of the document with this key was kept for a recovery, or why it was not.
     Autosaved(SnapshotKey, Result<(), String>),
+    /// A cage was read, its vertices and triangles, or why it was not.
+    Cage(Result<(Vec<DVec3>, Vec<[u32; 3]>), String>),
     /// A person chose a path in a dialog; `None` if they chose none.
     Chosen(Purpose, Option<PathBuf>),
 }
@@ -127,6 +129,8 @@ pub enum Purpose {
     SaveProject,
     /// To write the edit file to.
     ExportEdit,
+    /// To take a cage from.
+    LoadCage,
     /// To save a picture of the view under.
     SavePicture(PictureKind),
 }

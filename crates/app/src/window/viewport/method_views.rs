@@ -134,6 +134,7 @@ fn draw(ui: &Ui, rect: Rect, view: &mut SideView, editor: &Editor, smooth: Smoot
         look,
         brush_ring: &[],
         gizmo: &[],
+        controls: &[],
         overlay_revision: 0,
         ..main
     };

@@ -3,9 +3,11 @@
 use eframe::egui::Response;
 use pliant_editor::{Command, Event};
 
-/// Events for the editor, in order.
+use crate::window::files::file_command::FileCommand;
+
+/// Events for the editor, in order, and what is asked of files.
 #[derive(Debug, Default)]
-pub struct Outbox(Vec<Event>);
+pub struct Outbox(Vec<Event>, Option<FileCommand>);
 
 impl Outbox {
     /// Asks for a command.
@@ -26,6 +28,16 @@ impl Outbox {
         if response.drag_stopped() {
             self.0.push(Event::Adjusted);
         }
+    }
+
+    /// Asks for something with files.
+    pub fn push_file(&mut self, command: FileCommand) {
+        self.1 = Some(command);
+    }
+
+    /// What was asked for with files.
+    pub fn take_file(&mut self) -> Option<FileCommand> {
+        self.1.take()
     }
 
     /// The events.

@@ -336,8 +336,12 @@ impl Project {
         }
         document.settled = self.settled;
         let mut document = Document::from(document);
-        if !document.is_moved() {
-            document.settle();
+        if !document.is_moved() && !document.settled {
+            // Nothing is moved by this method, so what another has made of it is gone.
+            match document.kept {
+                Some(_) => document.settle(),
+                None => document.unbend(),
+            }
         }
         Ok(document)
     }

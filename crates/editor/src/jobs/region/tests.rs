@@ -38,6 +38,31 @@ fn sheet_with_disc(radius: f64, reach: Reach) -> RegionInput {
 }
 
 #[test]
+fn control_points_set_everything_free_that_is_bare_only_where_there_is_no_handle_and_nothing_was_painted_free() {
+    let with_controls = RegionInput {
+        has_controls: true,
+        ..sheet_with_disc(0.08, Reach::default())
+    };
+    let of = |input: &RegionInput| Region::measure(input, &Cancel::new()).unwrap();
+    let without_controls = sheet_with_disc(0.08, Reach::default());
+    assert_eq!(
+        of(&with_controls).roles,
+        of(&without_controls).roles,
+        "a handle has its reach"
+    );
+    let mut bare = RegionInput {
+        handles: Vec::new(),
+        paint: Arc::new(vec![Paint::Bare; with_controls.paint.len()]),
+        ..with_controls
+    };
+    Arc::make_mut(&mut bare.paint)[3] = Paint::Fixed;
+    let region = of(&bare);
+    assert_eq!((region.counts.fixed, region.roles[3]), (1, Role::Fixed));
+    Arc::make_mut(&mut bare.paint)[5] = Paint::Free;
+    assert_eq!(of(&bare).counts.free, 1);
+}
+
+#[test]
 fn a_disc_reaches_three_of_its_radii_beyond_its_rim() {
     let radius = 0.08;
     let input = sheet_with_disc(radius, Reach::default());
@@ -99,6 +124,7 @@ fn cut_at(drawn: Drawn, at: f64) -> (RegionInput, Vec<f64>) {
         loose_parts: Arc::default(),
         access: Arc::default(),
         contacts: FileContacts::default(),
+        has_controls: false,
     };
     (input, shares)
 }

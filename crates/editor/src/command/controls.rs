@@ -1,0 +1,106 @@
+//! What is done with the method's cage or lattice and its control points.
+
+use pliant_deform::Attachment;
+
+use super::entry::{Action, Entry, Reason, Scope, State, item, unless, when_open};
+use crate::workspace::{bring_attachment, make_controls, reset_controls};
+
+/// Has the method make its cage or lattice, in place of the document's own.
+pub(super) const MAKE_CONTROLS: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Make cage or lattice",
+        "Has the method make its cage or lattice around the region, in place of the document's own.",
+        "control points generate new detail resolution",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| {
+        without_controls(state).or_else(|| {
+            let is_own = state.workspace.document.attachment().is_some();
+            unless(
+                is_own,
+                "It is made by the method already: drag one of its points to make it your own.",
+            )
+        })
+    },
+    action: Action::Do(|context, ()| make_controls(context.workspace)),
+};
+
+/// Takes the control points back to where they rest.
+pub(super) const RESET_CONTROLS: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Reset points",
+        "Takes the points of the cage or lattice back to where they rest; handles stay.",
+        "control cage lattice undo moves",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| {
+        without_controls(state).or_else(|| {
+            let are_moved = state.workspace.document.moved_controls().is_some();
+            unless(are_moved, "No point of the cage or lattice was moved by hand.")
+        })
+    },
+    action: Action::Do(|context, ()| reset_controls(context.workspace)),
+};
+
+/// Selects all control points.
+pub(super) const SELECT_CONTROLS: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Select all points",
+        "Selects all points of the cage or lattice.",
+        "control cage lattice everything",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| without_controls(state).or_else(|| not_shown(state)),
+    action: Action::Do(|context, ()| {
+        let shown = context.workspace.shown_controls();
+        let count = shown.map_or(0, |shown| shown.positions.len() as u32);
+        context.workspace.controls.put(0..count);
+    }),
+};
+
+/// Lets go of all control points.
+pub(super) const DESELECT_CONTROLS: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Deselect points",
+        "Lets go of the points of the cage or lattice: the gizmo is the handle's again.",
+        "control cage lattice none",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| {
+        let is_selected = !state.workspace.controls.is_empty();
+        unless(is_selected, "No point of a cage or lattice is selected.")
+    },
+    action: Action::Do(|context, ()| context.workspace.controls.put([])),
+};
+
+/// Takes a cage or lattice in place of the one there is.
+pub(super) const BRING_ATTACHMENT: Entry<Attachment> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: when_open,
+    action: Action::Do(|context, attachment| bring_attachment(context.workspace, attachment)),
+};
+
+/// The reason where the method has no control points.
+fn without_controls(state: &State<'_>) -> Option<Reason> {
+    state.unopened().or_else(|| {
+        let attachments = state.workspace.document.method().declaration().attachments;
+        unless(
+            !attachments.is_empty(),
+            "The method has no control points: choose Cage or Lattice.",
+        )
+    })
+}
+
+fn not_shown(state: &State<'_>) -> Option<Reason> {
+    let is_shown = state.workspace.shown_controls().is_some();
+    unless(is_shown, "Its points are not there yet: they come with the binding.")
+}

@@ -1,0 +1,91 @@
+//! How a cage or a lattice is drawn over the surface: its edges as lines and its points as squares of constant size on
+//! the screen. The renderer makes fainter what the surface hides.
+
+use glam::{DVec2, DVec3};
+
+use super::camera::Camera;
+
+/// Lines and triangles of one colour, in world space.
+#[derive(Clone, PartialEq, Debug)]
+pub struct ControlShape {
+    /// sRGB with alpha.
+    pub colour: [u8; 4],
+    /// Line segments.
+    pub lines: Vec<[DVec3; 2]>,
+    /// Filled triangles.
+    pub triangles: Vec<[DVec3; 3]>,
+}
+
+/// A control point as it is seen.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct ShownPoint {
+    pub(crate) position: DVec3,
+    pub(crate) is_selected: bool,
+    pub(crate) is_hidden: bool,
+    pub(crate) is_pointed_at: bool,
+}
+
+/// Blue, orange and near-black are told apart from clay, from each other and from both themes' grounds.
+const EDGE: [u8; 4] = [58, 128, 220, 220];
+const POINT: [u8; 4] = [120, 180, 255, 255];
+const SELECTED: [u8; 4] = [255, 150, 30, 255];
+const RIM: [u8; 4] = [18, 24, 36, 255];
+
+/// Half the side of a point's square, and how far its rim goes beyond it, in points of the view.
+const HALF_PX: f64 = 3.2;
+const RIM_PX: f64 = 1.3;
+
+/// How near to a point the pointer must be to take it.
+const GRAB_PX: f64 = 8.0;
+
+/// The shapes: edges, the points' rims, points and selected ones.
+pub(crate) fn control_shapes(
+    points: &[ShownPoint],
+    edges: &[[u32; 2]],
+    camera: &Camera,
+    viewport_px: DVec2,
+) -> Vec<ControlShape> {
+    let squares = |colour, beyond: f64, wanted: &dyn Fn(&&ShownPoint) -> bool| ControlShape {
+        colour,
+        lines: Vec::new(),
+        triangles: points
+            .iter()
+            .filter(wanted)
+            .flat_map(|point| {
+                let half = if point.is_pointed_at { 1.4 * HALF_PX } else { HALF_PX };
+                square(point.position, half + beyond, camera, viewport_px)
+            })
+            .collect(),
+    };
+    let lines = edges.iter().map(|edge| edge.map(|end| points[end as usize].position));
+    vec![
+        ControlShape {
+            colour: EDGE,
+            lines: lines.collect(),
+            triangles: Vec::new(),
+        },
+        squares(RIM, RIM_PX, &|_| true),
+        squares(POINT, 0.0, &|point| !point.is_selected),
+        squares(SELECTED, 0.0, &|point| point.is_selected),
+    ]
+}
+
+/// A square across the line of sight.
+fn square(position: DVec3, half_px: f64, camera: &Camera, viewport_px: DVec2) -> [[DVec3; 3]; 2] {
+    let half = half_px * camera.world_per_px(position, viewport_px);
+    let axes = camera.axes();
+    let (right, up) = (axes.x_axis * half, axes.y_axis * half);
+    let [a, b, c, d] = [-right - up, right - up, right + up, up - right].map(|corner| position + corner);
+    [[a, b, c], [a, c, d]]
+}
+
+/// The point under the pointer: of those near it one that is seen, and of these the nearest to the eye.
+pub(crate) fn control_at(points: &[ShownPoint], pointer_px: DVec2, camera: &Camera, viewport_px: DVec2) -> Option<u32> {
+    let near = points.iter().enumerate().filter_map(|(number, point)| {
+        let at_px = camera.project(point.position, viewport_px)?;
+        let depth = (point.position - camera.eye()).length();
+        (at_px.distance(pointer_px) <= GRAB_PX).then_some((point.is_hidden, depth, number as u32))
+    });
+    let first = near.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    first.map(|(_, _, number)| number)
+}

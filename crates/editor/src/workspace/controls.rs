@@ -1,0 +1,167 @@
+//! The control points of the method's cage or lattice: which are shown and selected, and how they are brought and moved.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_deform::Attachment;
+
+use super::options::at_rest;
+use super::state::Workspace;
+use crate::document::Document;
+use crate::jobs::BoundControls;
+
+/// Control points that commands and the gizmo speak of, ascending.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub(crate) struct ControlSelection {
+    points: Vec<u32>,
+}
+
+impl ControlSelection {
+    /// The selected points.
+    pub(crate) fn points(&self) -> &[u32] {
+        &self.points
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    pub(crate) fn contains(&self, point: u32) -> bool {
+        self.points.binary_search(&point).is_ok()
+    }
+
+    /// Selects these and no others.
+    pub(crate) fn put(&mut self, points: impl IntoIterator<Item = u32>) {
+        self.points = points.into_iter().collect();
+        self.points.sort_unstable();
+        self.points.dedup();
+    }
+
+    /// Selects these, too.
+    pub(crate) fn add(&mut self, points: impl IntoIterator<Item = u32>) {
+        let all: Vec<u32> = self.points.iter().copied().chain(points).collect();
+        self.put(all);
+    }
+
+    /// Selects a point along with the others, or lets go of it.
+    pub(crate) fn toggle(&mut self, point: u32) {
+        match self.points.binary_search(&point) {
+            Ok(place) => drop(self.points.remove(place)),
+            Err(place) => self.points.insert(place, point),
+        }
+    }
+
+    /// Selects a point that was clicked; a group that it belongs to stays selected.
+    pub(crate) fn click(&mut self, point: u32) {
+        if !self.contains(point) {
+            self.put([point]);
+        }
+    }
+
+    /// Lets go of points that are gone.
+    pub(super) fn drop_lost(&mut self, count: usize) {
+        self.points.retain(|point| (*point as usize) < count);
+    }
+}
+
+impl Workspace {
+    /// The cage or lattice that is shown, with its points where they are seen: those of the binding, moved on at once
+    /// by what the hand has done since, or the document's own where there is no binding for it.
+    pub(crate) fn shown_controls(&self) -> Option<BoundControls> {
+        let document = &self.document;
+        let method = document.method();
+        let own = document.attachment();
+        let bound = self.computed().controls.as_ref();
+        let bound = bound.filter(|bound| method.declaration().attachment(bound.name).is_some());
+        let Some((name, attachment)) = own else {
+            return bound.cloned();
+        };
+        if let Some(bound) = bound.filter(|bound| bound.attachment.rests_as(attachment)) {
+            let places = bound.positions.iter().zip(bound.attachment.moved().iter());
+            let moved = attachment.moved().iter();
+            let positions = places.zip(moved).map(|((seen, before), now)| *seen + (*now - *before));
+            return Some(BoundControls {
+                positions: Arc::new(positions.collect()),
+                attachment: attachment.clone(),
+                ..bound.clone()
+            });
+        }
+        Some(BoundControls {
+            name,
+            edges: Arc::new(attachment.edges()),
+            positions: Arc::clone(attachment.moved()),
+            attachment: attachment.clone(),
+        })
+    }
+}
+
+/// Puts an attachment of the present method, with its points where a drag has moved them, into the document.
+pub(crate) fn put_attachment(document: &mut Document, name: &'static str, attachment: Attachment) {
+    let mut attachments = Arc::clone(&document.attachments);
+    if attachments.get(name) != Some(&attachment) {
+        Arc::make_mut(&mut attachments).insert(name, attachment);
+        document.unsettle();
+        document.set_attachments(attachments);
+    }
+}
+
+/// Takes a cage or lattice that a person brings in the place of the one there is.
+pub(crate) fn bring(workspace: &mut Workspace, attachment: Attachment) {
+    let declaration = workspace.document.method().declaration();
+    let declared = declaration.attachments.iter().find(|own| own.kind == attachment.kind());
+    let Some(declared) = declared else {
+        let why = format!(
+            "{} takes nothing of this kind: choose another method first.",
+            declaration.title
+        );
+        workspace.refuse(why);
+        return;
+    };
+    let checked = workspace.document.method().check_attachment(declared.name, &attachment);
+    if let Err(refused) = checked {
+        workspace.refuse(format!("The {} {refused}.", declared.title));
+        return;
+    }
+    workspace.controls.put([]);
+    workspace.change(format!("Bring {}", declared.title), |document| {
+        let mut attachments = Arc::clone(&document.attachments);
+        Arc::make_mut(&mut attachments).insert(declared.name, attachment);
+        put_other(document, attachments);
+    });
+}
+
+/// Takes the document's cage or lattice away: the method makes one.
+pub(crate) fn make(workspace: &mut Workspace) {
+    let Some((name, _)) = workspace.document.attachment() else {
+        return;
+    };
+    workspace.controls.put([]);
+    workspace.change(format!("Make {name}"), |document| {
+        let mut attachments = Arc::clone(&document.attachments);
+        Arc::make_mut(&mut attachments).remove(name);
+        put_other(document, attachments);
+    });
+}
+
+/// Takes the control points back to where they rest.
+pub(crate) fn reset(workspace: &mut Workspace) {
+    workspace.change("Reset points", |document| {
+        let rested = at_rest(document);
+        document.unsettle();
+        document.set_attachments(rested);
+    });
+}
+
+/// Another cage or lattice: what the former one has made of the shape is solved anew, from the rest shape alone.
+fn put_other(document: &mut Document, attachments: Arc<BTreeMap<&'static str, Attachment>>) {
+    document.unsettle_if_displaced();
+    document.set_attachments(attachments);
+    document.unsettle_if_displaced();
+}
+
+/// The middle of some points.
+pub(crate) fn middle(points: impl ExactSizeIterator<Item = DVec3>) -> DVec3 {
+    let count = points.len().max(1) as f64;
+    points.sum::<DVec3>() / count
+}
