@@ -14,7 +14,7 @@ const RING_COLOUR: [u8; 4] = [255, 255, 255, 220];
 const RING_WIDTH_POINTS: f32 = 2.0;
 
 /// The width in points of a cage's or lattice's edges.
-const CONTROL_WIDTH_POINTS: f32 = 1.5;
+const CONTROL_WIDTH_POINTS: f32 = 1.1;
 
 /// Widths in points of the gizmo's lines, and of those under the pointer.
 const GIZMO_WIDTH_POINTS: f32 = 2.5;
@@ -113,21 +113,29 @@ pub fn overlays(view: &SceneView<'_>, centre: DVec3, pixels_per_point: f32) -> V
                 colours: [shape.colour; 3],
             }));
     }
-    let mut controls = Overlay {
-        hidden_share: HIDDEN_SHARE,
-        ..Overlay::default()
-    };
-    for shape in view.controls {
-        controls.lines.extend(shape.lines.iter().map(|ends| OverlayLine {
+    let edges = view.controls.iter().flat_map(|shape| {
+        shape.lines.iter().map(|ends| OverlayLine {
             ends: ends.map(relative),
             colours: [shape.colour; 2],
             width_px: CONTROL_WIDTH_POINTS * pixels_per_point,
-        }));
-        let triangles = shape.triangles.iter();
-        controls.triangles.extend(triangles.map(|corners| OverlayTriangle {
+        })
+    });
+    let edges = Overlay {
+        hidden_share: HIDDEN_SHARE,
+        lines: edges.collect(),
+        ..Overlay::default()
+    };
+    // Lines of one overlay lie over its triangles.
+    let points = view.controls.iter().flat_map(|shape| {
+        shape.triangles.iter().map(|corners| OverlayTriangle {
             corners: corners.map(relative),
             colours: [shape.colour; 3],
-        }));
-    }
-    vec![controls, ring, gizmo]
+        })
+    });
+    let points = Overlay {
+        hidden_share: HIDDEN_SHARE,
+        triangles: points.collect(),
+        ..Overlay::default()
+    };
+    vec![edges, points, ring, gizmo]
 }

@@ -1,8 +1,9 @@
 //! The cage as one of the methods.
 
 use faer::Mat;
-use glam::{DVec3, Mat3};
+use glam::DVec3;
 
+use super::bound::{BoundCage, Field};
 use super::by_hand::{ByHand, HarmonicCoordinates, StoredCoordinates, stored_bytes};
 use super::chosen::ChosenCage;
 use super::conformal::{Conformal, row_bytes};
@@ -10,22 +11,22 @@ use super::fit::{controls, fit_bytes, response, soft_unit};
 use super::harmonic::Harmonic;
 use super::linear::{HarmonicMap, MeanValueMap, Unit};
 use super::mean_value::MeanValue;
+use super::outside::{told_close, told_outside};
 use super::rows::{green_rows, harmonic_rows, mean_value_rows};
 use super::{Cage, CageCoordinates, brought};
+use crate::BindError;
 use crate::budget::{Limit, bytes_of};
-use crate::handles::Motion;
 use crate::method::{
     Attachment, AttachmentDeclaration, AttachmentKind, AttachmentRefused, BindInput, BoundMethod, ConstraintKind,
-    DeformMethod, Finite, HandleFit, MethodDeclaration, Needs, Solve, Stepped,
+    DeformMethod, HandleFit, MethodDeclaration, Needs, Solve,
 };
 use crate::space::affine::AffineParts;
 use crate::space::controls::{Controls, Hand, hand_bytes};
 use crate::space::falloff::Falloff;
 use crate::space::field::{FIELD_ROW, LinearField, moving};
-use crate::space::fit_samples::{RegionBox, samples};
+use crate::space::fit_samples::{RegionBox, holds, samples};
 use crate::space::hand_field::HandField;
 use crate::sparse::factor_error::FactorError;
-use crate::{BindError, SolveError};
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "cage",
@@ -53,22 +54,6 @@ const SAMPLES: [usize; 2] = [3000, 50];
 
 /// As [`SAMPLES`], for coordinates whose frames evaluate each sample.
 const SAMPLES_A_FRAME: [usize; 2] = [600, 20];
-
-/// The bound method.
-#[derive(Debug)]
-struct BoundCage {
-    field: Field,
-    controls: Controls,
-    solved_count: usize,
-    warnings: Vec<String>,
-}
-
-#[derive(Debug)]
-enum Field {
-    /// With what the hand does, where the cage was brought.
-    Linear(LinearField, Option<ByHand>),
-    Conformal(Box<Conformal>),
-}
 
 impl DeformMethod for Cage {
     fn declaration(&self) -> &'static MethodDeclaration {
@@ -127,9 +112,8 @@ impl DeformMethod for Cage {
         let world_points: Vec<DVec3> = vertices.iter().map(|&vertex| positions[vertex as usize]).collect();
         let mut warnings = Vec::new();
         if is_brought {
-            let points: Vec<DVec3> = world_points.iter().map(|point| unit.local(*point)).collect();
-            let are_outside = brought::are_outside(cage, &points);
-            warnings.extend(self.told_outside(are_outside.into_iter().filter(|is| *is).count())?);
+            let told = told_outside(self.coordinates, cage, unit, &world_points);
+            warnings.extend(told.map_err(of_cage)?);
         }
         let falloff = Falloff::of(input.problem, &vertices, self.falloff * within.diagonal);
         let fit = HandleFit::LeastSquares;
@@ -154,7 +138,8 @@ impl DeformMethod for Cage {
                 };
                 let field = LinearField::bind(&map, &falloff, fit, input)?;
                 let by_hand = stored.map(|map| HandField::new(map, vertices, world_points, falloff));
-                (Field::Linear(field, by_hand.map(ByHand::MeanValue)), rows, driven)
+                let by_hand = by_hand.map(|field| Box::new(ByHand::MeanValue(field)));
+                (Field::Linear(Box::new(field), by_hand), rows, driven)
             }
             CageCoordinates::Harmonic => {
                 let part = input.progress.part(0.05, 0.7);
@@ -162,16 +147,16 @@ impl DeformMethod for Cage {
                 let harmonic = Harmonic::solved(cage, step, budget, &part, input.cancel);
                 let harmonic = harmonic.map_err(|failed| refused(failed, solved_count))?;
                 if is_brought {
-                    warnings.extend(told_close(&harmonic, unit, &world_points)?);
+                    warnings.extend(told_close(&harmonic, unit, &world_points).map_err(of_cage)?);
                 }
                 let rows = harmonic_rows(&harmonic, cage.vertices.len(), &samples, unit);
                 let driven = controls_of(&rows);
                 let field = LinearField::bind(&HarmonicMap::new(unit, &harmonic, &driven), &falloff, fit, input)?;
                 let by_hand = is_brought.then(|| {
                     let map = HarmonicCoordinates { unit, harmonic };
-                    ByHand::Harmonic(HandField::new(map, vertices, world_points, falloff))
+                    Box::new(ByHand::Harmonic(HandField::new(map, vertices, world_points, falloff)))
                 });
-                (Field::Linear(field, by_hand), rows, driven)
+                (Field::Linear(Box::new(field), by_hand), rows, driven)
             }
             CageCoordinates::Green => {
                 let bytes = bytes_of(vertices.len(), row_bytes(cage));
@@ -195,7 +180,7 @@ impl DeformMethod for Cage {
             }
         };
         let hand = is_brought.then(|| {
-            Hand::new(cage.vertices.len(), &samples, |sample, visit| {
+            Hand::new(cage.vertices.len(), &holds(&samples), |sample, visit| {
                 (0..cage.vertices.len()).for_each(|vertex| visit(vertex, rows[(sample, vertex)]));
             })
         });
@@ -211,41 +196,6 @@ impl DeformMethod for Cage {
             solved_count,
             warnings,
         }))
-    }
-}
-
-impl Cage {
-    /// What to say of vertices outside a brought cage: mean value coordinates are defined there, the others are not.
-    fn told_outside(&self, count: usize) -> Result<Option<String>, BindError> {
-        match self.coordinates {
-            _ if count == 0 => Ok(None),
-            CageCoordinates::MeanValue => Ok(Some(format!(
-                "{count} vertices lie outside the cage and may move against it: enlarge the cage around them"
-            ))),
-            coordinates => Err(of_cage(AttachmentRefused::Outside {
-                count,
-                coordinates: coordinates.name(),
-            })),
-        }
-    }
-}
-
-/// What to say of vertices so near to a brought cage that the harmonic grid has too few nodes around them.
-fn told_close(harmonic: &Harmonic, unit: Unit, world_points: &[DVec3]) -> Result<Option<String>, BindError> {
-    let around = world_points
-        .iter()
-        .map(|point| harmonic.nodes_around(unit.local(*point)));
-    let (mut none, mut few) = (0, 0);
-    for nodes in around {
-        none += usize::from(nodes == 0);
-        few += usize::from(nodes < 64);
-    }
-    match (none, few) {
-        (0, 0) => Ok(None),
-        (0, few) => Ok(Some(format!(
-            "{few} vertices lie so close to the cage that they follow it inexactly: move it away from them or raise `grid`"
-        ))),
-        (count, _) => Err(of_cage(AttachmentRefused::Close { count })),
     }
 }
 
@@ -271,67 +221,5 @@ fn refused(failed: FactorError, free_count: usize) -> BindError {
         FactorError::Budget(limit) => BindError::budget(free_count, limit),
         // Its diagonal dominates, so no pivot fails.
         FactorError::Memory | FactorError::Pivot(_) => BindError::OutOfMemory { free_count },
-    }
-}
-
-impl BoundMethod for BoundCage {
-    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
-        let finite = match &self.field {
-            Field::Linear(field, by_hand) => {
-                let finite = field.frame(motions, displacements);
-                match (by_hand, self.controls.corrected()) {
-                    (Some(by_hand), Some(moves)) => {
-                        by_hand.add(moves, displacements);
-                        Finite::Unknown
-                    }
-                    _ => finite,
-                }
-            }
-            Field::Conformal(conformal) => {
-                conformal.frame(&self.controls, motions, displacements);
-                Finite::Unknown
-            }
-        };
-        Ok(Stepped {
-            converged: true,
-            energy: 0.0,
-            finite,
-        })
-    }
-
-    fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) -> bool {
-        match &self.field {
-            Field::Linear(field, by_hand) => {
-                field.jacobians(motions, out);
-                if let (Some(by_hand), Some(moves)) = (by_hand, self.controls.corrected()) {
-                    by_hand.add_jacobians(moves, out);
-                }
-            }
-            Field::Conformal(conformal) => conformal.jacobians(&self.controls, motions, out),
-        }
-        true
-    }
-
-    fn controls(&self) -> Option<&Controls> {
-        Some(&self.controls)
-    }
-
-    fn controls_mut(&mut self) -> Option<&mut Controls> {
-        Some(&mut self.controls)
-    }
-
-    fn control_positions(&self, motions: &[Motion]) -> Vec<DVec3> {
-        match &self.field {
-            Field::Linear(..) => self.controls.positions(motions),
-            Field::Conformal(conformal) => conformal.control_positions(&self.controls, motions),
-        }
-    }
-
-    fn warnings(&self) -> Vec<String> {
-        self.warnings.clone()
-    }
-
-    fn solved_count(&self) -> usize {
-        self.solved_count
     }
 }

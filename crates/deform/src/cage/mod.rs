@@ -6,6 +6,7 @@
 //! [JMD+07] and of `green` [LLC08]; `fit` solves for the cage's vertices.
 
 mod balance;
+mod bound;
 mod brought;
 mod by_hand;
 mod chosen;
@@ -21,6 +22,7 @@ mod mean_value_at;
 mod mesh;
 mod offset;
 mod options;
+mod outside;
 pub mod parts;
 mod rows;
 mod voxels;

@@ -14,7 +14,7 @@ use crate::space::affine::AffineParts;
 use crate::space::controls::{Controls, Hand, hand_bytes};
 use crate::space::falloff::Falloff;
 use crate::space::field::{Coefficients, FIELD_ROW, LinearField, SpaceMap, moving};
-use crate::space::fit_samples::{RegionBox, samples};
+use crate::space::fit_samples::{RegionBox, holds, samples};
 use crate::space::hand_field::HandField;
 use crate::{BindError, SolveError};
 
@@ -140,7 +140,7 @@ impl DeformMethod for Lattice {
             None
         };
         let hand = is_brought.then(|| {
-            Hand::new(grid.count(), &samples, |sample, visit| {
+            Hand::new(grid.count(), &holds(&samples), |sample, visit| {
                 grid.weights(samples[sample].world_point, |control, weight, _| visit(control, weight));
             })
         });

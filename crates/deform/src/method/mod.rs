@@ -3,6 +3,7 @@
 //! `README.md` beside the sources says how a method is added and what later ones will bring along.
 
 pub(crate) mod attachment;
+mod attachment_refused;
 mod declaration;
 pub(crate) mod iteration;
 pub(crate) mod option;
@@ -13,9 +14,8 @@ use std::fmt;
 use glam::DVec3;
 use pliant_mesh::{Cancel, Cancelled, Progress, Topology};
 
-pub use self::attachment::{
-    Attachment, AttachmentDeclaration, AttachmentKind, AttachmentRefused, ControlLattice, ControlMesh,
-};
+pub use self::attachment::{Attachment, AttachmentDeclaration, AttachmentKind, ControlLattice, ControlMesh};
+pub use self::attachment_refused::AttachmentRefused;
 pub use self::declaration::{ConstraintKind, MethodDeclaration, Needs, Solve};
 pub use self::option::{OptionDeclaration, OptionKind, OptionRefused, OptionValue};
 pub use self::traits::HandleFit;

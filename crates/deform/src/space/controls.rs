@@ -11,7 +11,6 @@ use std::sync::Arc;
 use faer::Mat;
 use glam::{DMat3, DVec3};
 
-use super::fit_samples::Sample;
 use crate::handles::Motion;
 use crate::method::Attachment;
 use crate::numerical::dense::Lu;
@@ -45,6 +44,20 @@ struct Correction {
     matrix: Lu,
     /// Σ_handles w λ λᵀ.
     pull: Mat<f64>,
+}
+
+/// A point at which the hand's share is looked at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hold {
+    pub weight: f64,
+    pub by: Holder,
+}
+
+/// What holds it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Holder {
+    Handle,
+    Fixed,
 }
 
 /// ε.
@@ -113,10 +126,10 @@ impl Controls {
 }
 
 impl Hand {
-    /// For so many control points; `weights` visits those with a weight at a sample.
-    pub fn new(count: usize, samples: &[Sample], weights: impl Fn(usize, &mut dyn FnMut(usize, f64))) -> Self {
+    /// For so many control points; `weights` visits those with a weight at a hold, by its number.
+    pub fn new(count: usize, holds: &[Hold], weights: impl Fn(usize, &mut dyn FnMut(usize, f64))) -> Self {
         Self {
-            correction: Correction::new(count, samples, weights),
+            correction: Correction::new(count, holds, weights),
             displacements: Vec::new(),
             corrected: Vec::new(),
         }
@@ -141,22 +154,21 @@ impl Hand {
 
 impl Correction {
     /// `None` without handles.
-    fn new(count: usize, samples: &[Sample], weights: impl Fn(usize, &mut dyn FnMut(usize, f64))) -> Option<Self> {
-        samples.iter().find(|sample| sample.handle.is_some())?;
+    fn new(count: usize, holds: &[Hold], weights: impl Fn(usize, &mut dyn FnMut(usize, f64))) -> Option<Self> {
+        holds.iter().find(|hold| hold.by == Holder::Handle)?;
         let mut matrix = Mat::<f64>::zeros(count, count);
         let mut pull = Mat::<f64>::zeros(count, count);
         let mut near: Vec<(usize, f64)> = Vec::new();
-        for (number, sample) in samples.iter().enumerate() {
+        for (number, hold) in holds.iter().enumerate() {
             near.clear();
             weights(number, &mut |control, weight| near.push((control, weight)));
-            let into = if sample.handle.is_some() {
-                &mut pull
-            } else {
-                &mut matrix
+            let into = match hold.by {
+                Holder::Handle => &mut pull,
+                Holder::Fixed => &mut matrix,
             };
             for &(column, b) in &near {
                 for &(row, a) in &near {
-                    into[(row, column)] += sample.weight * a * b;
+                    into[(row, column)] += hold.weight * a * b;
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::controls::{Hold, Holder};
 use super::field::moving;
 use super::samples::thinned;
 use crate::Role;
@@ -108,6 +109,18 @@ pub(crate) fn samples(input: &BindInput<'_>, within: &RegionBox, soft_unit: f64,
         weight,
     }));
     samples
+}
+
+/// The samples as what holds control points beside the hand.
+pub(crate) fn holds(samples: &[Sample]) -> Vec<Hold> {
+    let hold = |sample: &Sample| Hold {
+        weight: sample.weight,
+        by: match sample.handle {
+            Some(_) => Holder::Handle,
+            None => Holder::Fixed,
+        },
+    };
+    samples.iter().map(hold).collect()
 }
 
 fn bounds(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {

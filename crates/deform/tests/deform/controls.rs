@@ -213,6 +213,9 @@ fn jacobians_are_the_derivative_with_moved_controls() {
     }
 }
 
+/// What a test does to a cage's vertices and triangles.
+type Change<'a> = &'a dyn Fn(&mut Vec<DVec3>, &mut Vec<[u32; 3]>);
+
 fn refused(scene: &Scene) -> String {
     match scene.try_bind().unwrap_err() {
         error @ BindError::Attachment { .. } => error.to_string(),
@@ -226,7 +229,7 @@ fn what_is_no_cage_around_the_region_is_refused_in_words() {
     let Attachment::Mesh(mesh) = scene.attachments[0].1.clone() else {
         panic!("a cage is a mesh");
     };
-    let with = |change: &dyn Fn(&mut Vec<DVec3>, &mut Vec<[u32; 3]>)| {
+    let with = |change: Change<'_>| {
         let (mut rest, mut triangles) = (mesh.rest.to_vec(), mesh.triangles.to_vec());
         change(&mut rest, &mut triangles);
         let mut scene = sphere(&scene.method);
@@ -241,7 +244,7 @@ fn what_is_no_cage_around_the_region_is_refused_in_words() {
         scene
     };
     let count = mesh.rest.len() as u32;
-    let cases: [(&str, &dyn Fn(&mut Vec<DVec3>, &mut Vec<[u32; 3]>)); 8] = [
+    let cases: [(&str, Change<'_>); 8] = [
         ("is open at the edge", &|_, triangles| {
             triangles.truncate(triangles.len() - 1)
         }),

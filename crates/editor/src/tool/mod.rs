@@ -12,6 +12,7 @@ mod context;
 mod control_box;
 mod enclosed;
 mod gesture;
+mod hidden_points;
 mod mode;
 mod moved_controls;
 mod navigate;

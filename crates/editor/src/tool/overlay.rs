@@ -6,6 +6,7 @@
 use glam::{DVec2, DVec3};
 
 use super::brush::ring;
+use super::hidden_points::HiddenPoints;
 use super::mode::{StrokeShape, ToolMode};
 use super::settings::ToolSettings;
 use crate::document::HandleTransform;
@@ -44,14 +45,6 @@ pub(crate) struct Overlay {
     hidden: HiddenPoints,
     /// The part that the pointer rests on.
     rested: Option<GizmoPart>,
-}
-
-/// Which control points the surface hides, kept because each takes a ray.
-#[derive(Debug, Default)]
-struct HiddenPoints {
-    seen_from: Option<(u64, u64, bool)>,
-    positions: Vec<DVec3>,
-    are_hidden: Vec<bool>,
 }
 
 /// How much of its colour the gizmo keeps while a brush is active.
@@ -136,7 +129,7 @@ impl Overlay {
         };
         self.hidden.look(&shown.positions, workspace, view);
         let (camera, viewport_px) = (view.camera(), view.viewport_px());
-        let points = shown.positions.iter().zip(&self.hidden.are_hidden).zip(0..);
+        let points = shown.positions.iter().zip(self.hidden.are_hidden()).zip(0..);
         self.control_points
             .extend(points.map(|((&position, &is_hidden), number)| ShownPoint {
                 position,
@@ -150,31 +143,6 @@ impl Overlay {
             self.control_points[point as usize].is_pointed_at = true;
         }
         control_shapes(&self.control_points, &shown.edges, camera, viewport_px)
-    }
-}
-
-impl HiddenPoints {
-    /// Looks anew where positions, view or surface have changed.
-    fn look(&mut self, positions: &[DVec3], workspace: &Workspace, view: &View) {
-        let is_current = workspace.jobs.is_picking_current();
-        let seen_from = Some((view.revision(), workspace.shape_revision(), is_current));
-        if self.seen_from == seen_from && self.positions == positions {
-            return;
-        }
-        let picking = workspace.picking(view);
-        let camera = view.camera();
-        let is_hidden = |position: &DVec3| {
-            let px = camera.project(*position, view.viewport_px())?;
-            let ray = camera.ray(px, view.viewport_px());
-            let hit = picking.as_ref()?.along(ray)?;
-            let depth = |point: DVec3| (point - ray.origin).dot(ray.direction);
-            Some(depth(hit.point) < depth(*position) * (1.0 - 1e-6))
-        };
-        self.are_hidden.clear();
-        self.are_hidden
-            .extend(positions.iter().map(|position| is_hidden(position).unwrap_or(false)));
-        self.positions = positions.to_vec();
-        self.seen_from = seen_from;
     }
 }
 

@@ -32,7 +32,7 @@ const SELECTED: [u8; 4] = [255, 150, 30, 255];
 const RIM: [u8; 4] = [18, 24, 36, 255];
 
 /// Half the side of a point's square, and how far its rim goes beyond it, in points of the view.
-const HALF_PX: f64 = 3.2;
+const HALF_PX: f64 = 3.6;
 const RIM_PX: f64 = 1.3;
 
 /// How near to a point the pointer must be to take it.

@@ -1,4 +1,4 @@
-//! The control points of the method's cage or lattice: which are shown and selected, and how they are brought and moved.
+//! The control points of the method's cage or lattice: how they are shown, brought and moved.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,60 +10,6 @@ use super::options::at_rest;
 use super::state::Workspace;
 use crate::document::Document;
 use crate::jobs::BoundControls;
-
-/// Control points that commands and the gizmo speak of, ascending.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub(crate) struct ControlSelection {
-    points: Vec<u32>,
-}
-
-impl ControlSelection {
-    /// The selected points.
-    pub(crate) fn points(&self) -> &[u32] {
-        &self.points
-    }
-
-    pub(crate) fn is_empty(&self) -> bool {
-        self.points.is_empty()
-    }
-
-    pub(crate) fn contains(&self, point: u32) -> bool {
-        self.points.binary_search(&point).is_ok()
-    }
-
-    /// Selects these and no others.
-    pub(crate) fn put(&mut self, points: impl IntoIterator<Item = u32>) {
-        self.points = points.into_iter().collect();
-        self.points.sort_unstable();
-        self.points.dedup();
-    }
-
-    /// Selects these, too.
-    pub(crate) fn add(&mut self, points: impl IntoIterator<Item = u32>) {
-        let all: Vec<u32> = self.points.iter().copied().chain(points).collect();
-        self.put(all);
-    }
-
-    /// Selects a point along with the others, or lets go of it.
-    pub(crate) fn toggle(&mut self, point: u32) {
-        match self.points.binary_search(&point) {
-            Ok(place) => drop(self.points.remove(place)),
-            Err(place) => self.points.insert(place, point),
-        }
-    }
-
-    /// Selects a point that was clicked; a group that it belongs to stays selected.
-    pub(crate) fn click(&mut self, point: u32) {
-        if !self.contains(point) {
-            self.put([point]);
-        }
-    }
-
-    /// Lets go of points that are gone.
-    pub(super) fn drop_lost(&mut self, count: usize) {
-        self.points.retain(|point| (*point as usize) < count);
-    }
-}
 
 impl Workspace {
     /// The cage or lattice that is shown, with its points where they are seen: those of the binding, moved on at once

@@ -3,6 +3,7 @@
 mod colour_revisions;
 mod colours;
 mod consequences;
+mod control_selection;
 mod controls;
 mod dirty_colours;
 mod following;

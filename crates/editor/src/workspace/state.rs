@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use pliant_mesh::{Model, SurfaceVertex};
 
 use super::colour_revisions::Colours;
-use super::controls::ControlSelection;
+use super::control_selection::ControlSelection;
 use super::mirror_request::Mirroring;
 use super::selection::HandleSelection;
 use crate::document::{

@@ -1,0 +1,90 @@
+//! The bound cage: what handles and the hand do to it, frame by frame.
+
+use glam::{DVec3, Mat3};
+
+use super::by_hand::ByHand;
+use super::conformal::Conformal;
+use crate::SolveError;
+use crate::handles::Motion;
+use crate::method::{BoundMethod, Finite, Stepped};
+use crate::space::controls::Controls;
+use crate::space::field::LinearField;
+
+/// The bound method.
+#[derive(Debug)]
+pub(super) struct BoundCage {
+    pub field: Field,
+    pub controls: Controls,
+    pub solved_count: usize,
+    pub warnings: Vec<String>,
+}
+
+/// How points follow the cage.
+#[derive(Debug)]
+pub(super) enum Field {
+    /// With what the hand does, where the cage was brought.
+    Linear(Box<LinearField>, Option<Box<ByHand>>),
+    Conformal(Box<Conformal>),
+}
+
+impl BoundMethod for BoundCage {
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        let finite = match &self.field {
+            Field::Linear(field, by_hand) => {
+                let finite = field.frame(motions, displacements);
+                match (by_hand, self.controls.corrected()) {
+                    (Some(by_hand), Some(moves)) => {
+                        by_hand.add(moves, displacements);
+                        Finite::Unknown
+                    }
+                    _ => finite,
+                }
+            }
+            Field::Conformal(conformal) => {
+                conformal.frame(&self.controls, motions, displacements);
+                Finite::Unknown
+            }
+        };
+        Ok(Stepped {
+            converged: true,
+            energy: 0.0,
+            finite,
+        })
+    }
+
+    fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) -> bool {
+        match &self.field {
+            Field::Linear(field, by_hand) => {
+                field.jacobians(motions, out);
+                if let (Some(by_hand), Some(moves)) = (by_hand, self.controls.corrected()) {
+                    by_hand.add_jacobians(moves, out);
+                }
+            }
+            Field::Conformal(conformal) => conformal.jacobians(&self.controls, motions, out),
+        }
+        true
+    }
+
+    fn controls(&self) -> Option<&Controls> {
+        Some(&self.controls)
+    }
+
+    fn controls_mut(&mut self) -> Option<&mut Controls> {
+        Some(&mut self.controls)
+    }
+
+    fn control_positions(&self, motions: &[Motion]) -> Vec<DVec3> {
+        match &self.field {
+            Field::Linear(..) => self.controls.positions(motions),
+            Field::Conformal(conformal) => conformal.control_positions(&self.controls, motions),
+        }
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
+
+    fn solved_count(&self) -> usize {
+        self.solved_count
+    }
+}

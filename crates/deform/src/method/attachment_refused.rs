@@ -1,0 +1,107 @@
+//! Why a cage or a lattice can't be taken.
+
+/// An attachment can't be taken. The sentence has no subject: "the cage" or "the lattice" stands before it.
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum AttachmentRefused {
+    /// The method does not declare it, or as another kind.
+    #[error("is nothing that this method takes: leave it out")]
+    Kind,
+    /// There are too few or too many of its points.
+    #[error("has {found} points: give {least} to {most}")]
+    PointCount {
+        /// How many it has.
+        found: usize,
+        /// The fewest.
+        least: usize,
+        /// The most.
+        most: usize,
+    },
+    /// `moved` has another length.
+    #[error(
+        "has {found} moved points where {expected} are expected: give one for each of its points, or leave `moved` out"
+    )]
+    MovedCount {
+        /// How many there are.
+        found: usize,
+        /// How many points it has.
+        expected: usize,
+    },
+    /// A point that is not finite.
+    #[error("has no finite position at its point {point}: give three finite numbers")]
+    NotFinite {
+        /// The point.
+        point: usize,
+    },
+    /// A triangle names a vertex that does not exist.
+    #[error("names vertex {vertex} in its triangle {triangle}, but has {count} vertices: use numbers below that")]
+    NoSuchVertex {
+        /// The triangle.
+        triangle: usize,
+        /// The vertex.
+        vertex: u32,
+        /// How many there are.
+        count: usize,
+    },
+    /// A vertex without a triangle.
+    #[error("has no triangle at its vertex {vertex}: remove the vertex")]
+    UnusedVertex {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// A triangle without area.
+    #[error("has no area in its triangle {triangle}: remove it or move its vertices apart")]
+    NoArea {
+        /// The triangle.
+        triangle: usize,
+    },
+    /// An edge of one triangle.
+    #[error("is open at the edge from vertex {0} to vertex {1}: close it")]
+    Open(u32, u32),
+    /// An edge of more than two triangles.
+    #[error("has more than two triangles at the edge from vertex {0} to vertex {1}: leave two of them")]
+    NonManifold(u32, u32),
+    /// Two triangles at an edge that face different sides.
+    #[error("has triangles that face different sides at the edge from vertex {0} to vertex {1}: turn one of them over")]
+    Turned(u32, u32),
+    /// It has no volume.
+    #[error("encloses no volume: give a closed mesh around the region")]
+    NoVolume,
+    /// Vertices that must lie within it do not.
+    #[error(
+        "leaves {count} of the region's vertices outside, and {coordinates} coordinates are for those inside: make it \
+         larger, or take mean-value coordinates"
+    )]
+    Outside {
+        /// How many.
+        count: usize,
+        /// The coordinates' name.
+        coordinates: &'static str,
+    },
+    /// Vertices lie where the harmonic grid has no node.
+    #[error(
+        "comes closer than the grid is fine to {count} of the region's vertices: move it away from them or raise `grid`"
+    )]
+    Close {
+        /// How many.
+        count: usize,
+    },
+    /// Another number of control points along an axis than the functions can have.
+    #[error("has {found} control points along {axis}: with this `basis` and `degree` give {least} to {most}")]
+    Counts {
+        /// The axis.
+        axis: char,
+        /// How many there are.
+        found: u32,
+        /// The fewest.
+        least: u32,
+        /// The most.
+        most: u32,
+    },
+    /// The box has no extent.
+    #[error("has a box without extent along {axis}: give a `max` above its `min`")]
+    Flat {
+        /// The axis.
+        axis: char,
+    },
+}
