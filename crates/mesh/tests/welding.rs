@@ -180,15 +180,17 @@ fn everything_broken_is_left_out_or_kept_and_counted() {
     assert_eq!(told(&findings.zero_area_triangles), one(triangles + 3));
     assert_eq!(findings.non_manifold_edges.count, 1);
     assert_eq!(model.surface.triangles.len(), shape.triangles.len() + 1);
-    assert_eq!(model.surface.positions.len(), shape.positions.len() + 1);
+    assert_eq!(model.topology.bare_points().start, shape.positions.len() + 1);
     assert_eq!(model.drawn.surface_vertex(DrawnVertex(vertices)), None);
-    assert_eq!(model.drawn.surface_vertex(DrawnVertex(vertices + 1)), None);
+    let alone = model.drawn.surface_vertex(DrawnVertex(vertices + 1));
+    assert_eq!(alone.map(SurfaceVertex::index), Some(shape.positions.len() + 1));
+    assert_eq!(model.surface.positions.len(), shape.positions.len() + 2);
     assert_eq!(findings.sentences().len(), 8, "{:#?}", findings.sentences());
     assert_eq!(shapes::model(shape).findings.sentences(), Vec::<String>::new());
 }
 
 #[test]
-fn files_without_a_usable_triangle_give_an_empty_surface() {
+fn files_without_a_usable_triangle_give_their_finite_points() {
     let nan = Drawn::once(vec![DVec3::NAN; 3], vec![[0, 1, 2].map(DrawnVertex)]);
     let point = Drawn::once(vec![DVec3::ONE; 3], vec![[0, 1, 2].map(DrawnVertex)]);
     let huge = Drawn::once(
@@ -196,13 +198,15 @@ fn files_without_a_usable_triangle_give_an_empty_surface() {
         vec![[0, 1, 2].map(DrawnVertex)],
     );
     let lone = Drawn::once(vec![DVec3::ONE], vec![]);
-    for drawn in [Drawn::default(), nan, point, huge, lone] {
+    for (drawn, points) in [(Drawn::default(), 0), (nan, 0), (point, 1), (huge, 2), (lone, 1)] {
         let model = shapes::model(drawn);
-        assert!(model.surface.positions.is_empty() && model.surface.triangles.is_empty());
-        assert!(model.bounds().is_none() && model.topology.components().is_empty());
-        assert!(model.drawn.surface_vertices().all(|vertex| vertex.is_none()));
+        assert!(model.surface.triangles.is_empty());
+        assert_eq!(model.topology.bare_points(), 0..points);
+        assert_eq!(model.topology.components().len(), points);
+        assert_eq!(model.bounds().is_some(), points > 0);
+        assert_eq!(model.findings.components.count, 0, "parts are made of triangles");
         let mut out = Vec::new();
-        model.drawn_positions(&[], &mut out);
+        model.drawn_positions(&vec![DVec3::ZERO; points], &mut out);
         assert_eq!(out.len(), model.drawn.vertex_count());
     }
 }

@@ -8,7 +8,7 @@ mod write;
 
 use std::sync::Arc;
 
-use pliant_mesh::{Drawn, FileVertex};
+use pliant_mesh::Drawn;
 
 use crate::appearance::colour::{byte, linear_of_srgb};
 use crate::convert::Polygons;
@@ -43,13 +43,7 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
     let face_ends = std::mem::take(&mut records.face_ends);
     let (triangles, polygons) = cut_faces(&positions, corners, &face_ends, source.cancel)?;
     let notes = left_out_note(records.left_out).into_iter().collect();
-    let count = positions.len();
-    let drawn = Drawn {
-        positions,
-        triangles,
-        file_vertex: (0..count as u32).map(FileVertex).collect(),
-        file_vertex_count: count,
-    };
+    let drawn = Drawn::once(positions, triangles);
     let triangle_count = drawn.triangles.len() as u32;
     Ok((
         Stored {

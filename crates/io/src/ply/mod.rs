@@ -12,7 +12,7 @@ mod write;
 
 use std::sync::Arc;
 
-use pliant_mesh::{Drawn, FileVertex};
+use pliant_mesh::Drawn;
 
 use crate::appearance::colour::{byte, linear_of_srgb};
 use crate::convert::Polygons;
@@ -61,13 +61,7 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
     } = records::read(source, &header)?;
     let (triangles, polygons) = cut_faces(&positions, corners, &face_ends, source.cancel)?;
     let notes = left_out_note(left_out).into_iter().collect();
-    let count = positions.len();
-    let drawn = Drawn {
-        positions,
-        triangles,
-        file_vertex: (0..count as u32).map(FileVertex).collect(),
-        file_vertex_count: count,
-    };
+    let drawn = Drawn::once(positions, triangles);
     let stored = Stored {
         bytes: source.bytes.clone(),
         header,

@@ -10,7 +10,7 @@ mod write;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_mesh::{Drawn, DrawnVertex, FileVertex};
+use pliant_mesh::{Drawn, DrawnVertex};
 
 use crate::save::course::Course;
 use crate::save::moved::Moved;
@@ -55,14 +55,8 @@ pub(crate) fn read(source: &Source<'_>) -> Result<(Stored, Drawn), ReadError> {
         (binary::read(source, &mut notes)?, Layout::Binary)
     };
     let count = positions.len() as u32;
-    let drawn = Drawn {
-        triangles: (0..count / 3)
-            .map(|facet| [0, 1, 2].map(|k| DrawnVertex(3 * facet + k)))
-            .collect(),
-        file_vertex: (0..count).map(FileVertex).collect(),
-        file_vertex_count: positions.len(),
-        positions,
-    };
+    let corners = |facet| [0, 1, 2].map(|k| DrawnVertex(3 * facet + k));
+    let drawn = Drawn::once(positions, (0..count / 3).map(corners).collect());
     Ok((
         Stored {
             bytes: source.bytes.clone(),

@@ -1,6 +1,7 @@
 //! A file's geometry inspected: its counts and findings, without the tables that an edit needs.
 
-use crate::findings::topological::Parts;
+use crate::findings::topological::{Parts, of_triangles};
+use crate::model::main_positions;
 use crate::topology::components::Component;
 use crate::topology::rings::topology_findings;
 use crate::weld::{Welded, weld};
@@ -15,13 +16,17 @@ pub struct Inspection {
     pub drawn_vertices: usize,
     /// How many triangles are drawn.
     pub drawn_triangles: usize,
-    /// How many vertices the welded surface has.
+    /// How many vertices the welded surface has, bare points among them.
     pub surface_vertices: usize,
+    /// How many of these are bare points, which no kept triangle uses.
+    pub bare_points: usize,
     /// How many triangles it has.
     pub surface_triangles: usize,
-    /// The bounding box of the vertices that kept triangles use; `None` of an empty surface.
+    /// The bounding box of the vertices that kept triangles use, of all bare points where there is no triangle; `None`
+    /// of an empty surface.
     pub bounds: Option<Bounds>,
-    /// The surface's connected parts by falling vertex count, equal ones by their first file vertex.
+    /// The surface's connected parts by falling vertex count, equal ones by their first file vertex. Bare points are
+    /// left out: they would come last.
     pub components: Vec<Component>,
     /// What is wrong with the mesh.
     pub findings: Findings,
@@ -34,6 +39,7 @@ impl Inspection {
     pub fn of(drawn: Drawn, options: &WeldOptions, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
         let Welded {
             surface,
+            first_bare,
             drawn,
             components,
             mut findings,
@@ -56,8 +62,9 @@ impl Inspection {
             drawn_triangles: drawn.triangle_count(),
             surface_vertices: vertex_count,
             surface_triangles: surface.triangles.len(),
-            bounds: bounding_box(&surface.positions),
-            components: components.all,
+            bare_points: vertex_count - first_bare,
+            bounds: bounding_box(main_positions(&surface.positions, first_bare)),
+            components: of_triangles(&components.all).to_vec(),
             located_findings: findings.located_findings(&drawn, &surface),
             findings,
         })

@@ -17,7 +17,7 @@ pub struct Findings {
     pub non_finite_vertices: Finding,
     /// Triangles left out because they use such a vertex.
     pub non_finite_triangles: Finding,
-    /// File vertices that no triangle uses: set aside, they keep their place.
+    /// File vertices that no triangle uses: bare points where they are drawn.
     pub unreferenced_vertices: Finding,
     /// Triangles left out because two of their corners were welded into one.
     pub collapsed_triangles: Finding,

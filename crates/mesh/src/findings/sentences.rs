@@ -69,10 +69,11 @@ impl Wording {
                 "uses such a vertex and was left out",
                 "use such vertices and were left out",
             ]),
-            FindingKind::UnreferencedVertices => of_vertices([
-                "is used by no triangle and keeps its place",
-                "are used by no triangle and keep their places",
-            ]),
+            FindingKind::UnreferencedVertices => Self::new(
+                ["point", "points"],
+                "",
+                ["is used by no triangle", "are used by no triangle"],
+            ),
             FindingKind::CollapsedTriangles => of_triangles([
                 "has two corners in one place and was left out",
                 "have two corners in one place and were left out",

@@ -34,14 +34,10 @@ impl Parts<'_> {
         findings.boundary_edges = Finding::at_vertices(found.boundary.iter().map(|[v, _]| file_vertex(v)));
         let rims = trace_loops(&found.boundary);
         findings.boundary_loops = Finding::at_vertices(rims.iter().filter_map(|rim| rim.iter().map(file_vertex).min()));
-        let firsts: Vec<u32> = self
-            .components
-            .all
-            .iter()
-            .map(|part| part.first_file_vertex.0)
-            .collect();
+        let of_triangles = of_triangles(&self.components.all);
+        let firsts: Vec<u32> = of_triangles.iter().map(|part| part.first_file_vertex.0).collect();
         findings.components = Finding::of(&firsts);
-        findings.loose_bits = loose_bits(&self.components.all);
+        findings.loose_bits = loose_bits(of_triangles);
         findings.inside_out_components = self.inside_out(found);
     }
 
@@ -52,7 +48,7 @@ impl Parts<'_> {
     /// Closed, consistently wound parts that enclose a negative volume and lie within no other closed part's box.
     fn inside_out(&self, found: &TopologyFindings) -> Finding {
         let surface = self.surface;
-        let count = self.components.all.len();
+        let count = of_triangles(&self.components.all).len();
         let mut is_closed = vec![true; count];
         let TopologyFindings {
             boundary,
@@ -104,6 +100,11 @@ impl Parts<'_> {
             .map(|component| self.components.all[component].first_file_vertex.0);
         Finding::at_vertices(found)
     }
+}
+
+/// The components that have triangles. Bare points come last, because each is a component of one vertex.
+pub(crate) fn of_triangles(components: &[Component]) -> &[Component] {
+    &components[..components.partition_point(|component| component.face_count > 0)]
 }
 
 /// Parts that are loose bits, by their first vertices.

@@ -14,6 +14,8 @@ pub struct Drawn {
     pub positions: Vec<DVec3>,
     /// Triangles over drawn vertices; every id is in range.
     pub triangles: Vec<[DrawnVertex; 3]>,
+    /// Lines between two drawn vertices each, which are shown and not solved; every id is in range.
+    pub lines: Vec<[DrawnVertex; 2]>,
     /// The file vertex behind each drawn vertex.
     pub file_vertex: Vec<FileVertex>,
     /// How many vertices the file has, drawn or not.
@@ -28,6 +30,7 @@ impl Drawn {
         Self {
             positions,
             triangles,
+            lines: Vec::new(),
             file_vertex,
             file_vertex_count,
         }

@@ -19,16 +19,17 @@ const CHUNK: usize = 8192;
 /// be restored with the surface: see [`Model`].
 #[derive(Clone, Debug, Default)]
 pub struct DrawnSet {
-    /// [`NONE`] where no kept triangle uses a drawn vertex.
+    /// [`NONE`] where a drawn vertex has no finite position.
     surface_vertices: Vec<u32>,
     strays: Strays,
     file_vertices: FileVertices,
     triangles: DrawnTriangles,
     triangle_of_surface: Vec<u32>,
+    lines: Vec<[DrawnVertex; 2]>,
 }
 
 /// Drawn vertices whose position is not their surface vertex's, to the bit: joined within the tolerance, −0 for 0, or
-/// used by no kept triangle.
+/// not finite.
 #[derive(Clone, Debug, Default)]
 struct Strays {
     /// Ascending.
@@ -123,6 +124,11 @@ impl DrawnSet {
         }
     }
 
+    /// The same with its lines.
+    pub(crate) fn with_lines(self, lines: Vec<[DrawnVertex; 2]>) -> Self {
+        Self { lines, ..self }
+    }
+
     /// The same without the triangles that the surface has.
     pub(crate) fn told_by(mut self, surface: &Surface) -> Self {
         let triangles = self.triangles;
@@ -140,12 +146,17 @@ impl DrawnSet {
         self.triangles.len()
     }
 
+    /// The drawn lines: see [`Drawn::lines`].
+    pub fn lines(&self) -> &[[DrawnVertex; 2]] {
+        &self.lines
+    }
+
     /// How many vertices the file has, drawn or not.
     pub fn file_vertex_count(&self) -> usize {
         self.file_vertices.count()
     }
 
-    /// The surface vertex behind a drawn vertex; `None` where no kept triangle uses it.
+    /// The surface vertex behind a drawn vertex; `None` where it has no finite position.
     #[inline]
     pub fn surface_vertex(&self, vertex: DrawnVertex) -> Option<SurfaceVertex> {
         known(self.surface_vertices[vertex.index()])
@@ -212,6 +223,7 @@ impl Model {
         Drawn {
             positions: self.rest_positions(),
             triangles: self.drawn_triangles(),
+            lines: self.drawn.lines.clone(),
             file_vertex: self.drawn.file_vertices().collect(),
             file_vertex_count: self.drawn.file_vertex_count(),
         }

@@ -5,6 +5,7 @@ pub(crate) mod drawn_set;
 pub(crate) mod drawn_triangles;
 mod object;
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::findings::topological::Parts;
@@ -47,8 +48,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// Welds `drawn` into a surface. Anything that can't be solved is set aside and told in the findings; a file with
-    /// no usable triangle gives an empty surface.
+    /// Welds `drawn` into a surface. Vertices that no kept triangle uses become bare points behind its other vertices
+    /// ([`Topology::bare_points`]). Anything that can't be solved is set aside and told in the findings.
     pub fn weld(drawn: Drawn, options: &WeldOptions, progress: &Progress, cancel: &Cancel) -> Result<Self, Cancelled> {
         let mut welded = weld(drawn, options, progress, cancel)?;
         cancel.check()?;
@@ -72,9 +73,16 @@ impl Model {
         })
     }
 
-    /// The bounding box of the vertices that kept triangles use; `None` of an empty surface.
+    /// The bounding box of the vertices that kept triangles use, of all bare points where there is no triangle; `None`
+    /// of an empty surface.
     pub fn bounds(&self) -> Option<Bounds> {
-        bounding_box(&self.surface.positions)
+        bounding_box(self.main_positions())
+    }
+
+    /// The positions that say where the model is and how large: those of the vertices that kept triangles use, of all
+    /// bare points where there is no triangle. Stray points far away from a scan don't count.
+    pub fn main_positions(&self) -> &[DVec3] {
+        main_positions(&self.surface.positions, self.topology.bare_points().start)
     }
 
     /// The lowest of the file's vertices behind a surface vertex.
@@ -85,6 +93,15 @@ impl Model {
     /// The table from the file's vertices to the surface's.
     pub fn surface_of_file(&self) -> SurfaceOfFile {
         SurfaceOfFile::of_drawn(&self.drawn)
+    }
+}
+
+/// As [`Model::main_positions`], of positions from `first_bare` on bare.
+pub(crate) fn main_positions(positions: &[DVec3], first_bare: usize) -> &[DVec3] {
+    if first_bare == 0 {
+        positions
+    } else {
+        &positions[..first_bare]
     }
 }
 
@@ -117,8 +134,8 @@ impl SurfaceOfFile {
         }
     }
 
-    /// The surface vertices of `vertex`, ascending: none where no kept triangle uses it (or the file has no such
-    /// vertex), two where two nodes show it in two places.
+    /// The surface vertices of `vertex`, ascending: none where it is not finite or not drawn (or the file has no
+    /// such vertex), two where two nodes show it in two places.
     pub fn of(&self, vertex: FileVertex) -> &[SurfaceVertex] {
         let row = self.offsets.get(vertex.index()..=vertex.index() + 1);
         match row {

@@ -13,6 +13,8 @@ pub use contours::{ContourLine, Crossing, contours};
 pub use faces::Faces;
 pub use rings::FanKind;
 
+use std::ops::Range;
+
 use boundary::trace_loops;
 use components::Components;
 use faces::{are_in_order, runs};
@@ -71,6 +73,14 @@ impl Topology {
     /// How many vertices the surface has.
     pub fn vertex_count(&self) -> usize {
         self.fan_kinds.len()
+    }
+
+    /// The vertices behind the last one that a triangle uses: the bare points of a welded surface.
+    pub fn bare_points(&self) -> Range<usize> {
+        let count = self.vertex_count();
+        let end = self.neighbour_list.len() as u32;
+        let starts = self.neighbour_offsets.get(..count).unwrap_or_default();
+        starts.partition_point(|&start| start < end)..count
     }
 
     /// The vertices that share an edge with `v`, ascending, without `v`.
@@ -218,6 +228,6 @@ impl Topology {
 }
 
 #[inline]
-fn row(offsets: &[u32], v: SurfaceVertex) -> std::ops::Range<usize> {
+fn row(offsets: &[u32], v: SurfaceVertex) -> Range<usize> {
     offsets[v.index()] as usize..offsets[v.index() + 1] as usize
 }

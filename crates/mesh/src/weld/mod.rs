@@ -1,5 +1,6 @@
 //! Welds drawn vertices and triangles into a surface and counts everything that was left out.
 
+mod bare_points;
 mod joining;
 mod morton;
 
@@ -24,7 +25,10 @@ const LARGEST_TOLERANCE: f64 = 1e-4;
 
 /// The result of welding.
 pub(crate) struct Welded {
+    /// Its triangles use the first vertices; the others are bare points.
     pub(crate) surface: Surface,
+    /// The number of the first bare point, or that of all vertices.
+    pub(crate) first_bare: usize,
     /// The drawn set that was welded, its triangles in their original order.
     pub(crate) drawn: DrawnSet,
     pub(crate) components: Components,
@@ -52,10 +56,8 @@ pub(crate) fn weld(
     let drawn_positions = drawn.positions;
     let file_vertices = FileVertices::new(drawn.file_vertex_count, drawn.file_vertex);
     let corners = Corners::new(drawn.triangles);
-    let usable: Vec<bool> = drawn_positions
-        .par_iter()
-        .map(|p| p.is_finite() && p.abs().max_element() <= LARGEST_COORDINATE)
-        .collect();
+    let lines = drawn.lines;
+    let usable: Vec<bool> = drawn_positions.par_iter().map(is_usable).collect();
     let uses = uses_of_vertices(&corners, &usable);
     report_vertices(&file_vertices, &usable, &uses, &mut findings);
     drop(usable);
@@ -66,17 +68,79 @@ pub(crate) fn weld(
         .filter(|&v| uses[v as usize] == Use::Triangle)
         .collect();
     drop(uses);
-    let Some(bounds) = bounds_of(members.par_iter().map(|&v| drawn_positions[v as usize])) else {
-        findings.non_finite_triangles = collect(corners.len(), |_| true);
-        return Ok(without_surface(drawn_positions, corners, file_vertices, findings));
+    let share = options.tolerance.map(|share| share.clamp(0.0, LARGEST_TOLERANCE));
+    let bounds = bounds_of(members.par_iter().map(|&v| drawn_positions[v as usize]));
+    let tolerance = share
+        .zip(bounds.as_ref())
+        .map(|(share, bounds)| share * bounds.diagonal());
+    let Joining {
+        mut positions,
+        mut surface_vertices,
+    } = match bounds {
+        Some(bounds) => {
+            let joined = joining::join(&drawn_positions, members, &bounds, tolerance);
+            cancel.check()?;
+            progress.set(0.35);
+            joined_by_triangles(&drawn_positions, &corners, joined, &mut findings)
+        }
+        None => {
+            findings.non_finite_triangles = collect(corners.len(), |_| true);
+            Joining {
+                positions: Vec::new(),
+                surface_vertices: vec![NONE; drawn_positions.len()],
+            }
+        }
     };
-    let tolerance = options
-        .tolerance
-        .map(|share| share.clamp(0.0, LARGEST_TOLERANCE) * bounds.diagonal());
-    let joined = joining::join(&drawn_positions, members, &bounds, tolerance);
     cancel.check()?;
-    progress.set(0.35);
+    progress.set(0.45);
 
+    let first_bare = positions.len();
+    let bare: Vec<u32> = (0..drawn_positions.len() as u32)
+        .filter(|&v| surface_vertices[v as usize] == NONE && is_usable(&drawn_positions[v as usize]))
+        .collect();
+    bare_points::add(&drawn_positions, &bare, &mut positions, &mut surface_vertices, |own| {
+        tolerance.or_else(|| Some(share? * own.diagonal()))
+    });
+    drop(bare);
+    cancel.check()?;
+    let drawn = DrawnSet::new(drawn_positions, surface_vertices, &positions, file_vertices);
+    let in_surface = |v: DrawnVertex| match drawn.surface_vertex(v) {
+        Some(v) if v.index() < first_bare => v.0,
+        _ => NONE,
+    };
+    let (triangles, triangle_of_surface) = sort_triangles(
+        corners.len(),
+        |t| corners.of(t).map(in_surface),
+        first_bare,
+        &mut findings.duplicate_triangles,
+    );
+    let first_file_vertex = first_file_vertices(&drawn, positions.len());
+    let surface = Surface { positions, triangles };
+    findings.zero_area_triangles = collect(surface.triangles.len(), |t| is_without_area(surface.corners(t)))
+        .renamed(|t| triangle_of_surface[t as usize]);
+    progress.set(0.6);
+    Ok(Welded {
+        drawn: drawn.with_triangles(corners, triangle_of_surface).with_lines(lines),
+        components: Components::of(&surface.triangles, &first_file_vertex),
+        surface,
+        first_bare,
+        findings,
+    })
+}
+
+/// Welded positions, in Morton order, and the one of each drawn vertex ([`NONE`] where it has none).
+struct Joining {
+    positions: Vec<DVec3>,
+    surface_vertices: Vec<u32>,
+}
+
+/// The groups that proper triangles use; reports the triangles that are left out.
+fn joined_by_triangles(
+    drawn_positions: &[DVec3],
+    corners: &Corners,
+    joined: Joined,
+    findings: &mut Findings,
+) -> Joining {
     let mut surface_vertices = groups_by_vertex(drawn_positions.len(), &joined);
     let Joined { order, representative } = joined;
     drop(representative);
@@ -90,9 +154,6 @@ pub(crate) fn weld(
         }
     });
     let surface_of_group = number_used_groups((0..corners.len()).map(in_groups), order.len());
-    cancel.check()?;
-    progress.set(0.45);
-
     let used = (0..order.len()).filter(|&group| surface_of_group[group] != NONE);
     let mut positions = Vec::with_capacity(used.clone().count());
     positions.extend(used.map(|group| drawn_positions[order[group] as usize]));
@@ -100,38 +161,14 @@ pub(crate) fn weld(
     surface_vertices.par_iter_mut().for_each(|group| {
         *group = surface_of_group.get(*group as usize).copied().unwrap_or(NONE);
     });
-    drop(surface_of_group);
-    let drawn = DrawnSet::new(drawn_positions, surface_vertices, &positions, file_vertices);
-    let in_surface = |v: DrawnVertex| drawn.surface_vertex(v).map_or(NONE, |v| v.0);
-    let (triangles, triangle_of_surface) = sort_triangles(
-        corners.len(),
-        |t| corners.of(t).map(in_surface),
-        positions.len(),
-        &mut findings.duplicate_triangles,
-    );
-    let first_file_vertex = first_file_vertices(&drawn, positions.len());
-    let surface = Surface { positions, triangles };
-    findings.zero_area_triangles = collect(surface.triangles.len(), |t| is_without_area(surface.corners(t)))
-        .renamed(|t| triangle_of_surface[t as usize]);
-    progress.set(0.6);
-    Ok(Welded {
-        drawn: drawn.with_triangles(corners, triangle_of_surface),
-        components: Components::of(&surface.triangles, &first_file_vertex),
-        surface,
-        findings,
-    })
+    Joining {
+        positions,
+        surface_vertices,
+    }
 }
 
-/// The result for a mesh without a usable triangle: its drawn set, and an empty surface.
-fn without_surface(positions: Vec<DVec3>, corners: Corners, file_vertices: FileVertices, findings: Findings) -> Welded {
-    let nowhere = vec![NONE; positions.len()];
-    let drawn = DrawnSet::new(positions, nowhere, &[], file_vertices);
-    Welded {
-        surface: Surface::default(),
-        drawn: drawn.with_triangles(corners, Vec::new()),
-        components: Components::default(),
-        findings,
-    }
+fn is_usable(position: &DVec3) -> bool {
+    position.is_finite() && position.abs().max_element() <= LARGEST_COORDINATE
 }
 
 /// The lowest file vertex of each of `count` surface vertices.
@@ -215,8 +252,8 @@ fn number_used_groups(triangles: impl Iterator<Item = [u32; 3]>, group_count: us
 /// The proper triangles without duplicates, and the drawn triangle that each came from.
 ///
 /// They are sorted by lowest, middle and highest vertex, so that triangles near each other are near in memory; corners
-/// keep their drawn order. A corner that no proper triangle uses has no surface vertex, so the surface vertices alone
-/// tell which triangles are proper.
+/// keep their drawn order. `in_surface` gives [`NONE`] for a corner that no proper triangle uses, so it alone tells
+/// which triangles are proper.
 fn sort_triangles(
     count: usize,
     in_surface: impl Fn(usize) -> [u32; 3] + Sync,

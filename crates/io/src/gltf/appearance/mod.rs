@@ -15,8 +15,8 @@ use crate::appearance::{AlphaMode, Appearance, Group, Image, Material, Origin, W
 use crate::gltf::document::json::At;
 use crate::gltf::document::uri;
 use crate::gltf::document::{Document, ImageFile};
-use crate::gltf::geometry::primitive::Primitive;
-use crate::gltf::geometry::{self, Instance, Pieces};
+use crate::gltf::geometry::primitive::{Mode, Primitive};
+use crate::gltf::geometry::{self, Instance, Piece, Pieces};
 use crate::scene::objects;
 
 /// Vertices that a thread handles at a time.
@@ -70,7 +70,7 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
     };
     // Primitives without a material share one that stands behind the file's own.
     let default_material = out.materials.len();
-    if pieces.pieces.iter().any(|piece| {
+    if of_triangles(meshes, pieces).any(|piece| {
         of_piece(meshes, pieces, piece.instance, piece.primitive)
             .material
             .is_none()
@@ -78,9 +78,7 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
         out.materials.push(material(document, &json::Material::default()));
     }
     let mut names = Names::of(document);
-    out.groups = pieces
-        .pieces
-        .iter()
+    out.groups = of_triangles(meshes, pieces)
         .map(|piece| Group {
             triangles: piece.triangles.clone(),
             material: of_piece(meshes, pieces, piece.instance, piece.primitive)
@@ -92,10 +90,18 @@ pub(crate) fn appearance(document: &Document, meshes: &[Vec<Primitive>], pieces:
     out
 }
 
+/// The pieces that are made of triangles; lines and points have no groups and are no objects.
+fn of_triangles<'a>(meshes: &'a [Vec<Primitive>], pieces: &'a Pieces) -> impl Iterator<Item = &'a Piece> {
+    pieces.pieces.iter().filter(|piece| {
+        let mode = of_piece(meshes, pieces, piece.instance, piece.primitive).mode;
+        mode.is_some_and(Mode::makes_triangles)
+    })
+}
+
 /// The objects by node and material of the drawn set; a node without a name gets its mesh's.
 pub(crate) fn objects(document: &Document, meshes: &[Vec<Primitive>], pieces: &Pieces) -> Vec<Object> {
     let mut names = Names::of(document);
-    objects::gathered(pieces.pieces.iter().map(|piece| {
+    objects::gathered(of_triangles(meshes, pieces).map(|piece| {
         let instance = &pieces.instances[piece.instance];
         let material = of_piece(meshes, pieces, piece.instance, piece.primitive).material;
         let name = names.get(document.nodes_at[instance.node]);

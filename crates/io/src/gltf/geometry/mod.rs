@@ -1,11 +1,13 @@
-//! The drawn set of a glTF: every vertex of the default scene's triangles, seen through its node.
+//! The drawn set of a glTF: every vertex of the default scene's triangles, lines and points, seen through its node.
 //!
 //! **Numbering.** File vertices are the elements of POSITION accessors. Accessors come in the order in which the
 //! file's primitives first name them: meshes in the file's order, a mesh's primitives in theirs, whether drawn or not
 //! and whatever their mode; one that several primitives name is counted once.
 //!
-//! Drawn vertices come node by node (depth first), primitive by primitive. Primitives of one mesh that name the same
-//! accessors share their drawn vertices, so that a mesh cut into a hundred materials is not multiplied by a hundred.
+//! Drawn vertices come node by node (depth first), primitive by primitive: those of triangles, then those of lines and
+//! points. Primitives of one mesh that name the same accessors share their drawn vertices, so that a mesh cut into a
+//! hundred materials is not multiplied by a hundred. Lines and points share those of any primitive with the same
+//! positions.
 
 pub(crate) mod draco;
 pub(crate) mod meshopt;
@@ -90,30 +92,41 @@ pub(crate) fn drawn(
             .entry(place.mesh)
             .or_insert_with(|| primitive::first_alike(primitives));
         let mut instance_of: HashMap<usize, usize> = HashMap::new();
+        // The first primitive with each accessor of positions, and its instance.
+        let mut instance_at: HashMap<usize, (usize, usize)> = HashMap::new();
         let applied = weights.of(document, place);
-        for (number, primitive) in primitives.iter().enumerate() {
+        spend(
+            &mut gathering.budget,
+            primitives.len(),
+            PIECE_BYTES,
+            "runs of triangles",
+        )?;
+        for (number, primitive, mode) in primitive::triangles_first(primitives) {
             cancel.check()?;
-            spend(&mut gathering.budget, 1, PIECE_BYTES, "runs of triangles")?;
-            let (Some(mode), Some(position)) = (primitive.mode, primitive.position) else {
+            let Some(position) = primitive.position else {
                 continue;
             };
-            if !matches!(mode, Mode::Triangles | Mode::Strip | Mode::Fan) {
-                continue;
-            }
             let here = || format!("mesh {} primitive {number}", place.mesh);
-            primitive
-                .check_decoded(document)
-                .map_err(|what| format!("{} {what}", here()))?;
+            match primitive.check_decoded(document) {
+                Err(what) if mode.makes_triangles() => return Err(format!("{} {what}", here()).into()),
+                // Lines and points that can't be read are kept and left alone.
+                Err(_) => continue,
+                Ok(()) => {}
+            }
             let layout = document.layout(position)?;
             if layout.lanes != 3 {
                 return Err(format!("{}: POSITION is not made of three numbers each", here()).into());
             }
-            let instance = match instance_of.get(&alike[number]) {
-                Some(&known) => known,
-                None => {
+            let same_positions = instance_at
+                .get(&position)
+                .filter(|(other, _)| !mode.makes_triangles() && primitive.moves_as(&primitives[*other]));
+            let instance = match (instance_of.get(&alike[number]), same_positions) {
+                (Some(&known), _) | (None, Some(&(_, known))) => known,
+                (None, None) => {
                     let first = first_file_vertex[position];
                     let added = gathering.instance(place, primitive, number, &layout, first, applied)?;
                     instance_of.insert(alike[number], added);
+                    instance_at.entry(position).or_insert((number, added));
                     added
                 }
             };
@@ -183,7 +196,7 @@ impl Gathering<'_> {
         Ok(self.pieces.instances.len() - 1)
     }
 
-    /// Adds the triangles of primitive `number`, whose `vertex_count` vertices are those of `instance`.
+    /// Adds the triangles or lines of primitive `number`, whose `vertex_count` vertices are those of `instance`.
     fn piece(
         &mut self,
         place: &Placed,
@@ -194,8 +207,16 @@ impl Gathering<'_> {
         instance: usize,
     ) -> Result<(), Fault> {
         let corner_count = corner_count(self.document, primitive, vertex_count)?;
-        let count = triangle_count(mode, corner_count);
-        spend(&mut self.budget, count, size_of::<[DrawnVertex; 3]>(), "triangles")?;
+        match mode {
+            Mode::Points => {}
+            Mode::Lines | Mode::LineLoop | Mode::LineStrip => {
+                spend(&mut self.budget, corner_count, size_of::<[DrawnVertex; 2]>(), "lines")?;
+            }
+            Mode::Triangles | Mode::Strip | Mode::Fan => {
+                let count = triangle_count(mode, corner_count);
+                spend(&mut self.budget, count, size_of::<[DrawnVertex; 3]>(), "triangles")?;
+            }
+        }
         let corners = corners(self.document, primitive, vertex_count)
             .map_err(|what| format!("mesh {} primitive {number} {what}", place.mesh))?;
         let start = self.drawn.triangles.len() as u32;
@@ -206,7 +227,11 @@ impl Gathering<'_> {
             Winding::AsStored
         };
         let first = self.pieces.instances[instance].vertices.start;
-        corners.triangles(mode, winding, first, &mut self.drawn.triangles);
+        if mode.makes_triangles() {
+            corners.triangles(mode, winding, first, &mut self.drawn.triangles);
+        } else {
+            corners.lines(mode, first, &mut self.drawn.lines);
+        }
         self.pieces.pieces.push(Piece {
             instance,
             primitive: number,
@@ -368,6 +393,27 @@ impl Corners {
             Self::Listed(indices) => indices.len(),
             Self::Counted(count) => *count as usize,
         }
+    }
+
+    /// Appends the lines over drawn vertices that begin at `first`; points make none, nor do two equal corners.
+    fn lines(&self, mode: Mode, first: u32, out: &mut Vec<[DrawnVertex; 2]>) {
+        let corner = |k: usize| match self {
+            Self::Listed(indices) => indices[k],
+            Self::Counted(_) => k as u32,
+        };
+        let count = self.len();
+        let lines = match mode {
+            Mode::Lines => count / 2,
+            Mode::LineStrip => count.saturating_sub(1),
+            Mode::LineLoop if count > 1 => count,
+            _ => 0,
+        };
+        let line = |k: usize| match mode {
+            Mode::Lines => [corner(2 * k), corner(2 * k + 1)],
+            _ => [corner(k), corner((k + 1) % count)],
+        };
+        let drawn = (0..lines).map(line).filter(|[a, b]| a != b);
+        out.extend(drawn.map(|ends| ends.map(|corner| DrawnVertex(first + corner))));
     }
 
     /// Appends the triangles over drawn vertices that begin at `first`. Degenerate triangles that connect strips (two

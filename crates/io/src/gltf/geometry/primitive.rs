@@ -12,11 +12,20 @@ use crate::gltf::document::json::At;
 /// How a primitive's corners make shapes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Mode {
+    Points,
+    Lines,
+    LineLoop,
+    LineStrip,
     Triangles,
     Strip,
     Fan,
-    /// Points, lines, line loops and line strips: kept and left alone.
-    Other,
+}
+
+impl Mode {
+    /// Whether it makes triangles, not lines or points.
+    pub fn makes_triangles(self) -> bool {
+        matches!(self, Self::Triangles | Self::Strip | Self::Fan)
+    }
 }
 
 /// The members of a primitive that are read; every index is in range.
@@ -50,6 +59,16 @@ pub(crate) struct Target {
 
 /// The accessors, morph targets and transform of texture coordinates of a primitive's vertices.
 type Attributes<'a> = ([Option<usize>; 6], &'a [Target], Option<[u32; 5]>);
+
+/// The primitives that are drawn, with their number and mode: those that make triangles, then lines and points.
+pub(crate) fn triangles_first(primitives: &[Primitive]) -> impl Iterator<Item = (usize, &Primitive, Mode)> {
+    let pass = |wanted: bool| {
+        let all = primitives.iter().enumerate();
+        let drawn = all.filter_map(|(number, primitive)| Some((number, primitive, primitive.mode?)));
+        drawn.filter(move |(.., mode)| mode.makes_triangles() == wanted)
+    };
+    pass(true).chain(pass(false))
+}
 
 /// For each primitive of a mesh the first one with the same vertices, which may be itself.
 pub(crate) fn first_alike(primitives: &[Primitive]) -> Vec<usize> {
@@ -85,7 +104,10 @@ impl Primitive {
             Some(Some(4.0)) => Some(Mode::Triangles),
             Some(Some(5.0)) => Some(Mode::Strip),
             Some(Some(6.0)) => Some(Mode::Fan),
-            Some(Some(0.0 | 1.0 | 2.0 | 3.0)) => Some(Mode::Other),
+            Some(Some(0.0)) => Some(Mode::Points),
+            Some(Some(1.0)) => Some(Mode::Lines),
+            Some(Some(2.0)) => Some(Mode::LineLoop),
+            Some(Some(3.0)) => Some(Mode::LineStrip),
             _ => None,
         };
         let accessor = |object: At, key: &str| document.index(object, key, document.accessors.len(), &what);
@@ -120,6 +142,11 @@ impl Primitive {
                 })
                 .collect::<Result<_, String>>()?,
         })
+    }
+
+    /// Whether its vertices are where the other's are, whatever the weights of morph targets.
+    pub fn moves_as(&self, other: &Self) -> bool {
+        self.position == other.position && self.targets == other.targets
     }
 
     /// Everything that a primitive's drawn vertices are made of: equal for two whose drawn vertices are the same.
