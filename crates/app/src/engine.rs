@@ -8,7 +8,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
-use pliant_deform::{BindError, Bound, Method, Ordering, SolveError, Step};
+use pliant_deform::{BindError, Bound, Method, Needs, Ordering, SolveError, Step};
 use pliant_editor::{Beginning, Setup};
 use pliant_io::MorphTarget;
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
@@ -62,6 +62,31 @@ fn refused(file: &Path, model: &Model, error: BindError) -> AppError {
     }
 }
 
+/// Refuses a method that bends surfaces where the file holds points alone.
+///
+/// # Errors
+/// [`AppError::NoTriangles`].
+pub fn check_bends(file: &Path, model: &Model, method: &Method) -> Result<(), AppError> {
+    if model.surface.triangles.is_empty() && method.needs() != Needs::Points {
+        return Err(AppError::NoTriangles {
+            file: file.to_owned(),
+            method: method.name(),
+        });
+    }
+    Ok(())
+}
+
+/// Refuses a file that holds neither triangles nor points.
+///
+/// # Errors
+/// [`AppError::Empty`].
+pub fn check_not_empty(file: &Path, model: &Model) -> Result<(), AppError> {
+    if model.surface.positions.is_empty() {
+        return Err(AppError::Empty(file.to_owned()));
+    }
+    Ok(())
+}
+
 /// What [`apply`] is to do.
 #[derive(Clone, Debug)]
 pub struct Apply<'a> {
@@ -98,13 +123,12 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
         files::refuse_shared(("--report", report), neighbours())?;
     }
     let model = &loaded.model;
-    if model.surface.triangles.is_empty() {
-        return Err(AppError::NoTriangles(apply.file.to_owned()));
-    }
+    check_not_empty(apply.file, model)?;
     let setup = apply.edit.resolve(model).map_err(|source| AppError::Edit {
         edit: apply.edit_path.to_owned(),
         source,
     })?;
+    check_bends(apply.file, model, &setup.method)?;
 
     let solution = if apply.edit.changes_nothing() {
         Solution::at_rest(model, &setup)
@@ -160,6 +184,7 @@ pub fn solved(
     setup: &Setup,
     watch: &Watch,
 ) -> Result<Solved, AppError> {
+    check_bends(file, &loaded.model, &setup.method)?;
     let solution = if edit.changes_nothing() {
         Solution::at_rest(&loaded.model, setup)
     } else {

@@ -3,8 +3,8 @@
 use crate::method::option::joined;
 use crate::{ConstraintKind, METHODS, MethodDeclaration, Needs};
 
-/// The first methods that bend space and need no surface.
-pub(crate) fn of_space() -> String {
+/// The names of the first methods that bend space and need no surface, joined by "or".
+pub fn of_space() -> String {
     let points = |declaration: &&&MethodDeclaration| (declaration.default)().needs() == Needs::Points;
     either(METHODS.iter().filter(points).take(2))
 }

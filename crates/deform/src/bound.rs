@@ -131,7 +131,7 @@ impl Bound {
         let attachment = declaration.attachments.first();
         let residual = match problem.method.implementation().handle_fit() {
             HandleFit::Exact => HandleResidual::default(),
-            HandleFit::LeastSquares => HandleResidual::new(problem.method.name(), &handles, &partition.soft, positions),
+            HandleFit::LeastSquares => HandleResidual::new(problem, &handles, &partition.soft),
         };
         let mut warnings = partition.warnings;
         warnings.extend(method.warnings().into_iter().map(Warning::from));

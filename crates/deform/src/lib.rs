@@ -11,7 +11,7 @@
 //! them, `laplacian` does so with differential coordinates, and `frames` solves for the turns first. `rbf`, `mls`,
 //! `embedded`, `lattice` and `cage` bend the space around points, connected or not (`space`).
 
-mod alternatives;
+pub mod alternatives;
 mod arap;
 mod bilaplacian;
 mod bound;

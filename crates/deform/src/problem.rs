@@ -1,6 +1,6 @@
 //! What is to be solved: a surface, and what each of its vertices does.
 
-use pliant_mesh::{Cancel, Progress, Surface, Topology};
+use pliant_mesh::{Bounds, Cancel, Progress, Surface, Topology, bounding_box};
 
 use crate::budget::bytes_of;
 use crate::sparse::refactorisation::Refactorisation;
@@ -83,6 +83,16 @@ impl Problem<'_> {
             }
         }
         loose
+    }
+
+    /// The surface's bounding box; bare points beside triangles don't count.
+    pub(crate) fn bounds(&self) -> Option<Bounds> {
+        bounding_box(self.topology.main_positions(&self.surface.positions))
+    }
+
+    /// Its diagonal, in world units.
+    pub(crate) fn diagonal(&self) -> f64 {
+        self.bounds().map_or(0.0, |bounds| bounds.diagonal())
     }
 
     /// Refuses the problem where already its tables and its ordering would exceed a budget, before any of it is made.

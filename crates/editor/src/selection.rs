@@ -48,8 +48,8 @@ impl Selector {
     /// The surface's vertices that the selector describes.
     ///
     /// A welded vertex is selected if any of the file's vertices behind it is, so twins are selected together.
-    /// Positions are the file's own, in world space. Vertices of the file that no triangle uses may be named and select
-    /// nothing. A vertex or component number that the model does not have is an error.
+    /// Positions are the file's own, in world space. Vertices of the file that are not drawn or not finite may be named
+    /// and select nothing. A vertex or component number that the model does not have is an error.
     pub fn evaluate(&self, model: &Model) -> Result<Selection, EditError> {
         self.evaluate_at(model, "the selector")
     }
@@ -164,13 +164,16 @@ fn by_slab(model: &Model, axis: Axis, from: f64, to: f64) -> Vec<bool> {
     })
 }
 
-/// The bounding box of the finite vertices that triangles of the scene use.
+/// The bounding box of the finite vertices that triangles of the scene use, of all where there is no triangle.
 fn bounds_of_used_vertices(model: &Model) -> Option<(DVec3, DVec3)> {
     let Drawn {
         positions, triangles, ..
     } = model.rest();
-    let used = triangles.as_flattened().iter().map(|vertex| positions[vertex.index()]);
-    used.filter(|position| position.is_finite())
+    let of_triangles = triangles.as_flattened().iter().map(|vertex| positions[vertex.index()]);
+    let all = if triangles.is_empty() { &positions[..] } else { &[] };
+    of_triangles
+        .chain(all.iter().copied())
+        .filter(|position| position.is_finite())
         .fold(None, |bounds, p| match bounds {
             None => Some((p, p)),
             Some((min, max)) => Some((p.min(min), p.max(max))),

@@ -131,10 +131,8 @@ fn compare(arguments: &CompareArguments, methods: &[Asked], watch: &Watch) -> Re
         files::refuse_shared(("--report", report), loaded.sources())?;
     }
     let model = &loaded.model;
-    if model.surface.triangles.is_empty() {
-        return Err(AppError::NoTriangles(arguments.file.clone()));
-    }
-    let edit = render::resolved(&arguments.edit, model, watch)?;
+    engine::check_not_empty(&arguments.file, model)?;
+    let (edit, _) = render::resolved(&arguments.edit, model, watch)?;
     let mut outcomes = Vec::with_capacity(methods.len());
     for method in methods {
         outcomes.push(outcome(arguments, &loaded, method, watch)?);
@@ -368,13 +366,14 @@ const TOO_FAR: f64 = 3.0;
 /// A camera that sees the rest shape and every shape that is not far larger.
 fn camera(arguments: &CompareArguments, model: &Model, outcomes: &[Outcome], size_px: DVec2) -> Camera {
     let diagonal = |positions: &[DVec3]| pliant_mesh::bounding_box(positions).map_or(0.0, |bounds| bounds.diagonal());
-    let own = diagonal(&model.surface.positions);
-    let mut seen = model.surface.positions.clone();
+    let mut seen = model.main_positions().to_vec();
+    let own = diagonal(&seen);
     for outcome in outcomes {
         if let Outcome::Bent { surface_positions, .. } = outcome
-            && diagonal(surface_positions) < TOO_FAR * own
+            && let positions = model.topology.main_positions(surface_positions)
+            && diagonal(positions) < TOO_FAR * own
         {
-            seen.extend_from_slice(surface_positions);
+            seen.extend_from_slice(positions);
         }
     }
     let mut camera = render::looking(arguments.look.up, arguments.look.view, own);

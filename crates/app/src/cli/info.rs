@@ -85,8 +85,11 @@ fn as_text(
             inspection.file_vertices, inspection.drawn_vertices, inspection.surface_vertices
         ),
     );
-    if inspection.surface_triangles == 0 {
+    if inspection.surface_vertices == 0 {
         line("triangles", "none: there is nothing to edit in it".to_owned());
+    } else if inspection.surface_triangles == 0 {
+        let space = pliant_deform::alternatives::of_space();
+        line("triangles", format!("none: {space} bend the points"));
     } else {
         line(
             "triangles",
@@ -95,6 +98,9 @@ fn as_text(
                 inspection.drawn_triangles, inspection.surface_triangles
             ),
         );
+    }
+    if inspection.bare_points > 0 {
+        line("points", format!("{} that no triangle uses", inspection.bare_points));
     }
     if let Some(bounds) = inspection.bounds {
         let (min, max) = (bounds.min, bounds.max);
@@ -175,6 +181,7 @@ fn as_json(
         "vertices": inspection.file_vertices,
         "drawn_vertices": inspection.drawn_vertices,
         "welded_vertices": inspection.surface_vertices,
+        "points": inspection.bare_points,
         "drawn_triangles": inspection.drawn_triangles,
         "triangles": inspection.surface_triangles,
         "bounding_box": bounds,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use pliant_editor::{
-    Beginning, Camera, Editor, Event, InlineExecutor, JobKind, Look, NamedView, Projection, Shading, UpAxis,
+    Beginning, Camera, Editor, Event, InlineExecutor, JobKind, Look, NamedView, Projection, Setup, Shading, UpAxis,
 };
 use pliant_mesh::{Cancel, Model, WeldOptions};
 use pliant_render::{Background, Frame, Headless, RenderError, Renderer, Samples, Surface, SurfaceLine};
@@ -110,14 +110,17 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
         files::refuse_shared(("--output", path), loaded.sources())?;
     }
     let model = &loaded.model;
-    let Some(bounds) = model.bounds().filter(|_| !model.surface.triangles.is_empty()) else {
-        return Err(AppError::NoTriangles(arguments.file.clone()));
+    let Some(bounds) = model.bounds() else {
+        return Err(AppError::Empty(arguments.file.clone()));
     };
-    let edit = arguments
-        .edit
-        .as_deref()
-        .map(|path| resolved(path, model, watch))
-        .transpose()?;
+    let edit = match arguments.edit.as_deref() {
+        Some(path) => {
+            let (edit, setup) = resolved(path, model, watch)?;
+            engine::check_bends(&arguments.file, model, &setup.method)?;
+            Some(edit)
+        }
+        None => None,
+    };
     let posed = if edit.is_some() { Posed::Bent } else { Posed::AtRest };
     let shape = Shape::of(&arguments.file, &loaded, edit, posed, watch)?;
     let progress = watch.begin("drawing");
@@ -231,7 +234,7 @@ fn camera(arguments: &RenderArguments, model: &Model, diagonal: f64, size_px: DV
         ProjectionName::Perspective => Projection::Perspective,
         ProjectionName::Orthographic => Projection::Orthographic,
     };
-    camera.frame(&model.surface.positions, size_px);
+    camera.frame(model.main_positions(), size_px);
     camera.distance *= ROOM_FOR_THE_EDIT;
     camera
 }
@@ -251,13 +254,13 @@ pub(super) fn looking(up_axis: Up, from: View, diagonal: f64) -> Camera {
 const ROOM_FOR_THE_EDIT: f64 = 1.2;
 
 /// Reads an edit that fits the model, with the same refusals as `apply`: the editor itself would accept any edit.
-pub(super) fn resolved(path: &Path, model: &Model, watch: &Watch) -> Result<Beginning, AppError> {
+pub(super) fn resolved(path: &Path, model: &Model, watch: &Watch) -> Result<(Beginning, Setup), AppError> {
     let (edit, _) = read_edit(path, watch)?;
-    edit.resolve(model).map_err(|source| AppError::Edit {
+    let setup = edit.resolve(model).map_err(|source| AppError::Edit {
         edit: path.to_owned(),
         source,
     })?;
-    Ok(edit)
+    Ok((edit, setup))
 }
 
 /// What is drawn.

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Mat3};
 use pliant_io::Appearance;
-use pliant_mesh::{Model, bounding_box};
+use pliant_mesh::Model;
 use pliant_render::{Chunks, ColourSpace, MaterialGroup, RenderError, Renderer, Surface, SurfaceData};
 
 pub use drawn_colours::{drawn_colours, recolour};
@@ -51,7 +51,7 @@ impl Drawing {
     /// Prepares a file for drawing. Its images are decoded separately: see [`EncodedMaterials::decode`].
     pub fn new(model: &Model, mut appearance: Appearance) -> Self {
         materials::dim_bare(&mut appearance, model.drawn.triangle_count() as u32);
-        let centre = bounding_box(&model.surface.positions).map_or(DVec3::ZERO, |bounds| bounds.centre());
+        let centre = model.bounds().map_or(DVec3::ZERO, |bounds| bounds.centre());
         let materials = EncodedMaterials::new(&mut appearance);
         let groups: Vec<MaterialGroup> = appearance
             .groups

@@ -1,6 +1,6 @@
 //! A problem's operator, and the values that its handles prescribe.
 
-use pliant_mesh::{SurfaceVertex, bounding_box};
+use pliant_mesh::SurfaceVertex;
 
 use crate::bilaplacian::continuity::join;
 use crate::bilaplacian::operator::BilaplacianOperator;
@@ -22,7 +22,7 @@ pub(crate) fn operator(
 ) -> (BilaplacianOperator, Vec<Prescribed>) {
     let triangulation = &partition.triangulation;
     let rows = bent_rows(triangulation, &partition.solved, handles);
-    let diagonal = bounding_box(&problem.surface.positions).map_or(0.0, |bounds| bounds.diagonal());
+    let diagonal = problem.diagonal();
     let on = |stiffness: &[f64]| Laplacian::on(triangulation, stiffness, &rows, options.discretisation, &|_, _| 1.0);
     let is_painted = problem.stiffness.iter().any(|stiffness| *stiffness != 1.0);
     let mut operator;

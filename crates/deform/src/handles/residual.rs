@@ -1,10 +1,9 @@
 //! How far hard handles' vertices are from where their transforms take them, for methods that only fit them.
 
 use glam::DVec3;
-use pliant_mesh::bounding_box;
 
 use super::{Handle, Motion};
-use crate::alternatives;
+use crate::{Problem, alternatives};
 
 /// Handles that are missed by less than this share of the model's diagonal look as if they were met.
 const UNSEEN: f64 = 1e-3;
@@ -19,7 +18,8 @@ pub(crate) struct HandleResidual {
 
 impl HandleResidual {
     /// Of those handles that are not soft.
-    pub fn new(method: &'static str, handles: &[Handle], soft: &[Option<f64>], positions: &[DVec3]) -> Self {
+    pub fn new(problem: &Problem, handles: &[Handle], soft: &[Option<f64>]) -> Self {
+        let positions = &problem.surface.positions;
         let own = |(handle, soft): (&Handle, &Option<f64>)| {
             let vertices = handle.vertices.iter().filter(|_| soft.is_none());
             vertices
@@ -28,8 +28,8 @@ impl HandleResidual {
         };
         Self {
             handles: handles.iter().zip(soft).map(own).collect(),
-            method,
-            diagonal: bounding_box(positions).map_or(0.0, |bounds| bounds.diagonal()),
+            method: problem.method.name(),
+            diagonal: problem.diagonal(),
         }
     }
 

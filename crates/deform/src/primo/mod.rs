@@ -41,7 +41,7 @@ mod system;
 mod vertices;
 
 use glam::DVec3;
-use pliant_mesh::{Cancel, Progress, SurfaceVertex, bounding_box};
+use pliant_mesh::{Cancel, Progress, SurfaceVertex};
 
 pub(crate) use self::declaration::DECLARATION;
 pub use self::options::Primo;
@@ -93,7 +93,7 @@ impl PrimoSolver {
         let world_origin = handles.first().map_or(DVec3::ZERO, |handle| handle.world_centre);
         let mut world_grounds = vec![world_origin];
         world_grounds.extend(handles.iter().map(|handle| handle.world_centre));
-        let diagonal = bounding_box(&surface.positions).map_or(0.0, |bounds| bounds.diagonal());
+        let diagonal = problem.diagonal();
         let mut joints = Joints::of(
             &prisms,
             &Material {

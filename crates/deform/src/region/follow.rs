@@ -95,9 +95,13 @@ pub(crate) fn followers(
     let nearby = hierarchy(surface, topology, |component| driven.binary_search(&component).is_ok());
     let owners = owners(surface, topology, following, driven, cancel)?;
     let reach = if following.len() > CRUMBS { 0.0 } else { 1.0 };
-    let place = |middle: SurfaceVertex, radius: f64| Place {
+    let place = |component: u32, middle: SurfaceVertex, radius: f64| Place {
         middle,
-        radius: (reach * radius).max(PATCH_EDGES * mean_edge(surface, topology, middle)),
+        radius: match topology.vertices_of(component).len() {
+            // A bare point has no extent, so it moves with the one-ring beside it.
+            1 => longest_edge(surface, topology, middle),
+            _ => (reach * radius).max(PATCH_EDGES * mean_edge(surface, topology, middle)),
+        },
     };
     // A component that follows as a whole needs only its place.
     let rigid: Vec<Option<Place>> = following
@@ -114,7 +118,7 @@ pub(crate) fn followers(
                     half_diagonal(surface, vertices),
                 ),
             };
-            Some(place(middle, radius))
+            Some(place(component, middle, radius))
         })
         .collect();
     // Ties on components that bend along come last, because these components have to be moved first.
@@ -129,9 +133,11 @@ pub(crate) fn followers(
         if how == Loose::Bend
             && let Some((bending, knots)) = bending(surface, topology, component, &nearby, places.list.len())
         {
-            places
-                .list
-                .extend(knots.into_iter().map(|(middle, radius)| place(middle, radius)));
+            places.list.extend(
+                knots
+                    .into_iter()
+                    .map(|(middle, radius)| place(component, middle, radius)),
+            );
             followers.bending.push(bending);
         }
     }
@@ -298,6 +304,14 @@ fn mean_edge(surface: &Surface, topology: &Topology, vertex: SurfaceVertex) -> f
     let ring = topology.neighbours(vertex);
     let length = |other: &SurfaceVertex| surface.positions[other.index()].distance(centre);
     ring.iter().map(length).sum::<f64>() / ring.len().max(1) as f64
+}
+
+/// The length of the longest edge at a vertex.
+fn longest_edge(surface: &Surface, topology: &Topology, vertex: SurfaceVertex) -> f64 {
+    let centre = surface.positions[vertex.index()];
+    let ring = topology.neighbours(vertex).iter();
+    ring.map(|other| surface.positions[other.index()].distance(centre))
+        .fold(0.0, f64::max)
 }
 
 /// The vertices joined to the middle within the radius, in walking order.

@@ -47,11 +47,14 @@ impl<'a> Partition<'a> {
         let mut held = vec![false; component_count];
         let mut driven = vec![false; component_count];
         let mut free_count = 0;
+        let soft = soft_weights(problem);
         for (vertex, &role) in problem.roles.iter().enumerate() {
             let component = problem.topology.component(SurfaceVertex(vertex as u32)) as usize;
             match role {
                 Role::Fixed => held[component] = true,
                 Role::Free => free_count += 1,
+                // A spring on a bare point would pull at nothing: the point follows like others.
+                Role::Handle(handle) if soft[usize::from(handle)].is_some() && is_bare(problem, vertex) => {}
                 Role::Handle(handle) => {
                     handles[usize::from(handle)].push(vertex as u32);
                     driven[component] = true;
@@ -73,18 +76,20 @@ impl<'a> Partition<'a> {
             Needs::Points => (Vec::new(), Vec::new()),
             Needs::Surface { .. } => {
                 let loose = indices(&|c| !held[c] && !driven[c]);
-                let warnings = warnings(problem, &loose, &loose_of, &indices(&|c| driven[c] && !held[c]));
-                (loose, warnings.into_iter().map(Warning::from).collect())
+                let has_faces = |component: u32| problem.topology.components()[component as usize].face_count > 0;
+                // Components of one vertex come last.
+                let bare = loose.partition_point(|&component| has_faces(component));
+                let unheld = indices(&|c| driven[c] && !held[c] && has_faces(c as u32));
+                let warnings = warnings(problem, &loose[..bare], &loose_of, &unheld);
+                let of_points = warning_of_points(problem, &loose[bare..], &loose_of);
+                let warnings = warnings.into_iter().chain(of_points);
+                (loose, warnings.map(Warning::from).collect())
             }
         };
         let follows = |component: u32| match loose_of[component as usize] {
             Loose::Rest => None,
             how => (!handles.is_empty()).then_some((component, how)),
         };
-        let heeds_soft = problem.method.declaration().heeds(ConstraintKind::SoftHandles);
-        let soft: Vec<Option<f64>> = (0..problem.handle_count)
-            .map(|handle| problem.constraints.weight(handle as u16).filter(|_| heeds_soft))
-            .collect();
         warnings.extend(unheeded(problem));
         warnings.extend(triangulation.warning().map(|sentence| sentence.to_owned().into()));
         Ok(Self {
@@ -173,6 +178,28 @@ fn check(problem: &Problem) -> Result<(), BindError> {
     }
 }
 
+/// Each handle's weight, `None` where it is hard. A surface method holds a handle of bare points alone hard, because
+/// there is nothing that its springs could pull at.
+fn soft_weights(problem: &Problem) -> Vec<Option<f64>> {
+    let heeds_soft = problem.method.declaration().heeds(ConstraintKind::SoftHandles);
+    let mut pulls = vec![false; problem.handle_count];
+    for (vertex, role) in problem.roles.iter().enumerate() {
+        if let Role::Handle(handle) = *role {
+            pulls[usize::from(handle)] |= !is_bare(problem, vertex);
+        }
+    }
+    let weight = |handle: usize| problem.constraints.weight(handle as u16);
+    (0..problem.handle_count)
+        .map(|handle| weight(handle).filter(|_| heeds_soft && pulls[handle]))
+        .collect()
+}
+
+/// Whether a surface method has nothing to solve for at a vertex, because no triangle uses it.
+fn is_bare(problem: &Problem, vertex: usize) -> bool {
+    let is_alone = || problem.topology.neighbours(SurfaceVertex(vertex as u32)).is_empty();
+    problem.method.needs() != Needs::Points && is_alone()
+}
+
 /// The vertices that are solved for, ascending. On a surface these are the free vertices that handles reach by walks
 /// without `reach` successive constrained vertices; of points all free ones. A soft handle's vertices count as free.
 fn solved(problem: &Problem, triangulation: &Triangulation, handles: &[Vec<u32>], soft: &[Option<f64>]) -> Vec<u32> {
@@ -207,7 +234,7 @@ fn solved(problem: &Problem, triangulation: &Triangulation, handles: &[Vec<u32>]
             }
         }
     }
-    chosen(&|vertex| left[vertex] > 0 && is_free(vertex))
+    chosen(&|vertex| left[vertex] > 0 && is_free(vertex) && !is_bare(problem, vertex))
 }
 
 /// Sentences about constraints that the method does not support, with the methods that do.
@@ -239,6 +266,26 @@ fn unheeded(problem: &Problem) -> Vec<Warning> {
         warnings.push(format!("{name} takes no notice of painted stiffness: {remedy}").into());
     }
     warnings
+}
+
+/// A sentence on the points that no triangle uses and nothing holds.
+fn warning_of_points(problem: &Problem, points: &[u32], loose_of: &[Loose]) -> Option<String> {
+    let resting = points
+        .iter()
+        .filter(|&&point| loose_of[point as usize] == Loose::Rest)
+        .count();
+    let does = match (points.len() - resting, resting) {
+        _ if problem.handle_count == 0 => return None,
+        (0, 0) => return None,
+        (0, _) => "stay".to_owned(),
+        (_, 0) => "follow the nearest deformed surface".to_owned(),
+        (_, resting) => format!("follow the nearest deformed surface, but for {resting} that stay"),
+    };
+    Some(format!(
+        "points that no triangle uses ({}) {does}: {} bends them with the space around",
+        points.len(),
+        alternatives::of_space()
+    ))
 }
 
 /// How many components are named; more are only counted.

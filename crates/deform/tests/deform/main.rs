@@ -3,6 +3,7 @@
 
 mod anisotropy;
 mod arap;
+mod bare_points;
 mod bilaplacian;
 mod bodies;
 mod cage;

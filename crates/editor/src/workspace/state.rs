@@ -274,8 +274,8 @@ impl Workspace {
 
     /// The positions of all vertices that are shown.
     pub(crate) fn shown_positions(&self) -> Vec<DVec3> {
-        let count = self.document.paint.len() as u32;
-        let shown = (0..count).filter(|&vertex| self.vertex_access.is_shown(vertex as usize));
+        let all = self.model().map_or(0, |model| model.main_positions().len()) as u32;
+        let shown = (0..all).filter(|&vertex| self.vertex_access.is_shown(vertex as usize));
         shown.map(|vertex| self.position(SurfaceVertex(vertex))).collect()
     }
 }

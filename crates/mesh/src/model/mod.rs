@@ -79,10 +79,9 @@ impl Model {
         bounding_box(self.main_positions())
     }
 
-    /// The positions that say where the model is and how large: those of the vertices that kept triangles use, of all
-    /// bare points where there is no triangle. Stray points far away from a scan don't count.
+    /// The positions that say where the model is and how large: see [`Topology::main_positions`].
     pub fn main_positions(&self) -> &[DVec3] {
-        main_positions(&self.surface.positions, self.topology.bare_points().start)
+        self.topology.main_positions(&self.surface.positions)
     }
 
     /// The lowest of the file's vertices behind a surface vertex.
@@ -96,7 +95,7 @@ impl Model {
     }
 }
 
-/// As [`Model::main_positions`], of positions from `first_bare` on bare.
+/// As [`Model::main_positions`], where the positions from `first_bare` on are bare points.
 pub(crate) fn main_positions(positions: &[DVec3], first_bare: usize) -> &[DVec3] {
     if first_bare == 0 {
         positions

@@ -20,6 +20,9 @@ use components::Components;
 use faces::{are_in_order, runs};
 use rings::{TopologyFindings, rings};
 
+use glam::DVec3;
+
+use crate::model::main_positions;
 use crate::{Cancel, Cancelled, FileVertex, Surface, SurfaceVertex};
 
 /// The connectivity of a [`Surface`].
@@ -81,6 +84,12 @@ impl Topology {
         let end = self.neighbour_list.len() as u32;
         let starts = self.neighbour_offsets.get(..count).unwrap_or_default();
         starts.partition_point(|&start| start < end)..count
+    }
+
+    /// Those of the positions that say where the surface is and how large: of the vertices that triangles use, of all
+    /// bare points where there is no triangle. Stray points far away from a scan don't count.
+    pub fn main_positions<'a>(&self, positions: &'a [DVec3]) -> &'a [DVec3] {
+        main_positions(positions, self.bare_points().start)
     }
 
     /// The vertices that share an edge with `v`, ascending, without `v`.

@@ -5,7 +5,7 @@
 //! sheet is then its own base, free borders or not.
 
 use glam::{DMat3, DVec3};
-use pliant_mesh::{SurfaceVertex, bounding_box};
+use pliant_mesh::SurfaceVertex;
 use rayon::prelude::*;
 
 use super::carry::Carried;
@@ -60,7 +60,7 @@ impl Faired {
             cancel,
             ..
         } = input;
-        let bounds = bounding_box(&problem.surface.positions);
+        let bounds = problem.bounds();
         let centre = bounds.map_or(DVec3::ZERO, |bounds| bounds.centre());
         let mut points: Vec<DVec3> = problem.surface.positions.iter().map(|p| *p - centre).collect();
         let mut is_held = vec![false; points.len()];
@@ -137,7 +137,7 @@ impl Base {
     /// The faired part of the surface as `solver` bends it.
     pub fn of(faired: &Faired, solver: &BilaplacianSolver<f64>, input: &BindInput<'_>) -> Self {
         let &BindInput { problem, partition, .. } = input;
-        let bounds = bounding_box(&problem.surface.positions);
+        let bounds = problem.bounds();
         let centre = bounds.map_or(DVec3::ZERO, |bounds| bounds.centre());
         let solved = &partition.solved;
         let mut is_local = vec![false; faired.points.len()];

@@ -6,7 +6,6 @@
 //! becomes F e, so with q = M⁻¹ e its change is (M' − M) q, zero to the last bit where the base rests.
 
 use glam::{DMat3, DVec3};
-use pliant_mesh::bounding_box;
 use rayon::prelude::*;
 
 use super::base::Base;
@@ -86,7 +85,7 @@ impl Transfer {
             order: BilaplacianOrder::Membrane,
             ..Bilaplacian::default()
         };
-        let diagonal = bounding_box(&problem.surface.positions).map_or(0.0, |bounds| bounds.diagonal());
+        let diagonal = problem.diagonal();
         let mut operator = BilaplacianOperator::new(laplacian, &membrane, diagonal);
         operator.hub_degree = hub_degree(problem.surface.positions.len());
         let elimination = input.ordering()?.elimination(&solved);
