@@ -184,7 +184,7 @@ fn a_translation_of_the_only_handle_moves_every_shape_as_a_whole() {
                     "{name}: vertex {v} went {}",
                     *b - *a
                 ),
-                // Vertices that no triangle uses or that are not finite stay as the file has them.
+                // Vertices that are not finite stay as the file has them.
                 None => assert_eq!(
                     a.to_array().map(f64::to_bits),
                     b.to_array().map(f64::to_bits),

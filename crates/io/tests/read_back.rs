@@ -161,3 +161,55 @@ fn a_morph_target_shows_as_far_as_its_weight() {
         assert!(check(weight + 0.01).is_err());
     }
 }
+
+#[test]
+fn text_that_names_single_precision_passes_as_it_was_written() {
+    let grid = shapes::grid(6, 5);
+    for named in ["float", "double"] {
+        let mut text = format!("ply\nformat ascii 1.0\nelement vertex {}\n", grid.positions.len());
+        text += &["x", "y", "z"]
+            .map(|axis| format!("property {named} {axis}\n"))
+            .concat();
+        text += &format!("element face {}\n", grid.triangles.len());
+        text += "property list uchar int vertex_indices\nend_header\n";
+        grid.positions
+            .iter()
+            .for_each(|p| text += &format!("{} {} {}\n", p.x, p.y, p.z));
+        for triangle in &grid.triangles {
+            let [a, b, c] = triangle.map(|corner| corner.0);
+            text += &format!("3 {a} {b} {c}\n");
+        }
+        let empty = Saved {
+            files: Vec::new(),
+            warnings: Vec::new(),
+            triangles: None,
+        };
+        let read = |bytes| read(bytes, Format::Ply, "a.ply", &empty, &Progress::new(), &Cancel::new()).unwrap();
+        let opened = read(text.into_bytes());
+        let mut positions = opened.drawn.positions.clone();
+        for (k, p) in positions.iter_mut().enumerate() {
+            *p += DVec3::new(1.0, 0.1, 0.001) * (k as f64).sin();
+        }
+        let mut save = Save {
+            drawn: &opened.drawn,
+            positions: &positions,
+            format: Format::Ply,
+            name: "b.ply",
+            placement: Placement::OtherFolder,
+        };
+        let saved = opened.scene.save(&save, &Progress::new(), &Cancel::new()).unwrap();
+        let back = read(saved.files[0].bytes.clone());
+        assert_eq!(
+            opened.scene.check_read_back(&save, None, None, &back),
+            Ok(()),
+            "{named}"
+        );
+        let mut other = positions.clone();
+        other[7].y += 1e-6;
+        save.positions = &other;
+        assert!(
+            opened.scene.check_read_back(&save, None, None, &back).is_err(),
+            "{named}"
+        );
+    }
+}

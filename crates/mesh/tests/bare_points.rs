@@ -3,9 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails may panic")]
 
 use glam::{DAffine3, DVec3};
-use pliant_mesh::{
-    Cancel, Drawn, DrawnVertex, FileVertex, Inspection, Model, Progress, SurfaceVertex, WeldOptions, shapes,
-};
+use pliant_mesh::{Cancel, Drawn, DrawnVertex, FileVertex, Inspection, Model, Progress, WeldOptions, shapes};
 
 fn points(positions: Vec<DVec3>) -> Drawn {
     Drawn::once(positions, Vec::new())
@@ -123,7 +121,8 @@ fn every_finite_point_moves_with_its_displacement_and_no_other() {
             None => assert!(v == 10 || v == 20),
         }
     }
-    assert_eq!(model.first_file_vertex(SurfaceVertex(0)), FileVertex(0));
+    let joined = model.drawn.surface_vertex(DrawnVertex(31)).unwrap();
+    assert_eq!(model.first_file_vertex(joined), FileVertex(30));
 }
 
 #[test]

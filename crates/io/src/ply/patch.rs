@@ -10,7 +10,7 @@ use crate::SaveError;
 use crate::convert::faces::coarse_in_f32;
 use crate::save::course::Course;
 use crate::save::moved::Moved;
-use crate::text::{Splice, push_f32, push_f64};
+use crate::text::{Cursor, Splice, push_f32, push_f64};
 
 /// The new bytes and the warnings.
 ///
@@ -34,11 +34,19 @@ pub(super) fn patched(
     Ok((bytes, warnings))
 }
 
-/// The number nearest to `value` that the column of a coordinate holds.
+/// The number nearest to `value` that the column of a coordinate holds, as it is read back.
 pub(super) fn nearest(stored: &Stored, axis: usize, value: f64) -> f64 {
     let element = stored.vertex_element.map(|index| &stored.header.elements[index]);
     let scalar = element.and_then(|element| scalar_of(element, stored.columns[axis]?));
-    scalar.map_or(value, |scalar| scalar.nearest(value))
+    match (scalar, stored.header.encoding) {
+        // Text is read as f64, and the shortest decimals of an f32 are another number than the f32 itself.
+        (Some(Scalar::F32), Encoding::Ascii) => {
+            let mut text = Vec::new();
+            push_f32(&mut text, value as f32);
+            Cursor::new(&text, 0).real().unwrap_or(value)
+        }
+        (scalar, _) => scalar.map_or(value, |scalar| scalar.nearest(value)),
+    }
 }
 
 /// The type of a vertex's property; `None` for lists.
