@@ -8,7 +8,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
-use pliant_deform::{BindError, Bound, Method, Needs, Ordering, SolveError, Step};
+use pliant_deform::{BindError, Bound, Method, Ordering, SolveError, Step};
 use pliant_editor::{Beginning, Setup};
 use pliant_io::MorphTarget;
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
@@ -65,15 +65,10 @@ fn refused(file: &Path, model: &Model, error: BindError) -> AppError {
 /// Refuses a method that bends surfaces where the file holds points alone.
 ///
 /// # Errors
-/// [`AppError::NoTriangles`].
+/// [`BindError::NoTriangles`], naming `file`.
 pub fn check_bends(file: &Path, model: &Model, method: &Method) -> Result<(), AppError> {
-    if model.surface.triangles.is_empty() && method.needs() != Needs::Points {
-        return Err(AppError::NoTriangles {
-            file: file.to_owned(),
-            method: method.name(),
-        });
-    }
-    Ok(())
+    let checked = method.check_bends(&model.surface);
+    checked.map_err(|error| refused(file, model, error))
 }
 
 /// Refuses a file that holds neither triangles nor points.

@@ -23,17 +23,6 @@ pub enum AppError {
     /// A file that holds nothing to edit.
     #[error("{} holds no triangle and no point, so there is nothing to edit: choose a file with a shape", shown(.0))]
     Empty(PathBuf),
-    /// A file of points or lines, and a method that bends surfaces.
-    #[error(
-        "{} holds no triangle, and {method} bends surfaces: take {}, which bend points and lines", shown(.file),
-        pliant_deform::alternatives::of_space()
-    )]
-    NoTriangles {
-        /// The file that was to be bent.
-        file: PathBuf,
-        /// The method's name.
-        method: &'static str,
-    },
     /// The edit can't be read, or does not fit the file.
     #[error("{}: {source}", shown(.edit))]
     Edit {

@@ -71,6 +71,15 @@ pub enum BindError {
         /// What is wrong with it.
         refused: AttachmentRefused,
     },
+    /// Points alone, and a method that bends surfaces.
+    #[error(
+        "there is no triangle, and {method} bends surfaces: take {}, which bend points and lines",
+        alternatives::of_space()
+    )]
+    NoTriangles {
+        /// The method's name.
+        method: &'static str,
+    },
     /// The ordering was made for another mesh or another power.
     #[error(
         "the ordering is for {found} vertices and power {found_power}, not for {expected} and {expected_power}: make one from this surface"
@@ -165,7 +174,10 @@ pub enum BindError {
         free_count: usize,
     },
     /// The factor does not fit.
-    #[error("the factor of {free_count} free vertices does not fit into memory: make the region smaller")]
+    #[error(
+        "the factor of {free_count} free vertices does not fit into memory: make the region smaller, or take {}",
+        alternatives::of_space()
+    )]
     OutOfMemory {
         /// How many vertices are solved for.
         free_count: usize,
@@ -197,7 +209,10 @@ fn over_budget(free_count: usize, limit: Limit, crowded: Option<&Crowded>) -> St
                 "split vertex {vertex}, which has {neighbours} neighbours, make the region smaller, or take {space}"
             )
         }
-        (None, Limit::Bytes(_)) => "make the region smaller or the mesh coarser".to_owned(),
+        (None, Limit::Bytes(_)) => format!(
+            "make the region smaller or the mesh coarser, or take {}",
+            alternatives::of_space()
+        ),
         (None, Limit::Operations(_)) => format!(
             "make the region smaller or the mesh coarser, move apart vertices that coincide by accident, or take {}",
             alternatives::of_space()
@@ -318,7 +333,10 @@ pub enum SolveError {
         expected: usize,
     },
     /// The solution did not settle.
-    #[error("the surface was solved only to {error:.1e} of its motion: fix more vertices or repair its triangles")]
+    #[error(
+        "the surface was solved only to {error:.1e} of its motion: fix more vertices, repair its triangles, or take {}",
+        alternatives::of_space()
+    )]
     Inaccurate {
         /// An estimate of what is wrong, relative to the largest displacement.
         error: f64,

@@ -15,8 +15,11 @@ pub(crate) fn status(
     let Some(model) = workspace.model() else {
         return "Open a mesh, or drop one here".to_owned();
     };
-    if model.surface.triangles.is_empty() {
-        return "This file holds no triangle: open another".to_owned();
+    if model.surface.positions.is_empty() {
+        return "This file holds no triangle and no point: open another".to_owned();
+    }
+    if let Err(refused) = workspace.document.method().check_bends(&model.surface) {
+        return format!("This file holds points alone: {refused}");
     }
     let now = gesture.and_then(|gesture| gesture.status(workspace, view));
     let now = now.unwrap_or_else(|| hint(workspace, settings));

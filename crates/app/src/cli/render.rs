@@ -210,6 +210,8 @@ pub(super) fn upload(
     };
     let colours = drawing::drawn_colours(model, &colours);
     surface.update_regions(renderer, &colours).map_err(refuse)?;
+    let wires = drawing::wires(model, &colours);
+    surface.update_wires(renderer, &wires).map_err(refuse)?;
     surface.update_lines(renderer, &shape.outlines).map_err(refuse)?;
     let mut notes = Vec::new();
     if look.shading == Shading::Material {

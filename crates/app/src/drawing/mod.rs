@@ -12,6 +12,7 @@ mod normals;
 mod outlines;
 mod pose;
 mod stage;
+mod wires;
 
 use std::sync::Arc;
 
@@ -27,6 +28,7 @@ pub use materials::{DecodedMaterials, EncodedMaterials};
 pub use outlines::outlines;
 pub use pose::Pose;
 pub use stage::{field, overlays, style, view};
+pub use wires::wires;
 
 use normals::NormalGroups;
 

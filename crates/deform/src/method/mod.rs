@@ -12,7 +12,7 @@ mod traits;
 use std::fmt;
 
 use glam::DVec3;
-use pliant_mesh::{Cancel, Cancelled, Progress, Topology};
+use pliant_mesh::{Cancel, Cancelled, Progress, Surface, Topology};
 
 pub use self::attachment::{Attachment, AttachmentDeclaration, AttachmentKind, ControlLattice, ControlMesh};
 pub use self::attachment_refused::AttachmentRefused;
@@ -20,7 +20,7 @@ pub use self::declaration::{ConstraintKind, MethodDeclaration, Needs, Solve};
 pub use self::option::{OptionDeclaration, OptionKind, OptionRefused, OptionValue};
 pub use self::traits::HandleFit;
 pub(crate) use self::traits::{BindInput, BoundMethod, DeformMethod, Finite, Options, Stepped};
-use crate::Ordering;
+use crate::{BindError, Ordering};
 
 /// Every method, in the order in which they are shown. A new one adds its line here.
 pub const METHODS: &[&MethodDeclaration] = &[
@@ -67,6 +67,19 @@ impl Method {
     /// What it works on, with its present options.
     pub fn needs(&self) -> Needs {
         self.0.needs()
+    }
+
+    /// Refuses a surface without triangles where the method needs some.
+    ///
+    /// # Errors
+    /// [`BindError::NoTriangles`].
+    pub fn check_bends(&self, surface: &Surface) -> Result<(), BindError> {
+        match self.needs() {
+            Needs::Surface { .. } if surface.triangles.is_empty() => {
+                Err(BindError::NoTriangles { method: self.name() })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The power of the Laplacian whose graph the ordering is made for, if it needs one.

@@ -32,5 +32,6 @@ mod rig;
 mod robust;
 mod shared;
 mod soft;
+mod soup;
 mod space;
 mod strip;

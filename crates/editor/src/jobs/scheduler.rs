@@ -288,7 +288,7 @@ impl Jobs {
         let Some(model) = self.computed.model.clone() else {
             return;
         };
-        if model.surface.triangles.is_empty() {
+        if model.surface.positions.is_empty() {
             return;
         }
         if activity != Activity::Dragging && !self.is_picking_current() {

@@ -66,7 +66,9 @@ impl Brush {
         size: &BrushSize,
         mut visit: impl FnMut(SurfaceVertex, f64),
     ) {
-        if size.metric == BrushMetric::Through {
+        // Points have no surface that the pointer could meet.
+        let is_of_points = picking.model.surface.triangles.is_empty();
+        if is_of_points || size.metric == BrushMetric::Through {
             return sweep(picking, [from_px, to_px], size.radius_px, visit);
         }
         let steps = ((to_px - from_px).length() / (size.radius_px * SPACING).max(1.0))

@@ -72,15 +72,17 @@ impl<'a> Picking<'a> {
         self.model.surface.triangles[triangle as usize].map(|vertex| self.position(vertex))
     }
 
-    /// Whether any triangle at the vertex shows the eye its front, or else its back.
+    /// Whether any triangle at the vertex shows the eye its front, or else its back; a bare point shows both.
     pub(crate) fn shows(&self, vertex: SurfaceVertex, position: DVec3, front: bool) -> bool {
         let to_eye = self.sight.towards_eye(position);
         let model = &self.model;
-        model.topology.faces(vertex, &model.surface.triangles).any(|face| {
-            let [a, b, c] = self.corners(face);
-            let outward = (b - a).cross(c - a).dot(to_eye);
-            if front { outward >= 0.0 } else { outward <= 0.0 }
-        })
+        let is_bare = model.topology.neighbours(vertex).is_empty();
+        is_bare
+            || model.topology.faces(vertex, &model.surface.triangles).any(|face| {
+                let [a, b, c] = self.corners(face);
+                let outward = (b - a).cross(c - a).dot(to_eye);
+                if front { outward >= 0.0 } else { outward <= 0.0 }
+            })
     }
 
     /// Whether nothing stands between the eye and a vertex at `position`, and the surface there faces it.

@@ -67,7 +67,9 @@ struct Node {
 impl Bvh {
     /// A hierarchy over `triangles`, all of them or some, of a surface with these finite `positions`.
     pub fn build(positions: &[DVec3], triangles: &[[SurfaceVertex; 3]]) -> Self {
-        let space = BoxSpace::of(positions);
+        // Bare points stand behind the last corner; one far away would leave no digits for the boxes of the triangles.
+        let used = triangles.par_iter().flatten().map(|corner| corner.index() + 1).max();
+        let space = BoxSpace::of(&positions[..used.unwrap_or(positions.len())]);
         let boxes: Vec<Aabb> = triangles
             .par_iter()
             .map(|&triangle| space.span(corners(triangle, positions)).aabb())

@@ -67,7 +67,7 @@ impl Renderer {
         self.record_overlays(pass, &prepared.overlays, samples);
     }
 
-    /// Records a surface's edges, outlines and borders.
+    /// Records a surface's edges, wires, outlines and borders.
     fn record_lines(&self, pass: &mut wgpu::RenderPass<'_>, surface: &Surface, style: &Style, samples: Samples) {
         surface.bind(pass);
         if style.wireframe == Wireframe::On {
@@ -85,6 +85,9 @@ impl Renderer {
             pass.set_vertex_buffer(0, lines.lines.slice(..));
             pass.draw(0..4, 0..lines.count);
         };
+        for lines in surface.wires().iter().flatten() {
+            draw_lines(pass, lines, Visibility::Visible);
+        }
         if style.outlines == Outlines::On {
             for lines in surface.outlines().iter().flatten() {
                 draw_lines(pass, lines, Visibility::Visible);
@@ -153,7 +156,8 @@ impl PreparedFrame<'_> {
             pipelines.push(Pipeline::Wireframe);
         }
         for visibility in Visibility::BOTH {
-            if style.borders == Borders::On || style.outlines == Outlines::On {
+            let has_wires = |(surface, _): &(&Surface, Vec<DrawCall>)| surface.wires().iter().any(Option::is_some);
+            if style.borders == Borders::On || style.outlines == Outlines::On || self.draw_calls.iter().any(has_wires) {
                 pipelines.push(Pipeline::SurfaceLines(visibility));
             }
             if !self.overlays.vertices.is_empty() {

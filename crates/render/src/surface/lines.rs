@@ -29,7 +29,7 @@ pub struct EdgePoint {
 
 impl EdgePoint {
     /// The point at a vertex.
-    pub(crate) fn at(vertex: u32) -> Self {
+    pub fn at(vertex: u32) -> Self {
         Self {
             vertices: [vertex; 2],
             share: 0.0,

@@ -43,6 +43,8 @@ pub struct Surface {
     borders: OnceLock<Vec<Option<LineSet>>>,
     /// One entry per page.
     outlines: Vec<Option<LineSet>>,
+    /// One entry per page: lines and points that are always drawn.
+    wires: Vec<Option<LineSet>>,
 }
 
 impl Surface {
@@ -126,6 +128,7 @@ impl Surface {
             shown: None,
             borders: OnceLock::new(),
             outlines: Vec::new(),
+            wires: Vec::new(),
         })
     }
 
@@ -193,6 +196,11 @@ impl Surface {
     pub(crate) fn bind_material_attributes(&self, pass: &mut wgpu::RenderPass<'_>, page: usize) {
         let own = self.pages.get(page).and_then(|page| page.material.as_ref());
         pass.set_vertex_buffer(3, own.unwrap_or(&self.shared_material_vertex).slice(..));
+    }
+
+    /// The lines and points of each page that are always drawn; empty if there are none.
+    pub(crate) fn wires(&self) -> &[Option<LineSet>] {
+        &self.wires
     }
 
     /// The outlines of each page; empty if there are none.

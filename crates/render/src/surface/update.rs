@@ -95,6 +95,21 @@ impl Surface {
     /// # Errors
     /// [`RenderError::NoSuch`] for a vertex out of range; out of memory.
     pub fn update_lines(&mut self, renderer: &Renderer, lines: &[SurfaceLine]) -> Result<(), RenderError> {
+        self.outlines = self.line_sets(renderer, lines)?;
+        Ok(())
+    }
+
+    /// Replaces the lines that are drawn whatever the style; one whose ends are the same vertex is a dot. A surface that
+    /// is spread over several pages draws those of its triangles' vertices alone.
+    ///
+    /// # Errors
+    /// As [`Surface::update_lines`].
+    pub fn update_wires(&mut self, renderer: &Renderer, lines: &[SurfaceLine]) -> Result<(), RenderError> {
+        self.wires = self.line_sets(renderer, lines)?;
+        Ok(())
+    }
+
+    fn line_sets(&self, renderer: &Renderer, lines: &[SurfaceLine]) -> Result<Vec<Option<LineSet>>, RenderError> {
         let mut vertices = lines.iter().flat_map(|line| line.ends).flat_map(|end| end.vertices);
         let count = self.vertex_count;
         if let Some(vertex) = vertices.find(|&vertex| vertex as usize >= count) {
@@ -102,8 +117,7 @@ impl Surface {
             return Err(RenderError::NoSuch { what, number, count });
         }
         let sets = (self.pages.iter()).map(|page| LineSet::new(renderer, page, lines.iter().copied(), 0.0));
-        self.outlines = sets.collect::<Result<_, _>>()?;
-        Ok(())
+        sets.collect()
     }
 
     /// Shows only the triangles whose flag is set; `None` shows all. Hidden triangles can't be picked either.

@@ -110,6 +110,8 @@ impl Shown {
             self.drawn_colours = drawing::drawn_colours(model, &colours);
             self.surface.update_regions(&renderer, &self.drawn_colours)?;
         }
+        let wires = drawing::wires(model, &self.drawn_colours);
+        self.surface.update_wires(&renderer, &wires)?;
         self.weights = view.weights.filter(|_| matches!(wanted, Colours::Weights(_))).cloned();
         self.colours = wanted;
         Ok(())

@@ -178,7 +178,8 @@ impl Region {
     }
 }
 
-/// Sets free the components without paint that go along. The ones that do, and those that a person has told what to do.
+/// Sets free the components without paint that go along. The ones that do, and those that a person has told what to do;
+/// bare points are not listed.
 fn free_loose(
     roles: &mut [Role],
     input: &RegionInput,
@@ -200,7 +201,8 @@ fn free_loose(
                 roles[vertex.index()] = Role::Free;
             }
         }
-        if goes || !painted[component] && told(component).is_some() {
+        let has_faces = topology.components()[component].face_count > 0;
+        if has_faces && (goes || !painted[component] && told(component).is_some()) {
             loose.push(component as u32);
         }
     }

@@ -15,7 +15,8 @@ pub(crate) fn reach_length(reach: Reach, surface: &Surface, topology: &Topology,
     }
 }
 
-/// A handle's radius: that of the disc with its area.
+/// A handle's radius: that of the disc with its area, and of bare points alone that of the disc over which they would
+/// be spread.
 ///
 /// Farthest distances or moments would do as well for one round patch, but a handle of two patches far apart would
 /// then reach across everything between them.
@@ -25,7 +26,19 @@ fn handle_radius(surface: &Surface, topology: &Topology, members: &[SurfaceVerte
         .iter()
         .map(|&vertex| topology.faces(vertex, &surface.triangles).map(area_of).sum::<f64>() / 3.0)
         .sum();
+    let is_bare = |vertex: &SurfaceVertex| topology.neighbours(*vertex).is_empty();
+    if area == 0.0 && members.iter().all(is_bare) {
+        return radius_of_points(&surface.positions, members);
+    }
     (area / PI).sqrt()
+}
+
+/// The radius of a disc whose points are as far from its middle as these, in the mean of squares.
+fn radius_of_points(positions: &[DVec3], members: &[SurfaceVertex]) -> f64 {
+    let middle = centroid(positions, members.iter().copied());
+    let squared = |vertex: &SurfaceVertex| positions[vertex.index()].distance_squared(middle);
+    let sum: f64 = members.iter().map(squared).sum();
+    (2.0 * sum / members.len().max(1) as f64).sqrt()
 }
 
 /// The mean position of some vertices; the origin for none.
