@@ -311,3 +311,36 @@ fn info_tells_of_points_that_no_triangle_uses() {
     assert_eq!(told["bounding_box"]["max"], json!([1.0, 1.0, 0.0]));
     assert_eq!(told["components"].as_array().unwrap().len(), 1);
 }
+
+/// How many pixels of a picture without background show something.
+fn shown(path: &Path) -> (usize, image::RgbaImage) {
+    let picture = image::open(path).unwrap().into_rgba8();
+    (picture.pixels().filter(|pixel| pixel.0[3] > 0).count(), picture)
+}
+
+#[test]
+fn a_picture_shows_points_and_lines_at_rest_and_bent() {
+    if pliant_render::Headless::new().is_err() {
+        return;
+    }
+    let folder = Folder::new();
+    for file in files(&folder) {
+        let render = |name: &str, more: &[&str]| {
+            let out = folder.at(name);
+            let line = ["render", file.to_str().unwrap(), "--output", out.to_str().unwrap()];
+            let line = line.into_iter().chain(["--size", "200x150", "--transparent"]);
+            (run(line.chain(more.iter().copied()).map(ToOwned::to_owned)), out)
+        };
+        let (ended, out) = render("rest.png", &[]);
+        ended.done();
+        let (count, at_rest) = shown(&out);
+        assert!(count > cloud().len(), "{file:?}: {count} pixels");
+        let edit_of = |method: &str| folder.write(&format!("{method}.json"), edit(method).to_string());
+        let (ended, out) = render("bent.png", &["--edit", edit_of("mls").to_str().unwrap()]);
+        ended.done();
+        let (count, bent) = shown(&out);
+        assert!(count > cloud().len() && bent != at_rest, "{file:?}: {count} pixels");
+        let (ended, _) = render("no.png", &["--edit", edit_of("arap").to_str().unwrap()]);
+        ended.refused(1, &["no triangle", "arap", "rbf"]);
+    }
+}
