@@ -7,7 +7,8 @@
 //! Binding goes from the [`Problem`] through `region` (who is solved for) to the [`Laplacian`] (`operators`), to a
 //! matrix in the restricted [`Ordering`], which is factored (`sparse`), and to the method: `bilaplacian` gives
 //! [`HandleBases`], so that a frame is a product with them; `arap` shares everything up to the factor and takes as many
-//! steps as it needs; `primo` steps with rigid prisms; `poisson` spreads the handles' turns and solves for what fits
+//! steps as it needs; `primo` steps with rigid prisms, `shells` with edges' lengths and
+//! angles; `poisson` spreads the handles' turns and solves for what fits
 //! them, `laplacian` does so with differential coordinates, and `frames` solves for the turns first. `rbf`, `mls`,
 //! `embedded`, `lattice` and `cage` bend the space around points, connected or not (`space`).
 
@@ -34,6 +35,7 @@ mod primo;
 mod problem;
 mod rbf;
 mod region;
+mod shells;
 mod space;
 mod space_primo;
 mod sparse;
@@ -65,6 +67,7 @@ pub use primo::Primo;
 pub use problem::{Loose, Problem, Role};
 pub use rbf::Rbf;
 pub use region::constraints::{CONTINUITY_RANGE, Constraints};
+pub use shells::Shells;
 pub use space_primo::SpacePrimo;
 pub use sparse::Ordering;
 pub use warning::Warning;

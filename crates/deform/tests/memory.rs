@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use glam::DVec3;
 use pliant_deform::{
     Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, CageCoordinates, Constraints, Detail, Frames,
-    Limit, Loose, Method, OptionValue, Primo, Problem, Propagation, Rbf, Role, Transforms,
+    Limit, Loose, Method, OptionValue, Primo, Problem, Propagation, Rbf, Role, Shells, Transforms,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 
@@ -170,6 +170,10 @@ fn methods() -> Vec<Method> {
         methods.push(cage.with([("detail", detail)]).unwrap());
     }
     methods.push(Method::from_name("space-primo").unwrap());
+    let mut led = Shells::default();
+    methods.push(led.clone().into());
+    led.led_above = 0;
+    methods.push(led.into());
     methods
 }
 

@@ -7,7 +7,7 @@ use crate::assets::SAMPLES;
 use crate::process::{cargo, succeed, target_folder, words};
 
 /// The methods of the gallery. Beside each method with its defaults, options that change what it can do.
-const METHODS: &str = "bilaplacian,poisson,laplacian,frames,frames:iterations=20,arap,arap:energy=smooth,primo";
+const METHODS: &str = "bilaplacian,poisson,laplacian,frames,frames:iterations=20,arap,arap:energy=smooth,primo,shells";
 
 /// The size of a sheet in pixels.
 const SIZE: &str = "1040x640";

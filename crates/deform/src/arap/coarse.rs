@@ -33,14 +33,17 @@ const MOST: f64 = 25_000.0;
 const NEAREST: usize = 4;
 
 /// A coarse cell, and how much of its turn a fine cell takes.
-type Share = (u32, f32);
+pub(crate) type Share = (u32, f32);
+
+/// Those of one fine cell, the largest first; they sum to 1, or are 0 if no coarse cell is near.
+pub(crate) type Shares = [Share; NEAREST];
 
 /// The level's own solver, and how it is connected with the fine one.
 #[derive(Debug)]
 pub(crate) struct Coarse {
     solver: Box<ArapSolver>,
     /// For each fine cell; they sum to 1, or are 0 if no coarse cell is near.
-    shares: Vec<[Share; NEAREST]>,
+    shares: Vec<Shares>,
     leads_all: bool,
     /// Where each solved coarse vertex' row in `members` starts; one more at the end.
     offsets: Vec<u32>,
@@ -92,10 +95,14 @@ impl Coarse {
         if domain.solved_count == 0 {
             return None;
         }
-        let shares: Vec<[Share; NEAREST]> = fine.vertices[..fine.cell_count]
+        let cell = |cluster: u32| {
+            let local = domain.local_of[cluster as usize];
+            ((local as usize) < domain.cell_count).then_some(local)
+        };
+        let shares: Vec<Shares> = fine.vertices[..fine.cell_count]
             .par_iter()
             .with_min_len(CHUNK)
-            .map(|&vertex| shares(problem, &clusters, domain, vertex))
+            .map(|&vertex| shares(problem, &clusters, &cell, vertex))
             .collect();
         let (offsets, members) = transposed(&shares[..fine.solved_count], domain.solved_count);
         let fine_of = domain.vertices[..domain.solved_count]
@@ -236,18 +243,22 @@ impl Coarse {
 }
 
 /// For a surface vertex, the nearest coarse cells of its cluster's ring, with shares that fall to 0 towards the next
-/// one.
-fn shares(problem: &Problem, clusters: &Clusters, domain: &Domain, vertex: u32) -> [Share; NEAREST] {
+/// one; `cell` gives a cluster's, if it has one.
+pub(crate) fn shares(
+    problem: &Problem,
+    clusters: &Clusters,
+    cell: &impl Fn(u32) -> Option<u32>,
+    vertex: u32,
+) -> Shares {
     let here = problem.surface.positions[vertex as usize];
     let own = clusters.cluster_of[vertex as usize];
     let around = clusters.topology.neighbours(SurfaceVertex(own));
     let mut near: Vec<(f64, u32)> = std::iter::once(own)
         .chain(around.iter().map(|other| other.0))
-        .map(|cluster| {
+        .filter_map(|cluster| {
             let place = clusters.surface.positions[cluster as usize];
-            (place.distance(here), domain.local_of[cluster as usize])
+            Some((place.distance(here), cell(cluster)?))
         })
-        .filter(|&(_, cell)| (cell as usize) < domain.cell_count)
         .collect();
     near.sort_by(|a, b| a.0.total_cmp(&b.0));
     let farthest = near.last().map_or(0.0, |&(distance, _)| 1.5 * distance);
@@ -265,9 +276,8 @@ fn shares(problem: &Problem, clusters: &Clusters, domain: &Domain, vertex: u32) 
 }
 
 /// The shares by coarse vertex, of those below `solved_count`.
-fn transposed(shares: &[[Share; NEAREST]], solved_count: usize) -> (Vec<u32>, Vec<Share>) {
-    let of_vertex =
-        |(vertex, shares): (usize, &[Share; NEAREST])| shares.map(|(cell, share)| (cell, vertex as u32, share));
+pub(crate) fn transposed(shares: &[Shares], solved_count: usize) -> (Vec<u32>, Vec<Share>) {
+    let of_vertex = |(vertex, shares): (usize, &Shares)| shares.map(|(cell, share)| (cell, vertex as u32, share));
     let is_solved = |&(cell, _, share): &(u32, u32, f32)| share > 0.0 && (cell as usize) < solved_count;
     let each = || shares.iter().enumerate().flat_map(of_vertex).filter(is_solved);
     let mut offsets = vec![0; solved_count + 1];

@@ -15,11 +15,11 @@
 mod bend;
 mod bending;
 mod cells;
-mod clusters;
-mod coarse;
+pub(crate) mod clusters;
+pub(crate) mod coarse;
 mod declaration;
 mod descent;
-mod domain;
+pub(crate) mod domain;
 mod fit_pass;
 mod gradient_pass;
 mod history;

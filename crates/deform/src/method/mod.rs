@@ -27,6 +27,7 @@ pub const METHODS: &[&MethodDeclaration] = &[
     &crate::bilaplacian::DECLARATION,
     &crate::arap::DECLARATION,
     &crate::primo::DECLARATION,
+    &crate::shells::DECLARATION,
     &crate::poisson::DECLARATION,
     &crate::laplacian::DECLARATION,
     &crate::frames::DECLARATION,

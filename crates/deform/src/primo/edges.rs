@@ -15,7 +15,7 @@ use pliant_mesh::{Surface, SurfaceVertex, Topology, area_of_lengths, edge_length
 const AREA_FLOOR: f64 = 1e-3;
 
 /// Edges of more triangles are crowded.
-const CROWD: usize = 32;
+pub(crate) const CROWD: usize = 32;
 
 /// The triangles on a surface's edges.
 #[derive(Debug)]

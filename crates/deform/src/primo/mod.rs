@@ -26,7 +26,7 @@ pub(crate) mod bodies;
 mod colours;
 mod declaration;
 mod descent;
-mod edges;
+pub(crate) mod edges;
 mod factored;
 mod hierarchy;
 pub(crate) mod joints;

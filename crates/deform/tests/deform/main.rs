@@ -31,6 +31,7 @@ mod rebind;
 mod rig;
 mod robust;
 mod shared;
+mod shells;
 mod soft;
 mod soup;
 mod space;

@@ -3,7 +3,7 @@
 use crate::rig::{Scene, apart, far, mirrored, settle, turned};
 use crate::shared;
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Arap, ArapEnergy, Method, Primo, Role};
+use pliant_deform::{Arap, ArapEnergy, Method, Primo, Role, Shells};
 use pliant_mesh::{Drawn, SurfaceVertex, shapes};
 
 /// A method that iterates.
@@ -13,15 +13,20 @@ pub enum Iterative {
     /// With a coarse level, however small the surface.
     Led(ArapEnergy),
     Primo,
+    Shells,
+    /// With a coarse level, however small the surface.
+    LedShells,
 }
 
-const ITERATIVE: [Iterative; 6] = [
+const ITERATIVE: [Iterative; 8] = [
     Iterative::Arap(ArapEnergy::Spokes),
     Iterative::Arap(ArapEnergy::SpokesAndRims),
     Iterative::Arap(ArapEnergy::Smooth),
     Iterative::Led(ArapEnergy::SpokesAndRims),
     Iterative::Led(ArapEnergy::Smooth),
     Iterative::Primo,
+    Iterative::Shells,
+    Iterative::LedShells,
 ];
 
 impl Iterative {
@@ -43,6 +48,15 @@ impl Iterative {
             }
             Self::Primo => {
                 let mut options = Primo::default();
+                options.tolerance = tolerance;
+                options.max_iterations = max_iterations;
+                Method::from(options)
+            }
+            Self::Shells | Self::LedShells => {
+                let mut options = Shells::default();
+                if matches!(self, Self::LedShells) {
+                    options.led_above = 0;
+                }
                 options.tolerance = tolerance;
                 options.max_iterations = max_iterations;
                 Method::from(options)
@@ -99,7 +113,7 @@ fn the_result_is_the_same_bit_for_bit_on_any_number_of_threads() {
         // Enough for more than one chunk of either's cells.
         let [around, across] = match method {
             Iterative::Arap(_) | Iterative::Led(_) => [90, 40],
-            Iterative::Primo => [40, 30],
+            Iterative::Primo | Iterative::Shells | Iterative::LedShells => [40, 30],
         };
         let mut scene = scene(shapes::torus(around, across), method).with_ends(true);
         scene.method = method.ending_at(1e-4);
@@ -147,7 +161,7 @@ fn extreme_targets_give_finite_shapes_and_do_not_spoil_the_next() {
             let mut scene = scene(drawn, method).with_ends(true);
             scene.method = method.ending_at(match method {
                 Iterative::Arap(_) | Iterative::Led(_) => 1e-6,
-                Iterative::Primo => 1e-5,
+                Iterative::Primo | Iterative::Shells | Iterative::LedShells => 1e-5,
             });
             let bound = &mut scene.bind();
             for target in shared::extreme(&scene) {
@@ -179,7 +193,11 @@ fn a_rigid_motion_of_all_handles_moves_everything_rigidly() {
                 let error = apart(&displacements, &expected) / scene.diagonal();
                 assert!(error < 1e-6, "{name} {method:?} {angle}: {error:e}");
                 // Where a coarse level leads, a global step in single precision goes before.
-                let most = if matches!(method, Iterative::Led(_)) { 20 } else { 10 };
+                let most = if matches!(method, Iterative::Led(_) | Iterative::LedShells) {
+                    20
+                } else {
+                    10
+                };
                 assert!(energies.len() < most, "{name} {method:?} {angle}: {}", energies.len());
             }
         }

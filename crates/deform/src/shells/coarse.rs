@@ -1,0 +1,232 @@
+//! The coarse level of a large surface: the same method on a surface of clusters, small enough for Gauss–Newton steps in
+//! a frame, as the decimated shells of [FB11].
+//!
+//! Dead loads make its gradient equal to that of the fine shape it was last restricted from (the full approximation
+//! scheme of [Bra77], as optimisation [Nas00]): at the fine minimum it does not move, and otherwise its motion is a
+//! correction. Only how it turns is carried over (`carry`), so that the clusters don't show and the fine shape keeps its
+//! details.
+
+use glam::{DMat3, DQuat, DVec3};
+use pliant_mesh::{Cancel, Progress};
+use rayon::prelude::*;
+
+use super::elements::{ABSENT, Elements};
+use super::shape::Shape;
+use super::{Shells, ShellsSolver};
+use crate::arap::clusters::Clusters;
+use crate::arap::coarse::{Share, Shares, shares, transposed};
+use crate::arap::domain::Domain;
+use crate::handles::blend::Origin;
+use crate::handles::{Handle, Motion};
+use crate::numerical::rotation::fit;
+use crate::numerical::sums::Field;
+use crate::operators::CHUNK;
+use crate::region::partition::Partition;
+use crate::{Budget, Constraints, Loose, Method, Problem};
+
+/// The fewest vertices of a cluster.
+const CLUSTER: f64 = 8.0;
+
+/// About how many clusters there are at most, so that two steps fit into a frame.
+const MOST: f64 = 3000.0;
+
+/// The level's own solver, and how it is connected with the fine one.
+#[derive(Debug)]
+pub(super) struct Coarse {
+    solver: Box<ShellsSolver>,
+    /// For each solved vertex of the fine surface; they sum to 1, or are 0 if nothing is near.
+    shares: Vec<Shares>,
+    /// Where each solved coarse vertex' row in `members` starts; one more at the end.
+    offsets: Vec<u32>,
+    /// The solved fine vertices with a share in it, and which.
+    members: Vec<Share>,
+    /// Of each solved coarse vertex: the fine local vertex that it is.
+    fine_of: Vec<u32>,
+    /// The coarse positions that were last followed.
+    followed: Vec<DVec3>,
+}
+
+impl Coarse {
+    /// For the bound `fine` elements of `problem`; `None` if no coarse level can be made.
+    pub fn of(
+        problem: &Problem,
+        options: &Shells,
+        handles: &[Handle],
+        solved: &[u32],
+        fine: &Elements,
+        budget: Budget,
+        cancel: &Cancel,
+    ) -> Option<Self> {
+        let domain = Domain::of(problem.surface, problem.topology, solved);
+        let size = CLUSTER.max(domain.vertices.len() as f64 / MOST);
+        let clusters = Clusters::of(problem, &domain, handles, size);
+        let mut own = options.clone();
+        own.led_above = usize::MAX;
+        let method = Method::from(own.clone());
+        let coarse = Problem {
+            surface: &clusters.surface,
+            topology: &clusters.topology,
+            roles: &clusters.roles,
+            handle_count: problem.handle_count,
+            stiffness: &clusters.stiffness,
+            constraints: Constraints {
+                soft: problem.constraints.soft,
+                ..Constraints::default()
+            },
+            loose: Loose::Rest,
+            method: &method,
+            attachments: &[],
+            revision: problem.revision,
+        };
+        let mut partition = Partition::of(&coarse).ok()?;
+        partition.budget = budget;
+        // In the fine handles' frames, so that the same motions hold.
+        let handles: Vec<Handle> = handles
+            .iter()
+            .zip(&partition.handles)
+            .map(|(handle, vertices)| Handle {
+                vertices: vertices.clone(),
+                ..*handle
+            })
+            .collect();
+        let solver = ShellsSolver::bind(&coarse, &own, &partition, &handles, &Progress::new(), cancel).ok()?;
+        let elements = &solver.energy.elements;
+        if elements.solved_count == 0 {
+            return None;
+        }
+        let coarse_of = elements.local_of(clusters.centres.len());
+        let cell = |cluster: u32| Some(coarse_of[cluster as usize]).filter(|&local| local != ABSENT);
+        let shares: Vec<Shares> = fine.vertices[..fine.solved_count]
+            .par_iter()
+            .with_min_len(CHUNK)
+            .map(|&vertex| shares(problem, &clusters, &cell, vertex))
+            .collect();
+        let (offsets, members) = transposed(&shares, elements.solved_count);
+        let fine_local = fine.local_of(problem.roles.len());
+        let centre = |&cluster: &u32| fine_local[clusters.centres[cluster as usize] as usize];
+        Some(Self {
+            fine_of: elements.vertices[..elements.solved_count].iter().map(centre).collect(),
+            followed: elements.rest.clone(),
+            solver: Box::new(solver),
+            shares,
+            offsets,
+            members,
+        })
+    }
+
+    /// How many numbers its factor stores.
+    pub fn stored(&self) -> usize {
+        self.solver.stored()
+    }
+
+    /// Back to the rest shape.
+    pub fn rest(&mut self) {
+        self.solver.back_to_rest();
+        self.followed.clone_from(&self.solver.energy.elements.rest);
+    }
+
+    /// Restricts the fine shape for the motions that it has, whose gradient is known: every centre takes its fine
+    /// position, and the loads make the coarse gradient equal to the fine one.
+    pub fn restrict(&mut self, fine: &Shape, gradient: &Field) {
+        let solver = &mut *self.solver;
+        for (own, &place) in solver.current.displacements.iter_mut().zip(&self.fine_of) {
+            if place != ABSENT {
+                *own = fine.displacements[place as usize];
+            }
+        }
+        solver.energy.springs.loads.clear();
+        solver.energy.evaluate(&mut solver.current, &solver.energy.springs);
+        solver.energy.find_slopes(&solver.current, &mut solver.slopes);
+        let (offsets, members) = (&self.offsets, &self.members);
+        let own = solver.slopes.energy.iter().zip(offsets.windows(2));
+        solver.energy.springs.loads = own
+            .map(|(own, row)| {
+                let mut load = *own;
+                for &(member, share) in &members[row[0] as usize..row[1] as usize] {
+                    let wanted = gradient[member as usize];
+                    load.iter_mut()
+                        .zip(wanted)
+                        .for_each(|(load, wanted)| *load -= f64::from(share) * wanted);
+                }
+                load
+            })
+            .collect();
+        solver.energy.evaluate(&mut solver.current, &solver.energy.springs);
+        solver.has_converged = false;
+        solver.has_slopes = false;
+        self.followed = solver.positions();
+    }
+
+    /// Starts for new motions and takes `steps` steps. Returns where it started: if from rest, the fine shape must
+    /// start from rest too.
+    pub fn start(&mut self, motions: &[Motion], steps: u32) -> Origin {
+        let origin = self.solver.start(motions);
+        if origin == Origin::Rest {
+            self.followed.clone_from(&self.solver.energy.elements.rest);
+        }
+        self.go_on(steps);
+        origin
+    }
+
+    /// Takes up to `steps` steps.
+    pub fn go_on(&mut self, steps: u32) {
+        for _ in 0..steps {
+            if !self.solver.has_converged {
+                self.solver.descend();
+            }
+        }
+        if !self.solver.current.energy.is_finite() {
+            self.rest();
+        }
+    }
+
+    /// How the solved fine vertices turn with the coarse level since it was last followed, `of_handles`
+    /// being how handles did, and `otherwise` what turns those without anything coarse near.
+    pub fn turns(&mut self, of_handles: &[DQuat], otherwise: &(impl Fn(usize) -> DQuat + Sync)) -> Vec<DMat3> {
+        let turns = self.own_turns(of_handles);
+        self.followed = self.solver.positions();
+        self.shares
+            .par_iter()
+            .enumerate()
+            .with_min_len(CHUNK)
+            .map(|(vertex, shares)| {
+                if shares[0].1 <= 0.0 {
+                    return DMat3::from_quat(otherwise(vertex));
+                }
+                let first = turns[shares[0].0 as usize];
+                let mut sum = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
+                for &(cell, share) in shares {
+                    let other = turns[cell as usize];
+                    // Both signs are the same rotation: the one nearer to the first is blended.
+                    sum += other * f64::from(share).copysign(other.dot(first));
+                }
+                // Opposed turns may cancel out.
+                let sum = if sum.length_squared() > 1e-6 { sum } else { first };
+                DMat3::from_quat(sum.normalize())
+            })
+            .collect()
+    }
+
+    /// The turns of all coarse vertices: those that fit their edges best, and their handles'.
+    fn own_turns(&self, of_handles: &[DQuat]) -> Vec<DQuat> {
+        let elements = &self.solver.energy.elements;
+        let now = self.solver.positions();
+        let mut sums = vec![DMat3::ZERO; now.len()];
+        for edge in &elements.edges {
+            let [a, b] = edge.ends.map(|end| end as usize);
+            let (to, from) = (now[b] - now[a], self.followed[b] - self.followed[a]);
+            let product = DMat3::from_cols(to * from.x, to * from.y, to * from.z) * edge.weight;
+            sums[a] += product;
+            sums[b] += product;
+        }
+        sums.truncate(elements.solved_count);
+        let mut turns: Vec<DQuat> = sums.iter().map(|sum| fit(sum, DQuat::IDENTITY)).collect();
+        turns.resize(now.len(), DQuat::IDENTITY);
+        for (own, turn) in self.solver.prescribed.iter().zip(of_handles) {
+            for vertex in own.iter().filter(|vertex| vertex.local != ABSENT) {
+                turns[vertex.local as usize] = *turn;
+            }
+        }
+        turns
+    }
+}

@@ -1,0 +1,195 @@
+//! Steps of a large surface, which its coarse level leads.
+//!
+//! For new targets the coarse level steps first, and what it does is carried over: that is the frame while a handle is
+//! dragged. For unchanged targets corrections by the coarse level alternate with quasi-Newton steps on top of the
+//! unfolded energy's factor, as long as they gain enough. Both only ever lower the energy of the whole surface, so that
+//! the minimum is that of the whole surface.
+
+use glam::{DMat3, DQuat, DVec3};
+
+use super::ShellsSolver;
+use super::carry::Carrier;
+use super::coarse::Coarse;
+use super::elements::ABSENT;
+use super::unfolded::Preconditioner;
+use crate::handles::Motion;
+use crate::handles::blend::{Origin, Screw, Screws, carried};
+use crate::numerical::sums::Field;
+
+/// Coarse steps for new targets.
+const STEPS: u32 = 2;
+
+/// Coarse steps of a correction.
+const CORRECTING_STEPS: u32 = 3;
+
+/// Fine steps between two corrections at most.
+const RAREST: u32 = 32;
+
+/// Shares of a correction that are tried.
+const SHARES: [f64; 3] = [1.0, 0.5, 0.2];
+
+/// What a large surface descends with.
+#[derive(Debug)]
+pub(super) struct Led {
+    pub preconditioner: Preconditioner,
+    pub coarse: Coarse,
+    pub carrier: Carrier,
+    /// Fine steps from one correction to the next, and those before the next one.
+    every: u32,
+    left: u32,
+    /// What the last fine step and the last correction gained.
+    gained: f64,
+    corrected: f64,
+}
+
+impl Led {
+    /// At rest.
+    pub fn new(preconditioner: Preconditioner, coarse: Coarse, carrier: Carrier) -> Self {
+        Self {
+            preconditioner,
+            coarse,
+            carrier,
+            every: 1,
+            left: 0,
+            gained: f64::INFINITY,
+            corrected: f64::INFINITY,
+        }
+    }
+
+    /// Forgets the way that was taken.
+    pub fn forget(&mut self) {
+        (self.every, self.left) = (1, 0);
+        (self.gained, self.corrected) = (f64::INFINITY, f64::INFINITY);
+    }
+
+    /// Back to the rest shape.
+    pub fn rest(&mut self) {
+        self.forget();
+        self.coarse.rest();
+    }
+}
+
+impl ShellsSolver {
+    /// Makes the shape for new motions that the coarse level predicts.
+    pub(super) fn start_led(&mut self, led: &mut Led, motions: &[Motion]) {
+        let was_at_rest = self.motions.iter().all(Motion::is_rest);
+        if was_at_rest {
+            led.coarse.rest();
+        } else if self.has_slopes {
+            led.coarse.restrict(&self.current, &self.slopes.energy);
+        }
+        let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
+        let origin = led.coarse.start(motions, STEPS);
+        self.motions.copy_from_slice(motions);
+        self.energy.springs.aim(motions);
+        self.has_converged = false;
+        led.forget();
+        self.memory.clear();
+        self.has_slopes = false;
+        let screws = match origin {
+            Origin::Rest => from_rest,
+            Origin::Current => onwards,
+        };
+        let base: Vec<DVec3> = match origin {
+            Origin::Rest => self.energy.elements.rest.clone(),
+            Origin::Current => self.positions(),
+        };
+        self.carry(&screws, origin);
+        if origin == Origin::Rest {
+            self.energy.evaluate(&mut self.trial, &self.energy.springs);
+        }
+        let turns = self.turns(led, &screws);
+        let away = self.away(led, &base, &turns);
+        let blended = self.trial.clone();
+        self.trial.move_by(&away, -1.0);
+        self.energy.evaluate(&mut self.trial, &self.energy.springs);
+        if origin == Origin::Rest && !(self.trial.energy <= blended.energy) {
+            self.trial = blended;
+        }
+        std::mem::swap(&mut self.current, &mut self.trial);
+    }
+
+    /// A step towards unchanged motions.
+    pub(super) fn step_led(&mut self, led: &mut Led) {
+        let before = self.current.energy;
+        if led.left == 0 {
+            self.correct(led);
+            led.corrected = before - self.current.energy;
+            let gains = led.corrected > 0.0 && led.corrected >= led.gained;
+            led.every = if gains { 1 } else { RAREST.min(2 * led.every) };
+            led.left = led.every;
+            return;
+        }
+        led.left -= 1;
+        let preconditioner = &mut led.preconditioner;
+        let lowered = self.lower(|_, _, x| preconditioner.apply(x));
+        led.gained = lowered.gained;
+        if lowered.gained <= 0.0 {
+            self.has_converged = true;
+        } else if self.is_little(lowered) {
+            // Unless the coarse level has not been asked for long.
+            self.has_converged = led.corrected <= self.tolerance * self.current.energy;
+            led.left = 0;
+        }
+    }
+
+    /// Has the coarse level, loaded with what is left of the gradient, go on, and follows it as far as that lowers the
+    /// energy.
+    fn correct(&mut self, led: &mut Led) {
+        led.coarse.restrict(&self.current, &self.slopes.energy);
+        led.coarse.go_on(CORRECTING_STEPS);
+        let turns = self.turns(led, &[]);
+        self.trial.clone_from(&self.current);
+        let away = self.away(led, &self.positions(), &turns);
+        for share in SHARES {
+            self.trial.clone_from(&self.current);
+            self.trial.move_by(&away, -share);
+            self.energy.evaluate(&mut self.trial, &self.energy.springs);
+            if self.trial.energy < self.current.energy {
+                std::mem::swap(&mut self.current, &mut self.trial);
+                self.learn();
+                return;
+            }
+        }
+    }
+
+    pub(super) fn positions(&self) -> Vec<DVec3> {
+        let rest = self.energy.elements.rest.iter();
+        rest.zip(&self.current.displacements)
+            .map(|(rest, moved)| *rest + *moved)
+            .collect()
+    }
+
+    /// How each local vertex' surroundings turn: with its handle, with the coarse level, or where that has nothing near
+    /// with the blended `screws`; not at all where these are none.
+    fn turns(&self, led: &mut Led, screws: &[Screw]) -> Vec<DMat3> {
+        let whole = |screw: &Screw| {
+            carried(DVec3::ZERO, std::slice::from_ref(screw), &[1.0])
+                .turn
+                .normalize()
+        };
+        let mut of_handles: Vec<DQuat> = screws.iter().map(whole).collect();
+        of_handles.resize(self.motions.len(), DQuat::IDENTITY);
+        let (rest, count) = (&self.energy.elements.rest, screws.len());
+        let blended = |vertex: usize| {
+            let own = &self.weights[vertex * count..(vertex + 1) * count];
+            carried(rest[vertex], screws, own).turn.normalize()
+        };
+        let mut turns = led.coarse.turns(&of_handles, &blended);
+        turns.resize(rest.len(), DMat3::IDENTITY);
+        for (own, turn) in self.prescribed.iter().zip(&of_handles) {
+            let turn = DMat3::from_quat(*turn);
+            for vertex in own.iter().filter(|vertex| vertex.local != ABSENT) {
+                turns[vertex.local as usize] = turn;
+            }
+        }
+        turns
+    }
+
+    /// How far the trial shape's solved vertices are from where the turned base would have them.
+    fn away(&self, led: &mut Led, base: &[DVec3], turns: &[DMat3]) -> Field {
+        let mut away = led.carrier.pull(&self.energy, base, &self.trial, turns);
+        led.preconditioner.apply(&mut away);
+        away
+    }
+}

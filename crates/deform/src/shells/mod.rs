@@ -1,0 +1,278 @@
+//! Discrete shells [GHDS03]: a surface keeps the lengths of its edges, the angles at them and, if wished, the volume
+//! that it encloses. Minimised by Gauss–Newton as in [FB11].
+//!
+//! E = ½ Σ_e k_s s_e A_e (l_e / l̄_e − 1)² + ½ Σ_e k_b D² s_e (l̄_e² / A_e) (θ_e − θ̄_e)² + ½ Σ_c k_v A_c (V_c / V̄_c − 1)²
+//!
+//! over the edges e and the closed components c: l is an edge's length, θ the angle between the normals of its two
+//! triangles, V a component's volume, and the bar marks the rest shape. A_e is a third of the areas of the edge's
+//! triangles, as in [GHDS03] and [SHHR20], so that the energy hardly depends on the mesh; A_c is a component's area, D the
+//! model's diagonal and s_e the mean of the painted stiffness of the edge's ends. k_s, k_b and k_v are the options
+//! `stretching`, `bending` and `volume`.
+//!
+//! The angle is followed from step to step (`hinge`), so that it does not jump where a fold passes half a turn and a
+//! surface that went through itself finds back. An edge at a border has no angle. Where more than two triangles meet at
+//! an edge, each pair of them has one, weaker in proportion, so that each triangle is held as firmly as at any other
+//! edge; where very many meet, each is paired only with the largest.
+//!
+//! A step solves with the matrix JᵀJ of all residuals. Its pattern is analysed once, its numbers are factored anew at each
+//! step. The volume's gradient would fill the matrix: it stays outside and enters by the formula of Sherman and
+//! Morrison, component by component, since components do not meet in the matrix. A line search on the true energy ends
+//! each step, so it never rises; where no length lowers it, the diagonal is raised [NW06, section 10.3].
+//!
+//! Parts: `elements` are the edges and hinges, `hinge` the angle and its gradient, `enclosed` the volumes, `springs` the
+//! soft handles, `shape` where the vertices are and their energy, `system` the matrix, `unfolded` a quadratic energy that
+//! gives the handles' weights, `start` chooses where to begin, and `descent` takes a step. A large surface has a `coarse` level that takes the
+//! `lead`; `carry` brings over what it does.
+
+mod carry;
+mod coarse;
+mod declaration;
+mod descent;
+mod elements;
+mod enclosed;
+mod hinge;
+mod lead;
+mod options;
+mod shape;
+mod springs;
+mod start;
+mod system;
+mod unfolded;
+
+use glam::DVec3;
+use pliant_mesh::{Cancel, Cancelled, Progress, SurfaceVertex};
+
+pub(crate) use self::declaration::DECLARATION;
+pub use self::options::Shells;
+
+use self::carry::Carrier;
+use self::coarse::Coarse;
+use self::elements::Elements;
+use self::lead::Led;
+use self::shape::{Energy, Shape, Slopes};
+use self::system::{Pattern, System};
+use self::unfolded::Unfolded;
+use crate::budget::bytes_of;
+use crate::handles::blend::HandleFrame;
+use crate::handles::{Handle, Motion};
+use crate::numerical::lbfgs::Memory;
+use crate::region::partition::Partition;
+use crate::region::slender;
+use crate::sparse::factor_error::FactorError;
+use crate::{BindError, Problem};
+
+/// Bytes of a solved vertex in the tables of a surface that is led: shares, turns, factors, positions, and the last steps
+/// with their changes.
+const LED_ROW: usize = 900;
+
+/// The bound method, with the shape it is at.
+#[derive(Debug)]
+pub(crate) struct ShellsSolver {
+    energy: Energy,
+    /// None while it acts.
+    descent: Option<Descent>,
+    /// The last steps.
+    memory: Memory,
+    /// The handles' weights, one row a solved vertex.
+    weights: Vec<f64>,
+    /// The handles relative to the solver's origin.
+    handles: Vec<HandleFrame>,
+    /// Of each hard handle: its surface vertices with their coordinates.
+    prescribed: Vec<Vec<Prescribed>>,
+    motions: Vec<Motion>,
+    current: Shape,
+    trial: Shape,
+    slopes: Slopes,
+    /// Whether these are the gradients at the current shape.
+    has_slopes: bool,
+    has_converged: bool,
+    tolerance: f64,
+    warnings: Vec<String>,
+}
+
+/// How steps are found.
+#[derive(Debug)]
+enum Descent {
+    /// By Gauss–Newton, with a factor of the whole matrix.
+    Newton(Box<System>),
+    /// Led by a coarse level.
+    Led(Box<Led>),
+}
+
+/// A vertex that goes exactly where its handle goes.
+#[derive(Clone, Copy, Debug)]
+struct Prescribed {
+    surface_vertex: u32,
+    /// [`elements::ABSENT`] where nothing of the energy sees it.
+    local: u32,
+    coordinates: [f64; 4],
+}
+
+impl ShellsSolver {
+    /// Collects edges and hinges, analyses the matrix, and solves for the weights of `handles`.
+    pub fn bind(
+        problem: &Problem,
+        options: &Shells,
+        partition: &Partition,
+        handles: &[Handle],
+        progress: &Progress,
+        cancel: &Cancel,
+    ) -> Result<Self, BindError> {
+        // They bend as the prisms do, and are refined as little.
+        let most = slender::MOST_EDGES_OF_PRISMS;
+        slender::check(&partition.triangulation, &partition.solved, most, None)?;
+        let world_origin = handles.first().map_or(DVec3::ZERO, |handle| handle.world_centre);
+        let (elements, ends) = Elements::of(problem, options, &partition.solved, world_origin, cancel)?;
+        cancel.check()?;
+        progress.set(0.3);
+        let free_count = partition.free_count;
+        let energy = Energy::of(problem, options, partition, handles, elements);
+        let elements = &energy.elements;
+        let refused = |error| match error {
+            FactorError::Pivot(local) => {
+                let vertex = elements.vertices[local];
+                let component = problem.topology.component(SurfaceVertex(vertex));
+                BindError::NotPositiveDefinite { component, vertex }
+            }
+            FactorError::Memory => BindError::OutOfMemory { free_count },
+            FactorError::Budget(limit) => BindError::budget(free_count, limit),
+            FactorError::Cancelled => BindError::Cancelled(Cancelled),
+        };
+        let is_led = elements.solved_count > options.led_above;
+        let kept = bytes_of(elements.hinges.len(), size_of::<[DVec3; 4]>()).saturating_add(if is_led {
+            bytes_of(elements.solved_count, LED_ROW)
+        } else {
+            0
+        });
+        let budget = partition.budget.without(kept);
+        let budget = budget.map_err(|limit| BindError::budget(free_count, limit))?;
+        let pattern = Pattern::of(elements);
+        progress.set(0.4);
+        let coarse = is_led
+            .then(|| Coarse::of(problem, options, handles, &partition.solved, elements, budget, cancel))
+            .flatten();
+        cancel.check()?;
+        let (system, budget) = match coarse {
+            None => System::of(&pattern, &ends, budget)
+                .map(|(system, budget)| (Some(system), budget))
+                .map_err(refused)?,
+            Some(_) => (None, budget),
+        };
+        cancel.check()?;
+        progress.set(0.6);
+        // Its factor may be copied.
+        let unfolded = Unfolded::of(&energy, &pattern, &ends, budget.shared_by(1.5), cancel).map_err(refused)?;
+        let weights = unfolded.weights(problem, partition, &energy, cancel).map_err(refused)?;
+        let descent = match (coarse, system) {
+            (Some(coarse), _) => {
+                let preconditioner = unfolded.preconditioner().map_err(refused)?;
+                let carrier = Carrier::of(&energy);
+                Descent::Led(Box::new(Led::new(preconditioner, coarse, carrier)))
+            }
+            (None, Some(system)) => Descent::Newton(Box::new(system)),
+            (None, None) => return Err(BindError::OutOfMemory { free_count }),
+        };
+        progress.set(1.0);
+        let current = energy.at_rest();
+        Ok(Self {
+            trial: current.clone(),
+            current,
+            slopes: Slopes::default(),
+            has_slopes: false,
+            weights,
+            handles: HandleFrame::of_all(handles, world_origin),
+            prescribed: prescribed(problem, partition, handles, &energy.elements),
+            motions: vec![Motion::default(); handles.len()],
+            has_converged: true,
+            tolerance: options.tolerance,
+            warnings: warnings(options, &energy),
+            descent: Some(descent),
+            memory: Memory::default(),
+            energy,
+        })
+    }
+
+    /// One step towards `motions`. Whether it converged, and the energy.
+    pub fn advance(&mut self, motions: &[Motion]) -> (bool, f64) {
+        if self.motions != motions {
+            self.head_for(motions);
+        } else if !self.has_converged {
+            self.descend();
+        }
+        let energy = self.current.energy;
+        if !energy.is_finite() {
+            // It is refused; the next targets begin afresh.
+            self.back_to_rest();
+        }
+        (self.has_converged, energy * self.energy.unit)
+    }
+
+    /// How many numbers its factors store.
+    pub fn stored(&self) -> usize {
+        match &self.descent {
+            Some(Descent::Newton(system)) => system.stored(),
+            Some(Descent::Led(led)) => led.preconditioner.stored() + led.coarse.stored(),
+            None => 0,
+        }
+    }
+
+    /// Makes the first shape for new motions: a start and a step, or what the coarse level predicts.
+    fn head_for(&mut self, motions: &[Motion]) {
+        let Some(mut descent) = self.descent.take() else {
+            return;
+        };
+        if let Descent::Led(led) = &mut descent {
+            self.start_led(led, motions);
+            self.descent = Some(descent);
+            return;
+        }
+        self.descent = Some(descent);
+        self.start(motions);
+        self.descend();
+    }
+
+    /// The rest shape, where no handle moves.
+    pub fn back_to_rest(&mut self) {
+        self.motions.fill(Motion::default());
+        self.energy.springs.aim(&self.motions);
+        self.energy.springs.loads.clear();
+        self.energy.rest(&mut self.current);
+        self.memory.clear();
+        self.has_slopes = false;
+        match &mut self.descent {
+            Some(Descent::Newton(system)) => system.undamp(),
+            Some(Descent::Led(led)) => led.rest(),
+            None => {}
+        }
+        self.has_converged = true;
+    }
+}
+
+fn prescribed(
+    problem: &Problem,
+    partition: &Partition,
+    handles: &[Handle],
+    elements: &Elements,
+) -> Vec<Vec<Prescribed>> {
+    let local_of = elements.local_of(problem.roles.len());
+    let one = |(handle, soft): (&Handle, &Option<f64>)| {
+        let of = |&surface_vertex: &u32| Prescribed {
+            surface_vertex,
+            local: local_of[surface_vertex as usize],
+            coordinates: handle.coordinates(problem.surface.positions[surface_vertex as usize]),
+        };
+        let hard = handle.vertices.iter().filter(|_| soft.is_none());
+        hard.map(of).collect()
+    };
+    handles.iter().zip(&partition.soft).map(one).collect()
+}
+
+fn warnings(options: &Shells, energy: &Energy) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if options.volume > 0.0 && energy.enclosed.parts.is_empty() {
+        let sentence = "nothing that is bent is closed, so it has no volume to keep: `volume` changes nothing";
+        sentences.push(sentence.to_owned());
+    }
+    sentences.extend(crate::operators::repairs(energy.elements.flat_faces));
+    sentences
+}

@@ -1,0 +1,42 @@
+//! The options of discrete shells.
+
+use crate::method::iteration::{MAX_ITERATIONS, TOLERANCE};
+use crate::method::option::{Number, options};
+
+options! {
+    /// Options of discrete shells.
+    pub struct Shells {
+        /// k_s: how much the surface resists stretching, without unit. Only its ratios to the other two count.
+        stretching: f64 = Number {
+            default: 1.0,
+            range: [1e-3, 1e3],
+            unit: "",
+            help: "how much the surface resists being stretched and sheared, compared with the other two",
+        },
+        /// k_b: how much it resists bending, in units of `stretching` times the squared diagonal. A sheet of the
+        /// thickness t has about k_b = k_s (t / D)² / 48.
+        bending: f64 = Number {
+            default: 1e-4,
+            range: [1e-8, 1.0],
+            unit: "of stretching a diagonal squared",
+            help: "how much it resists being bent: little for paper, which creases, much for thick rubber",
+        },
+        /// k_v: how much closed parts resist a change of their volume, without unit; 0 lets them.
+        volume: f64 = Number {
+            default: 0.0,
+            range: [0.0, 1e6],
+            unit: "",
+            help: "how much closed parts resist a change of the volume that they enclose, compared with stretching; 1000 \
+                   keeps it",
+        },
+        /// Where iteration ends.
+        tolerance: f64 = TOLERANCE,
+        /// The most steps.
+        max_iterations: u32 = MAX_ITERATIONS,
+    }
+    beside {
+        /// With more solved vertices than this a coarse level leads; with fewer, every step is a Gauss–Newton step of
+        /// the whole surface.
+        led_above: usize = 10_000,
+    }
+}

@@ -1,0 +1,397 @@
+//! Where the vertices are, the energy there, and its gradient.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Shells;
+use super::elements::{Edge, Elements, Hinge};
+use super::enclosed::Enclosed;
+use super::hinge;
+use super::springs::Springs;
+use crate::Problem;
+use crate::handles::Handle;
+use crate::numerical::sums::{CHUNKS_A_TASK, Field};
+use crate::operators::CHUNK;
+use crate::region::partition::Partition;
+
+/// A shape. Angles and energy are valid after an evaluation of the displacements.
+#[derive(Clone, Debug)]
+pub(super) struct Shape {
+    /// Of each local vertex, in world units.
+    pub displacements: Vec<DVec3>,
+    /// θ of each hinge. An evaluation takes those that are nearest to what they were before.
+    pub angles_rad: Vec<f64>,
+    /// E, in squared world units.
+    pub energy: f64,
+}
+
+impl Shape {
+    /// Moves the first vertices by so much of a field.
+    pub fn move_by(&mut self, field: &Field, share: f64) {
+        self.displacements[..field.len()]
+            .par_iter_mut()
+            .zip(field)
+            .with_min_len(CHUNK)
+            .for_each(|(displacement, field)| *displacement += DVec3::from_array(*field) * share);
+    }
+}
+
+/// All that has an energy.
+#[derive(Debug)]
+pub(super) struct Energy {
+    pub elements: Elements,
+    pub enclosed: Enclosed,
+    pub springs: Springs,
+    /// What makes the energy a number without unit: one over the area.
+    pub unit: f64,
+    /// Of each solved vertex: its edges, doubled, plus which end it is.
+    edges_at: Rows,
+    /// Of each solved vertex: its hinges, four times, plus which corner it is.
+    hinges_at: Rows,
+}
+
+/// Lists by solved vertex.
+#[derive(Debug)]
+struct Rows {
+    offsets: Vec<u32>,
+    entries: Vec<u32>,
+}
+
+/// The residuals' gradients at a shape.
+#[derive(Debug, Default)]
+pub(super) struct Slopes {
+    /// Of each edge from its first end to the second: the unit vector along it.
+    pub edges: Vec<DVec3>,
+    /// Of each hinge at its corners.
+    pub hinges: Vec<[DVec3; 4]>,
+    /// Of each solved vertex: that of its component's volume; empty if none counts.
+    pub volume: Field,
+    /// Of the energy at the solved vertices.
+    pub energy: Field,
+}
+
+impl Rows {
+    fn of(solved_count: usize, entries: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
+        let solved = entries.filter(|(vertex, _)| (*vertex as usize) < solved_count);
+        let mut offsets = vec![0; solved_count + 1];
+        for (vertex, _) in solved.clone() {
+            offsets[vertex as usize + 1] += 1;
+        }
+        for vertex in 0..solved_count {
+            offsets[vertex + 1] += offsets[vertex];
+        }
+        let mut next = offsets.clone();
+        let mut entries = vec![0; offsets[solved_count] as usize];
+        for (vertex, entry) in solved {
+            entries[next[vertex as usize] as usize] = entry;
+            next[vertex as usize] += 1;
+        }
+        Self { offsets, entries }
+    }
+
+    fn at(&self, vertex: usize) -> &[u32] {
+        &self.entries[self.offsets[vertex] as usize..self.offsets[vertex + 1] as usize]
+    }
+}
+
+impl Energy {
+    /// Of these elements, and of the volumes and soft handles that there are.
+    pub fn of(
+        problem: &Problem,
+        options: &Shells,
+        partition: &Partition,
+        handles: &[Handle],
+        mut elements: Elements,
+    ) -> Self {
+        let enclosed = Enclosed::of(problem, options, &mut elements);
+        let count = elements.solved_count;
+        let ends = (0..).zip(&elements.edges);
+        let ends = ends.flat_map(|(edge, Edge { ends, .. })| [(ends[0], 2 * edge), (ends[1], 2 * edge + 1)]);
+        let corners = (0..).zip(&elements.hinges);
+        let corners = corners.flat_map(|(hinge, Hinge { corners, .. })| {
+            [0, 1, 2, 3].map(|corner| (corners[corner as usize], 4 * hinge + corner))
+        });
+        Self {
+            edges_at: Rows::of(count, ends),
+            hinges_at: Rows::of(count, corners),
+            enclosed,
+            springs: Springs::of(problem, options, partition, handles, &elements),
+            unit: if elements.area > 0.0 {
+                elements.area.recip()
+            } else {
+                0.0
+            },
+            elements,
+        }
+    }
+
+    /// The rest shape.
+    pub fn at_rest(&self) -> Shape {
+        let mut shape = Shape {
+            displacements: vec![DVec3::ZERO; self.elements.vertices.len()],
+            angles_rad: Vec::new(),
+            energy: 0.0,
+        };
+        self.rest(&mut shape);
+        shape
+    }
+
+    /// Makes a shape the rest shape.
+    pub fn rest(&self, shape: &mut Shape) {
+        shape.displacements.fill(DVec3::ZERO);
+        self.relax_angles(shape);
+        shape.energy = 0.0;
+    }
+
+    /// Forgets how far the hinges were turned: the next evaluation takes the angles that are nearest to rest.
+    pub fn relax_angles(&self, shape: &mut Shape) {
+        shape.angles_rad.clear();
+        shape
+            .angles_rad
+            .extend(self.elements.hinges.iter().map(|hinge| hinge.angle_rad));
+    }
+
+    /// The edges that a solved vertex ends, doubled, plus which end it is.
+    pub fn edges_at(&self, vertex: usize) -> &[u32] {
+        self.edges_at.at(vertex)
+    }
+
+    /// The hinges that a solved vertex is a corner of, four times, plus which corner it is.
+    pub fn hinges_at(&self, vertex: usize) -> &[u32] {
+        self.hinges_at.at(vertex)
+    }
+
+    /// Finds the angles and the energy with these springs.
+    pub fn evaluate(&self, shape: &mut Shape, springs: &Springs) {
+        let elements = &self.elements;
+        let displacements = &shape.displacements;
+        let at = |local: u32| elements.rest[local as usize] + displacements[local as usize];
+        let mut energy = partial_sums(&elements.edges, |edge| {
+            let [a, b] = edge.ends.map(at);
+            edge.weight * (a.distance(b) - edge.length).powi(2)
+        });
+        let bent: Vec<f64> = shape
+            .angles_rad
+            .par_chunks_mut(CHUNK)
+            .zip(elements.hinges.par_chunks(CHUNK))
+            .with_min_len(CHUNKS_A_TASK)
+            .map(|(angles, hinges)| {
+                let mut sum = 0.0;
+                for (angle, hinge) in angles.iter_mut().zip(hinges) {
+                    *angle = hinge::unwrapped(hinge::angle_rad(hinge.corners.map(at)), *angle);
+                    sum += hinge.weight * (*angle - hinge.angle_rad).powi(2);
+                }
+                sum
+            })
+            .collect();
+        energy += bent.iter().sum::<f64>();
+        for part in &self.enclosed.parts {
+            energy += part.weight * (part.volume_at(&at) - part.volume).powi(2);
+        }
+        shape.energy = 0.5 * energy + springs.energy(&shape.displacements);
+    }
+
+    /// Finds the gradients at an evaluated shape.
+    pub fn find_slopes(&self, shape: &Shape, slopes: &mut Slopes) {
+        let elements = &self.elements;
+        let displacements = &shape.displacements;
+        let at = |local: u32| elements.rest[local as usize] + displacements[local as usize];
+        let along = |edge: &Edge| {
+            let [a, b] = edge.ends.map(at);
+            (b - a).try_normalize().unwrap_or_default()
+        };
+        let (edges, hinges) = (&elements.edges, &elements.hinges);
+        edges
+            .par_iter()
+            .with_min_len(CHUNK)
+            .map(along)
+            .collect_into_vec(&mut slopes.edges);
+        let turning = |hinge: &Hinge| hinge::gradient(hinge.corners.map(at));
+        hinges
+            .par_iter()
+            .with_min_len(CHUNK)
+            .map(turning)
+            .collect_into_vec(&mut slopes.hinges);
+        slopes.volume.clear();
+        let mut pressures = vec![];
+        if !self.enclosed.parts.is_empty() {
+            slopes.volume.resize(elements.solved_count, [0.0; 3]);
+        }
+        for part in &self.enclosed.parts {
+            part.add_gradient(&at, &mut slopes.volume);
+            pressures.push(part.weight * (part.volume_at(&at) - part.volume));
+        }
+        let (along, turning) = (&slopes.edges, &slopes.hinges);
+        (0..elements.solved_count)
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|vertex| {
+                let mut sum = DVec3::ZERO;
+                for &entry in self.edges_at(vertex) {
+                    let edge = &edges[entry as usize / 2];
+                    let [a, b] = edge.ends.map(at);
+                    let pull = along[entry as usize / 2] * (edge.weight * (a.distance(b) - edge.length));
+                    sum += if entry % 2 == 0 { -pull } else { pull };
+                }
+                for &entry in self.hinges_at(vertex) {
+                    let (place, corner) = (entry as usize / 4, entry as usize % 4);
+                    let hinge = &hinges[place];
+                    sum += turning[place][corner] * (hinge.weight * (shape.angles_rad[place] - hinge.angle_rad));
+                }
+                sum.to_array()
+            })
+            .collect_into_vec(&mut slopes.energy);
+        for (part, pressure) in self.enclosed.parts.iter().zip(pressures) {
+            for &vertex in &part.solved {
+                let slope = slopes.volume[vertex as usize];
+                let own = &mut slopes.energy[vertex as usize];
+                own.iter_mut()
+                    .zip(slope)
+                    .for_each(|(own, slope)| *own += pressure * slope);
+            }
+        }
+        self.springs.add_gradient(displacements, &mut slopes.energy);
+    }
+}
+
+/// Σ of what each gives, the same on any number of threads.
+fn partial_sums<T: Sync>(each: &[T], of: impl Fn(&T) -> f64 + Sync) -> f64 {
+    let sums: Vec<f64> = each
+        .par_chunks(CHUNK)
+        .with_min_len(CHUNKS_A_TASK)
+        .map(|chunk| chunk.iter().map(&of).sum::<f64>())
+        .collect();
+    sums.iter().sum()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use glam::{DAffine3, DVec3};
+    use pliant_mesh::{Cancel, Drawn, Progress, shapes};
+
+    use super::super::{Descent, Shells, ShellsSolver};
+    use super::Slopes;
+    use crate::handles::Handle;
+    use crate::region::partition::Partition;
+    use crate::{Constraints, Loose, Method, Problem, Role};
+
+    fn noise(k: usize) -> f64 {
+        2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract() - 1.0
+    }
+
+    /// Unevenly stiff, the lowest part fixed, the highest one a soft handle.
+    fn solver(drawn: Drawn) -> ShellsSolver {
+        let model = shapes::model(drawn);
+        let bounds = model.bounds().unwrap();
+        let positions = &model.surface.positions;
+        let role = |p: &DVec3| match (p.z - bounds.min.z) / bounds.extent().z {
+            h if h > 0.85 => Role::Handle(0),
+            h if h < 0.15 => Role::Fixed,
+            _ => Role::Free,
+        };
+        let roles: Vec<Role> = positions.iter().map(role).collect();
+        let stiffness: Vec<f64> = (0..roles.len()).map(|v| 1.0 + (v % 5) as f64).collect();
+        let options = Shells {
+            volume: 3.0,
+            bending: 0.01,
+            ..Shells::default()
+        };
+        let method = Method::from(options.clone());
+        let problem = Problem {
+            surface: &model.surface,
+            topology: &model.topology,
+            roles: &roles,
+            handle_count: 1,
+            stiffness: &stiffness,
+            constraints: Constraints {
+                soft: &[Some(0.5)],
+                ..Constraints::default()
+            },
+            loose: Loose::Rest,
+            method: &method,
+            attachments: &[],
+            revision: 0,
+        };
+        let partition = Partition::of(&problem).unwrap();
+        let handles = [Handle::new(partition.handles[0].clone(), positions)];
+        let mut solver = ShellsSolver::bind(
+            &problem,
+            &options,
+            &partition,
+            &handles,
+            &Progress::new(),
+            &Cancel::new(),
+        )
+        .unwrap();
+        let target = DAffine3::from_translation(DVec3::new(0.4, 0.1, 0.3)) * DAffine3::from_rotation_x(1.0);
+        solver.energy.springs.aim(&[handles[0].motion(&target)]);
+        solver
+    }
+
+    #[test]
+    fn the_gradient_is_the_slope_of_the_energy() {
+        for drawn in [shapes::icosphere(2), shapes::torus(12, 8), shapes::non_manifold_fan(7)] {
+            let solver = solver(drawn);
+            let energy = &solver.energy;
+            let mut shape = energy.at_rest();
+            for (vertex, displacement) in shape.displacements.iter_mut().enumerate() {
+                *displacement = DVec3::new(noise(3 * vertex), noise(3 * vertex + 1), noise(3 * vertex + 2)) * 0.05;
+            }
+            energy.evaluate(&mut shape, &energy.springs);
+            let mut slopes = Slopes::default();
+            energy.find_slopes(&shape, &mut slopes);
+            let largest = slopes
+                .energy
+                .as_flattened()
+                .iter()
+                .fold(0.0, |a: f64, b| a.max(b.abs()));
+            assert!(largest > 1e-3);
+            for vertex in (0..energy.elements.solved_count).step_by(5) {
+                for axis in 0..3 {
+                    let at = |step: f64| {
+                        let mut moved = shape.clone();
+                        moved.displacements[vertex][axis] += step;
+                        energy.evaluate(&mut moved, &energy.springs);
+                        moved.energy
+                    };
+                    let slope = (at(1e-6) - at(-1e-6)) / 2e-6;
+                    let error = (slope - slopes.energy[vertex][axis]).abs() / largest;
+                    assert!(error < 1e-6, "{vertex} {axis}: {error:e}");
+                }
+            }
+        }
+    }
+
+    /// To first order; what is left is of the second order in the length.
+    #[test]
+    fn at_rest_the_matrix_is_the_second_derivative() {
+        for drawn in [shapes::icosphere(2), shapes::torus(12, 8)] {
+            let mut solver = solver(drawn);
+            solver.energy.springs.aim(&[crate::handles::Motion::default()]);
+            let rest = solver.energy.at_rest();
+            let mut slopes = Slopes::default();
+            solver.energy.find_slopes(&rest, &mut slopes);
+            let Some(Descent::Newton(system)) = &mut solver.descent else {
+                unreachable!("a small surface")
+            };
+            system.factor(&solver.energy, &slopes).unwrap();
+            let length = 1e-7;
+            let mut moved = rest;
+            let count = solver.energy.elements.solved_count;
+            for (vertex, displacement) in moved.displacements[..count].iter_mut().enumerate() {
+                *displacement = DVec3::new(noise(3 * vertex), noise(3 * vertex + 1), noise(3 * vertex + 2)) * length;
+            }
+            solver.energy.evaluate(&mut moved, &solver.energy.springs);
+            let volume = std::mem::take(&mut slopes.volume);
+            solver.energy.find_slopes(&moved, &mut slopes);
+            slopes.volume = volume;
+            let mut back = slopes.energy.clone();
+            system.apply(&solver.energy, &slopes, &mut back);
+            for (own, moved) in back.iter().zip(&moved.displacements) {
+                let error = (DVec3::from_array(*own) - *moved).length() / length;
+                assert!(error < 1e-3, "{error:e}");
+            }
+        }
+    }
+}
