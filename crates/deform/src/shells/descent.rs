@@ -1,8 +1,10 @@
 //! One quasi-Newton step with a line search: Gauss–Newton, corrected by what the last steps told of the curvature that
 //! JᵀJ leaves out.
 //!
-//! Where a surface buckles, the residuals stay large and their own curvature counts: on a tube of 500 vertices bent by 80
-//! degrees plain Gauss–Newton took 57 steps.
+//! Where a surface buckles, the residuals stay large and their own curvature counts: on the bar and the cylinder of
+//! [BS08] the energy was within 1% of its value after 500 steps in 0.2 s, and hundreds of steps followed that gained
+//! little each. A matrix with the edges' tension, and one with as much of all residuals' own curvature as left it positive
+//! definite, took as many.
 
 use super::shape::{Energy, Slopes};
 use super::system::System;

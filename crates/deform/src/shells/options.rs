@@ -17,8 +17,8 @@ options! {
         /// thickness t has about k_b = k_s (t / D)² / 48.
         bending: f64 = Number {
             default: 1e-4,
-            range: [1e-8, 1.0],
-            unit: "of stretching a diagonal squared",
+            range: [1e-8, 0.1],
+            unit: "squared diagonals of stretching",
             help: "how much it resists being bent: little for paper, which creases, much for thick rubber",
         },
         /// k_v: how much closed parts resist a change of their volume, without unit; 0 lets them.
