@@ -282,7 +282,7 @@ impl Material<'_> {
         let mut firm = 1.0;
         for (corner, face) in [(points[2], one.2), (points[3], other.2)] {
             let height = height(corner);
-            if !(height > NO_HEIGHT) {
+            if height.is_nan() || height <= NO_HEIGHT {
                 found.flat.push(face);
                 return;
             }

@@ -103,7 +103,7 @@ impl ShellsSolver {
         let blended = self.trial.clone();
         self.trial.move_by(&away, -1.0);
         self.energy.evaluate(&mut self.trial, &self.energy.springs);
-        if origin == Origin::Rest && !(self.trial.energy <= blended.energy) {
+        if origin == Origin::Rest && (self.trial.energy.is_nan() || self.trial.energy > blended.energy) {
             self.trial = blended;
         }
         std::mem::swap(&mut self.current, &mut self.trial);
