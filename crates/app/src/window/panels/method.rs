@@ -74,7 +74,7 @@ fn control_points(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     };
     ui.label(sentence).on_hover_text(
         "Click a point to take it, Shift adds one. With the Select tool Ctrl and a drag, or a box or lasso, takes many; \
-         the gizmo, G, R and S move them.",
+         the gizmo, G, R and S move them. The options that make one count again once it is not your own.",
     );
     ui.horizontal_wrapped(|ui| {
         let make = ui.add_enabled(
