@@ -123,10 +123,13 @@ fn translations_and_bases_agree_with_solves_on_every_scan() {
                 }
             }
         }
-        let apart = largest_distance(&sum, &whole);
+        // Points that no triangle uses go rigidly with what is beside them, which is not linear.
+        let solved_count = model.topology.bare_points().start;
+        let (sum, whole) = (&sum[..solved_count], &whole[..solved_count]);
+        let apart = largest_distance(sum, whole);
         assert!(apart < 1e-9 * largest, "{name}: columns are {:e} off", apart / largest);
         // Stored bases have the precision of f32.
-        let apart = largest_distance(&step(&mut free, &targets), &whole);
+        let apart = largest_distance(&step(&mut free, &targets)[..solved_count], whole);
         assert!(apart < 1e-6 * largest, "{name}: bases are {:e} off", apart / largest);
     }
 }

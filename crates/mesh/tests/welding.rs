@@ -41,7 +41,11 @@ fn the_surface_keeps_its_promises_on_every_class() {
                 is_used[v.index()] = true;
             }
         }
-        assert!(is_used.iter().all(|&used| used), "{class}: every vertex is used");
+        let first_bare = model.topology.bare_points().start;
+        assert!(
+            is_used.iter().enumerate().all(|(v, &used)| used == (v < first_bare)),
+            "{class}: bare points come last, and every other vertex is used"
+        );
         assert!(surface.positions.iter().all(|p| p.is_finite()), "{class}");
         let drawn_triangles = model.drawn_triangles();
         for (t, &drawn_triangle) in model.drawn.triangle_of_surface().iter().enumerate() {

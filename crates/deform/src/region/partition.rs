@@ -40,7 +40,10 @@ impl<'a> Partition<'a> {
     /// Checks the problem's tables and sorts its vertices.
     pub fn of(problem: &Problem<'a>) -> Result<Self, BindError> {
         check(problem)?;
-        problem.method.check_bends(problem.surface)?;
+        // Where there is nothing at all there is nothing to refuse.
+        if !problem.surface.positions.is_empty() {
+            problem.method.check_bends(problem.surface)?;
+        }
         let method = problem.method.implementation();
         let triangulation = method.triangulation(problem);
         let mut handles = vec![Vec::new(); problem.handle_count];

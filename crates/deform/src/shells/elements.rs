@@ -3,7 +3,7 @@
 //! Local vertices are first the solved ones, in the order of elimination, then all others that an edge or a hinge needs.
 
 use glam::DVec3;
-use pliant_mesh::{Cancel, Surface, SurfaceVertex, bounding_box};
+use pliant_mesh::{Cancel, Surface, SurfaceVertex};
 use rayon::prelude::*;
 
 use super::Shells;
@@ -174,7 +174,7 @@ fn collected(problem: &Problem, options: &Shells, number: &[u32], world_origin: 
         }
     }
     sides.par_sort_unstable();
-    let diagonal = bounding_box(&surface.positions).map_or(0.0, |bounds| bounds.diagonal());
+    let diagonal = problem.diagonal();
     let material = Material {
         surface,
         stiffness: problem.stiffness,

@@ -53,7 +53,7 @@ impl Springs {
             let share = area(surface, face) / 3.0;
             corners.iter().for_each(|corner| areas[corner.index()] += share);
         }
-        let diagonal = pliant_mesh::bounding_box(&surface.positions).map_or(0.0, |bounds| bounds.diagonal());
+        let diagonal = problem.diagonal();
         let local_of = elements.local_of(surface.positions.len());
         let mut springs = Vec::new();
         for (number, (handle, weight)) in handles.iter().zip(&partition.soft).enumerate() {
