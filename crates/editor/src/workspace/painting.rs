@@ -142,12 +142,18 @@ pub(crate) fn tidy_handles(workspace: &mut Workspace, before: &Document) {
 
 /// What a stroke holds still elsewhere than at rest becomes a pin: it stays where it is seen.
 fn pin_what_is_held_elsewhere(document: &mut Document, before: &Document) {
-    let is_held_elsewhere = |vertex: &usize| {
-        document.paint[*vertex] == Paint::Fixed
-            && before.paint[*vertex] != Paint::Fixed
-            && document.from_rest[*vertex] != DVec3::ZERO
-    };
-    let held: Vec<usize> = (0..document.paint.len()).filter(is_held_elsewhere).collect();
+    if !document.is_displaced() {
+        return;
+    }
+    let paint = document.paint.iter().zip(before.paint());
+    let held: Vec<usize> = paint
+        .zip(document.from_rest())
+        .enumerate()
+        .filter(|(_, ((paint, former), moved))| {
+            **paint == Paint::Fixed && **former != Paint::Fixed && **moved != DVec3::ZERO
+        })
+        .map(|(vertex, _)| vertex)
+        .collect();
     if held.is_empty() {
         return;
     }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use pliant_deform::{Attachment, Loose, Method};
 use pliant_mesh::SurfaceVertex;
 
-use super::{Document, Repainted, note};
+use super::{Document, Repainted};
 use crate::document::access::Access;
 use crate::document::content::{Paint, Tips};
 use crate::document::handle::Handle;
@@ -68,7 +68,8 @@ impl Document {
     pub(in crate::document) fn swap_paint(&mut self, paint: &mut Sparse<Paint>) {
         paint.swap(Arc::make_mut(&mut self.content.paint).as_mut_slice());
         self.marks.mark(&[Aspect::Paint]);
-        note(&mut self.repainted, paint.indices.iter().copied().map(SurfaceVertex));
+        let vertices = paint.indices.iter().copied().map(SurfaceVertex);
+        self.repainted.note(vertices, self.content.paint.len());
     }
 
     pub(in crate::document) fn swap_handles(&mut self, handles: &mut Vec<Handle>, next_handle: &mut u16) {
@@ -88,10 +89,8 @@ impl Document {
         }
         *is_field = was_field;
         self.marks.mark(&[Aspect::Stiffness]);
-        note(
-            &mut self.repainted,
-            stiffness.indices.iter().copied().map(SurfaceVertex),
-        );
+        let vertices = stiffness.indices.iter().copied().map(SurfaceVertex);
+        self.repainted.note(vertices, count);
     }
 
     pub(in crate::document) fn swap_continuity(&mut self, continuity: &mut Option<Arc<Vec<f64>>>) {

@@ -41,6 +41,34 @@ pub(crate) enum Repainted {
     All,
 }
 
+/// Above this share of the vertices all count as repainted: to tell so many apart costs more than it saves.
+const MOST_TOLD: f64 = 0.125;
+
+impl Repainted {
+    /// Where to note `more` vertices, of `count` that there are; `None` where all count as repainted.
+    fn room_for(&mut self, more: usize, count: usize) -> Option<&mut Vec<SurfaceVertex>> {
+        if let Self::Vertices(told) = self
+            && (told.len() + more) as f64 > MOST_TOLD * count as f64
+        {
+            *self = Self::All;
+        }
+        match self {
+            Self::Vertices(told) => {
+                told.reserve(more);
+                Some(told)
+            }
+            Self::All => None,
+        }
+    }
+
+    /// Notes vertices, of `count` that there are.
+    fn note(&mut self, vertices: impl ExactSizeIterator<Item = SurfaceVertex>, count: usize) {
+        if let Some(told) = self.room_for(vertices.len(), count) {
+            told.extend(vertices);
+        }
+    }
+}
+
 impl Default for Repainted {
     fn default() -> Self {
         Self::Vertices(Vec::new())
@@ -217,16 +245,22 @@ impl Document {
 /// What is painted.
 impl Document {
     /// Paints vertices.
-    pub(crate) fn paint_vertices(&mut self, changes: impl IntoIterator<Item = (SurfaceVertex, Paint)>) {
-        let mut changes = changes.into_iter().peekable();
-        if changes.peek().is_none() {
+    pub(crate) fn paint_vertices(
+        &mut self,
+        changes: impl IntoIterator<Item = (SurfaceVertex, Paint), IntoIter: ExactSizeIterator>,
+    ) {
+        let changes = changes.into_iter();
+        if changes.len() == 0 {
             return;
         }
         self.marks.mark(&[Aspect::Paint]);
         let painted = Arc::make_mut(&mut self.content.paint);
+        let mut told = self.repainted.room_for(changes.len(), painted.len());
         for (vertex, paint) in changes {
             painted[vertex.index()] = paint;
-            note(&mut self.repainted, [vertex]);
+            if let Some(told) = &mut told {
+                told.push(vertex);
+            }
         }
     }
 
@@ -251,7 +285,7 @@ impl Document {
         let field = self.content.stiffness.get_or_insert_with(|| Arc::new(vec![1.0; count]));
         let changed = change(Arc::make_mut(field).as_mut_slice());
         self.marks.mark(&[Aspect::Stiffness]);
-        note(&mut self.repainted, changed);
+        self.repainted.note(changed.into_iter(), count);
     }
 
     /// Forgets a field of stiffness that is 1 everywhere. Where `before` had none, nothing has changed.
@@ -361,18 +395,6 @@ impl Document {
     /// Chooses what is hidden and locked.
     pub(crate) fn set_access(&mut self, mut access: Arc<Access>) {
         self.swap_access(&mut access);
-    }
-}
-
-/// Above so many vertices all count as repainted: to tell them apart would cost more than it saves.
-const MOST_TOLD: usize = 1 << 19;
-
-fn note(repainted: &mut Repainted, vertices: impl IntoIterator<Item = SurfaceVertex>) {
-    if let Repainted::Vertices(told) = repainted {
-        told.extend(vertices);
-        if told.len() > MOST_TOLD {
-            *repainted = Repainted::All;
-        }
     }
 }
 
