@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use crate::BindError;
 use crate::bilaplacian::assembly::assemble_bilaplacian;
+use crate::bilaplacian::held::HeldReach;
 use crate::bilaplacian::hubs::Hubs;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::budget::{Budget, Limit, bytes_of};
@@ -28,6 +29,7 @@ pub(crate) struct BilaplacianSystem {
     /// The local vertex of each column of the factor.
     columns: Vec<u32>,
     column_of: Vec<u32>,
+    held_reach: Option<HeldReach>,
     /// The column of each of the operator's springs.
     spring_columns: Vec<u32>,
     factored: Arc<RenewableFactor>,
@@ -110,6 +112,7 @@ impl BilaplacianSystem {
             low_rank = Some(LowRank::of(&factored.factor, vectors, &c).map_err(refused)?);
         }
         Ok(Self {
+            held_reach: HeldReach::of(&operator, &columns, &column_of),
             operator,
             columns,
             column_of,
@@ -166,7 +169,7 @@ impl BilaplacianSystem {
     /// S (W (c − d) − A d) on the solved vertices, by differences along edges and springs.
     pub fn scaled_residual<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
         let potential = self.operator.potential(d);
-        let mut residual: Vec<[f64; K]> = self
+        let residual = self
             .columns
             .par_iter()
             .with_min_len(CHUNK)
@@ -177,6 +180,18 @@ impl BilaplacianSystem {
                     .map(|value| -value * scale)
             })
             .collect();
+        self.with_pulls(residual, d)
+    }
+
+    /// As [`BilaplacianSystem::scaled_residual`], of a field that is zero on the solved vertices.
+    pub fn scaled_residual_from_zero<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
+        let Some(reach) = &self.held_reach else {
+            return self.scaled_residual(d);
+        };
+        self.with_pulls(reach.scaled_force(&self.operator, (&self.columns, self.scale()), d), d)
+    }
+
+    fn with_pulls<const K: usize>(&self, mut residual: Vec<[f64; K]>, d: &[[f64; K]]) -> Vec<[f64; K]> {
         for (spring, &column) in self.spring_columns.iter().enumerate() {
             let pull = self.operator.pull(spring, d);
             for k in 0..K {

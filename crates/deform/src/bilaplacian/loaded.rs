@@ -115,14 +115,6 @@ impl LoadedSystem {
         settled(self.system.solve_frame(load, field))
     }
 
-    /// As [`LoadedSystem::solve`], from what the field holds: the nearer to the solution, the fewer corrections.
-    ///
-    /// # Errors
-    /// As [`LoadedSystem::solve`].
-    pub fn refine(&self, load: &[[f64; 3]], field: &mut [[f64; 3]]) -> Result<(), SolveError> {
-        settled(self.system.refine_frame(load, field))
-    }
-
     /// Writes a field to the displacements of all surface vertices, zeros elsewhere.
     pub fn write(&self, field: &[[f64; 3]], displacements: &mut [DVec3]) {
         clear(displacements);

@@ -7,6 +7,7 @@ mod continuity;
 mod declaration;
 mod detail;
 pub(crate) mod factored;
+mod held;
 pub(crate) mod hubs;
 pub(crate) mod loaded;
 pub(crate) mod operator;

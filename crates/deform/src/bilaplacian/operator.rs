@@ -119,22 +119,43 @@ impl BilaplacianOperator {
         if self.power == 3 {
             phi = self.middle().per_area(&phi);
         }
-        let sign = if self.power == 2 { -self.bending } else { self.bending };
-        let shared_stretching = if self.stretched.is_none() { self.stretching } else { 0.0 };
         phi.par_iter_mut()
             .with_min_len(CHUNK)
             .zip(d)
             .enumerate()
-            .for_each(|(local, (phi, d))| {
-                let factor = sign * self.cell_stiffness(local);
-                for k in 0..K {
-                    phi[k] *= factor;
-                    if shared_stretching > 0.0 {
-                        phi[k] += shared_stretching * d[k];
-                    }
-                }
-            });
+            .for_each(|(local, (phi, d))| *phi = self.weighted(local, *phi, d));
         Potential { phi: phi.into(), d }
+    }
+
+    /// φ at order 1 or 2 of functions for which it is zero but at these local vertices.
+    pub fn potential_at<'a, const K: usize>(&self, locals: &[u32], d: &'a [[f64; K]]) -> Potential<'a, K> {
+        if self.power == 1 {
+            return Potential { phi: d.into(), d };
+        }
+        let mut phi = vec![[0.0; K]; self.laplacian.vertices().len()];
+        for &local in locals {
+            let local = local as usize;
+            let inverse_area = self.laplacian.inverse_areas()[local];
+            let per_area = self.laplacian.row(local, d).map(|value| value * inverse_area);
+            phi[local] = self.weighted(local, per_area, &d[local]);
+        }
+        Potential { phi: phi.into(), d }
+    }
+
+    /// φ of a local vertex from d and the last Laplacian before the outermost one.
+    #[inline]
+    fn weighted<const K: usize>(&self, local: usize, laplacian: [f64; K], d: &[f64; K]) -> [f64; K] {
+        let sign = if self.power == 2 { -self.bending } else { self.bending };
+        let shared_stretching = if self.stretched.is_none() { self.stretching } else { 0.0 };
+        let factor = sign * self.cell_stiffness(local);
+        std::array::from_fn(|k| {
+            let bent = laplacian[k] * factor;
+            if shared_stretching > 0.0 {
+                bent + shared_stretching * d[k]
+            } else {
+                bent
+            }
+        })
     }
 
     /// (A d)_i of `local`, given d's potential.

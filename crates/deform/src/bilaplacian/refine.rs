@@ -16,15 +16,6 @@ use crate::sparse::matrix::CONSTRAINED;
 /// The most corrections of a solve, the first one included.
 const STEPS: usize = 8;
 
-/// Where a solve begins.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Start {
-    /// From zero.
-    Zero,
-    /// From what the field holds.
-    Guess,
-}
-
 /// When refinement ends.
 #[derive(Clone, Copy, Debug)]
 struct Accuracy {
@@ -81,6 +72,11 @@ pub(crate) trait Refined {
     /// S (b − A d) on the columns, b being what the rows of `d` that are not solved for ask for.
     fn scaled_residual<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]>;
 
+    /// As [`Refined::scaled_residual`], where `d` is zero on the columns.
+    fn scaled_residual_from_zero<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
+        self.scaled_residual(d)
+    }
+
     /// x ← (S A S)⁻¹ x, up to the error of the factor.
     fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]]);
 }
@@ -106,6 +102,10 @@ impl Refined for BilaplacianSystem {
         Self::scaled_residual(self, d)
     }
 
+    fn scaled_residual_from_zero<const K: usize>(&self, d: &[[f64; K]]) -> Vec<[f64; K]> {
+        Self::scaled_residual_from_zero(self, d)
+    }
+
     fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]]) {
         Self::solve_factored(self, x);
     }
@@ -119,7 +119,7 @@ pub(crate) fn solve_fully<S: Refined, const K: usize>(
     contraction: f64,
     cancel: &Cancel,
 ) -> Outcome {
-    solve(system, None, (d, Start::Zero), (contraction, FULL), cancel)
+    solve(system, None, d, (contraction, FULL), cancel)
 }
 
 /// As [`solve_fully`], as exactly as a frame needs.
@@ -129,7 +129,7 @@ pub(crate) fn solve_for_frames<S: Refined, const K: usize>(
     contraction: f64,
     cancel: &Cancel,
 ) -> Outcome {
-    solve(system, None, (d, Start::Zero), (contraction, FRAME), cancel)
+    solve(system, None, d, (contraction, FRAME), cancel)
 }
 
 /// Where a solution that is to be 1 everywhere, the last one of each row, is furthest from it: how far, and the place.
@@ -154,13 +154,7 @@ impl BilaplacianSystem {
     /// needs.
     pub fn solve_frame<const K: usize>(&self, load: &[[f64; K]], d: &mut [[f64; K]]) -> Outcome {
         let accuracy = (self.contraction, FRAME);
-        solve(self, Some(load), (d, Start::Zero), accuracy, &Cancel::new())
-    }
-
-    /// As [`BilaplacianSystem::solve_frame`], from what `d` holds: the nearer to the solution, the fewer corrections.
-    pub fn refine_frame<const K: usize>(&self, load: &[[f64; K]], d: &mut [[f64; K]]) -> Outcome {
-        let accuracy = (self.contraction, FRAME);
-        solve(self, Some(load), (d, Start::Guess), accuracy, &Cancel::new())
+        solve(self, Some(load), d, accuracy, &Cancel::new())
     }
 
     /// Solves as [`BilaplacianSystem::solve`] and remembers how fast refinement was. The last function of `d` is 1 at
@@ -188,15 +182,13 @@ impl BilaplacianSystem {
 fn solve<S: Refined, const K: usize>(
     system: &S,
     load: Option<&[[f64; K]]>,
-    (d, start): (&mut [[f64; K]], Start),
+    d: &mut [[f64; K]],
     (contraction, accuracy): (f64, Accuracy),
     cancel: &Cancel,
 ) -> Outcome {
-    if start == Start::Zero {
-        for (row, &column) in d.iter_mut().zip(system.column_of()) {
-            if column != CONSTRAINED {
-                *row = [0.0; K];
-            }
+    for (row, &column) in d.iter_mut().zip(system.column_of()) {
+        if column != CONSTRAINED {
+            *row = [0.0; K];
         }
     }
     let mut outcome = Outcome {
@@ -210,7 +202,11 @@ fn solve<S: Refined, const K: usize>(
         if cancel.is_cancelled() {
             break;
         }
-        let mut x = system.scaled_residual(d);
+        let mut x = if step == 1 {
+            system.scaled_residual_from_zero(d)
+        } else {
+            system.scaled_residual(d)
+        };
         let loaded = x.par_iter_mut().zip(load.unwrap_or_default()).zip(system.scale());
         loaded.with_min_len(CHUNK).for_each(|((x, load), scale)| {
             for k in 0..K {

@@ -23,7 +23,7 @@ pub(super) struct Estimate<'a> {
     /// Rest positions and displacements of the local vertices.
     pub rest: &'a [DVec3],
     pub field: &'a [[f64; 3]],
-    /// Fits of the nearest rings whose turns the search for rotations begins with; otherwise it begins with none.
+    /// Fits of the nearest rings, whose turns the search for rotations may begin with.
     pub similarities: Option<&'a [Similarity]>,
     /// L p of the local vertices.
     pub curvature: &'a [DVec3],
@@ -42,20 +42,23 @@ impl Estimate<'_> {
         });
     }
 
-    /// A guess at the rotation around a vertex, whose ring has these moments.
+    /// A guess at the rotation around a vertex, whose ring has these moments: the better one of that which its fit tells
+    /// and the one of a vertex beside. Linear fits tell little about large turns.
     #[inline(always)]
-    fn guess(&self, local: usize, moments: &Moments) -> DQuat {
-        let Some(similarities) = self.similarities else {
-            return DQuat::IDENTITY;
+    fn guess(&self, local: usize, moments: &Moments, beside: DQuat) -> DQuat {
+        let own = match self.similarities {
+            None => DQuat::IDENTITY,
+            Some(similarities) if self.rings.are_nearest() => similarities[local].fit(moments).rotation_guess(),
+            Some(similarities) => {
+                let nearest = Moments::of(local, self.laplacian.neighbours(local), self.rest, self.field);
+                similarities[local].fit(&nearest).rotation_guess()
+            }
         };
-        let similarity = &similarities[local];
-        let fitted = if self.rings.are_nearest() {
-            similarity.fit(moments)
+        if moments.alignment(beside) > moments.alignment(own) {
+            beside
         } else {
-            let nearest = self.laplacian.neighbours(local);
-            similarity.fit(&Moments::of(local, nearest, self.rest, self.field))
-        };
-        fitted.rotation_guess()
+            own
+        }
     }
 }
 
@@ -77,6 +80,8 @@ impl WithSimd for Pass<'_> {
             changes,
         } = self;
         let mut fits = Fits::default();
+        // Vertices that follow each other are near each other, too.
+        let mut beside = DQuat::IDENTITY;
         for start in (0..changes.len()).step_by(LANES) {
             let count = LANES.min(changes.len() - start);
             let mut all = [Moments::ZERO; LANES];
@@ -91,7 +96,7 @@ impl WithSimd for Pass<'_> {
                 for (lanes, value) in fits.rest.iter_mut().zip(moments.rest) {
                     lanes.0[lane] = value;
                 }
-                let guess = estimate.guess(local, &moments).to_array();
+                let guess = estimate.guess(local, &moments, beside).to_array();
                 for (lanes, value) in fits.rotation.iter_mut().zip(guess) {
                     lanes.0[lane] = value;
                 }
@@ -99,6 +104,7 @@ impl WithSimd for Pass<'_> {
             }
             fits.fit(simd, count);
             fits.finish(simd);
+            beside = DQuat::from_array(fits.rotation.map(|lanes| lanes.0[count - 1]));
             for lane in 0..count {
                 let (moments, local) = (&all[lane], first + start + lane);
                 let curvature = estimate.curvature[local];

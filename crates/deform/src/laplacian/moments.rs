@@ -1,6 +1,6 @@
 //! How a vertex' neighbours move: the sums that its transformation is fitted to.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
 /// Sums over the edges e from a vertex, which displacements change by D.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +49,16 @@ impl Moments {
     pub fn across(&self) -> DVec3 {
         let DMat3 { x_axis, y_axis, z_axis } = self.change;
         DVec3::new(y_axis.z - z_axis.y, z_axis.x - x_axis.z, x_axis.y - y_axis.x)
+    }
+
+    /// tr((R − 1)ᵀ S) of a rotation R, S = Σ (e + D) eᵀ: the greater, the better R carries the edges.
+    #[inline(always)]
+    pub fn alignment(&self, rotation: DQuat) -> f64 {
+        let [xx, xy, xz, yy, yz, zz] = self.rest;
+        let rest = DMat3::from_cols(DVec3::new(xx, xy, xz), DVec3::new(xy, yy, yz), DVec3::new(xz, yz, zz));
+        let v = rotation.xyz();
+        let bent = v.dot((self.change + rest) * v) - v.length_squared() * (self.along() + self.square());
+        2.0 * (rotation.w * v.dot(self.across()) + bent)
     }
 
     /// Σ |e|².

@@ -51,11 +51,7 @@ impl LaplacianSolver {
                 estimate.transform(&mut room.changes);
             }
             self.set_load(room);
-            match &self.rings {
-                // The first shape is near.
-                Some(_) => self.system.refine(&room.load, &mut room.field)?,
-                None => self.system.solve(&room.load, &mut room.field)?,
-            }
+            self.system.solve(&room.load, &mut room.field)?;
         }
         Ok(())
     }
