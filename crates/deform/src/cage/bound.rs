@@ -59,10 +59,10 @@ impl BoundMethod for BoundCage {
                 if let (Some(by_hand), Some(moves)) = (by_hand, self.controls.corrected()) {
                     by_hand.add_jacobians(moves, out);
                 }
+                true
             }
             Field::Conformal(conformal) => conformal.jacobians(&self.controls, motions, out),
         }
-        true
     }
 
     fn controls(&self) -> Option<&Controls> {

@@ -8,19 +8,18 @@ use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
 use super::green::Green;
+use super::green_table::{GreenTable, green_rows};
+use super::lane_rows::{BLOCKS, LaneRows};
 use super::linear::Unit;
 use super::mesh::CageMesh;
 use crate::BindError;
-use crate::budget::filled;
 use crate::handles::Motion;
+use crate::numerical::lanes::LANES;
 use crate::numerical::rigid_fit::RigidMotion;
 use crate::space::controls::Controls;
 use crate::space::falloff::Falloff;
 use crate::space::fit_samples::Sample;
 use crate::space::hand_field::outer;
-
-/// Points that one task takes.
-const CHUNK: usize = 256;
 
 /// How often a frame corrects the cage.
 const CORRECTIONS: usize = 8;
@@ -34,11 +33,12 @@ pub(super) struct Conformal {
     vertices: Vec<u32>,
     points: Vec<DVec3>,
     falloff: Falloff,
-    /// The points' coordinates, row by row.
-    rows: Vec<f64>,
+    table: GreenTable,
     samples: Vec<Sample>,
-    sample_rows: Mat<f64>,
-    response: Mat<f64>,
+    sample_points: Vec<DVec3>,
+    sample_rows: LaneRows<f64>,
+    /// How each vertex moves as each sample misses its target by a unit.
+    response: LaneRows<f64>,
 }
 
 /// A moved cage: a rigid motion and what differs from it.
@@ -49,101 +49,87 @@ struct MovedCage {
     differences: Vec<DVec3>,
 }
 
-/// The bytes of a point's coordinates.
-pub(super) fn row_bytes(cage: &CageMesh) -> usize {
-    size_of::<f64>() * (cage.vertices.len() + cage.faces.len()) + 2 * size_of::<DVec3>()
-}
-
 impl Conformal {
-    /// Computes the coordinates of the vertices that move.
+    /// Computes the coordinates of the vertices that move. `response` has a row a vertex of the cage and a column a
+    /// sample.
     #[expect(clippy::too_many_arguments, reason = "its parts, each made by another function")]
     pub fn bind(
         unit: Unit,
         cage: CageMesh,
         samples: Vec<Sample>,
-        sample_rows: Mat<f64>,
-        response: Mat<f64>,
+        response: &Mat<f64>,
         (vertices, falloff): (Vec<u32>, Falloff),
         positions: &[DVec3],
         progress: &Progress,
         cancel: &Cancel,
     ) -> Result<Self, BindError> {
-        let out_of_memory = |_| BindError::OutOfMemory {
-            free_count: vertices.len(),
-        };
+        let free_count = vertices.len();
+        let out_of_memory = |_| BindError::OutOfMemory { free_count };
         let points: Vec<DVec3> = vertices
             .iter()
             .map(|&vertex| unit.local(positions[vertex as usize]))
             .collect();
+        let sample_points: Vec<DVec3> = samples.iter().map(|sample| unit.local(sample.world_point)).collect();
         let green = Green::new(&cage);
-        let count = green.count();
-        let mut rows = filled(0.0, points.len() * count).map_err(out_of_memory)?;
-        let chunks = points.par_chunks(CHUNK).zip(rows.par_chunks_mut(CHUNK * count));
-        chunks.try_for_each(|(points, rows)| {
-            cancel.check()?;
-            for (&point, row) in points.iter().zip(rows.chunks_exact_mut(count)) {
-                green.at(point, row, None);
-            }
-            Ok::<_, BindError>(())
-        })?;
+        let sample_rows = green_rows(&green, &sample_points, cancel)?;
+        progress.set(0.3);
+        let table = GreenTable::of(&green, &points, cancel)?;
+        let response = LaneRows::of(response.nrows(), response.ncols(), |vertex, sample| {
+            response[(vertex, sample)]
+        });
         progress.set(1.0);
         Ok(Self {
             unit,
+            response: response.map_err(out_of_memory)?,
             cage,
             vertices,
             points,
             falloff,
-            rows,
+            table,
             samples,
+            sample_points,
             sample_rows,
-            response,
         })
     }
 
     /// Fills all of `displacements`. The corrections begin at where `controls` say that the cage's vertices go.
     pub fn frame(&self, controls: &Controls, motions: &[Motion], displacements: &mut [DVec3]) {
         let (moved, _) = self.moved_cage(controls, motions);
-        let count = moved.differences.len();
-        let mut own = vec![DVec3::ZERO; self.points.len()];
-        own.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, own)| {
-            for (place, own) in own.iter_mut().enumerate() {
-                let number = chunk * CHUNK + place;
-                let row = &self.rows[number * count..][..count];
-                let (factor, _) = self.falloff.at(number);
-                *own = moved.at(self.points[number], row.iter().copied()) * (factor * self.unit.length);
+        let own = |block: usize| self.table.block_product(block, &moved.differences);
+        displacements.fill(DVec3::ZERO);
+        let tasks = pieces(&self.vertices, displacements, LANES * BLOCKS);
+        tasks.into_par_iter().enumerate().for_each(|(task, (start, piece))| {
+            for (block, vertices) in self.vertices[task * LANES * BLOCKS..]
+                .chunks(LANES)
+                .take(BLOCKS)
+                .enumerate()
+            {
+                let block = task * BLOCKS + block;
+                for (lane, (&vertex, sum)) in vertices.iter().zip(own(block)).enumerate() {
+                    let number = block * LANES + lane;
+                    let shift = displaced(moved.rigid.as_ref(), self.points[number]) + sum;
+                    piece[vertex as usize - start] = shift * (self.falloff.at(number).0 * self.unit.length);
+                }
             }
         });
-        displacements.fill(DVec3::ZERO);
-        for (&vertex, own) in self.vertices.iter().zip(own) {
-            displacements[vertex as usize] = own;
-        }
     }
 
-    /// The Jacobians of the displacements. The gradients of the coordinates are computed anew each time, because they
-    /// are three times as many numbers as the coordinates themselves.
-    pub fn jacobians(&self, controls: &Controls, motions: &[Motion], out: &mut [Mat3]) {
+    /// The Jacobians of the displacements, where gradients are kept; whether they are.
+    pub fn jacobians(&self, controls: &Controls, motions: &[Motion], out: &mut [Mat3]) -> bool {
+        let GreenTable::Small(rows, gradients) = &self.table else {
+            return false;
+        };
         let (moved, _) = self.moved_cage(controls, motions);
-        let green = Green::new(&self.cage);
-        let mut own = vec![Mat3::ZERO; self.points.len()];
-        own.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, own)| {
-            let (mut values, mut gradients) = (vec![0.0; green.count()], vec![DVec3::ZERO; green.count()]);
-            for (place, own) in own.iter_mut().enumerate() {
-                let number = chunk * CHUNK + place;
-                let point = self.points[number];
-                green.at(point, &mut values, Some(&mut gradients));
-                let (factor, slope) = self.falloff.at(number);
-                let shift = moved.at(point, values.iter().copied());
-                let mut sum = (moved.turn - DMat3::IDENTITY) * factor + outer(shift, slope * self.unit.length);
-                for (difference, gradient) in moved.differences.iter().zip(&gradients) {
-                    sum += outer(*difference, *gradient * factor);
-                }
-                *own = sum.as_mat3();
-            }
-        });
+        let shifts = moved.at(&self.points, rows);
+        let [x, y, z] = gradients.each_ref().map(|axis| axis.product(&moved.differences));
         out.fill(Mat3::ZERO);
-        for (&vertex, own) in self.vertices.iter().zip(own) {
-            out[vertex as usize] = own;
+        for (number, &vertex) in self.vertices.iter().enumerate() {
+            let (factor, slope) = self.falloff.at(number);
+            let sum = moved.turn - DMat3::IDENTITY + DMat3::from_cols(x[number], y[number], z[number]);
+            let faded = outer(shifts[number], slope * self.unit.length);
+            out[vertex as usize] = (sum * factor + faded).as_mat3();
         }
+        true
     }
 
     /// Where the cage's vertices are, in world units.
@@ -170,23 +156,20 @@ impl Conformal {
             let shifts: Vec<DVec3> = by_hand.iter().map(|shift| *shift / self.unit.length).collect();
             MovedCage::new(&self.cage, &shifts)
         });
-        let row = |number: usize| (0..self.sample_rows.ncols()).map(move |column| self.sample_rows[(number, column)]);
-        let target = |(number, sample): (usize, &Sample)| match (sample.handle, &by_hand) {
+        let of_hand = by_hand.map(|by_hand| by_hand.at(&self.sample_points, &self.sample_rows));
+        let target = |(number, sample): (usize, &Sample)| match (sample.handle, &of_hand) {
             (Some((handle, coordinates)), _) => motions[handle].displace(coordinates) / self.unit.length,
-            (None, Some(by_hand)) => by_hand.at(self.unit.local(sample.world_point), row(number)),
+            (None, Some(of_hand)) => of_hand[number],
             (None, None) => DVec3::ZERO,
         };
         let targets: Vec<DVec3> = self.samples.iter().enumerate().map(target).collect();
         let mut best = (f64::INFINITY, (MovedCage::new(&self.cage, &shifts), shifts.clone()));
         for _ in 0..CORRECTIONS {
             let moved = MovedCage::new(&self.cage, &shifts);
-            let misses: Vec<DVec3> = self
-                .samples
-                .iter()
-                .zip(&targets)
-                .enumerate()
-                .map(|(number, (sample, target))| *target - moved.at(self.unit.local(sample.world_point), row(number)))
-                .collect();
+            let mut misses = moved.at(&self.sample_points, &self.sample_rows);
+            for (miss, target) in misses.iter_mut().zip(&targets) {
+                *miss = *target - *miss;
+            }
             let squares = misses.iter().zip(&self.samples);
             let error: f64 = squares
                 .map(|(miss, sample)| miss.length_squared() * sample.weight)
@@ -199,15 +182,25 @@ impl Conformal {
             if !is_better {
                 break;
             }
-            for (vertex, shift) in shifts.iter_mut().enumerate() {
-                let columns = misses.iter().enumerate();
-                *shift += columns
-                    .map(|(sample, miss)| *miss * self.response[(vertex, sample)])
-                    .sum::<DVec3>();
+            for (shift, correction) in shifts.iter_mut().zip(self.response.product(&misses)) {
+                *shift += correction;
             }
         }
         best.1
     }
+}
+
+/// Cuts a table of all vertices so that each piece has `count` of these, ascending; with each piece its first vertex.
+fn pieces<'a, T>(vertices: &[u32], mut table: &'a mut [T], count: usize) -> Vec<(usize, &'a mut [T])> {
+    let mut start = 0;
+    let mut pieces = Vec::new();
+    for own in vertices.chunks(count) {
+        let end = own.last().map_or(start, |last| *last as usize + 1);
+        let (piece, rest) = table.split_at_mut(end - start);
+        pieces.push((start, piece));
+        (start, table) = (end, rest);
+    }
+    pieces
 }
 
 impl MovedCage {
@@ -237,11 +230,13 @@ impl MovedCage {
         }
     }
 
-    /// The displacement of a point with these coordinates. A rigid motion of the whole cage moves every point with it.
-    fn at(&self, point: DVec3, coordinates: impl Iterator<Item = f64>) -> DVec3 {
-        let terms = self.differences.iter().zip(coordinates);
-        let sum: DVec3 = terms.map(|(difference, value)| *difference * value).sum();
-        displaced(self.rigid.as_ref(), point) + sum
+    /// The displacements of points with these coordinates. A rigid motion of the whole cage moves every point with it.
+    fn at(&self, points: &[DVec3], rows: &LaneRows<f64>) -> Vec<DVec3> {
+        let mut sums = rows.product(&self.differences);
+        for (sum, point) in sums.iter_mut().zip(points) {
+            *sum += displaced(self.rigid.as_ref(), *point);
+        }
+        sums
     }
 }
 

@@ -6,13 +6,14 @@ use glam::DVec3;
 use super::bound::{BoundCage, Field};
 use super::by_hand::{ByHand, HarmonicCoordinates, StoredCoordinates, stored_bytes};
 use super::chosen::ChosenCage;
-use super::conformal::{Conformal, row_bytes};
+use super::conformal::Conformal;
 use super::fit::{controls, fit_bytes, response, soft_unit};
+use super::green_table::green_bytes;
 use super::harmonic::Harmonic;
 use super::linear::{HarmonicMap, MeanValueMap, Unit};
 use super::mean_value::MeanValue;
 use super::outside::{told_close, told_outside};
-use super::rows::{green_rows, harmonic_rows, mean_value_rows};
+use super::rows::{harmonic_rows, mean_value_rows};
 use super::{Cage, CageCoordinates, brought};
 use crate::BindError;
 use crate::budget::{Limit, bytes_of};
@@ -159,18 +160,15 @@ impl DeformMethod for Cage {
                 (Field::Linear(Box::new(field), by_hand), rows, driven)
             }
             CageCoordinates::Green => {
-                let bytes = bytes_of(vertices.len(), row_bytes(cage));
-                budget.without(bytes).map_err(over)?;
+                budget.without(green_bytes(cage, vertices.len())).map_err(over)?;
                 let rows = mean_value_rows(&MeanValue::new(cage), &samples, unit);
                 let (response, driven) = (response(cage, &rows, &samples), controls_of(&rows));
-                let green_rows = green_rows(cage, &samples, unit);
                 input.progress.set(0.2);
                 let conformal = Conformal::bind(
                     unit,
                     cage.clone(),
                     samples.clone(),
-                    green_rows,
-                    response,
+                    &response,
                     (vertices, falloff),
                     positions,
                     input.progress,

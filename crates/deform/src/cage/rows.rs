@@ -3,11 +3,9 @@
 use faer::Mat;
 use glam::DVec3;
 
-use super::green::Green;
 use super::harmonic::Harmonic;
 use super::linear::Unit;
 use super::mean_value::MeanValue;
-use super::mesh::CageMesh;
 use crate::space::fit_samples::Sample;
 
 /// Mean value coordinates.
@@ -27,18 +25,4 @@ pub(super) fn harmonic_rows(harmonic: &Harmonic, vertex_count: usize, samples: &
     let own = samples.iter().map(|sample| harmonic.at(unit.local(sample.world_point)));
     let own: Vec<Vec<f64>> = own.collect();
     Mat::from_fn(samples.len(), vertex_count, |sample, vertex| own[sample][vertex])
-}
-
-/// Green coordinates.
-pub(super) fn green_rows(cage: &CageMesh, samples: &[Sample], unit: Unit) -> Mat<f64> {
-    let green = Green::new(cage);
-    let mut rows = Mat::zeros(samples.len(), green.count());
-    let mut values = vec![0.0; green.count()];
-    for (number, sample) in samples.iter().enumerate() {
-        green.at(unit.local(sample.world_point), &mut values, None);
-        for (column, value) in values.iter().enumerate() {
-            rows[(number, column)] = *value;
-        }
-    }
-    rows
 }
