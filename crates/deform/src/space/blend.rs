@@ -1,17 +1,17 @@
-//! Displacements blended from a few affine motions, with what handles are missed by carried off smoothly.
+//! Displacements blended from a few affine motions, which give way to handles and to what is fixed where these begin.
 //!
-//! d(p) = Σ_k w_k(p) (M_k (p − c_k) + t_k) + Σ_i u_i(p) r_i: the motions k of nodes or cells with weights that sum to 1,
-//! and the residuals r_i of constrained vertices, by which the first sum misses where their handle takes them. The
-//! weights u_i are those of Shepard's interpolation [She68] among the nearest constrained vertices, faded out over a distance.
-//! So handles are met exactly, what is fixed rests, and the surface joins both without a crack. Of constrained vertices
-//! that are very close to each other one stands for all.
+//! d(p) = b(p) + Σ_h u_h(p) (H_h p − b(p)), b(p) = Σ_k w_k(p) (M_k (p − c_k) + t_k): the motions k of nodes or cells with
+//! weights that sum to 1, and the affine motions H_h of hard handles; of what is fixed H is zero. The weight u_h is 1 at
+//! the vertices of h, with slope 0, and fades with the distance to the nearest of them; where several are near their
+//! weights are those of Shepard's interpolation [She68]. So handles are met exactly, what is fixed rests, and what lies
+//! beside either goes along with it to the second order of the distance, whether triangles join them or not.
 
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use rayon::prelude::*;
 
+use super::hand_field::outer;
 use super::moving::Moving;
 use super::neighbours::Neighbours;
-use super::samples::apart;
 use crate::handles::Motion;
 use crate::method::{BindInput, Finite};
 use crate::{BindError, Role};
@@ -25,7 +25,7 @@ pub(crate) struct Affine {
     pub shift: DVec3,
 }
 
-/// The weight of a motion or a residual at a point.
+/// The weight of a motion at a point.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Share {
     pub source: u32,
@@ -49,36 +49,27 @@ pub(crate) struct Blend {
     world_places: Vec<DVec3>,
     /// Of the motions at each row.
     shares: Shares,
-    /// Of the anchors' residuals at each row.
-    carry: Shares,
-    anchors: Vec<Anchor>,
-    /// Of the motions at each anchor.
-    anchor_shares: Shares,
-    /// By what each anchor was missed in the last frame.
-    residuals: Vec<DVec3>,
+    /// Of the handles' motions at each row, by their numbers; the next number is what is fixed.
+    holds: Shares,
+    /// Each handle's centre and unit of length.
+    frames: Vec<(DVec3, f64)>,
 }
 
-/// A constrained vertex that free ones are near to.
-#[derive(Clone, Copy, Debug)]
-struct Anchor {
-    world_place: DVec3,
-    /// Its handle and the coordinates there; `None` where it is fixed.
-    handle: Option<(usize, [f64; 4])>,
+/// The vertices that a hard handle holds, or those that are fixed.
+struct Hold {
+    tree: Neighbours,
+    world_places: Vec<DVec3>,
+    /// Their box.
+    world_low: DVec3,
+    world_high: DVec3,
 }
-
-/// Constrained vertices that carry their residuals are so far apart, as a share of how far these are carried: among
-/// points in one place the nearest few would not say how the residuals change.
-const APART: f64 = 0.1;
-
-/// So many constrained vertices carry their residuals to a point, less one, whose weight is zero.
-const CARRIERS: usize = 7;
 
 /// Points that one task weighs.
 const AT_ONCE: usize = 256;
 
 impl Blend {
-    /// `weigh` gives the shares of the motions at a point, whose weights sum to 1. Residuals are carried as far as
-    /// `width`, in world units.
+    /// `weigh` gives the shares of the motions at a point, whose weights sum to 1. Handles and what is fixed reach as far
+    /// as `width`, in world units.
     ///
     /// # Errors
     /// It was cancelled.
@@ -94,44 +85,24 @@ impl Blend {
             .iter()
             .map(|&vertex| positions[vertex as usize])
             .collect();
-        let handle_at = |(vertex, role): (usize, &Role)| {
-            let world_place = positions[vertex];
-            let handle = match *role {
-                Role::Free => return None,
-                Role::Fixed => None,
-                Role::Handle(handle) if input.partition.soft[usize::from(handle)].is_some() => return None,
-                Role::Handle(handle) => {
-                    let handle = usize::from(handle);
-                    Some((handle, input.handles[handle].coordinates(world_place)))
-                }
-            };
-            Some(Anchor { world_place, handle })
+        let held = |role: Role| {
+            let own = input.problem.roles.iter().zip(positions);
+            let own = own.filter(|(other, _)| **other == role).map(|(_, place)| *place);
+            Hold::of(own.collect())
         };
-        let constrained: Vec<Anchor> = input.problem.roles.iter().enumerate().filter_map(handle_at).collect();
-        let places: Vec<DVec3> = constrained.iter().map(|anchor| anchor.world_place).collect();
-        let kept = apart(&places, APART * width);
-        let constrained: Vec<Anchor> = kept.iter().map(|&number| constrained[number]).collect();
-        let places: Vec<DVec3> = kept.iter().map(|&number| places[number]).collect();
-        let tree = Neighbours::of(&places);
-        let mut carry = Shares::of(&world_places, input, |place| carriers(place, &tree, &places, width))?;
-        // Only anchors that something hangs on are evaluated.
-        let mut number_of = vec![u32::MAX; constrained.len()];
-        let mut anchors = Vec::new();
-        for share in &mut carry.list {
-            let number = &mut number_of[share.source as usize];
-            if *number == u32::MAX {
-                *number = anchors.len() as u32;
-                anchors.push(constrained[share.source as usize]);
-            }
-            share.source = *number;
-        }
-        let anchor_places: Vec<DVec3> = anchors.iter().map(|anchor| anchor.world_place).collect();
+        let of_handles = (0..).zip(&input.partition.soft).map(|(handle, soft)| match soft {
+            Some(_) => Hold::of(Vec::new()),
+            None => held(Role::Handle(handle)),
+        });
+        let all: Vec<Hold> = of_handles.chain([held(Role::Fixed)]).collect();
         Ok(Self {
             shares: Shares::of(&world_places, input, &weigh)?,
-            anchor_shares: Shares::of(&anchor_places, input, &weigh)?,
-            residuals: vec![DVec3::ZERO; anchors.len()],
-            anchors,
-            carry,
+            holds: Shares::of(&world_places, input, |place| held_by(place, &all, width))?,
+            frames: input
+                .handles
+                .iter()
+                .map(|handle| (handle.world_centre, handle.radius))
+                .collect(),
             world_places,
             moving,
         })
@@ -143,48 +114,74 @@ impl Blend {
     }
 
     /// Fills all of `displacements`.
-    pub fn frame(&mut self, affine: &[Affine], motions: &[Motion], displacements: &mut [DVec3]) -> Finite {
-        let (anchors, shares) = (&self.anchors, &self.anchor_shares);
-        self.residuals
-            .par_iter_mut()
-            .enumerate()
-            .with_min_len(AT_ONCE)
-            .for_each(|(number, residual)| {
-                let Anchor { world_place, handle } = anchors[number];
-                let target = handle.map_or(DVec3::ZERO, |(handle, coordinates)| {
-                    motions[handle].displace(coordinates)
-                });
-                *residual = target - blended(shares.row(number), affine, world_place);
-            });
+    pub fn frame(&self, affine: &[Affine], motions: &[Motion], displacements: &mut [DVec3]) -> Finite {
+        let holds = self.hold_motions(motions);
         self.moving.displace(motions, displacements, |row| {
-            let mut sum = blended(self.shares.row(row), affine, self.world_places[row]);
-            for share in self.carry.row(row) {
-                sum += self.residuals[share.source as usize] * share.weight;
-            }
-            sum
+            let place = self.world_places[row];
+            let reached = blended(self.shares.row(row), affine, place);
+            let held = self.holds.row(row).iter();
+            let held = held.map(|share| (holds[share.source as usize].displacement(place) - reached) * share.weight);
+            reached + held.sum::<DVec3>()
         })
     }
 
-    /// The Jacobian of the displacements of the last frame, which was made of these motions.
+    /// The Jacobian of the displacements.
     pub fn jacobians(&self, affine: &[Affine], motions: &[Motion], out: &mut [Mat3]) {
+        let holds = self.hold_motions(motions);
         self.moving.jacobians(motions, out, |row| {
-            let mut sum = DMat3::ZERO;
-            let mut slide = |along: DVec3, slope: Vec3| {
-                let slope = slope.as_dvec3();
-                sum += DMat3::from_cols(along * slope.x, along * slope.y, along * slope.z);
-            };
-            for share in self.carry.row(row) {
-                slide(self.residuals[share.source as usize], share.slope);
-            }
-            let place = self.world_places[row];
-            for share in self.shares.row(row) {
-                slide(affine[share.source as usize].displacement(place), share.slope);
-            }
-            for share in self.shares.row(row) {
-                sum += affine[share.source as usize].linear * share.weight;
+            let (place, shares) = (self.world_places[row], self.shares.row(row));
+            let reached = blended(shares, affine, place);
+            let own = blended_jacobian(shares, affine, place, reached);
+            let mut sum = own;
+            for share in self.holds.row(row) {
+                let hold = &holds[share.source as usize];
+                sum += (hold.linear - own) * share.weight;
+                sum += outer(hold.displacement(place) - reached, share.slope.as_dvec3());
             }
             sum.as_mat3()
         });
+    }
+
+    /// The motions of the handles, and that of what is fixed.
+    fn hold_motions(&self, motions: &[Motion]) -> Vec<Affine> {
+        let of_handles = self.frames.iter().zip(motions);
+        let of_handles = of_handles.map(|(&(world_centre, radius), motion)| Affine {
+            world_centre,
+            linear: motion.linear * radius.recip(),
+            shift: motion.shift,
+        });
+        let rest = Affine {
+            world_centre: DVec3::ZERO,
+            linear: DMat3::ZERO,
+            shift: DVec3::ZERO,
+        };
+        of_handles.chain([rest]).collect()
+    }
+}
+
+impl Hold {
+    fn of(world_places: Vec<DVec3>) -> Self {
+        let (world_low, world_high) = world_places
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &place| {
+                (low.min(place), high.max(place))
+            });
+        Self {
+            tree: Neighbours::of(&world_places),
+            world_places,
+            world_low,
+            world_high,
+        }
+    }
+
+    /// From its nearest vertex to a point that is less than `width` away.
+    fn away(&self, place: DVec3, width: f64) -> Option<DVec3> {
+        let beside = place.clamp(self.world_low, self.world_high);
+        if self.world_places.is_empty() || beside.distance_squared(place) >= width * width {
+            return None;
+        }
+        let &(nearest, distance) = self.tree.nearest(place, 1).first()?;
+        (distance < width).then(|| place - self.world_places[nearest as usize])
     }
 }
 
@@ -235,6 +232,17 @@ fn blended(shares: &[Share], affine: &[Affine], world_place: DVec3) -> DVec3 {
         .sum()
 }
 
+/// The Jacobian of [`blended`], which is `reached` there. The weights' gradients sum to zero but for their single
+/// precision: taken of the differences they leave nothing where all motions agree.
+fn blended_jacobian(shares: &[Share], affine: &[Affine], world_place: DVec3, reached: DVec3) -> DMat3 {
+    let mut sum = DMat3::ZERO;
+    for share in shares {
+        let own = &affine[share.source as usize];
+        sum += outer(own.displacement(world_place) - reached, share.slope.as_dvec3()) + own.linear * share.weight;
+    }
+    sum
+}
+
 /// Weights and their gradients, from those of weights that do not sum to 1 yet.
 pub(crate) fn normalised(raw: &[(u32, f64, DVec3)]) -> Vec<Share> {
     let sum: f64 = raw.iter().map(|(_, weight, _)| weight).sum();
@@ -247,43 +255,39 @@ pub(crate) fn normalised(raw: &[(u32, f64, DVec3)]) -> Vec<Share> {
     raw.iter().map(share).collect()
 }
 
-/// The constrained vertices that carry their residuals to a point: with the distances d_i and the largest of them D,
-/// the weights are (1/d_i − 1/D)² over their sum, times s(1 − d_min/width), s(t) = t² (3 − 2 t).
-fn carriers(place: DVec3, tree: &Neighbours, places: &[DVec3], width: f64) -> Vec<Share> {
-    let nearest = tree.nearest(place, CARRIERS);
-    let (Some(&(first, least)), Some(&(last, most))) = (nearest.first(), nearest.last()) else {
+/// Which of these hold a point, in part: with the distances d_h the weights are (1/d_h − 1/width)² over their sum, times
+/// s(d_min/width), s(u) = (1 − u)⁴ (1 + 4 u) [Wen95]. The handle's motion and b may differ in their slopes by G; then
+/// u s(u) adds at most 0.44 G on the way back to b, where the smoothstep adds 0.67 G.
+fn held_by(place: DVec3, all: &[Hold], width: f64) -> Vec<Share> {
+    let near = (0..)
+        .zip(all)
+        .filter_map(|(number, hold)| Some((number, hold.away(place, width)?)));
+    let near: Vec<(u32, DVec3, f64)> = near.map(|(number, away)| (number, away, away.length())).collect();
+    let Some(&(source, away, least)) = near.iter().min_by(|a, b| a.2.total_cmp(&b.2)) else {
         return Vec::new();
-    };
-    if least >= width {
-        return Vec::new();
-    }
-    let whole = |source: u32| Share {
-        source,
-        slope: Vec3::ZERO,
-        weight: 1.0,
     };
     if least == 0.0 {
-        return vec![whole(first)];
+        return vec![Share {
+            source,
+            slope: Vec3::ZERO,
+            weight: 1.0,
+        }];
     }
-    let away = |number: u32| place - places[number as usize];
-    let inverse_slope = |number: u32, distance: f64| -away(number) / distance.powi(3);
-    let raw = |&(number, distance): &(u32, f64)| {
-        // Of equally near ones none would have a weight.
-        let difference = distance.recip() - OPEN * most.recip();
-        let slope = inverse_slope(number, distance) - OPEN * inverse_slope(last, most);
+    let raw = |&(number, away, distance): &(u32, DVec3, f64)| {
+        // Times the least distance, so that no square overflows.
+        let difference = least / distance - least / width;
+        let slope = away * (-least / distance.powi(3));
         (number, difference * difference, slope * (2.0 * difference))
     };
-    let raw: Vec<(u32, f64, DVec3)> = nearest.iter().map(raw).collect();
+    let raw: Vec<(u32, f64, DVec3)> = near.iter().map(raw).collect();
     let mut shares = normalised(&raw);
-    let t = 1.0 - least / width;
-    let fade = t * t * (3.0 - 2.0 * t);
-    let fade_slope = away(first) * (-6.0 * t * (1.0 - t) / (width * least));
+    let u = least / width;
+    let t = 1.0 - u;
+    let fade = t.powi(4) * (1.0 + 4.0 * u);
+    let fade_slope = away * (-20.0 * t.powi(3) / (width * width));
     for share in &mut shares {
         share.slope = share.slope * fade as f32 + (fade_slope * share.weight).as_vec3();
         share.weight *= fade;
     }
     shares
 }
-
-/// A little less than 1, so that the weights of points that are equally far do not vanish.
-const OPEN: f64 = 1.0 - 1e-5;

@@ -1,8 +1,8 @@
 //! A few points that stand for many.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
-use glam::{DVec3, I64Vec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
 /// At most about so many of the vertices: the first in each cell of the finest grid that has no more occupied cells.
@@ -27,31 +27,6 @@ pub(crate) fn thinned(vertices: &[u32], positions: &[DVec3], most: usize) -> Vec
         }
         cells *= 0.5_f64.max((most as f64 / kept.len() as f64).sqrt());
     }
-}
-
-/// Those of the points, by their numbers, that are not nearer than `least` to one before them.
-pub(crate) fn apart(points: &[DVec3], least: f64) -> Vec<usize> {
-    if least <= 0.0 || least.is_nan() {
-        return (0..points.len()).collect();
-    }
-    let cell = |point: DVec3| (point / least).floor().as_i64vec3();
-    let mut kept = Vec::new();
-    let mut in_cells: HashMap<I64Vec3, Vec<usize>> = HashMap::new();
-    for (number, &point) in points.iter().enumerate() {
-        let own = cell(point);
-        let is_near = (0..27).any(|step| {
-            let other = own + I64Vec3::new(step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1);
-            let others = in_cells.get(&other).into_iter().flatten();
-            others
-                .into_iter()
-                .any(|&other| points[other].distance_squared(point) < least * least)
-        });
-        if !is_near {
-            kept.push(number);
-            in_cells.entry(own).or_default().push(number);
-        }
-    }
-    kept
 }
 
 /// A point is farther than another only if it is so by more than this share: of equal ones the first is taken, also

@@ -1,6 +1,4 @@
-//! A soup: every triangle loose, shuffled and jittered. Methods of space whose displacements are one smooth field bend
-//! it without opening cracks. `embedded` is left out because with few nodes it opens gaps many times the jitter, and
-//! `space-primo`, which blends in the same way, because it was not measured.
+//! A soup: every triangle loose, shuffled and jittered. Methods of space bend it without opening cracks.
 
 use glam::{DMat3, DVec3};
 use pliant_deform::{Method, OptionValue, Role};
@@ -79,10 +77,7 @@ fn gaps(scene: &Scene, corners: &[Vec<u32>], targets: &[glam::DAffine3]) -> Vec<
 fn a_jittered_soup_bends_without_a_crack_wider_than_the_map_stretches_the_jitter() {
     let (drawn, corners) = soup(&shapes::icosphere(4));
     // Without a falloff the map ends at the region's border.
-    let is_smooth = |method: &Method| {
-        method.value("falloff") != Some(OptionValue::Number(0.0))
-            && !["embedded", "space-primo"].contains(&method.name())
-    };
+    let is_smooth = |method: &Method| method.value("falloff") != Some(OptionValue::Number(0.0));
     for method in space::methods().into_iter().filter(is_smooth) {
         let scene = bent(&drawn, &method);
         assert_eq!(scene.model.topology.components().len(), 5120, "every triangle is loose");
