@@ -5,17 +5,18 @@
 //!
 //! u* = Σ (w u(p) + L v),   D = Σ (u(p) vᵀ + L Q) − u* cᵀ,
 //!
-//! and p is displaced by u* − N c: N = D K⁻¹ for affine maps [SMW06, equation 5], N = R − I for rigid ones, R the
-//! rotation next to S = K + D (its polar factor), and N = μ R − I with μ = tr(Rᵀ S) / tr K for similarities.
+//! and p is displaced by u* − N c: N = D K⁻¹ for affine maps [SMW06, equation 5], which have a field of their own
+//! ([`super::affine`]), N = R − I for rigid ones, R the rotation next to S = K + D (its polar factor), and N = μ R − I with
+//! μ = tr(Rᵀ S) / tr K for similarities.
 //!
 //! Derivatives: Rᵀ ∂R = [ω]× with (tr(P) I − P) ω = axial(Rᵀ ∂S), P = Rᵀ S.
 
 use glam::{DMat3, DQuat, DVec3};
 
 use super::moments::{Entry, first, second};
-use super::options::MlsTransforms;
 use crate::handles::{Handle, Motion};
 use crate::numerical::rotation::fit;
+use crate::space::hand_field::outer;
 use crate::space::unit::Unit;
 
 /// A handle's displacements in the unit of all points: u(x) = linear x + shift.
@@ -53,43 +54,36 @@ struct Sums {
     d: DMat3,
 }
 
+/// What is fitted at each place.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Turning {
+    Similarity,
+    Rigid,
+}
+
 /// N and what its derivative needs.
 struct Fit {
     n: DMat3,
-    kind: Kind,
-}
-
-enum Kind {
-    Affine {
-        k_inverse: DMat3,
-    },
-    Turned {
-        rotation: DMat3,
-        scale: f64,
-        p: DMat3,
-        k_trace: f64,
-    },
+    rotation: DMat3,
+    scale: f64,
+    p: DMat3,
+    k_trace: f64,
 }
 
 /// The displacement of a place, in the unit of all points. `entries` has the sum of all sets, then each handle's.
-pub(super) fn displacement(
-    transforms: MlsTransforms,
-    place: DVec3,
-    entries: &[Entry],
-    handles: &[Displacing],
-) -> DVec3 {
+pub(super) fn displacement(turning: Turning, place: DVec3, entries: &[Entry], handles: &[Displacing]) -> DVec3 {
     let sums = sums(place, entries, handles);
-    let Fit { n, .. } = fitted(transforms, &sums);
+    let Fit { n, .. } = fitted(turning, &sums);
     sums.mean - n * sums.c
 }
 
 /// The Jacobian of [`displacement`].
-pub(super) fn jacobian(transforms: MlsTransforms, place: DVec3, entries: &[Entry], handles: &[Displacing]) -> DMat3 {
+pub(super) fn jacobian(turning: Turning, place: DVec3, entries: &[Entry], handles: &[Displacing]) -> DMat3 {
     let sums = sums(place, entries, handles);
-    let fit = fitted(transforms, &sums);
+    let fit = fitted(turning, &sums);
     let columns = [0, 1, 2].map(|axis| {
         let slopes = slopes(axis, place, entries, handles, &sums);
-        slopes.mean - n_slope(transforms, &sums, &fit, &slopes) * sums.c - fit.n * slopes.c
+        slopes.mean - n_slope(turning, &fit, &slopes) * sums.c - fit.n * slopes.c
     });
     DMat3::from_cols_array_2d(&columns.map(|column| column.to_array()))
 }
@@ -132,67 +126,44 @@ fn slopes(axis: usize, place: DVec3, entries: &[Entry], handles: &[Displacing], 
     }
 }
 
-fn fitted(transforms: MlsTransforms, sums: &Sums) -> Fit {
-    if transforms == MlsTransforms::Affine {
-        let k_inverse = sums.k.inverse();
-        return Fit {
-            n: sums.d * k_inverse,
-            kind: Kind::Affine { k_inverse },
-        };
-    }
+fn fitted(turning: Turning, sums: &Sums) -> Fit {
     let s = sums.k + sums.d;
     // The first fit ends as soon as the next step would be small.
     let rotation = DMat3::from_quat(fit(&s, fit(&s, DQuat::IDENTITY)));
     let p = rotation.transpose() * s;
     let k_trace = trace(&sums.k);
-    let scale = match transforms {
-        MlsTransforms::Similarity => trace(&p) / k_trace,
-        MlsTransforms::Affine | MlsTransforms::Rigid => 1.0,
+    let scale = match turning {
+        Turning::Similarity => trace(&p) / k_trace,
+        Turning::Rigid => 1.0,
     };
     Fit {
         n: rotation * scale - DMat3::IDENTITY,
-        kind: Kind::Turned {
-            rotation,
-            scale,
-            p,
-            k_trace,
-        },
+        rotation,
+        scale,
+        p,
+        k_trace,
     }
 }
 
 /// ∂N.
-fn n_slope(transforms: MlsTransforms, sums: &Sums, fit: &Fit, slopes: &Sums) -> DMat3 {
-    match &fit.kind {
-        Kind::Affine { k_inverse } => (slopes.d - sums.d * *k_inverse * slopes.k) * *k_inverse,
-        Kind::Turned {
-            rotation,
-            scale,
-            p,
-            k_trace,
-        } => {
-            let m = rotation.transpose() * (slopes.k + slopes.d);
-            let axial = DVec3::new(
-                m.y_axis.z - m.z_axis.y,
-                m.z_axis.x - m.x_axis.z,
-                m.x_axis.y - m.y_axis.x,
-            );
-            let h = DMat3::from_diagonal(DVec3::splat(trace(p))) - *p;
-            let turn = h.inverse() * axial;
-            // Where the rotation is not unique it has no derivative.
-            let turn = if turn.is_finite() { turn } else { DVec3::ZERO };
-            let turning =
-                *rotation * DMat3::from_cols(turn.cross(DVec3::X), turn.cross(DVec3::Y), turn.cross(DVec3::Z)) * *scale;
-            match transforms {
-                MlsTransforms::Similarity => turning + *rotation * ((trace(&m) - scale * trace(&slopes.k)) / k_trace),
-                MlsTransforms::Affine | MlsTransforms::Rigid => turning,
-            }
-        }
+fn n_slope(turning: Turning, fit: &Fit, slopes: &Sums) -> DMat3 {
+    let Fit { rotation, scale, .. } = fit;
+    let m = rotation.transpose() * (slopes.k + slopes.d);
+    let axial = DVec3::new(
+        m.y_axis.z - m.z_axis.y,
+        m.z_axis.x - m.x_axis.z,
+        m.x_axis.y - m.y_axis.x,
+    );
+    let h = DMat3::from_diagonal(DVec3::splat(trace(&fit.p))) - fit.p;
+    let turn = h.inverse() * axial;
+    // Where the rotation is not unique it has no derivative.
+    let turn = if turn.is_finite() { turn } else { DVec3::ZERO };
+    let turned =
+        *rotation * DMat3::from_cols(turn.cross(DVec3::X), turn.cross(DVec3::Y), turn.cross(DVec3::Z)) * *scale;
+    match turning {
+        Turning::Similarity => turned + *rotation * ((trace(&m) - scale * trace(&slopes.k)) / fit.k_trace),
+        Turning::Rigid => turned,
     }
-}
-
-/// a bᵀ.
-fn outer(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
 fn trace(m: &DMat3) -> f64 {

@@ -13,13 +13,16 @@
 //! - A soft handle has W = 1/(δ² + ε²)^(f/2), which stays finite: ε² is [`points::SOFT`]² over its weight.
 //!
 //! As every handle moves affinely, all sums over its points are moments that do not depend on its motion: a weight, a
-//! vector and a symmetric matrix for each vertex and handle (`moments`), computed once. A frame is a fit for each vertex
-//! of a few of these (`fit`), and so is its derivative.
+//! vector and a symmetric matrix for each vertex and handle (`moments`), computed once. Affine fits are linear in the
+//! handles' motions, so that a frame is a product (`affine`). For the others it is a fit for each vertex of a few of these
+//! moments (`fit`, `bound`), and so is its derivative.
 //!
 //! The samples of handles with more than [`points::MOST`] vertices are spread evenly. Such a handle is met between its
 //! samples if the fitted transformations contain its motion; where it is stretched and the fit is rigid, the surface
 //! around it may be off by its stretch times the distance between two samples.
 
+mod affine;
+mod bound;
 mod declaration;
 mod fit;
 mod moments;

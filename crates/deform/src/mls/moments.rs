@@ -10,18 +10,43 @@ pub(super) const CLOUD: f64 = 0.02;
 /// Σ w [1, r, r rᵀ] over weighted points at r from the place: the weight; x, y, z; xx, yy, zz, xy, xz, yz.
 pub(super) type Moments = [f64; 10];
 
-/// Their slopes along x, y and z, in single precision, because only normals are made of them.
-pub(super) type Slopes = [[f32; 10]; 3];
+/// Their slopes along x, y and z.
+pub(super) type Slopes<T> = [[T; 10]; 3];
 
-/// A set's moments at a place, with their slopes.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Entry {
+/// A set's moments at a place, with their slopes; stored in single precision, because only normals are made of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry<T = f32> {
     pub moments: Moments,
-    pub slopes: Slopes,
+    pub slopes: Slopes<T>,
 }
 
-/// Fills in the entries at a point: first the sum of all sets, then one for each handle. All weights sum to 1.
-pub(super) fn entries(points: &Points, half_falloff: f64, positions: &[DVec3], world_point: DVec3, out: &mut [Entry]) {
+/// The moments at a place: of all sets together, and of each. All weights sum to 1.
+pub(super) struct PlaceMoments {
+    pub total: Entry<f64>,
+    pub sets: Vec<Entry<f64>>,
+}
+
+impl<T: Copy + Default> Default for Entry<T> {
+    fn default() -> Self {
+        Self {
+            moments: Moments::default(),
+            slopes: Slopes::default(),
+        }
+    }
+}
+
+impl Entry<f64> {
+    /// As it is stored.
+    pub fn stored(&self) -> Entry {
+        Entry {
+            moments: self.moments,
+            slopes: self.slopes.map(|row| row.map(|slope| slope as f32)),
+        }
+    }
+}
+
+/// The moments at a point.
+pub(super) fn moments_at(points: &Points, half_falloff: f64, positions: &[DVec3], world_point: DVec3) -> PlaceMoments {
     let place = points.unit.local(world_point);
     // A set's weight less its normalisation, and its logarithm's slope.
     let weight = |set: &Set| {
@@ -32,35 +57,27 @@ pub(super) fn entries(points: &Points, half_falloff: f64, positions: &[DVec3], w
     let weights: Vec<(f64, DVec3)> = points.sets.iter().map(weight).collect();
     let sum: f64 = weights.iter().map(|(weight, _)| weight).sum();
     let mean_slope: DVec3 = weights.iter().map(|(weight, slope)| *slope * (weight / sum)).sum();
-    let mut total = ([0.0; 10], [[0.0; 10]; 3]);
-    let handle_count = out.len() - 1;
-    for (number, (set, (weight, slope))) in points.sets.iter().zip(&weights).enumerate() {
+    let mut total = Entry::default();
+    let own = points.sets.iter().zip(&weights).map(|(set, (weight, slope))| {
         let weight = weight / sum;
         let slope = *slope - mean_slope;
         let (mut moments, mut slopes) = shared(set, half_falloff, place);
         for k in 0..10 {
             moments[k] *= weight;
-            total.0[k] += moments[k];
+            total.moments[k] += moments[k];
             for axis in 0..3 {
                 slopes[axis][k] = slopes[axis][k] * weight + slope[axis] * moments[k];
-                total.1[axis][k] += slopes[axis][k];
+                total.slopes[axis][k] += slopes[axis][k];
             }
         }
-        if number < handle_count {
-            out[1 + number] = Entry {
-                moments,
-                slopes: slopes.map(|row| row.map(|slope| slope as f32)),
-            };
-        }
-    }
-    out[0] = Entry {
-        moments: total.0,
-        slopes: total.1.map(|row| row.map(|slope| slope as f32)),
-    };
+        Entry { moments, slopes }
+    });
+    let sets = own.collect();
+    PlaceMoments { total, sets }
 }
 
 /// The moments of one set, whose samples' weights sum to 1, and their slopes.
-fn shared(set: &Set, half_falloff: f64, place: DVec3) -> (Moments, [[f64; 10]; 3]) {
+fn shared(set: &Set, half_falloff: f64, place: DVec3) -> (Moments, Slopes<f64>) {
     let (mut sums, mut slopes) = ([0.0; 10], [[0.0; 10]; 3]);
     for sample in &set.samples {
         let r = *sample - place;
