@@ -1,7 +1,8 @@
-//! `cargo xtask gallery`: draws the samples' edits by every method into the docs, with their figures.
+//! `cargo xtask gallery`: draws the samples' edits by every method into the docs, with their figures, and two legs that
+//! are near each other, one of which is moved, by the methods that bend space.
 
 use std::fs;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 
 use crate::assets::SAMPLES;
 use crate::process::{cargo, succeed, target_folder, words};
@@ -9,11 +10,19 @@ use crate::process::{cargo, succeed, target_folder, words};
 /// The methods of the gallery. Beside each method with its defaults, options that change what it can do.
 const METHODS: &str = "bilaplacian,poisson,laplacian,frames,frames:iterations=20,arap,arap:energy=smooth,primo,shells";
 
+/// The coordinates of cages that the legs are drawn by, and the other methods that they are measured by.
+const CAGES: [&str; 3] = [
+    "cage:coordinates=mean-value",
+    "cage:coordinates=green",
+    "cage:coordinates=harmonic",
+];
+const OF_SPACE: [&str; 5] = ["rbf", "mls", "lattice", "embedded", "space-primo"];
+
 /// The size of a sheet in pixels.
 const SIZE: &str = "1040x640";
 
-/// Draws `docs/gallery/NAME.png` for each sample, and puts the tables of figures into `docs/methods.md`, each between
-/// its marks.
+/// Draws `docs/gallery/NAME.png` for each sample and for the legs, and puts the tables of figures into
+/// `docs/methods.md`, each between its marks.
 ///
 /// # Errors
 /// One sentence naming what can't be built, drawn or written.
@@ -31,39 +40,49 @@ pub fn gallery() -> Result<(), String> {
     let mut text = fs::read_to_string(&page).map_err(|e| format!("{} can't be read: {e}.", page.display()))?;
     let folder = root.join("docs/gallery");
     fs::create_dir_all(&folder).map_err(|e| format!("{} can't be made: {e}.", folder.display()))?;
-    for sample in &SAMPLES {
-        let name = sample.name;
-        let sheet = folder.join(format!("{name}.png"));
-        let mut command = std::process::Command::new(target_folder().join("release/pliant"));
-        command.current_dir(&root).stderr(Stdio::inherit());
-        command.args([
-            "compare",
-            &format!("assets/{name}.glb"),
-            "--methods",
-            METHODS,
-            "--size",
-            SIZE,
-        ]);
-        command
-            .args(["--edit", &format!("assets/{name}.edit.json"), "--output"])
-            .arg(&sheet);
-        let output = command
-            .output()
-            .map_err(|e| format!("`{}` can't be started: {e}.", words(&command)))?;
-        if !output.status.success() {
-            return Err(format!("`{}` failed ({}).", words(&command), output.status));
-        }
-        let table = String::from_utf8_lossy(&output.stdout);
-        text = with_table(&text, name, &table).ok_or_else(|| {
+    let mut put = |name: &str, table: &str| {
+        text = with_table(&text, name, table).ok_or_else(|| {
             format!(
                 "{} has no place for the table of {name}: {}",
                 page.display(),
                 mark(name)
             )
         })?;
-        println!("{}\n{table}", sheet.display());
+        println!("{name}\n{table}");
+        Ok::<_, String>(())
+    };
+    for sample in &SAMPLES {
+        put(
+            sample.name,
+            &sheet(sample.name, sample.name, METHODS, &["--size", SIZE])?,
+        )?;
     }
+    let look = ["--size", "960x320", "--view", "bottom", "--shading", "distortion"];
+    sheet("creature", "legs-cage", &CAGES.join(","), &look)?;
+    let mut legs = cargo(&["run", "--release", "-p", "pliant-tests", "--example", "legs", "--"]);
+    put("legs", &said(legs.args(CAGES).args(OF_SPACE))?)?;
     fs::write(&page, text).map_err(|e| format!("{} can't be written: {e}.", page.display()))
+}
+
+/// Draws an edit of a sample by these methods into `docs/gallery/EDIT.png`; the table of its figures.
+fn sheet(sample: &str, edit: &str, methods: &str, look: &[&str]) -> Result<String, String> {
+    let root = crate::root();
+    let mut command = Command::new(target_folder().join("release/pliant"));
+    command.current_dir(&root);
+    command.args(["compare", &format!("assets/{sample}.glb"), "--methods", methods]);
+    command.args(look);
+    command.args(["--edit", &format!("assets/{edit}.edit.json"), "--output"]);
+    said(command.arg(root.join(format!("docs/gallery/{edit}.png"))))
+}
+
+/// What a command prints.
+fn said(command: &mut Command) -> Result<String, String> {
+    let output = command.stderr(Stdio::inherit()).output();
+    let output = output.map_err(|e| format!("`{}` can't be started: {e}.", words(command)))?;
+    match output.status.success() {
+        true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
+        false => Err(format!("`{}` failed ({}).", words(command), output.status)),
+    }
 }
 
 /// The line before a sample's table.
