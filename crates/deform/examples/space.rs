@@ -1,8 +1,9 @@
-//! Times the methods that bend space: `space VERTICES THREADS METHOD [OPTION=VALUE ..]`.
+//! Times the methods that bend space: `space VERTICES THREADS METHOD [OPTION=VALUE ..] [by-hand]`.
 //!
 //! Points are spread over a bumpy ball; a cap is the handle, the lower third is fixed. One JSON object: binding, the
 //! median frame of a drag and the median of its normals, in milliseconds. Normals are turned by Jacobians, whose time that
-//! is; where the method gives none, they are those of the triangles.
+//! is; where the method gives none, they are those of the triangles. With `by-hand` the cage or lattice that the method
+//! makes is brought back, and one of its points is moved in each frame, too.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -11,6 +12,8 @@
 )]
 
 mod common;
+
+use std::sync::Arc;
 
 use common::{median, one_handle, pool, timed};
 use glam::{DAffine3, DVec3};
@@ -24,8 +27,9 @@ const FRAMES: usize = 30;
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let [vertices, threads, name, options @ ..] = words.as_slice() else {
-        panic!("usage: space VERTICES THREADS METHOD [OPTION=VALUE ..]");
+        panic!("usage: space VERTICES THREADS METHOD [OPTION=VALUE ..] [by-hand]");
     };
+    let (by_hand, options): (Vec<&String>, Vec<&String>) = options.iter().partition(|word| *word == "by-hand");
     let method = options.iter().fold(Method::from_name(name).unwrap(), |method, option| {
         let (option, value) = option.split_once('=').unwrap();
         let declared = method.declaration().options.iter().find(|own| own.name == option);
@@ -41,10 +45,10 @@ fn main() {
     });
     let threads = threads.parse().unwrap();
     let pool = pool(threads);
-    pool.install(|| measure(vertices.parse().unwrap(), threads, &method));
+    pool.install(|| measure(vertices.parse().unwrap(), threads, &method, !by_hand.is_empty()));
 }
 
-fn measure(vertices: usize, threads: usize, method: &Method) {
+fn measure(vertices: usize, threads: usize, method: &Method, by_hand: bool) {
     let rings = (vertices as f64 / 2.0).sqrt() as usize;
     let mut drawn = shapes::uv_sphere(rings, 2 * rings);
     for p in &mut drawn.positions {
@@ -59,7 +63,10 @@ fn measure(vertices: usize, threads: usize, method: &Method) {
     let roles: Vec<Role> = model.surface.positions.iter().map(role).collect();
     let stiffness = vec![1.0; roles.len()];
     let (progress, cancel) = (Progress::new(), Cancel::new());
-    let problem = one_handle(&model, &roles, &stiffness, method);
+    let mut problem = one_handle(&model, &roles, &stiffness, method);
+    let made = by_hand.then(|| problem.bind(None, &progress, &cancel).unwrap());
+    let brought = made.and_then(|made| made.attachment().map(|(name, own)| (name, own.clone())));
+    problem.attachments = brought.as_slice();
     let (bind_ms, bound) = timed(|| problem.bind(None, &progress, &cancel));
     let mut bound = bound.unwrap();
     let mut displacements = vec![DVec3::ZERO; roles.len()];
@@ -69,8 +76,16 @@ fn measure(vertices: usize, threads: usize, method: &Method) {
         let t = frame as f64 / FRAMES as f64;
         let turn = DAffine3::from_axis_angle(DVec3::X, 0.8 * t);
         let target = DAffine3::from_translation(DVec3::new(0.3, 0.1, 0.4) * t) * turn;
+        let moved = brought.as_ref().map(|(_, own)| {
+            let mut moved = own.moved().to_vec();
+            moved[0] += DVec3::X * t;
+            Arc::new(moved)
+        });
         let (frame_ms, ()) = timed(|| {
             bound.set_targets(&[target]).unwrap();
+            if let Some(moved) = &moved {
+                bound.set_controls(moved).unwrap();
+            }
             bound.step(&mut displacements).unwrap();
         });
         let (normals_ms, ()) = timed(|| {
