@@ -1,112 +1,110 @@
 //! What the hand's moves of a cage's vertices do with coordinates that are linear in them.
 
-use glam::{DVec3, Mat3, Vec3};
+use glam::{DVec3, Mat3};
 use rayon::prelude::*;
 
 use super::harmonic::Harmonic;
 use super::linear::Unit;
 use super::mean_value::MeanValue;
+use super::stored_field::{StoredField, stored_bytes};
 use crate::BindError;
-use crate::budget::filled;
+use crate::budget::bytes_of;
 use crate::method::BindInput;
+use crate::space::falloff::Falloff;
 use crate::space::hand_field::{ControlMap, HandField};
 
 /// The field of the hand's moves.
 #[derive(Debug)]
 pub(super) enum ByHand {
-    MeanValue(HandField<StoredCoordinates>),
-    Harmonic(HandField<HarmonicCoordinates>),
-}
-
-/// Coordinates that are kept: to compute them takes longer than a frame may.
-#[derive(Debug)]
-pub(super) struct StoredCoordinates {
-    count: usize,
-    /// Row-major: a row a vertex.
-    values: Vec<f64>,
-    /// Per world unit; in single precision, because only normals are made of them.
-    gradients: Vec<Vec3>,
+    /// Of coordinates that are kept: to compute them takes longer than a frame may.
+    Stored(StoredField),
+    /// Of harmonic coordinates that are too many to be kept.
+    Nodes(HandField<HarmonicCoordinates>),
 }
 
 /// Coordinates at the nodes of a grid.
 #[derive(Debug)]
 pub(super) struct HarmonicCoordinates {
-    pub unit: Unit,
-    pub harmonic: Harmonic,
+    unit: Unit,
+    harmonic: Harmonic,
 }
 
-/// Points whose coordinates are computed at once.
-const AT_ONCE: usize = 256;
+/// The most bytes of harmonic coordinates that are kept: above that a frame takes longer to read them than to interpolate
+/// them between nodes.
+const MOST_STORED: u64 = 512 << 20;
+
+/// The bytes of harmonic coordinates of so many points in a cage with so many vertices, 0 where they are not kept.
+pub(super) fn kept_bytes(point_count: usize, vertex_count: usize) -> u64 {
+    let bytes = bytes_of(point_count, stored_bytes(vertex_count));
+    if bytes <= MOST_STORED { bytes } else { 0 }
+}
 
 impl ByHand {
-    pub fn add(&self, moves: &[DVec3], displacements: &mut [DVec3]) {
-        match self {
-            Self::MeanValue(field) => field.add(moves, displacements),
-            Self::Harmonic(field) => field.add(moves, displacements),
-        }
-    }
-
-    pub fn add_jacobians(&self, moves: &[DVec3], out: &mut [Mat3]) {
-        match self {
-            Self::MeanValue(field) => field.add_jacobians(moves, out),
-            Self::Harmonic(field) => field.add_jacobians(moves, out),
-        }
-    }
-}
-
-/// Bytes of a vertex' stored coordinates in a cage with so many vertices.
-pub(super) fn stored_bytes(vertex_count: usize) -> usize {
-    vertex_count * (size_of::<f64>() + size_of::<Vec3>()) + size_of::<DVec3>()
-}
-
-impl StoredCoordinates {
-    /// Those of mean values at these points.
+    /// By mean value coordinates of these vertices.
     ///
     /// # Errors
     /// It was cancelled, or there is no memory.
     pub fn mean_value(
         coordinates: &MeanValue<'_>,
         unit: Unit,
+        moving: (Vec<u32>, Falloff),
         world_points: &[DVec3],
         input: &BindInput<'_>,
     ) -> Result<Self, BindError> {
+        let points: Vec<DVec3> = world_points.iter().map(|point| unit.local(*point)).collect();
         let count = coordinates.count();
-        let out_of_memory = |_| BindError::OutOfMemory {
-            free_count: input.partition.solved.len(),
-        };
-        let mut values = filled(0.0, world_points.len() * count).map_err(out_of_memory)?;
-        let mut gradients = filled(Vec3::ZERO, world_points.len() * count).map_err(out_of_memory)?;
-        let rows = values
-            .par_chunks_mut(AT_ONCE * count)
-            .zip(gradients.par_chunks_mut(AT_ONCE * count));
-        let chunks = world_points.par_chunks(AT_ONCE).zip(rows);
-        chunks.try_for_each(|(points, (values, gradients))| {
-            input.cancel.check()?;
-            let points: Vec<DVec3> = points.iter().map(|point| unit.local(*point)).collect();
-            coordinates.at(&points, |place, weights| {
-                let row = place * count..(place + 1) * count;
-                let out = values[row.clone()].iter_mut().zip(&mut gradients[row]);
-                for ((value, gradient), weight) in out.zip(weights) {
-                    *value = weight.0;
-                    *gradient = (weight.1 / unit.length).as_vec3();
-                }
-            });
-            Ok::<_, BindError>(())
-        })?;
-        Ok(Self {
-            count,
-            values,
-            gradients,
-        })
+        let field = StoredField::of(count, moving, &points, unit.length, input.cancel, |points, visit| {
+            coordinates.at(points, visit);
+        });
+        Ok(Self::Stored(field?))
     }
-}
 
-impl ControlMap for StoredCoordinates {
-    fn weights(&self, place: usize, _: DVec3, mut visit: impl FnMut(usize, f64, DVec3)) {
-        let row = place * self.count..(place + 1) * self.count;
-        let own = self.values[row.clone()].iter().zip(&self.gradients[row]);
-        for (vertex, (value, gradient)) in own.enumerate() {
-            visit(vertex, *value, gradient.as_dvec3());
+    /// By harmonic coordinates of these vertices in a cage with so many.
+    ///
+    /// # Errors
+    /// It was cancelled, or there is no memory.
+    pub fn harmonic(
+        harmonic: Harmonic,
+        unit: Unit,
+        (vertices, falloff): (Vec<u32>, Falloff),
+        world_points: Vec<DVec3>,
+        count: usize,
+        input: &BindInput<'_>,
+    ) -> Result<Self, BindError> {
+        if kept_bytes(vertices.len(), count) == 0 {
+            let map = HarmonicCoordinates { unit, harmonic };
+            return Ok(Self::Nodes(HandField::new(map, vertices, world_points, falloff)));
+        }
+        let points: Vec<DVec3> = world_points.iter().map(|point| unit.local(*point)).collect();
+        let moving = (vertices, falloff);
+        let field = StoredField::of(count, moving, &points, unit.length, input.cancel, |points, visit| {
+            let mut own = vec![(0.0, DVec3::ZERO); count];
+            for (place, &point) in points.iter().enumerate() {
+                own.fill((0.0, DVec3::ZERO));
+                harmonic.weights(point, |node, weight, gradient| {
+                    for (vertex, own) in own.iter_mut().enumerate() {
+                        let value = harmonic.value(node, vertex);
+                        own.0 += weight * value;
+                        own.1 += gradient * value;
+                    }
+                });
+                visit(place, &own);
+            }
+        });
+        Ok(Self::Stored(field?))
+    }
+
+    pub fn add(&self, moves: &[DVec3], displacements: &mut [DVec3]) {
+        match self {
+            Self::Stored(field) => field.add(moves, displacements),
+            Self::Nodes(field) => field.add(moves, displacements),
+        }
+    }
+
+    pub fn add_jacobians(&self, moves: &[DVec3], out: &mut [Mat3]) {
+        match self {
+            Self::Stored(field) => field.add_jacobians(moves, out),
+            Self::Nodes(field) => field.add_jacobians(moves, out),
         }
     }
 }

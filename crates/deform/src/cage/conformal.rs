@@ -5,11 +5,10 @@
 use faer::Mat;
 use glam::{DMat3, DVec3, Mat3};
 use pliant_mesh::{Cancel, Progress};
-use rayon::prelude::*;
 
 use super::green::Green;
 use super::green_table::{GreenTable, green_rows};
-use super::lane_rows::{BLOCKS, LaneRows};
+use super::lane_rows::{LaneRows, by_blocks};
 use super::linear::Unit;
 use super::mesh::CageMesh;
 use crate::BindError;
@@ -97,19 +96,11 @@ impl Conformal {
         let (moved, _) = self.moved_cage(controls, motions);
         let own = |block: usize| self.table.block_product(block, &moved.differences);
         displacements.fill(DVec3::ZERO);
-        let tasks = pieces(&self.vertices, displacements, LANES * BLOCKS);
-        tasks.into_par_iter().enumerate().for_each(|(task, (start, piece))| {
-            for (block, vertices) in self.vertices[task * LANES * BLOCKS..]
-                .chunks(LANES)
-                .take(BLOCKS)
-                .enumerate()
-            {
-                let block = task * BLOCKS + block;
-                for (lane, (&vertex, sum)) in vertices.iter().zip(own(block)).enumerate() {
-                    let number = block * LANES + lane;
-                    let shift = displaced(moved.rigid.as_ref(), self.points[number]) + sum;
-                    piece[vertex as usize - start] = shift * (self.falloff.at(number).0 * self.unit.length);
-                }
+        by_blocks(&self.vertices, displacements, |block, entries| {
+            for (lane, (out, sum)) in entries.zip(own(block)).enumerate() {
+                let number = block * LANES + lane;
+                let shift = displaced(moved.rigid.as_ref(), self.points[number]) + sum;
+                *out = shift * (self.falloff.at(number).0 * self.unit.length);
             }
         });
     }
@@ -188,19 +179,6 @@ impl Conformal {
         }
         best.1
     }
-}
-
-/// Cuts a table of all vertices so that each piece has `count` of these, ascending; with each piece its first vertex.
-fn pieces<'a, T>(vertices: &[u32], mut table: &'a mut [T], count: usize) -> Vec<(usize, &'a mut [T])> {
-    let mut start = 0;
-    let mut pieces = Vec::new();
-    for own in vertices.chunks(count) {
-        let end = own.last().map_or(start, |last| *last as usize + 1);
-        let (piece, rest) = table.split_at_mut(end - start);
-        pieces.push((start, piece));
-        (start, table) = (end, rest);
-    }
-    pieces
 }
 
 impl MovedCage {

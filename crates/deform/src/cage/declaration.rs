@@ -4,7 +4,7 @@ use faer::Mat;
 use glam::DVec3;
 
 use super::bound::{BoundCage, Field};
-use super::by_hand::{ByHand, HarmonicCoordinates, StoredCoordinates, stored_bytes};
+use super::by_hand::{ByHand, kept_bytes};
 use super::chosen::ChosenCage;
 use super::conformal::Conformal;
 use super::fit::{controls, fit_bytes, response, soft_unit};
@@ -14,6 +14,7 @@ use super::linear::{HarmonicMap, MeanValueMap, Unit};
 use super::mean_value::MeanValue;
 use super::outside::{told_close, told_outside};
 use super::rows::{harmonic_rows, mean_value_rows};
+use super::stored_field::stored_bytes;
 use super::{Cage, CageCoordinates, brought};
 use crate::BindError;
 use crate::budget::{Limit, bytes_of};
@@ -26,7 +27,6 @@ use crate::space::controls::{Controls, Hand, hand_bytes};
 use crate::space::falloff::Falloff;
 use crate::space::field::{FIELD_ROW, LinearField, moving};
 use crate::space::fit_samples::{RegionBox, holds, samples};
-use crate::space::hand_field::HandField;
 use crate::sparse::factor_error::FactorError;
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
@@ -124,26 +124,30 @@ impl DeformMethod for Cage {
                 let rows = mean_value_rows(&coordinates, &samples, unit);
                 let driven = controls_of(&rows);
                 input.progress.set(0.2);
-                let stored = if is_brought {
+                if is_brought {
                     let bytes = bytes_of(vertices.len(), stored_bytes(cage.vertices.len()));
                     budget.without(bytes).map_err(over)?;
-                    Some(StoredCoordinates::mean_value(&coordinates, unit, &world_points, input)?)
-                } else {
-                    None
-                };
-                input.progress.set(0.6);
+                }
                 let map = MeanValueMap {
                     unit,
                     coordinates,
                     controls: &driven,
                 };
                 let field = LinearField::bind(&map, &falloff, fit, input)?;
-                let by_hand = stored.map(|map| HandField::new(map, vertices, world_points, falloff));
-                let by_hand = by_hand.map(|field| Box::new(ByHand::MeanValue(field)));
+                input.progress.set(0.6);
+                let by_hand = is_brought
+                    .then(|| ByHand::mean_value(&coordinates, unit, (vertices, falloff), &world_points, input));
+                let by_hand = by_hand.transpose()?.map(Box::new);
                 (Field::Linear(Box::new(field), by_hand), rows, driven)
             }
             CageCoordinates::Harmonic => {
                 let part = input.progress.part(0.05, 0.7);
+                let budget = match is_brought {
+                    true => budget
+                        .without(kept_bytes(vertices.len(), cage.vertices.len()))
+                        .map_err(over)?,
+                    false => budget,
+                };
                 let step = chosen.voxel / f64::from(self.grid);
                 let harmonic = Harmonic::solved(cage, step, budget, &part, input.cancel);
                 let harmonic = harmonic.map_err(|failed| refused(failed, solved_count))?;
@@ -154,9 +158,10 @@ impl DeformMethod for Cage {
                 let driven = controls_of(&rows);
                 let field = LinearField::bind(&HarmonicMap::new(unit, &harmonic, &driven), &falloff, fit, input)?;
                 let by_hand = is_brought.then(|| {
-                    let map = HarmonicCoordinates { unit, harmonic };
-                    Box::new(ByHand::Harmonic(HandField::new(map, vertices, world_points, falloff)))
+                    let moving = (vertices, falloff);
+                    ByHand::harmonic(harmonic, unit, moving, world_points, cage.vertices.len(), input)
                 });
+                let by_hand = by_hand.transpose()?.map(Box::new);
                 (Field::Linear(Box::new(field), by_hand), rows, driven)
             }
             CageCoordinates::Green => {

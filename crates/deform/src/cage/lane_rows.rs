@@ -64,6 +64,11 @@ impl<T: Stored> LaneRows<T> {
         self.blocks.par_chunks_exact_mut(self.column_count)
     }
 
+    /// The blocks of one task after the other.
+    pub fn tasks_mut(&mut self) -> rayon::slice::ChunksMut<'_, [T; LANES]> {
+        self.blocks.par_chunks_mut(self.column_count * BLOCKS)
+    }
+
     /// Each row's Σ entry × term over the columns.
     pub fn product(&self, terms: &[DVec3]) -> Vec<DVec3> {
         let mut sums = vec![DVec3::ZERO; self.row_count];
@@ -77,6 +82,38 @@ impl<T: Stored> LaneRows<T> {
         let rows = &self.blocks[block * self.column_count..][..self.column_count];
         vectors().dispatch(Product { rows, terms })
     }
+}
+
+/// Changes a table's entries of these vertices, ascending, of which each is a row: for each block its number and the
+/// entries of its rows.
+pub(super) fn by_blocks<T: Send>(
+    vertices: &[u32],
+    mut table: &mut [T],
+    change: impl Fn(usize, &mut dyn Iterator<Item = &mut T>) + Sync,
+) {
+    let mut start = 0;
+    let mut tasks = Vec::new();
+    for own in vertices.chunks(LANES * BLOCKS) {
+        let end = own.last().map_or(start, |last| *last as usize + 1);
+        let (piece, rest) = table.split_at_mut(end - start);
+        tasks.push((own, start, piece));
+        (start, table) = (end, rest);
+    }
+    tasks
+        .into_par_iter()
+        .enumerate()
+        .for_each(|(task, (own, start, mut piece))| {
+            let mut start = start;
+            for (block, own) in own.chunks(LANES).enumerate() {
+                let end = own.last().map_or(start, |last| *last as usize + 1);
+                let (entries, rest) = piece.split_at_mut(end - start);
+                let mut own = own.iter().map(|vertex| *vertex as usize - start).peekable();
+                let rows = entries.iter_mut().enumerate();
+                let mut rows = rows.filter_map(|(place, entry)| own.next_if_eq(&place).map(|_| entry));
+                change(task * BLOCKS + block, &mut rows);
+                (start, piece) = (end, rest);
+            }
+        });
 }
 
 /// Eight rows times the terms.

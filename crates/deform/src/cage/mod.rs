@@ -27,6 +27,7 @@ mod options;
 mod outside;
 pub mod parts;
 mod rows;
+mod stored_field;
 mod voxels;
 
 pub(crate) use self::declaration::DECLARATION;
