@@ -8,16 +8,17 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
-use pliant_deform::{BindError, Bound, Method, Ordering, SolveError, Step};
+use pliant_deform::{BindError, Bound, ExampleShape, Method, Ordering, SolveError, Step};
 use pliant_editor::{Beginning, Setup};
 use pliant_io::MorphTarget;
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
 
 use crate::AppError;
+use crate::examples;
 use crate::files::{self, Destination, NewFile, Staging};
 pub use crate::loading::{Loaded, is_project, load, load_bytes, open};
 use crate::memory;
-use crate::report::{Distortion, Energy, FrameTimes, Report, finite_or, ms_since};
+use crate::report::{Distortion, Energy, ExampleWeight, FrameTimes, Report, finite_or, ms_since};
 use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
 
@@ -119,13 +120,15 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     }
     let model = &loaded.model;
     check_not_empty(apply.file, model)?;
-    let setup = apply.edit.resolve(model).map_err(|source| AppError::Edit {
+    let mut edit = apply.edit.clone();
+    examples::bring(&mut edit, apply.edit_path, &loaded, watch)?;
+    let setup = edit.resolve(model).map_err(|source| AppError::Edit {
         edit: apply.edit_path.to_owned(),
         source,
     })?;
     check_bends(apply.file, model, &setup.method)?;
 
-    let solution = if apply.edit.changes_nothing() {
+    let solution = if edit.changes_nothing() {
         Solution::at_rest(model, &setup)
     } else {
         solve(apply.file, apply.frames, model, &setup, watch)?
@@ -232,6 +235,7 @@ fn report(loaded: &Loaded, setup: &Setup, solution: Solution, times: FileTimes, 
         converged: solution.converged,
         energy: solution.energy,
         handle_residual: solution.handle_residual,
+        examples: solution.examples,
         distortion: Distortion {
             edge_stretch_mean: finite_or(distortion.edge_stretch_mean, 1.0),
             edge_stretch_max: finite_or(distortion.edge_stretch_max, f64::MAX),
@@ -256,7 +260,18 @@ struct Solution {
     converged: bool,
     energy: Energy,
     handle_residual: f64,
+    examples: Vec<ExampleWeight>,
     warnings: Vec<String>,
+}
+
+fn example_weights(setup: &Setup, weights: &[f64]) -> Vec<ExampleWeight> {
+    let shapes = setup.examples().map_or(&[][..], |examples| &examples.shapes);
+    let each = shapes.iter().zip(weights);
+    let weight = |(shape, weight): (&ExampleShape, &f64)| ExampleWeight {
+        name: shape.name.clone(),
+        weight: *weight,
+    };
+    each.map(weight).collect()
 }
 
 impl Solution {
@@ -273,6 +288,7 @@ impl Solution {
             converged: true,
             energy: Energy::default(),
             handle_residual: 0.0,
+            examples: example_weights(setup, &vec![0.0; setup.examples().map_or(0, |own| own.shapes.len())]),
             warnings: Vec::new(),
         }
     }
@@ -317,6 +333,7 @@ fn solve(
             rest: 0.0,
             r#final: finite_or(bent.last.energy, f64::MAX),
         },
+        examples: example_weights(setup, bound.weights()),
         warnings: setup.worded(bound.warnings()),
     })
 }
@@ -363,6 +380,9 @@ fn bend(
         bound.set_targets(&targets).map_err(refuse)?;
         if let Some(moved) = setup.controls(frame as f64 / count as f64) {
             bound.set_controls(&moved).map_err(refuse)?;
+        }
+        if let Some(weights) = setup.weights(frame as f64 / count as f64) {
+            bound.set_weights(&weights).map_err(refuse)?;
         }
         last = bound.step(&mut displacements).map_err(refuse)?;
         // The method's own options limit the steps.

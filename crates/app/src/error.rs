@@ -31,6 +31,21 @@ pub enum AppError {
         /// What is wrong with it.
         source: pliant_editor::EditError,
     },
+    /// An example of other vertices or triangles.
+    #[error(
+        "{}: it has {what}, and {} has {expected}: give an example of the same vertices and triangles",
+        shown(.example), shown(.file)
+    )]
+    Example {
+        /// The example's file.
+        example: PathBuf,
+        /// What it has.
+        what: String,
+        /// The file that is bent.
+        file: PathBuf,
+        /// What that has.
+        expected: String,
+    },
     /// A project's mesh is not where it was, or is another one.
     #[error(
         "{}: its mesh {} is {what}: put the one it was made on there, or beside the project", shown(.project),

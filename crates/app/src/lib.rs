@@ -5,6 +5,7 @@ pub mod control_mesh;
 pub mod drawing;
 pub mod engine;
 mod error;
+mod examples;
 pub mod files;
 pub mod legend;
 mod loading;

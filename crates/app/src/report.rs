@@ -36,6 +36,9 @@ pub struct Report {
     /// The largest distance of a hard handle's vertex from where the handle takes it, in world units: 0 for methods that
     /// hold handles exactly.
     pub handle_residual: f64,
+    /// The weights of the examples that the edit has, as set or as found.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub examples: Vec<ExampleWeight>,
     /// How much the shape was distorted.
     pub distortion: Distortion,
     /// What a person should know, as sentences.
@@ -55,6 +58,15 @@ pub struct FrameTimes {
     pub max_ms: f64,
     /// The median time of the normals, which follow each frame.
     pub normals_ms: f64,
+}
+
+/// How much of an example the shape has taken.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct ExampleWeight {
+    /// The example's name.
+    pub name: String,
+    /// 0 at rest, 1 for the example.
+    pub weight: f64,
 }
 
 /// The deformation energy before and after.

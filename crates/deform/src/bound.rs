@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::handles::residual::HandleResidual;
 use crate::handles::{FRAME_CHUNK, Handle, Motion, clear};
-use crate::method::attachment::finite;
+use crate::method::attachment::{check_weights, finite};
 use crate::method::{BindInput, BoundMethod, Finite, HandleFit, Solve};
 use crate::region::follow::{Followers, followers};
 use crate::region::partition::Partition;
@@ -28,6 +28,8 @@ pub struct Bound {
     method: Box<dyn BoundMethod>,
     /// What the method's control points belong to: its name, and what a person calls it.
     attachment: Option<(&'static str, &'static str)>,
+    /// Of the examples that were brought; `None` where one is to be found.
+    weights: Vec<Option<f64>>,
     followers: Followers,
     /// Of hard handles that the method only fits.
     residual: HandleResidual,
@@ -125,10 +127,17 @@ impl Bound {
             progress,
             cancel,
         })?;
-        if let (Some((_, attachment)), Some(controls)) = (brought, method.controls_mut()) {
-            controls.move_to(Arc::clone(attachment.moved()));
+        if let (Some((_, attachment)), Some(controls)) = (brought, method.controls_mut())
+            && let Some(moved) = attachment.moved()
+        {
+            controls.move_to(Arc::clone(moved));
         }
         let attachment = declaration.attachments.first();
+        let weights = problem
+            .examples()
+            .map(|examples| examples.weights.clone())
+            .unwrap_or_default();
+        method.set_weights(&weights);
         let residual = match problem.method.implementation().handle_fit() {
             HandleFit::Exact => HandleResidual::default(),
             HandleFit::LeastSquares => HandleResidual::new(problem, &handles, &partition.soft),
@@ -145,6 +154,7 @@ impl Bound {
             solve: problem.method.solve(),
             method,
             attachment: attachment.map(|declared| (declared.name, declared.title)),
+            weights,
             followers: followers(
                 problem.surface,
                 problem.topology,
@@ -214,11 +224,32 @@ impl Bound {
             false => Err(AttachmentRefused::MovedCount { found, expected }),
         };
         checked.map_err(|refused| SolveError::Controls { title, refused })?;
-        if self.solve == Solve::Direct || controls.attachment.moved() != moved {
+        if self.solve == Solve::Direct || controls.attachment.moved() != Some(moved) {
             self.iteration = 0;
         }
         controls.move_to(Arc::clone(moved));
         Ok(())
+    }
+
+    /// Sets the weight of each example that the problem brought, as in [`crate::Examples::weights`].
+    ///
+    /// # Errors
+    /// A wrong count, or a weight that is not finite or too large; the previous weights stay.
+    pub fn set_weights(&mut self, weights: &[Option<f64>]) -> Result<(), SolveError> {
+        let title = self.attachment.map_or("examples", |(_, title)| title);
+        let checked = check_weights(weights, self.weights.len());
+        checked.map_err(|refused| SolveError::Controls { title, refused })?;
+        if self.weights != weights {
+            self.iteration = 0;
+            self.weights = weights.to_vec();
+            self.method.set_weights(weights);
+        }
+        Ok(())
+    }
+
+    /// The weight of each example that the problem brought, as the last step took or found it; 0 before the first.
+    pub fn weights(&self) -> &[f64] {
+        self.method.weights()
     }
 
     /// The cage or lattice in force, by its declared name: what the problem brought, with its points where the hand has
@@ -237,10 +268,12 @@ impl Bound {
         }
     }
 
-    /// Whether neither a handle nor the hand moves anything.
+    /// Whether neither a handle, nor the hand, nor an example moves anything. An example whose weight is to be found moves
+    /// nothing by itself.
     fn is_at_rest(&self) -> bool {
         let are_moved = self.method.controls().is_some_and(|controls| controls.are_moved());
-        !are_moved && self.motions.iter().all(Motion::is_rest)
+        let are_weighed = self.weights.iter().flatten().any(|weight| *weight != 0.0);
+        !are_moved && !are_weighed && self.motions.iter().all(Motion::is_rest)
     }
 
     /// One step towards the targets: fills `displacements`, one per surface vertex, in world units.

@@ -56,8 +56,8 @@ pub use laplacian::{LaplacianEditing, LocalScale, Transforms};
 pub use lattice::{Lattice, LatticeBasis, LatticeNorm};
 pub use method::{
     Attachment, AttachmentDeclaration, AttachmentKind, AttachmentRefused, ConstraintKind, ControlLattice, ControlMesh,
-    HandleFit, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration, OptionKind, OptionRefused, OptionValue,
-    Solve,
+    ExampleShape, Examples, HandleFit, LARGEST_WEIGHT, METHODS, Method, MethodDeclaration, Needs, OptionDeclaration,
+    OptionKind, OptionRefused, OptionValue, Solve,
 };
 pub use mls::{Mls, MlsTransforms};
 pub use numerical::rigid_fit::RigidMotion;

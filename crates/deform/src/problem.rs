@@ -4,7 +4,7 @@ use pliant_mesh::{Bounds, Cancel, Progress, Surface, Topology, bounding_box};
 
 use crate::budget::bytes_of;
 use crate::sparse::refactorisation::Refactorisation;
-use crate::{Attachment, BindError, Bound, Budget, Constraints, Method, Ordering, ReusableFactor};
+use crate::{Attachment, BindError, Bound, Budget, Constraints, Examples, Method, Ordering, ReusableFactor};
 
 /// What a surface vertex does.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -72,6 +72,14 @@ impl Problem<'_> {
             .iter()
             .find(|(name, _)| declared.attachment(name).is_some());
         own.map(|(name, attachment)| (*name, attachment))
+    }
+
+    /// The examples that were brought, if the method takes some.
+    pub(crate) fn examples(&self) -> Option<&Examples> {
+        match self.attachment() {
+            Some((_, Attachment::Shapes(examples))) => Some(examples),
+            _ => None,
+        }
     }
 
     /// What each component does if nothing holds it.

@@ -5,12 +5,14 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
 use pliant_deform::{
-    Arap, ArapEnergy, Bilaplacian, BilaplacianOrder, BindError, Budget, CageCoordinates, Constraints, Detail, Frames,
-    Limit, Loose, Method, OptionValue, Primo, Problem, Propagation, Rbf, Role, Shells, Transforms,
+    Arap, ArapEnergy, Attachment, Bilaplacian, BilaplacianOrder, BindError, Budget, CageCoordinates, Constraints,
+    Detail, ExampleShape, Examples, Frames, Limit, Loose, Method, OptionValue, Primo, Problem, Propagation, Rbf, Role,
+    Shells, Transforms,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 
@@ -88,10 +90,12 @@ struct Scene {
     model: Model,
     roles: Vec<Role>,
     method: Method,
+    attachments: Vec<(&'static str, Attachment)>,
 }
 
 impl Scene {
-    fn new(drawn: Drawn, method: &Method) -> Self {
+    /// With so many examples.
+    fn new(drawn: Drawn, (method, examples): &(Method, usize)) -> Self {
         let model = shapes::model(drawn);
         let bounds = model.bounds().unwrap();
         let role = |p: &DVec3| match (p.x - bounds.min.x) / bounds.extent().x {
@@ -101,6 +105,7 @@ impl Scene {
         };
         Self {
             roles: model.surface.positions.iter().map(role).collect(),
+            attachments: attached(&model, *examples),
             model,
             method: method.clone(),
         }
@@ -118,7 +123,7 @@ impl Scene {
             constraints: Constraints::default(),
             loose: Loose::Follow,
             method: &self.method,
-            attachments: &[],
+            attachments: &self.attachments,
             revision: 0,
         };
         let (progress, cancel) = (Progress::new(), Cancel::new());
@@ -130,6 +135,31 @@ impl Scene {
         let (peak, allocated) = (PEAK.load(Relaxed) - before, ALLOCATED.load(Relaxed));
         (bound.map(|bound| bound.factor_len()), peak, allocated)
     }
+}
+
+fn attached(model: &Model, examples: usize) -> Vec<(&'static str, Attachment)> {
+    let example = |number: usize| {
+        let turned = |p: &DVec3| *p * (0.1 * (number + 1) as f64 * p.x).sin();
+        ExampleShape {
+            name: number.to_string(),
+            displacements: Arc::new(model.surface.positions.iter().map(turned).collect()),
+        }
+    };
+    let examples = Examples {
+        shapes: Arc::new((0..examples).map(example).collect()),
+        weights: vec![None; examples],
+    };
+    let brought = (!examples.shapes.is_empty()).then_some(("examples", Attachment::Shapes(examples)));
+    brought.into_iter().collect()
+}
+
+/// All methods, and shells with two examples.
+fn cases() -> Vec<(Method, usize)> {
+    let mut led = Shells::default();
+    led.led_above = 0;
+    let with_examples = [Shells::default(), led].map(|shells| (shells.into(), 2));
+    let plain = methods().into_iter().map(|method| (method, 0));
+    plain.chain(with_examples).collect()
 }
 
 fn methods() -> Vec<Method> {
@@ -187,7 +217,7 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
     // Rooms are kept by thread: one thread, so that what is counted is the same each time.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     pool.install(|| {
-        for method in methods() {
+        for method in cases() {
             for (name, shape, sizes) in [
                 ("vertex", fan as fn(usize) -> Drawn, [1000, 2000]),
                 ("edge", shapes::non_manifold_fan, [1000, 2000]),
@@ -196,7 +226,7 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
                 let measured = sizes.map(|size| {
                     let (bound, peak, allocated) = Scene::new(shape(size), &method).bind(PLENTY);
                     // The coupled system of implicit transformations loses too many digits at an edge of so many triangles.
-                    let may_refuse = name == "edge" && method == Method::from_name("laplacian").unwrap();
+                    let may_refuse = name == "edge" && method.0 == Method::from_name("laplacian").unwrap();
                     let refused = bound.err();
                     assert!(
                         refused.is_none() || may_refuse && matches!(refused, Some(BindError::Inaccurate { .. })),
@@ -226,7 +256,7 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
             assert!(least < peak, "{method:?}: {least} {peak}");
         }
         // What binding is granted covers what it takes: with a tenth less than it held at most it is refused.
-        for method in methods() {
+        for method in cases() {
             for drawn in [shapes::grid(120, 120), soup(8000)] {
                 let scene = Scene::new(drawn, &method);
                 let (bound, peak, _) = scene.bind(PLENTY);
@@ -240,7 +270,7 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
             }
         }
         // A mesh whose factorisation takes too many operations is refused before its memory is taken.
-        let method = Method::from(Bilaplacian::default());
+        let method = (Method::from(Bilaplacian::default()), 0);
         let scene = Scene::new(shapes::tangle(170), &method);
         let (bound, peak, _) = scene.bind(PLENTY);
         bound.unwrap();

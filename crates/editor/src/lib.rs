@@ -28,8 +28,9 @@ pub use document::{
 pub use editor::Editor;
 pub use event::Event;
 pub use format::{
-    AttachmentEntry, Axis, Beginning, EDIT_VERSION, EditError, EditFile, ExportError, FieldEntry, HandleEntry,
-    HandleSetup, MeshReference, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup, geometry_hash,
+    AttachmentEntry, Axis, Beginning, EDIT_VERSION, EditError, EditFile, ExampleEntry, ExampleSource, ExportError,
+    FieldEntry, HandleEntry, HandleSetup, MeshReference, Project, Rest, SOFT_RANGE, STIFFNESS_RANGE, Selector, Setup,
+    geometry_hash,
 };
 pub use input::{Button, Key, Modifiers, Pointer};
 pub use jobs::{

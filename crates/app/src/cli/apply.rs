@@ -9,7 +9,7 @@ use super::arguments::ApplyArguments;
 use super::method_argument::method_argument;
 use super::{Console, on_threads};
 use crate::watch::Watch;
-use crate::{AppError, control_mesh, engine, files};
+use crate::{AppError, control_mesh, engine, examples, files};
 
 pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     let ApplyArguments {
@@ -61,7 +61,8 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     Ok(())
 }
 
-/// Reads the file of an edit or of a project, and those that it names. With it the paths of these.
+/// Reads the file of an edit or of a project, and the cages that it names. With it the paths of all files that it names;
+/// examples are read once the mesh is.
 pub(super) fn read_edit(path: &Path, watch: &Watch) -> Result<(Beginning, Vec<PathBuf>), AppError> {
     let text = files::read_text(path)?;
     let read = if engine::is_project(path) {
@@ -73,6 +74,7 @@ pub(super) fn read_edit(path: &Path, watch: &Watch) -> Result<(Beginning, Vec<Pa
         edit: path.to_owned(),
         source,
     })?;
-    let named = control_mesh::bring(&mut edit, path, watch)?;
+    let mut named = control_mesh::bring(&mut edit, path, watch)?;
+    named.extend(examples::files(&mut edit, path));
     Ok((edit, named))
 }

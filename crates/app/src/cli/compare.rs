@@ -22,7 +22,7 @@ use crate::files::Destination;
 use crate::report::Report;
 use crate::sheet::{self, Caption, Cell, Layout};
 use crate::watch::Watch;
-use crate::{AppError, files, legend, painting, picture_file};
+use crate::{AppError, examples, files, legend, painting, picture_file};
 
 pub(super) fn run(arguments: &CompareArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     render::check_png(&arguments.output)?;
@@ -132,7 +132,7 @@ fn compare(arguments: &CompareArguments, methods: &[Asked], watch: &Watch) -> Re
     }
     let model = &loaded.model;
     engine::check_not_empty(&arguments.file, model)?;
-    let (edit, _) = render::resolved(&arguments.edit, model, watch)?;
+    let (edit, _) = render::resolved(&arguments.edit, &loaded, watch)?;
     let mut outcomes = Vec::with_capacity(methods.len());
     for method in methods {
         outcomes.push(outcome(arguments, &loaded, method, watch)?);
@@ -168,6 +168,7 @@ fn outcome(arguments: &CompareArguments, loaded: &Loaded, asked: &Asked, watch: 
     if edit.method_name() != asked.name {
         edit.set_method(asked.method.clone());
     }
+    examples::bring(&mut edit, &arguments.edit, loaded, watch)?;
     let setup = edit.resolve(&loaded.model).map_err(|source| AppError::Edit {
         edit: arguments.edit.clone(),
         source,

@@ -18,7 +18,7 @@ use crate::drawing::{self, Drawing, Pose, Scale};
 use crate::engine::{self, Loaded};
 use crate::files::Destination;
 use crate::watch::Watch;
-use crate::{AppError, files, legend, painting, picture_file};
+use crate::{AppError, examples, files, legend, painting, picture_file};
 
 pub(super) fn run(arguments: &RenderArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     check_png(&arguments.output)?;
@@ -115,7 +115,7 @@ fn pictures(arguments: &RenderArguments, paths: &[PathBuf], watch: &Watch) -> Re
     };
     let edit = match arguments.edit.as_deref() {
         Some(path) => {
-            let (edit, setup) = resolved(path, model, watch)?;
+            let (edit, setup) = resolved(path, &loaded, watch)?;
             engine::check_bends(&arguments.file, model, &setup.method)?;
             Some(edit)
         }
@@ -256,9 +256,10 @@ pub(super) fn looking(up_axis: Up, from: View, diagonal: f64) -> Camera {
 const ROOM_FOR_THE_EDIT: f64 = 1.2;
 
 /// Reads an edit that fits the model, with the same refusals as `apply`: the editor itself would accept any edit.
-pub(super) fn resolved(path: &Path, model: &Model, watch: &Watch) -> Result<(Beginning, Setup), AppError> {
-    let (edit, _) = read_edit(path, watch)?;
-    let setup = edit.resolve(model).map_err(|source| AppError::Edit {
+pub(super) fn resolved(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<(Beginning, Setup), AppError> {
+    let (mut edit, _) = read_edit(path, watch)?;
+    examples::bring(&mut edit, path, loaded, watch)?;
+    let setup = edit.resolve(&loaded.model).map_err(|source| AppError::Edit {
         edit: path.to_owned(),
         source,
     })?;

@@ -7,7 +7,7 @@
 //! clusters don't show and the details of the fine shape stay.
 
 use glam::Quat;
-use pliant_mesh::{Cancel, Progress, SurfaceVertex};
+use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
 use super::clusters::Clusters;
@@ -18,8 +18,8 @@ use super::{ArapSolver, State};
 use crate::handles::blend::Origin;
 use crate::handles::{Handle, Motion};
 use crate::operators::CHUNK;
-use crate::region::partition::Partition;
-use crate::{Arap, Constraints, Loose, Method, Ordering, Problem};
+use crate::region::clustered::{Share, Shares, on_clusters, shares, transposed};
+use crate::{Arap, Method, Ordering, Problem};
 
 /// The fewest vertices of a cluster: the smaller, the less stiff against bending, the closer to the fine surface, and
 /// the more expensive. At the end of a drag of a scan of 173k vertices the energy is 4% above the minimum with 12, 5%
@@ -28,15 +28,6 @@ const CLUSTER: f64 = 12.0;
 
 /// About how many clusters there are at most, so that steps of the coarse level fit into a frame.
 const MOST: f64 = 25_000.0;
-
-/// Coarse cells that a fine one turns along with.
-const NEAREST: usize = 4;
-
-/// A coarse cell, and how much of its turn a fine cell takes.
-pub(crate) type Share = (u32, f32);
-
-/// Those of one fine cell, the largest first; they sum to 1, or are 0 if no coarse cell is near.
-pub(crate) type Shares = [Share; NEAREST];
 
 /// The level's own solver, and how it is connected with the fine one.
 #[derive(Debug)]
@@ -63,34 +54,18 @@ impl Coarse {
         let mut own = options.clone();
         own.coarse_above = usize::MAX;
         let method = Method::from(own.clone());
-        let coarse = Problem {
-            surface: &clusters.surface,
-            topology: &clusters.topology,
-            roles: &clusters.roles,
-            handle_count: problem.handle_count,
-            stiffness: &clusters.stiffness,
-            constraints: Constraints {
-                soft: problem.constraints.soft,
-                ..Constraints::default()
-            },
-            loose: Loose::Rest,
-            method: &method,
-            attachments: &[],
-            revision: problem.revision,
-        };
-        let partition = Partition::of(&coarse).ok()?;
         let progress = Progress::new();
         let ordering = Ordering::of(&clusters.topology, own.operator_power(), &progress, cancel).ok()?;
-        // In the fine handles' frames, so that the same motions hold.
-        let handles: Vec<Handle> = handles
-            .iter()
-            .zip(&partition.handles)
-            .map(|(handle, vertices)| Handle {
-                vertices: vertices.clone(),
-                ..*handle
-            })
-            .collect();
-        let solver = ArapSolver::bind(&coarse, &own, &partition, &handles, &ordering, &progress, cancel).ok()?;
+        let solver = on_clusters(
+            problem,
+            &clusters,
+            &method,
+            &[],
+            handles,
+            |coarse, partition, handles| {
+                ArapSolver::bind(coarse, &own, &partition, handles, &ordering, &progress, cancel).ok()
+            },
+        )?;
         let domain = &solver.domain;
         if domain.solved_count == 0 {
             return None;
@@ -240,59 +215,4 @@ impl Coarse {
                 }
             });
     }
-}
-
-/// For a surface vertex, the nearest coarse cells of its cluster's ring, with shares that fall to 0 towards the next
-/// one; `cell` gives a cluster's, if it has one.
-pub(crate) fn shares(
-    problem: &Problem,
-    clusters: &Clusters,
-    cell: &impl Fn(u32) -> Option<u32>,
-    vertex: u32,
-) -> Shares {
-    let here = problem.surface.positions[vertex as usize];
-    let own = clusters.cluster_of[vertex as usize];
-    let around = clusters.topology.neighbours(SurfaceVertex(own));
-    let mut near: Vec<(f64, u32)> = std::iter::once(own)
-        .chain(around.iter().map(|other| other.0))
-        .filter_map(|cluster| {
-            let place = clusters.surface.positions[cluster as usize];
-            Some((place.distance(here), cell(cluster)?))
-        })
-        .collect();
-    near.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let farthest = near.last().map_or(0.0, |&(distance, _)| 1.5 * distance);
-    let limit = near.get(NEAREST).map_or(farthest, |&(distance, _)| distance);
-    let mut shares = [(0, 0.0); NEAREST];
-    for (share, &(distance, cell)) in shares.iter_mut().zip(&near) {
-        // The nearest one always counts for something.
-        *share = (cell, (1.0 - distance / limit).max(0.0).powi(2).max(1e-6) as f32);
-    }
-    let sum: f32 = shares.iter().map(|share| share.1).sum();
-    for share in shares.iter_mut().filter(|share| share.1 > 0.0) {
-        share.1 /= sum;
-    }
-    shares
-}
-
-/// The shares by coarse vertex, of those below `solved_count`.
-pub(crate) fn transposed(shares: &[Shares], solved_count: usize) -> (Vec<u32>, Vec<Share>) {
-    let of_vertex = |(vertex, shares): (usize, &Shares)| shares.map(|(cell, share)| (cell, vertex as u32, share));
-    let is_solved = |&(cell, _, share): &(u32, u32, f32)| share > 0.0 && (cell as usize) < solved_count;
-    let each = || shares.iter().enumerate().flat_map(of_vertex).filter(is_solved);
-    let mut offsets = vec![0; solved_count + 1];
-    for (cell, ..) in each() {
-        offsets[cell as usize + 1] += 1;
-    }
-    for cell in 0..solved_count {
-        offsets[cell + 1] += offsets[cell];
-    }
-    let mut next = offsets.clone();
-    let mut members = vec![(0, 0.0); offsets[solved_count] as usize];
-    for (cell, vertex, share) in each() {
-        let place = &mut next[cell as usize];
-        members[*place as usize] = (vertex, share);
-        *place += 1;
-    }
-    (offsets, members)
 }

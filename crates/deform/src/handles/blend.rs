@@ -43,6 +43,13 @@ impl Screw {
             stretch,
         }
     }
+
+    /// How it turns, without the stretch.
+    pub fn turn(&self) -> DQuat {
+        carried(DVec3::ZERO, std::slice::from_ref(self), &[1.0])
+            .turn
+            .normalize()
+    }
 }
 
 /// Where the screws carry a point.

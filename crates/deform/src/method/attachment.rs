@@ -1,4 +1,4 @@
-//! What a method takes beside handles, and a person may bring and edit: a cage, a lattice.
+//! What a method takes beside handles, and a person may bring and edit: a cage, a lattice, examples.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -27,16 +27,42 @@ pub enum AttachmentKind {
     ControlMesh,
     /// A lattice over a box along the axes, whose control points are moved.
     ControlLattice,
+    /// Shapes of the same vertices and triangles, each with a weight.
+    Shapes,
 }
 
-/// An attachment. A binding depends on how it rests, a frame on where its points were moved to.
+/// An attachment. A binding depends on how it rests, a frame on where its points were moved to or on its weights.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Attachment {
     /// Of [`AttachmentKind::ControlMesh`].
     Mesh(ControlMesh),
     /// Of [`AttachmentKind::ControlLattice`].
     Lattice(ControlLattice),
+    /// Of [`AttachmentKind::Shapes`].
+    Shapes(Examples),
 }
+
+/// Further shapes that a surface may have, and how much of each it takes.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Examples {
+    /// The shapes.
+    pub shapes: Arc<Vec<ExampleShape>>,
+    /// Each shape's weight, from −[`LARGEST_WEIGHT`] to it: 0 is rest, 1 the shape itself, and more goes beyond. `None`:
+    /// the solver finds it.
+    pub weights: Vec<Option<f64>>,
+}
+
+/// A further shape of the same vertices and triangles.
+#[derive(Clone, PartialEq, Debug)]
+pub struct ExampleShape {
+    /// What a person calls it.
+    pub name: String,
+    /// How far each surface vertex is from rest, in world units.
+    pub displacements: Arc<Vec<DVec3>>,
+}
+
+/// The largest weight of an example.
+pub const LARGEST_WEIGHT: f64 = 10.0;
 
 /// A control mesh.
 #[derive(Clone, PartialEq, Debug)]
@@ -69,14 +95,16 @@ impl Attachment {
         match self {
             Self::Mesh(_) => AttachmentKind::ControlMesh,
             Self::Lattice(_) => AttachmentKind::ControlLattice,
+            Self::Shapes(_) => AttachmentKind::Shapes,
         }
     }
 
-    /// Where its points were moved to by hand.
-    pub fn moved(&self) -> &Arc<Vec<DVec3>> {
+    /// Where its points were moved to by hand; `None` for examples, which have none.
+    pub fn moved(&self) -> Option<&Arc<Vec<DVec3>>> {
         match self {
-            Self::Mesh(mesh) => &mesh.moved,
-            Self::Lattice(lattice) => &lattice.moved,
+            Self::Mesh(mesh) => Some(&mesh.moved),
+            Self::Lattice(lattice) => Some(&lattice.moved),
+            Self::Shapes(_) => None,
         }
     }
 
@@ -86,10 +114,12 @@ impl Attachment {
         match self.clone() {
             Self::Mesh(mesh) => Self::Mesh(ControlMesh { moved, ..mesh }),
             Self::Lattice(lattice) => Self::Lattice(ControlLattice { moved, ..lattice }),
+            Self::Shapes(examples) => Self::Shapes(examples),
         }
     }
 
-    /// Whether the two differ in nothing but where their points were moved to: then nothing has to be bound anew.
+    /// Whether the two differ in nothing but where their points were moved to, or in names and weights: then nothing has
+    /// to be bound anew.
     pub fn rests_as(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Mesh(a), Self::Mesh(b)) => {
@@ -97,6 +127,12 @@ impl Attachment {
                 same_rest && (Arc::ptr_eq(&a.triangles, &b.triangles) || a.triangles == b.triangles)
             }
             (Self::Lattice(a), Self::Lattice(b)) => (a.counts, a.low, a.high) == (b.counts, b.low, b.high),
+            (Self::Shapes(a), Self::Shapes(b)) => {
+                let same = |(a, b): (&ExampleShape, &ExampleShape)| {
+                    Arc::ptr_eq(&a.displacements, &b.displacements) || a.displacements == b.displacements
+                };
+                a.shapes.len() == b.shapes.len() && a.shapes.iter().zip(&*b.shapes).all(same)
+            }
             _ => false,
         }
     }
@@ -106,6 +142,7 @@ impl Attachment {
         match self {
             Self::Mesh(mesh) => mesh.rest.len(),
             Self::Lattice(lattice) => lattice.counts.iter().map(|count| *count as usize).product(),
+            Self::Shapes(_) => 0,
         }
     }
 
@@ -118,13 +155,18 @@ impl Attachment {
                 edges.into_iter().collect()
             }
             Self::Lattice(lattice) => lattice_edges(lattice.counts),
+            Self::Shapes(_) => Vec::new(),
         }
     }
 
-    /// Refuses another length of `moved` than there are points, points that are not finite, and triangles of vertices
-    /// that do not exist.
+    /// Refuses another length of `moved` than there are points, points that are not finite, triangles of vertices that
+    /// do not exist, and weights that are too many, too few or too large.
     pub(crate) fn check(&self) -> Result<(), AttachmentRefused> {
-        let (expected, found) = (self.point_count(), self.moved().len());
+        if let Self::Shapes(examples) = self {
+            return examples.check();
+        }
+        let moved = self.moved().map_or(&[][..], |moved| moved);
+        let (expected, found) = (self.point_count(), moved.len());
         if let Self::Mesh(mesh) = self {
             finite(&mesh.rest)?;
             for (triangle, corners) in mesh.triangles.iter().enumerate() {
@@ -140,7 +182,54 @@ impl Attachment {
         if found != expected {
             return Err(AttachmentRefused::MovedCount { found, expected });
         }
-        finite(self.moved())
+        finite(moved)
+    }
+}
+
+impl Examples {
+    /// The shapes with all weights 0.
+    pub fn at_rest(shapes: Vec<ExampleShape>) -> Self {
+        Self {
+            weights: vec![Some(0.0); shapes.len()],
+            shapes: Arc::new(shapes),
+        }
+    }
+
+    /// Refuses weights that [`Examples::weights`] does not allow, and displacements that are not finite.
+    pub(crate) fn check(&self) -> Result<(), AttachmentRefused> {
+        check_weights(&self.weights, self.shapes.len())?;
+        self.shapes.iter().try_for_each(|shape| finite(&shape.displacements))
+    }
+
+    /// Refuses a shape that does not have so many vertices.
+    pub(crate) fn check_fits(&self, vertex_count: usize) -> Result<(), AttachmentRefused> {
+        let fits = |shape: &&ExampleShape| shape.displacements.len() == vertex_count;
+        match self.shapes.iter().find(|shape| !fits(shape)) {
+            Some(shape) => Err(AttachmentRefused::VertexCount {
+                name: shape.name.clone(),
+                found: shape.displacements.len(),
+                expected: vertex_count,
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Refuses another number of weights than of shapes, and those that are not finite or too large.
+pub(crate) fn check_weights(weights: &[Option<f64>], expected: usize) -> Result<(), AttachmentRefused> {
+    if weights.len() != expected {
+        return Err(AttachmentRefused::WeightCount {
+            found: weights.len(),
+            expected,
+        });
+    }
+    let is_allowed = |weight: &Option<f64>| weight.is_none_or(|weight| weight.abs() <= LARGEST_WEIGHT);
+    match weights.iter().position(|weight| !is_allowed(weight)) {
+        Some(place) => Err(AttachmentRefused::Weight {
+            place,
+            most: LARGEST_WEIGHT,
+        }),
+        None => Ok(()),
     }
 }
 

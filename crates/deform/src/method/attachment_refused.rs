@@ -1,6 +1,7 @@
-//! Why a cage or a lattice can't be taken.
+//! Why a cage, a lattice or examples can't be taken.
 
-/// An attachment can't be taken. The sentence has no subject: "the cage" or "the lattice" stands before it.
+/// An attachment can't be taken. The sentence has no subject: "the cage", "the lattice" or "the examples" stands
+/// before it.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum AttachmentRefused {
@@ -103,5 +104,31 @@ pub enum AttachmentRefused {
     Flat {
         /// The axis.
         axis: char,
+    },
+    /// An example has another number of vertices than the surface.
+    #[error("can't be taken: {name:?} has {found} vertices where the surface has {expected}")]
+    VertexCount {
+        /// The example's name.
+        name: String,
+        /// How many it has.
+        found: usize,
+        /// How many the surface has.
+        expected: usize,
+    },
+    /// There are too few or too many weights.
+    #[error("can't be taken with {found} weights: give one for each of the {expected}")]
+    WeightCount {
+        /// How many there are.
+        found: usize,
+        /// How many examples there are.
+        expected: usize,
+    },
+    /// A weight that is not finite or too large.
+    #[error("can't be taken with the weight of number {place}: give −{most} to {most}")]
+    Weight {
+        /// The example's number.
+        place: usize,
+        /// The largest weight.
+        most: f64,
     },
 }

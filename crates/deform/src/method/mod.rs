@@ -14,7 +14,10 @@ use std::fmt;
 use glam::DVec3;
 use pliant_mesh::{Cancel, Cancelled, Progress, Surface, Topology};
 
-pub use self::attachment::{Attachment, AttachmentDeclaration, AttachmentKind, ControlLattice, ControlMesh};
+pub use self::attachment::{
+    Attachment, AttachmentDeclaration, AttachmentKind, ControlLattice, ControlMesh, ExampleShape, Examples,
+    LARGEST_WEIGHT,
+};
 pub use self::attachment_refused::AttachmentRefused;
 pub use self::declaration::{ConstraintKind, MethodDeclaration, Needs, Solve};
 pub use self::option::{OptionDeclaration, OptionKind, OptionRefused, OptionValue};
@@ -114,11 +117,13 @@ impl Method {
         self.0.handle_fit()
     }
 
-    /// Where the points of an attachment rest, in world units; one for each. A lattice's depend on the options.
+    /// Where the points of an attachment rest, in world units; one for each. A lattice's depend on the options; examples
+    /// have none.
     pub fn control_rest(&self, attachment: &Attachment) -> Vec<DVec3> {
         match attachment {
             Attachment::Mesh(mesh) => mesh.rest.to_vec(),
             Attachment::Lattice(lattice) => self.0.lattice_points(lattice),
+            Attachment::Shapes(_) => Vec::new(),
         }
     }
 

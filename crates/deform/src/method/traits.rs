@@ -125,8 +125,8 @@ impl<'a> BindInput<'a> {
 
 /// A bound method: motions of the handles in, displacements out.
 ///
-/// `motions` has one entry per handle, `displacements` one per surface vertex. At least one handle moves, or the hand
-/// has moved a control point.
+/// `motions` has one entry per handle, `displacements` one per surface vertex. At least one handle moves, the hand
+/// has moved a control point, or the weight of an example is set and not 0.
 pub(crate) trait BoundMethod: Debug + Send + Sync {
     /// One step: fills *all* of `displacements`, handles' vertices and zeros included.
     fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError>;
@@ -191,6 +191,14 @@ pub(crate) trait BoundMethod: Debug + Send + Sync {
         self.controls()
             .map(|controls| controls.positions(motions))
             .unwrap_or_default()
+    }
+
+    /// Sets the weights of the examples that were brought, `None` where one is to be found.
+    fn set_weights(&mut self, _weights: &[Option<f64>]) {}
+
+    /// The weights of these examples as of the last step.
+    fn weights(&self) -> &[f64] {
+        &[]
     }
 
     /// How many vertices are solved for.

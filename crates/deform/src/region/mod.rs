@@ -1,5 +1,6 @@
 //! The roles applied to a surface: what is solved for, what is held and how firmly, what follows.
 
+pub(crate) mod clustered;
 pub(crate) mod constraints;
 pub(crate) mod follow;
 mod owners;

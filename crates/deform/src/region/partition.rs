@@ -5,6 +5,7 @@
 //! vertices is n rings wide. Free vertices out of its reach have the solution zero and stay out of the factor, so that
 //! the cost of binding depends on what is deformed, not on what is loaded.
 
+use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
 
 use crate::budget::bytes_of;
@@ -97,7 +98,13 @@ impl<'a> Partition<'a> {
         warnings.extend(unheeded(problem));
         warnings.extend(triangulation.warning().map(|sentence| sentence.to_owned().into()));
         Ok(Self {
-            solved: solved(problem, &triangulation, &handles, &soft),
+            solved: solved(
+                problem,
+                &triangulation,
+                &handles,
+                &soft,
+                &led_by_examples(problem, &held, &driven),
+            ),
             triangulation,
             following: loose.into_iter().filter_map(follows).collect(),
             handles,
@@ -152,6 +159,16 @@ fn check(problem: &Problem) -> Result<(), BindError> {
         }
     }
     problem.constraints.check(problem)?;
+    if let Some(examples) = problem.examples() {
+        let title = problem
+            .method
+            .declaration()
+            .attachments
+            .first()
+            .map_or("examples", |own| own.title);
+        let checked = examples.check_fits(expected);
+        checked.map_err(|refused| BindError::Attachment { title, refused })?;
+    }
     for (vertex, role) in problem.roles.iter().enumerate() {
         if let Role::Handle(handle) = *role
             && usize::from(handle) >= problem.handle_count
@@ -204,9 +221,32 @@ fn is_bare(problem: &Problem, vertex: usize) -> bool {
     problem.method.needs() != Needs::Points && is_alone()
 }
 
+/// Of each component: whether its free vertices are solved for because an example moves it. Where there are handles, a
+/// component that nothing holds follows the others all the same.
+fn led_by_examples(problem: &Problem, held: &[bool], driven: &[bool]) -> Vec<bool> {
+    let mut led = vec![false; held.len()];
+    for shape in problem.examples().iter().flat_map(|examples| &*examples.shapes) {
+        for (vertex, displacement) in (0..).zip(&*shape.displacements) {
+            let component = problem.topology.component(SurfaceVertex(vertex)) as usize;
+            led[component] |= *displacement != DVec3::ZERO;
+        }
+    }
+    for (component, led) in led.iter_mut().enumerate() {
+        *led &= problem.handle_count == 0 || held[component] || driven[component];
+    }
+    led
+}
+
 /// The vertices that are solved for, ascending. On a surface these are the free vertices that handles reach by walks
-/// without `reach` successive constrained vertices; of points all free ones. A soft handle's vertices count as free.
-fn solved(problem: &Problem, triangulation: &Triangulation, handles: &[Vec<u32>], soft: &[Option<f64>]) -> Vec<u32> {
+/// without `reach` successive constrained vertices, and those of the components `led` by examples; of points all free
+/// ones. A soft handle's vertices count as free.
+fn solved(
+    problem: &Problem,
+    triangulation: &Triangulation,
+    handles: &[Vec<u32>],
+    soft: &[Option<f64>],
+    led: &[bool],
+) -> Vec<u32> {
     let is_free = |vertex: usize| match problem.roles[vertex] {
         Role::Free => true,
         Role::Fixed => false,
@@ -238,7 +278,8 @@ fn solved(problem: &Problem, triangulation: &Triangulation, handles: &[Vec<u32>]
             }
         }
     }
-    chosen(&|vertex| left[vertex] > 0 && is_free(vertex) && !is_bare(problem, vertex))
+    let is_led = |vertex: usize| led[problem.topology.component(SurfaceVertex(vertex as u32)) as usize];
+    chosen(&|vertex| (left[vertex] > 0 || is_led(vertex)) && is_free(vertex) && !is_bare(problem, vertex))
 }
 
 /// Sentences about constraints that the method does not support, with the methods that do.

@@ -8,9 +8,10 @@
 //! with the weights of the edges and hinges and the linear angle's factors f. The gradient at a first guess, solved with
 //! the unfolded energy's factor, is what the guess misses.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
 
+use super::blended::Turns;
 use super::hinge::flat;
 use super::shape::{Energy, Shape};
 use crate::numerical::sums::Field;
@@ -23,6 +24,55 @@ pub(super) struct Carrier {
     factors: Vec<[f32; 4]>,
     edges: Vec<DVec3>,
     hinges: Vec<DVec3>,
+}
+
+/// The shape that is turned.
+pub(super) struct Base<'a> {
+    /// Where the local vertices are.
+    pub places: &'a [DVec3],
+    /// How the surroundings of each turn.
+    pub turns: &'a [DMat3],
+    /// The strains that examples give it first: their turns back to rest, and their weights.
+    pub strains: Option<Strains<'a>>,
+}
+
+/// What examples add to a base that is the rest shape.
+pub(super) struct Strains<'a> {
+    displacements: &'a [Vec<DVec3>],
+    back: Vec<DQuat>,
+    weights: &'a [f64],
+}
+
+impl<'a> Strains<'a> {
+    /// With these weights.
+    pub fn of(energy: &'a Energy, turns: &Turns, weights: &'a [f64]) -> Self {
+        Self {
+            displacements: &energy.examples.displacements,
+            back: turns.back(),
+            weights,
+        }
+    }
+}
+
+impl Base<'_> {
+    /// What becomes of a linear function of the places near an edge from a to b: it turns with the edge's ends.
+    fn turned(&self, [a, b]: [u32; 2], function: impl Fn(&dyn Fn(u32) -> DVec3) -> DVec3) -> DVec3 {
+        let base = function(&|local| self.places[local as usize]);
+        let turn = |end: u32| self.turns[end as usize];
+        let Some(strains) = &self.strains else {
+            return (turn(a) + turn(b)) * 0.5 * base;
+        };
+        let strained = |end: u32| {
+            let mut sum = base;
+            let back = &strains.back[end as usize * strains.weights.len()..];
+            for ((own, back), &weight) in strains.displacements.iter().zip(back).zip(strains.weights) {
+                let example = function(&|local| self.places[local as usize] + own[local as usize]);
+                sum += (*back * example - base) * weight;
+            }
+            turn(end) * sum
+        };
+        (strained(a) + strained(b)) * 0.5
+    }
 }
 
 impl Carrier {
@@ -40,11 +90,10 @@ impl Carrier {
         }
     }
 
-    /// The gradient at `shape`, for the base positions and the turns of all local vertices.
-    pub fn pull(&mut self, energy: &Energy, base: &[DVec3], shape: &Shape, turns: &[DMat3]) -> Field {
+    /// The gradient at `shape`, for the base and its turns.
+    pub fn pull(&mut self, energy: &Energy, base: &Base, shape: &Shape) -> Field {
         let elements = &energy.elements;
         let at = |local: u32| elements.rest[local as usize] + shape.displacements[local as usize];
-        let turn = |a: u32, b: u32| (turns[a as usize] + turns[b as usize]) * 0.5;
         let Self { factors, edges, hinges } = self;
         elements
             .edges
@@ -52,7 +101,7 @@ impl Carrier {
             .with_min_len(CHUNK)
             .map(|edge| {
                 let [a, b] = edge.ends;
-                let turned = turn(a, b) * (base[b as usize] - base[a as usize]);
+                let turned = base.turned(edge.ends, |place| place(b) - place(a));
                 (at(b) - at(a) - turned) * edge.weight
             })
             .collect_into_vec(edges);
@@ -63,15 +112,14 @@ impl Carrier {
             .with_min_len(CHUNK)
             .map(|(hinge, factors)| {
                 let [a, b, ..] = hinge.corners;
-                let sum = |place: &dyn Fn(u32) -> DVec3| -> DVec3 {
+                let sum = |place: &dyn Fn(u32) -> DVec3| {
                     // From a corner, so that rounding in the factors has little to multiply.
                     let origin = place(a);
                     let each = hinge.corners.iter().zip(factors);
                     each.map(|(&corner, &factor)| (place(corner) - origin) * f64::from(factor))
-                        .sum()
+                        .sum::<DVec3>()
                 };
-                let before = sum(&|corner| base[corner as usize]);
-                (sum(&at) - turn(a, b) * before) * hinge.weight
+                (sum(&at) - base.turned([a, b], sum)) * hinge.weight
             })
             .collect_into_vec(hinges);
         let mut pull: Field = (0..elements.solved_count)

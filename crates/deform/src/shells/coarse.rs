@@ -6,23 +6,25 @@
 //! correction. Only how it turns is carried over (`carry`), so that the clusters don't show and the fine shape keeps its
 //! details.
 
+use std::sync::Arc;
+
 use glam::{DMat3, DQuat, DVec3};
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
+use super::blended::fitted;
+use super::declaration::EXAMPLES;
 use super::elements::{ABSENT, Elements};
 use super::shape::Shape;
 use super::{Shells, ShellsSolver};
 use crate::arap::clusters::Clusters;
-use crate::arap::coarse::{Share, Shares, shares, transposed};
 use crate::arap::domain::Domain;
 use crate::handles::blend::Origin;
 use crate::handles::{Handle, Motion};
-use crate::numerical::rotation::fit;
 use crate::numerical::sums::Field;
 use crate::operators::CHUNK;
-use crate::region::partition::Partition;
-use crate::{Budget, Constraints, Loose, Method, Problem};
+use crate::region::clustered::{Share, Shares, on_clusters, shares, transposed};
+use crate::{Attachment, Budget, ExampleShape, Examples, Method, Problem};
 
 /// The fewest vertices of a cluster.
 const CLUSTER: f64 = 8.0;
@@ -63,33 +65,22 @@ impl Coarse {
         let mut own = options.clone();
         own.led_above = usize::MAX;
         let method = Method::from(own.clone());
-        let coarse = Problem {
-            surface: &clusters.surface,
-            topology: &clusters.topology,
-            roles: &clusters.roles,
-            handle_count: problem.handle_count,
-            stiffness: &clusters.stiffness,
-            constraints: Constraints {
-                soft: problem.constraints.soft,
-                ..Constraints::default()
-            },
-            loose: Loose::Rest,
-            method: &method,
-            attachments: &[],
-            revision: problem.revision,
-        };
-        let mut partition = Partition::of(&coarse).ok()?;
-        partition.budget = budget;
-        // In the fine handles' frames, so that the same motions hold.
-        let handles: Vec<Handle> = handles
-            .iter()
-            .zip(&partition.handles)
-            .map(|(handle, vertices)| Handle {
-                vertices: vertices.clone(),
-                ..*handle
-            })
+        let attachments: Vec<(&'static str, Attachment)> = problem
+            .examples()
+            .map(|examples| (EXAMPLES, Attachment::Shapes(examples_of(examples, &clusters))))
+            .into_iter()
             .collect();
-        let solver = ShellsSolver::bind(&coarse, &own, &partition, &handles, &Progress::new(), cancel).ok()?;
+        let solver = on_clusters(
+            problem,
+            &clusters,
+            &method,
+            &attachments,
+            handles,
+            |coarse, mut partition, handles| {
+                partition.budget = budget;
+                ShellsSolver::bind(coarse, &own, &partition, handles, &Progress::new(), cancel).ok()
+            },
+        )?;
         let elements = &solver.energy.elements;
         if elements.solved_count == 0 {
             return None;
@@ -117,6 +108,21 @@ impl Coarse {
     /// How many numbers its factor stores.
     pub fn stored(&self) -> usize {
         self.solver.stored()
+    }
+
+    /// Sets the weights of the examples; the next start heeds them.
+    pub fn set_weights(&mut self, weights: &[Option<f64>]) {
+        self.solver.give(weights);
+    }
+
+    /// The weights that it has found.
+    pub fn weights(&self) -> &[f64] {
+        &self.solver.current.weights
+    }
+
+    /// The next turns are those since rest.
+    pub fn follow_from_rest(&mut self) {
+        self.followed.clone_from(&self.solver.energy.elements.rest);
     }
 
     /// Back to the rest shape.
@@ -210,23 +216,28 @@ impl Coarse {
     /// The turns of all coarse vertices: those that fit their edges best, and their handles'.
     fn own_turns(&self, of_handles: &[DQuat]) -> Vec<DQuat> {
         let elements = &self.solver.energy.elements;
-        let now = self.solver.positions();
-        let mut sums = vec![DMat3::ZERO; now.len()];
-        for edge in &elements.edges {
-            let [a, b] = edge.ends.map(|end| end as usize);
-            let (to, from) = (now[b] - now[a], self.followed[b] - self.followed[a]);
-            let product = DMat3::from_cols(to * from.x, to * from.y, to * from.z) * edge.weight;
-            sums[a] += product;
-            sums[b] += product;
-        }
-        sums.truncate(elements.solved_count);
-        let mut turns: Vec<DQuat> = sums.iter().map(|sum| fit(sum, DQuat::IDENTITY)).collect();
-        turns.resize(now.len(), DQuat::IDENTITY);
+        let mut turns = fitted(elements, &self.followed, &self.solver.positions());
+        turns[elements.solved_count..].fill(DQuat::IDENTITY);
         for (own, turn) in self.solver.prescribed.iter().zip(of_handles) {
             for vertex in own.iter().filter(|vertex| vertex.local != ABSENT) {
                 turns[vertex.local as usize] = *turn;
             }
         }
         turns
+    }
+}
+
+/// The examples at the clusters' centres.
+fn examples_of(examples: &Examples, clusters: &Clusters) -> Examples {
+    let restricted = |shape: &ExampleShape| {
+        let centres = clusters.centres.iter();
+        ExampleShape {
+            name: shape.name.clone(),
+            displacements: Arc::new(centres.map(|&vertex| shape.displacements[vertex as usize]).collect()),
+        }
+    };
+    Examples {
+        shapes: Arc::new(examples.shapes.iter().map(restricted).collect()),
+        weights: examples.weights.clone(),
     }
 }

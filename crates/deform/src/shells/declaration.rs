@@ -5,18 +5,31 @@ use glam::DVec3;
 use super::{Descent, Shells, ShellsSolver};
 use crate::handles::{Motion, clear};
 use crate::method::{
-    BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
+    AttachmentDeclaration, AttachmentKind, BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite,
+    MethodDeclaration, Needs, Solve, Stepped,
 };
 use crate::{BindError, SolveError};
+
+/// The attachment's name.
+pub(super) const EXAMPLES: &str = "examples";
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "shells",
     title: "Discrete shells",
     when_to_use: "Keeps lengths and angles of the surface and, if you wish, its volume, step by step: for what should \
-                  bend like a skin, a sheet or a balloon, anywhere between rubber and paper.",
-    keywords: "discrete shells nonlinear thin shell paper cloth rubber balloon volume isometric developable grinspun",
+                  bend like a skin, a sheet or a balloon, from paper, which creases and keeps its lengths (`bending` \
+                  1e-6), to thick rubber, which bends evenly (1e-2). Poses that you keep as examples lead it, and their \
+                  weights alone blend shapes along arcs.",
+    keywords: "discrete shells nonlinear thin shell paper cloth rubber balloon volume isometric developable examples pose blend interpolation grinspun",
     options: Shells::OPTIONS,
-    attachments: &[],
+    attachments: &[AttachmentDeclaration {
+        name: EXAMPLES,
+        title: "examples",
+        help: "further shapes of the same vertices and triangles, which say what lengths, angles and volumes the surface \
+               may have: a list with the `file` or the `morph_target` of each and its `weight`, 0 for rest and 1 for the \
+               example; a weight that is left out is found",
+        kind: AttachmentKind::Shapes,
+    }],
     heeds: &[ConstraintKind::SoftHandles, ConstraintKind::Stiffness],
     default: || Shells::default().into(),
     first_choice: || Shells::default().into(),
@@ -70,8 +83,11 @@ impl BoundMethod for ShellsSolver {
         let mut outcome = (true, 0.0);
         // The pool is entered once: otherwise each of the many short loops would wait for it.
         rayon::scope(|_| outcome = self.advance(motions));
-        let solved = &self.energy.elements.vertices[..self.energy.elements.solved_count];
-        for (&vertex, displacement) in solved.iter().zip(&self.current.displacements) {
+        let elements = &self.energy.elements;
+        let solved = &elements.vertices[..elements.solved_count];
+        let placed = self.placed();
+        let own = placed.as_ref().unwrap_or(&self.current.displacements);
+        for (&vertex, displacement) in solved.iter().zip(own) {
             displacements[vertex as usize] = *displacement;
         }
         let (converged, energy) = outcome;
@@ -95,6 +111,14 @@ impl BoundMethod for ShellsSolver {
         }
         self.energy.evaluate(&mut shape, &springs);
         Some(shape.energy * self.energy.unit)
+    }
+
+    fn set_weights(&mut self, weights: &[Option<f64>]) {
+        self.give(weights);
+    }
+
+    fn weights(&self) -> &[f64] {
+        &self.current.weights
     }
 
     fn solved_count(&self) -> usize {

@@ -8,7 +8,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::ShellsSolver;
-use super::carry::Carrier;
+use super::carry::{Base, Carrier, Strains};
 use super::coarse::Coarse;
 use super::elements::ABSENT;
 use super::unfolded::Preconditioner;
@@ -72,14 +72,18 @@ impl Led {
 impl ShellsSolver {
     /// Makes the shape for new motions that the coarse level predicts.
     pub(super) fn start_led(&mut self, led: &mut Led, motions: &[Motion]) {
-        let was_at_rest = self.motions.iter().all(Motion::is_rest);
-        if was_at_rest {
+        if self.is_at_rest() {
             led.coarse.rest();
         } else if self.has_slopes {
             led.coarse.restrict(&self.current, &self.slopes.energy);
         }
         let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
-        let origin = led.coarse.start(motions, STEPS);
+        let mut origin = led.coarse.start(motions, STEPS);
+        if self.blending.is_some() {
+            // The strains that examples give the surface are known at rest.
+            origin = Origin::Rest;
+            led.coarse.follow_from_rest();
+        }
         self.motions.copy_from_slice(motions);
         self.energy.springs.aim(motions);
         self.has_converged = false;
@@ -99,9 +103,21 @@ impl ShellsSolver {
             self.energy.evaluate(&mut self.trial, &self.energy.springs);
         }
         let turns = self.turns(led, &screws);
-        let away = self.away(led, &base, &turns);
+        let weights = led.coarse.weights().to_vec();
+        let strains = self.blending.as_ref();
+        let strains = strains.map(|own| Strains::of(&self.energy, &own.turns, &weights));
+        let base = Base {
+            places: &base,
+            turns: &turns,
+            strains,
+        };
+        let away = self.away(led, &base);
         let blended = self.trial.clone();
         self.trial.move_by(&away, -1.0);
+        if self.blending.is_some() {
+            self.trial.weights = weights;
+            self.energy.relax_angles(&mut self.trial);
+        }
         self.energy.evaluate(&mut self.trial, &self.energy.springs);
         if origin == Origin::Rest && (self.trial.energy.is_nan() || self.trial.energy > blended.energy) {
             self.trial = blended;
@@ -140,7 +156,12 @@ impl ShellsSolver {
         led.coarse.go_on(CORRECTING_STEPS);
         let turns = self.turns(led, &[]);
         self.trial.clone_from(&self.current);
-        let away = self.away(led, &self.positions(), &turns);
+        let base = Base {
+            places: &self.positions(),
+            turns: &turns,
+            strains: None,
+        };
+        let away = self.away(led, &base);
         for share in SHARES {
             self.trial.clone_from(&self.current);
             self.trial.move_by(&away, -share);
@@ -163,12 +184,7 @@ impl ShellsSolver {
     /// How each local vertex' surroundings turn: with its handle, with the coarse level, or where that has nothing near
     /// with the blended `screws`; not at all where these are none.
     fn turns(&self, led: &mut Led, screws: &[Screw]) -> Vec<DMat3> {
-        let whole = |screw: &Screw| {
-            carried(DVec3::ZERO, std::slice::from_ref(screw), &[1.0])
-                .turn
-                .normalize()
-        };
-        let mut of_handles: Vec<DQuat> = screws.iter().map(whole).collect();
+        let mut of_handles: Vec<DQuat> = screws.iter().map(Screw::turn).collect();
         of_handles.resize(self.motions.len(), DQuat::IDENTITY);
         let (rest, count) = (&self.energy.elements.rest, screws.len());
         let blended = |vertex: usize| {
@@ -187,8 +203,8 @@ impl ShellsSolver {
     }
 
     /// How far the trial shape's solved vertices are from where the turned base would have them.
-    fn away(&self, led: &mut Led, base: &[DVec3], turns: &[DMat3]) -> Field {
-        let mut away = led.carrier.pull(&self.energy, base, &self.trial, turns);
+    fn away(&self, led: &mut Led, base: &Base) -> Field {
+        let mut away = led.carrier.pull(&self.energy, base, &self.trial);
         led.preconditioner.apply(&mut away);
         away
     }

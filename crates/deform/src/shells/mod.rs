@@ -19,19 +19,26 @@
 //! Morrison, component by component, since components do not meet in the matrix. A line search on the true energy ends
 //! each step, so it never rises; where no length lowers it, the diagonal is raised [NW06, section 10.3].
 //!
+//! Examples lead the targets l̄, θ̄ and V̄ by weights that are given or found (`examples`, `leaning`). Where they alone move a part,
+//! `frames` says where it stands.
+//!
 //! Parts: `elements` are the edges and hinges, `hinge` the angle and its gradient, `enclosed` the volumes, `springs` the
 //! soft handles, `shape` where the vertices are and their energy, `system` the matrix, `unfolded` a quadratic energy that
-//! gives the handles' weights, `start` chooses where to begin, and `descent` takes a step. A large surface has a `coarse` level that takes the
-//! `lead`; `carry` brings over what it does.
+//! gives the handles' weights, `start` chooses where to begin, `blended` is the start for examples, and `descent` takes a step. A
+//! large surface has a `coarse` level that takes the `lead`; `carry` brings over what it does.
 
+mod blended;
 mod carry;
 mod coarse;
 mod declaration;
 mod descent;
 mod elements;
 mod enclosed;
+mod examples;
+mod frames;
 mod hinge;
 mod lead;
+mod leaning;
 mod options;
 mod shape;
 mod springs;
@@ -45,13 +52,15 @@ use pliant_mesh::{Cancel, Cancelled, Progress, SurfaceVertex};
 pub(crate) use self::declaration::DECLARATION;
 pub use self::options::Shells;
 
+use self::blended::Turns;
 use self::carry::Carrier;
 use self::coarse::Coarse;
 use self::elements::Elements;
+use self::examples::Examples;
 use self::lead::Led;
 use self::shape::{Energy, Shape, Slopes};
 use self::system::{Pattern, System};
-use self::unfolded::Unfolded;
+use self::unfolded::{Preconditioner, Unfolded};
 use crate::budget::bytes_of;
 use crate::handles::blend::HandleFrame;
 use crate::handles::{Handle, Motion};
@@ -71,6 +80,8 @@ pub(crate) struct ShellsSolver {
     energy: Energy,
     /// None while it acts.
     descent: Option<Descent>,
+    /// What starts from examples take, if there are any.
+    blending: Option<Blending>,
     /// The last steps.
     memory: Memory,
     /// The handles' weights, one row a solved vertex.
@@ -86,6 +97,8 @@ pub(crate) struct ShellsSolver {
     /// Whether these are the gradients at the current shape.
     has_slopes: bool,
     has_converged: bool,
+    /// Whether other weights of examples were set since the last step.
+    has_other_weights: bool,
     tolerance: f64,
     warnings: Vec<String>,
 }
@@ -97,6 +110,15 @@ enum Descent {
     Newton(Box<System>),
     /// Led by a coarse level.
     Led(Box<Led>),
+}
+
+/// What a start from examples takes.
+#[derive(Debug)]
+struct Blending {
+    turns: Turns,
+    carrier: Carrier,
+    /// None while a coarse level leads, which has its own.
+    preconditioner: Option<Preconditioner>,
 }
 
 /// A vertex that goes exactly where its handle goes.
@@ -139,11 +161,10 @@ impl ShellsSolver {
             FactorError::Cancelled => BindError::Cancelled(Cancelled),
         };
         let is_led = elements.solved_count > options.led_above;
-        let kept = bytes_of(elements.hinges.len(), size_of::<[DVec3; 4]>()).saturating_add(if is_led {
-            bytes_of(elements.solved_count, LED_ROW)
-        } else {
-            0
-        });
+        let examples = energy.examples.count();
+        let row = examples * Examples::ROW + if is_led { LED_ROW } else { 0 };
+        let kept = bytes_of(elements.hinges.len(), size_of::<[DVec3; 4]>())
+            .saturating_add(bytes_of(elements.solved_count, row));
         let budget = partition.budget.without(kept);
         let budget = budget.map_err(|limit| BindError::budget(free_count, limit))?;
         let pattern = Pattern::of(elements);
@@ -163,13 +184,23 @@ impl ShellsSolver {
         // Its factor may be copied.
         let unfolded = Unfolded::of(&energy, &pattern, &ends, budget.shared_by(1.5), cancel).map_err(refused)?;
         let weights = unfolded.weights(problem, partition, &energy, cancel).map_err(refused)?;
+        let mut blending = (examples > 0).then(|| Blending {
+            turns: Turns::of(&energy),
+            carrier: Carrier::of(&energy),
+            preconditioner: None,
+        });
         let descent = match (coarse, system) {
             (Some(coarse), _) => {
                 let preconditioner = unfolded.preconditioner().map_err(refused)?;
                 let carrier = Carrier::of(&energy);
                 Descent::Led(Box::new(Led::new(preconditioner, coarse, carrier)))
             }
-            (None, Some(system)) => Descent::Newton(Box::new(system)),
+            (None, Some(system)) => {
+                if let Some(blending) = &mut blending {
+                    blending.preconditioner = Some(unfolded.preconditioner().map_err(refused)?);
+                }
+                Descent::Newton(Box::new(system))
+            }
             (None, None) => return Err(BindError::OutOfMemory { free_count }),
         };
         progress.set(1.0);
@@ -184,9 +215,11 @@ impl ShellsSolver {
             prescribed: prescribed(problem, partition, handles, &energy.elements),
             motions: vec![Motion::default(); handles.len()],
             has_converged: true,
+            has_other_weights: false,
             tolerance: options.tolerance,
             warnings: warnings(options, &energy),
             descent: Some(descent),
+            blending,
             memory: Memory::default(),
             energy,
         })
@@ -194,7 +227,8 @@ impl ShellsSolver {
 
     /// One step towards `motions`. Whether it converged, and the energy.
     pub fn advance(&mut self, motions: &[Motion]) -> (bool, f64) {
-        if self.motions != motions {
+        let has_other_weights = std::mem::take(&mut self.has_other_weights);
+        if self.motions != motions || has_other_weights {
             self.head_for(motions);
         } else if !self.has_converged {
             self.descend();
@@ -207,13 +241,42 @@ impl ShellsSolver {
         (self.has_converged, energy * self.energy.unit)
     }
 
+    /// Sets the weights of the examples; the next step heads for them.
+    pub fn give(&mut self, weights: &[Option<f64>]) {
+        self.energy.examples.give(weights);
+        self.has_other_weights = true;
+        if let Some(Descent::Led(led)) = &mut self.descent {
+            led.coarse.set_weights(weights);
+        }
+    }
+
+    /// The solved vertices' displacements with the components that nothing holds where their frames have them; `None`
+    /// if there are no such components.
+    pub fn placed(&self) -> Option<Vec<DVec3>> {
+        let Energy { frames, elements, .. } = &self.energy;
+        let mut placed = (!frames.is_empty()).then(|| self.current.displacements.clone());
+        if let Some(placed) = &mut placed {
+            for frame in frames {
+                frame.place(&elements.rest, &self.current.weights, placed);
+            }
+        }
+        placed
+    }
+
+    /// Whether neither a handle nor an example moves the present shape.
+    fn is_at_rest(&self) -> bool {
+        self.motions.iter().all(Motion::is_rest) && self.current.weights.iter().all(|weight| *weight == 0.0)
+    }
+
     /// How many numbers its factors store.
     pub fn stored(&self) -> usize {
-        match &self.descent {
+        let of_blending = self.blending.as_ref().and_then(|own| own.preconditioner.as_ref());
+        let of_descent = match &self.descent {
             Some(Descent::Newton(system)) => system.stored(),
             Some(Descent::Led(led)) => led.preconditioner.stored() + led.coarse.stored(),
             None => 0,
-        }
+        };
+        of_descent + of_blending.map_or(0, Preconditioner::stored)
     }
 
     /// Makes the first shape for new motions: a start and a step, or what the coarse level predicts.
@@ -245,6 +308,7 @@ impl ShellsSolver {
             None => {}
         }
         self.has_converged = true;
+        self.has_other_weights = self.energy.examples.given().any(|weight| weight != 0.0);
     }
 }
 

@@ -40,3 +40,9 @@ options! {
         led_above: usize = 10_000,
     }
 }
+
+impl Shells {
+    /// The `bending` of paper, which keeps its lengths and creases, and of thick rubber, which bends evenly and stretches
+    /// instead. The default lies in the middle of their logarithms.
+    pub const PAPER_TO_RUBBER: [f64; 2] = [1e-6, 1e-2];
+}

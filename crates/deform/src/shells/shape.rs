@@ -6,6 +6,8 @@ use rayon::prelude::*;
 use super::Shells;
 use super::elements::{Edge, Elements, Hinge};
 use super::enclosed::Enclosed;
+use super::examples::Examples;
+use super::frames::Frame;
 use super::hinge;
 use super::springs::Springs;
 use crate::Problem;
@@ -14,13 +16,18 @@ use crate::numerical::sums::{CHUNKS_A_TASK, Field};
 use crate::operators::CHUNK;
 use crate::region::partition::Partition;
 
-/// A shape. Angles and energy are valid after an evaluation of the displacements.
+/// How much a rigid motion by the diagonal is resisted within a step where nothing else does, in units of stretching.
+const INERTIA: f64 = 1e-6;
+
+/// A shape. Angles, weights and energy are valid after an evaluation of the displacements.
 #[derive(Clone, Debug)]
 pub(super) struct Shape {
     /// Of each local vertex, in world units.
     pub displacements: Vec<DVec3>,
     /// θ of each hinge. An evaluation takes those that are nearest to what they were before.
     pub angles_rad: Vec<f64>,
+    /// Those of the examples: an evaluation finds the free ones.
+    pub weights: Vec<f64>,
     /// E, in squared world units.
     pub energy: f64,
 }
@@ -41,7 +48,13 @@ impl Shape {
 pub(super) struct Energy {
     pub elements: Elements,
     pub enclosed: Enclosed,
+    pub examples: Examples,
     pub springs: Springs,
+    /// Components that only examples move.
+    pub frames: Vec<Frame>,
+    /// What is added to the matrices' diagonal at these solved vertices, which belong to `frames`: all together they may
+    /// move rigidly without any energy.
+    pub inertia: Vec<(u32, f64)>,
     /// What makes the energy a number without unit: one over the area.
     pub unit: f64,
     /// Of each solved vertex: its edges, doubled, plus which end it is.
@@ -104,6 +117,8 @@ impl Energy {
         mut elements: Elements,
     ) -> Self {
         let enclosed = Enclosed::of(problem, options, &mut elements);
+        let examples = Examples::of(problem.examples(), &elements, &enclosed);
+        let (frames, inertia) = loose(problem, partition, &elements, &examples);
         let count = elements.solved_count;
         let ends = (0..).zip(&elements.edges);
         let ends = ends.flat_map(|(edge, Edge { ends, .. })| [(ends[0], 2 * edge), (ends[1], 2 * edge + 1)]);
@@ -115,6 +130,9 @@ impl Energy {
             edges_at: Rows::of(count, ends),
             hinges_at: Rows::of(count, corners),
             enclosed,
+            examples,
+            frames,
+            inertia,
             springs: Springs::of(problem, options, partition, handles, &elements),
             unit: if elements.area > 0.0 {
                 elements.area.recip()
@@ -130,6 +148,7 @@ impl Energy {
         let mut shape = Shape {
             displacements: vec![DVec3::ZERO; self.elements.vertices.len()],
             angles_rad: Vec::new(),
+            weights: vec![0.0; self.examples.count()],
             energy: 0.0,
         };
         self.rest(&mut shape);
@@ -139,16 +158,20 @@ impl Energy {
     /// Makes a shape the rest shape.
     pub fn rest(&self, shape: &mut Shape) {
         shape.displacements.fill(DVec3::ZERO);
+        shape.weights.fill(0.0);
         self.relax_angles(shape);
         shape.energy = 0.0;
     }
 
-    /// Forgets how far the hinges were turned: the next evaluation takes the angles that are nearest to rest.
+    /// Forgets how far the hinges were turned: the next evaluation takes the angles that are nearest to those of the
+    /// shape's weights.
     pub fn relax_angles(&self, shape: &mut Shape) {
-        shape.angles_rad.clear();
-        shape
-            .angles_rad
-            .extend(self.elements.hinges.iter().map(|hinge| hinge.angle_rad));
+        let Shape {
+            angles_rad, weights, ..
+        } = shape;
+        angles_rad.clear();
+        let hinges = self.elements.hinges.iter().enumerate();
+        angles_rad.extend(hinges.map(|(place, hinge)| hinge.angle_rad + self.examples.angle_rad(place, weights)));
     }
 
     /// The edges that a solved vertex ends, doubled, plus which end it is.
@@ -161,40 +184,69 @@ impl Energy {
         self.hinges_at.at(vertex)
     }
 
-    /// Finds the angles and the energy with these springs.
+    /// What is added to a matrix' diagonal at a solved vertex: the springs, and the inertia of what nothing holds.
+    pub fn on_diagonal(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        let springs = self.springs.all().iter().map(|spring| (spring.local, spring.strength));
+        springs.chain(self.inertia.iter().copied())
+    }
+
+    /// Finds the angles, the weights and the energy with these springs.
     pub fn evaluate(&self, shape: &mut Shape, springs: &Springs) {
-        let elements = &self.elements;
-        let displacements = &shape.displacements;
+        let (elements, examples) = (&self.elements, &self.examples);
+        if examples.are_free() {
+            self.follow_angles(shape);
+        }
+        let Shape {
+            displacements,
+            angles_rad,
+            weights,
+            ..
+        } = &mut *shape;
+        examples.weigh(elements, &self.enclosed, displacements, angles_rad, weights);
+        let (displacements, weights) = (&shape.displacements, &shape.weights);
         let at = |local: u32| elements.rest[local as usize] + displacements[local as usize];
-        let mut energy = partial_sums(&elements.edges, |edge| {
+        let mut energy = partial_sums(&elements.edges, |place, edge| {
             let [a, b] = edge.ends.map(at);
-            edge.weight * (a.distance(b) - edge.length).powi(2)
+            edge.weight * (a.distance(b) - edge.length - examples.length(place, weights)).powi(2)
         });
         let bent: Vec<f64> = shape
             .angles_rad
             .par_chunks_mut(CHUNK)
             .zip(elements.hinges.par_chunks(CHUNK))
+            .enumerate()
             .with_min_len(CHUNKS_A_TASK)
-            .map(|(angles, hinges)| {
+            .map(|(chunk, (angles, hinges))| {
                 let mut sum = 0.0;
-                for (angle, hinge) in angles.iter_mut().zip(hinges) {
+                for (place, (angle, hinge)) in (chunk * CHUNK..).zip(angles.iter_mut().zip(hinges)) {
                     *angle = hinge::unwrapped(hinge::angle_rad(hinge.corners.map(at)), *angle);
-                    sum += hinge.weight * (*angle - hinge.angle_rad).powi(2);
+                    sum += hinge.weight * (*angle - hinge.angle_rad - examples.angle_rad(place, weights)).powi(2);
                 }
                 sum
             })
             .collect();
         energy += bent.iter().sum::<f64>();
-        for part in &self.enclosed.parts {
-            energy += part.weight * (part.volume_at(&at) - part.volume).powi(2);
+        for (number, part) in self.enclosed.parts.iter().enumerate() {
+            energy += part.weight * (part.volume_at(&at) - part.volume - examples.volume(number, weights)).powi(2);
         }
-        shape.energy = 0.5 * energy + springs.energy(&shape.displacements);
+        shape.energy = 0.5 * energy + examples.energy(weights) + springs.energy(&shape.displacements);
+    }
+
+    /// Finds the angles.
+    fn follow_angles(&self, shape: &mut Shape) {
+        let (elements, displacements) = (&self.elements, &shape.displacements);
+        let at = |local: u32| elements.rest[local as usize] + displacements[local as usize];
+        shape
+            .angles_rad
+            .par_iter_mut()
+            .zip(&elements.hinges)
+            .with_min_len(CHUNK)
+            .for_each(|(angle, hinge)| *angle = hinge::unwrapped(hinge::angle_rad(hinge.corners.map(at)), *angle));
     }
 
     /// Finds the gradients at an evaluated shape.
     pub fn find_slopes(&self, shape: &Shape, slopes: &mut Slopes) {
-        let elements = &self.elements;
-        let displacements = &shape.displacements;
+        let (elements, examples) = (&self.elements, &self.examples);
+        let (displacements, weights) = (&shape.displacements, &shape.weights);
         let at = |local: u32| elements.rest[local as usize] + displacements[local as usize];
         let along = |edge: &Edge| {
             let [a, b] = edge.ends.map(at);
@@ -217,9 +269,9 @@ impl Energy {
         if !self.enclosed.parts.is_empty() {
             slopes.volume.resize(elements.solved_count, [0.0; 3]);
         }
-        for part in &self.enclosed.parts {
+        for (number, part) in self.enclosed.parts.iter().enumerate() {
             part.add_gradient(&at, &mut slopes.volume);
-            pressures.push(part.weight * (part.volume_at(&at) - part.volume));
+            pressures.push(part.weight * (part.volume_at(&at) - part.volume - examples.volume(number, weights)));
         }
         let (along, turning) = (&slopes.edges, &slopes.hinges);
         (0..elements.solved_count)
@@ -228,15 +280,18 @@ impl Energy {
             .map(|vertex| {
                 let mut sum = DVec3::ZERO;
                 for &entry in self.edges_at(vertex) {
-                    let edge = &edges[entry as usize / 2];
+                    let place = entry as usize / 2;
+                    let edge = &edges[place];
                     let [a, b] = edge.ends.map(at);
-                    let pull = along[entry as usize / 2] * (edge.weight * (a.distance(b) - edge.length));
+                    let stretched = a.distance(b) - edge.length - examples.length(place, weights);
+                    let pull = along[place] * (edge.weight * stretched);
                     sum += if entry % 2 == 0 { -pull } else { pull };
                 }
                 for &entry in self.hinges_at(vertex) {
                     let (place, corner) = (entry as usize / 4, entry as usize % 4);
                     let hinge = &hinges[place];
-                    sum += turning[place][corner] * (hinge.weight * (shape.angles_rad[place] - hinge.angle_rad));
+                    let bent = shape.angles_rad[place] - hinge.angle_rad - examples.angle_rad(place, weights);
+                    sum += turning[place][corner] * (hinge.weight * bent);
                 }
                 sum.to_array()
             })
@@ -255,13 +310,36 @@ impl Energy {
 }
 
 /// Σ of what each gives, the same on any number of threads.
-fn partial_sums<T: Sync>(each: &[T], of: impl Fn(&T) -> f64 + Sync) -> f64 {
+fn partial_sums<T: Sync>(each: &[T], of: impl Fn(usize, &T) -> f64 + Sync) -> f64 {
     let sums: Vec<f64> = each
         .par_chunks(CHUNK)
+        .enumerate()
         .with_min_len(CHUNKS_A_TASK)
-        .map(|chunk| chunk.iter().map(&of).sum::<f64>())
+        .map(|(number, chunk)| (number * CHUNK..).zip(chunk).map(|(place, own)| of(place, own)).sum())
         .collect();
     sums.iter().sum()
+}
+
+/// The components that nothing holds, and what their vertices add to the diagonal.
+fn loose(
+    problem: &Problem,
+    partition: &Partition,
+    elements: &Elements,
+    examples: &Examples,
+) -> (Vec<Frame>, Vec<(u32, f64)>) {
+    if examples.count() == 0 {
+        return (Vec::new(), Vec::new());
+    }
+    let mut masses = vec![0.0; elements.vertices.len()];
+    for edge in &elements.edges {
+        let mass = 0.5 * edge.weight * edge.length * edge.length;
+        edge.ends.iter().for_each(|&end| masses[end as usize] += mass);
+    }
+    let frames = Frame::all(problem, partition, elements, &examples.displacements, &masses);
+    let unit = INERTIA / problem.diagonal().powi(2).max(f64::MIN_POSITIVE);
+    let vertices = frames.iter().flat_map(|frame| frame.vertices());
+    let inertia = vertices.map(|&local| (local, unit * masses[local as usize])).collect();
+    (frames, inertia)
 }
 
 #[cfg(test)]
@@ -274,14 +352,14 @@ mod tests {
     use super::Slopes;
     use crate::handles::Handle;
     use crate::region::partition::Partition;
-    use crate::{Constraints, Loose, Method, Problem, Role};
+    use crate::{Attachment, Constraints, ExampleShape, Examples, Loose, Method, Problem, Role};
 
     fn noise(k: usize) -> f64 {
         2.0 * ((k as f64 * 12.9898).sin() * 43_758.545).fract() - 1.0
     }
 
-    /// Unevenly stiff, the lowest part fixed, the highest one a soft handle.
-    fn solver(drawn: Drawn) -> ShellsSolver {
+    /// Unevenly stiff, the lowest part fixed, the highest one a soft handle, with an example for each weight.
+    fn solver(drawn: Drawn, weights: &[Option<f64>]) -> ShellsSolver {
         let model = shapes::model(drawn);
         let bounds = model.bounds().unwrap();
         let positions = &model.surface.positions;
@@ -297,6 +375,23 @@ mod tests {
             bending: 0.01,
             ..Shells::default()
         };
+        let example = |number: usize| ExampleShape {
+            name: String::new(),
+            displacements: std::sync::Arc::new(
+                positions
+                    .iter()
+                    .map(|p| {
+                        let turn = glam::DQuat::from_rotation_x(p.z + 0.3 * number as f64);
+                        turn * *p * (1.0 + 0.1 * p.x) - *p
+                    })
+                    .collect(),
+            ),
+        };
+        let examples = Examples {
+            shapes: std::sync::Arc::new((0..weights.len()).map(example).collect()),
+            weights: weights.to_vec(),
+        };
+        let attachments = [("examples", Attachment::Shapes(examples))];
         let method = Method::from(options.clone());
         let problem = Problem {
             surface: &model.surface,
@@ -310,7 +405,7 @@ mod tests {
             },
             loose: Loose::Rest,
             method: &method,
-            attachments: &[],
+            attachments: &attachments,
             revision: 0,
         };
         let partition = Partition::of(&problem).unwrap();
@@ -326,13 +421,18 @@ mod tests {
         .unwrap();
         let target = DAffine3::from_translation(DVec3::new(0.4, 0.1, 0.3)) * DAffine3::from_rotation_x(1.0);
         solver.energy.springs.aim(&[handles[0].motion(&target)]);
+        solver.give(weights);
         solver
     }
 
     #[test]
     fn the_gradient_is_the_slope_of_the_energy() {
-        for drawn in [shapes::icosphere(2), shapes::torus(12, 8), shapes::non_manifold_fan(7)] {
-            let solver = solver(drawn);
+        let drawn = [shapes::icosphere(2), shapes::torus(12, 8), shapes::non_manifold_fan(7)];
+        let given = [Some(0.4), Some(-0.7)];
+        let cases = drawn.map(|drawn| (drawn, &[][..])).into_iter();
+        let led = [&given[..], &[None, None], &[None, Some(0.4), None]];
+        for (drawn, weights) in cases.chain(led.map(|weights| (shapes::torus(12, 8), weights))) {
+            let solver = solver(drawn, weights);
             let energy = &solver.energy;
             let mut shape = energy.at_rest();
             for (vertex, displacement) in shape.displacements.iter_mut().enumerate() {
@@ -366,8 +466,14 @@ mod tests {
     /// To first order; what is left is of the second order in the length.
     #[test]
     fn at_rest_the_matrix_is_the_second_derivative() {
-        for drawn in [shapes::icosphere(2), shapes::torus(12, 8)] {
-            let mut solver = solver(drawn);
+        let cases = [
+            (shapes::icosphere(2), &[][..]),
+            (shapes::torus(12, 8), &[]),
+            (shapes::torus(12, 8), &[None]),
+            (shapes::icosphere(2), &[None, Some(0.0), None]),
+        ];
+        for (drawn, weights) in cases {
+            let mut solver = solver(drawn, weights);
             solver.energy.springs.aim(&[crate::handles::Motion::default()]);
             let rest = solver.energy.at_rest();
             let mut slopes = Slopes::default();

@@ -83,6 +83,12 @@ impl Springs {
         &self.springs
     }
 
+    /// Where each wants its solved vertex, as a displacement.
+    pub fn wanted(&self) -> impl Iterator<Item = (usize, DVec3)> + '_ {
+        let each = self.springs.iter().zip(&self.wanted);
+        each.map(|(spring, wanted)| (spring.local as usize, *wanted))
+    }
+
     /// The handles are to go so.
     pub fn aim(&mut self, motions: &[Motion]) {
         for (wanted, spring) in self.wanted.iter_mut().zip(&self.springs) {

@@ -1,13 +1,19 @@
-//! The start for new targets: the rest shape or the last one, moved by the handles' blended motions.
+//! The start for new targets: the rest shape or the last one, moved by the handles' blended motions, or the examples
+//! blended and carried by these.
 
-use glam::DVec3;
+use glam::{DMat3, DQuat, DVec3};
 use rayon::prelude::*;
 
+use super::carry::{Base, Strains};
 use super::elements::ABSENT;
-use super::{Descent, ShellsSolver};
+use super::shape::Energy;
+use super::{Blending, Descent, Prescribed, ShellsSolver};
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
 use crate::operators::CHUNK;
+
+/// Solutions with a factor in single precision for a blended shape, each correcting the last.
+const ROUNDS: u32 = 2;
 
 impl ShellsSolver {
     /// Makes the best start the current shape for `motions`, and returns which one it was: the rest shape carried, the
@@ -16,7 +22,7 @@ impl ShellsSolver {
     /// Loads belong to the shape that they were computed at: a start from rest has none, and the starts are compared
     /// without them.
     pub(super) fn start(&mut self, motions: &[Motion]) -> Origin {
-        let was_at_rest = self.motions.iter().all(Motion::is_rest);
+        let was_at_rest = self.is_at_rest();
         let Screws { from_rest, onwards } = Screws::of(&self.handles, &self.motions, motions);
         self.motions.copy_from_slice(motions);
         self.energy.springs.aim(motions);
@@ -40,6 +46,13 @@ impl ShellsSolver {
                 best.1 = *origin;
             }
         }
+        if self.blend(&from_rest) {
+            self.energy.evaluate(&mut self.trial, &self.energy.springs);
+            if self.trial.energy < best.0.energy {
+                std::mem::swap(&mut best.0, &mut self.trial);
+                best.1 = Origin::Rest;
+            }
+        }
         if !best.0.energy.is_finite() {
             // It is refused.
             std::mem::swap(&mut best.0, &mut self.trial);
@@ -52,6 +65,82 @@ impl ShellsSolver {
             self.current.energy += self.energy.springs.load_energy(&self.current.displacements);
         }
         best.1
+    }
+
+    /// Makes the trial shape what the examples are with the given weights and a guess of the free ones, carried by
+    /// `screws`. Whether there is something to blend.
+    fn blend(&mut self, screws: &[Screw]) -> bool {
+        let Some(mut blending) = self.blending.take() else {
+            return false;
+        };
+        let is_blended = self.blend_by(&mut blending, screws);
+        self.blending = Some(blending);
+        is_blended
+    }
+
+    fn blend_by(&mut self, blending: &mut Blending, screws: &[Screw]) -> bool {
+        let Some(preconditioner) = &mut blending.preconditioner else {
+            return false;
+        };
+        self.carry(screws, Origin::Rest);
+        let weights = self.guess();
+        if weights.iter().all(|weight| *weight == 0.0) {
+            return false;
+        }
+        let turns = self.blended_turns(blending.turns.blended(&weights), screws);
+        let base = Base {
+            places: &self.energy.elements.rest,
+            turns: &turns,
+            strains: Some(Strains::of(&self.energy, &blending.turns, &weights)),
+        };
+        for _ in 0..ROUNDS {
+            let mut away = blending.carrier.pull(&self.energy, &base, &self.trial);
+            preconditioner.apply(&mut away);
+            self.trial.move_by(&away, -1.0);
+        }
+        self.trial.weights = weights;
+        self.energy.relax_angles(&mut self.trial);
+        true
+    }
+
+    /// How each local vertex turns: as the examples have it, and besides, by its handles' weights, as these turn further
+    /// than the examples have them.
+    fn blended_turns(&self, mut turns: Vec<DQuat>, screws: &[Screw]) -> Vec<DMat3> {
+        let further = |(own, screw): (&Vec<Prescribed>, &Screw)| {
+            let own = own.iter().filter(|vertex| vertex.local != ABSENT);
+            let blended = own.map(|vertex| turns[vertex.local as usize]);
+            // Both signs are the same rotation.
+            let sum = blended.reduce(|sum, turn| sum + turn * 1_f64.copysign(sum.dot(turn)));
+            let blended = sum.map_or(DQuat::IDENTITY, DQuat::normalize);
+            (screw.turn() * blended.conjugate()).to_scaled_axis()
+        };
+        let further: Vec<DVec3> = self.prescribed.iter().zip(screws).map(further).collect();
+        for (own, vector) in self.prescribed.iter().zip(&further) {
+            for vertex in own.iter().filter(|vertex| vertex.local != ABSENT) {
+                let turn = &mut turns[vertex.local as usize];
+                *turn = DQuat::from_scaled_axis(*vector) * *turn;
+            }
+        }
+        let count = further.len();
+        let solved_count = self.energy.elements.solved_count;
+        let turn = |(vertex, turn): (usize, &DQuat)| {
+            if count == 0 || vertex >= solved_count {
+                return DMat3::from_quat(*turn);
+            }
+            let own = self.weights[vertex * count..(vertex + 1) * count].iter();
+            let vector: DVec3 = own.zip(&further).map(|(weight, vector)| *vector * *weight).sum();
+            DMat3::from_quat(DQuat::from_scaled_axis(vector) * *turn)
+        };
+        turns.par_iter().enumerate().with_min_len(CHUNK).map(turn).collect()
+    }
+
+    /// The given weights, and for the free ones those that carry the vertices that are held nearest to where they are in
+    /// the trial shape.
+    fn guess(&self) -> Vec<f64> {
+        let Energy { elements, examples, .. } = &self.energy;
+        let held = elements.solved_count..elements.vertices.len();
+        let held = held.map(|local| (local, self.trial.displacements[local]));
+        examples.guess(held.chain(self.energy.springs.wanted()))
     }
 
     /// Makes the trial shape the rest shape or the current one, carried by `screws`, with the handles where they go.

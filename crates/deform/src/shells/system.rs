@@ -9,6 +9,7 @@ use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
 use super::elements::Elements;
+use super::leaning::Leaning;
 use super::shape::{Energy, Slopes};
 use crate::budget::{Budget, bytes_of, filled, reserved};
 use crate::numerical::sums::Field;
@@ -34,6 +35,8 @@ pub(super) struct System {
     damping: usize,
     /// Steps with the present factor, or none if there is none.
     age: Option<u32>,
+    /// What the free weights of examples change of the inverse, as of the present factor.
+    leaning: Option<Leaning>,
 }
 
 /// Which vertices share an edge or a hinge.
@@ -145,6 +148,7 @@ impl System {
             factor,
             damping: 0,
             age: None,
+            leaning: None,
         };
         Ok((system, budget))
     }
@@ -203,9 +207,12 @@ impl System {
             let damping = DAMPINGS[self.damping.min(DAMPINGS.len() - 1)];
             match self.factor.fill(&self.matrix, damping, &cancel) {
                 Err(FactorError::Pivot(_)) if self.damping + 1 < DAMPINGS.len() => self.damping += 1,
-                other => return other,
+                Err(error) => return Err(error),
+                Ok(()) => break,
             }
         }
+        self.leaning = Leaning::of(energy, slopes, |x| self.apply_residuals(energy, slopes, x));
+        Ok(())
     }
 
     fn assemble(&mut self, energy: &Energy, slopes: &Slopes) {
@@ -236,17 +243,26 @@ impl System {
                 }
             }
         });
-        for spring in energy.springs.all() {
+        for (local, more) in energy.on_diagonal() {
             for k in 0..DOF {
-                let diagonal = matrix.lower_offsets[DOF * spring.local as usize + k];
-                matrix.lower_values[diagonal as usize] += spring.strength;
+                let diagonal = matrix.lower_offsets[DOF * local as usize + k];
+                matrix.lower_values[diagonal as usize] += more;
             }
         }
         scale(matrix);
     }
 
-    /// x ← (JᵀJ)⁻¹ x, with the volumes of `slopes`.
+    /// x ← (JᵀJ)⁻¹ x, with the volumes of `slopes` and the free weights as of the factor.
     pub fn apply(&self, energy: &Energy, slopes: &Slopes, x: &mut [[f64; 3]]) {
+        let right = self.leaning.as_ref().map(|_| x.to_vec());
+        self.apply_residuals(energy, slopes, x);
+        if let (Some(leaning), Some(right)) = (&self.leaning, right) {
+            leaning.add(&right, x);
+        }
+    }
+
+    /// The same with all weights held.
+    fn apply_residuals(&self, energy: &Energy, slopes: &Slopes, x: &mut [[f64; 3]]) {
         if slopes.volume.is_empty() {
             let [solution] = self.solve([&*x]);
             x.copy_from_slice(&solution);

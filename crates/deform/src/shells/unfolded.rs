@@ -195,9 +195,9 @@ fn assembled(energy: &Energy, pattern: &Pattern) -> Result<ScaledMatrix, FactorE
             }
         }
     });
-    for spring in energy.springs.all() {
-        let diagonal = matrix.lower_offsets[spring.local as usize];
-        matrix.lower_values[diagonal as usize] += spring.strength;
+    for (local, more) in energy.on_diagonal() {
+        let diagonal = matrix.lower_offsets[local as usize];
+        matrix.lower_values[diagonal as usize] += more;
     }
     scale(&mut matrix);
     Ok(matrix)

@@ -14,6 +14,7 @@ mod controls;
 mod detail;
 mod differential;
 mod energies;
+mod examples;
 mod frames;
 mod hubs;
 mod laplacian;

@@ -2,7 +2,7 @@
 
 use crate::rig::{Scene, apart, eliminated, settle, turned};
 use glam::{DAffine3, DMat3, DVec3};
-use pliant_deform::{Method, OptionValue, Role};
+use pliant_deform::{Method, OptionValue, Role, Shells};
 use pliant_mesh::{Drawn, shapes};
 
 /// With `stretching`, `bending` and `volume`.
@@ -333,4 +333,37 @@ fn plain_bends_take_few_steps() {
     scene.method = Method::from_name("shells").unwrap();
     let (_, energies) = settle(&mut scene.bind(), &[turned(DVec3::Z * 7.5, 1.4, DVec3::X)]);
     assert!(energies.len() < 40, "{}", energies.len());
+}
+
+/// From paper to rubber: paper keeps its lengths, rubber its angles.
+#[test]
+fn paper_keeps_lengths_and_rubber_bends_evenly() {
+    let bent = Shells::PAPER_TO_RUBBER.map(|bending| {
+        let scene = bar([1.0, bending, 0.0]);
+        let (displacements, _) = settle(&mut scene.bind(), &[arc(&scene, 2.0)]);
+        let at = |v: usize| scene.positions()[v] + displacements[v];
+        let edges = scene.model.topology.edges().map(|edge| edge.map(|v| v.index()));
+        let strains: Vec<f64> = edges
+            .map(|[a, b]| (at(a).distance(at(b)) / scene.positions()[a].distance(scene.positions()[b]) - 1.0).powi(2))
+            .collect();
+        let turn = |face: &[pliant_mesh::SurfaceVertex; 3], at: &dyn Fn(usize) -> DVec3| {
+            let [a, b, c] = face.map(|v| at(v.index()));
+            (b - a).cross(c - a).normalize()
+        };
+        let faces = &scene.model.surface.triangles;
+        let mut sharpest = 0.0_f64;
+        for [a, b] in scene.model.topology.edges() {
+            let around: Vec<_> = faces
+                .iter()
+                .filter(|face| face.contains(&a) && face.contains(&b))
+                .collect();
+            if let [one, other] = around[..] {
+                let angle = |at: &dyn Fn(usize) -> DVec3| turn(one, at).angle_between(turn(other, at));
+                sharpest = sharpest.max((angle(&at) - angle(&|v| scene.positions()[v])).abs());
+            }
+        }
+        (strains.iter().sum::<f64>() / strains.len() as f64, sharpest)
+    });
+    let [paper, rubber] = bent;
+    assert!(paper.0 < 0.5 * rubber.0 && rubber.1 < 0.5 * paper.1, "{bent:?}");
 }

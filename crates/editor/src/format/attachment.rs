@@ -1,4 +1,5 @@
-//! What a method takes beside handles, in both formats: a cage as its numbers or a file's name, a lattice as its numbers.
+//! What a method takes beside handles, in both formats: a cage as its numbers or a file's name, a lattice as its
+//! numbers, examples as a list.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -7,11 +8,13 @@ use glam::DVec3;
 use pliant_deform::{
     Attachment, AttachmentDeclaration, AttachmentKind, AttachmentRefused, ControlLattice, ControlMesh, METHODS, Method,
 };
+use pliant_mesh::Model;
 use serde::de::Error;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::edit_error::EditError;
+use super::examples::{ExampleEntry, examples_to_value, read_examples, resolved};
 use super::reader::read;
 use super::transform::Numbers;
 
@@ -27,6 +30,8 @@ pub enum AttachmentEntry {
     },
     /// Its numbers.
     Given(Attachment),
+    /// Examples, whose files are still to be read and which depend on the model.
+    Examples(Vec<ExampleEntry>),
 }
 
 /// The attachments of a method, by their declared names.
@@ -72,9 +77,10 @@ pub(super) fn read_attachment(
     let attachment = match declared.kind {
         AttachmentKind::ControlMesh => match read_mesh(value)? {
             AttachmentEntry::Given(mesh) => mesh,
-            file @ AttachmentEntry::File { .. } => return Ok(file),
+            entry => return Ok(entry),
         },
         AttachmentKind::ControlLattice => read_lattice(method, declared.name, value)?,
+        AttachmentKind::Shapes => return read_examples(value).map(AttachmentEntry::Examples),
     };
     let checked = method.check_attachment(declared.name, &attachment);
     checked.map_err(|refused| sentence(&refused))?;
@@ -91,9 +97,11 @@ pub(crate) fn attachment_to_value(method: &Method, entry: &AttachmentEntry) -> V
             triangles: None,
             moved: moved.as_deref().map(numbers),
         }),
+        AttachmentEntry::Examples(examples) => examples_to_value(examples),
         AttachmentEntry::Given(attachment) => {
             let rest = method.control_rest(attachment);
-            let moved = (**attachment.moved() != rest).then(|| numbers(attachment.moved()));
+            let moved = attachment.moved().filter(|moved| ***moved != rest);
+            let moved = moved.map(|moved| numbers(moved));
             match attachment {
                 Attachment::Mesh(mesh) => json!(StoredMesh {
                     file: None,
@@ -109,19 +117,24 @@ pub(crate) fn attachment_to_value(method: &Method, entry: &AttachmentEntry) -> V
                     },
                     moved,
                 }),
+                // An edit and a project list them by the model's vertices.
+                Attachment::Shapes(_) => Value::Null,
             }
         }
     }
 }
 
-/// The attachments of a document, of whatever methods: all that a project stores. Lattices rest as the document's own
+/// The attachments of a document, of whatever methods: all that a project stores but examples. Lattices rest as the document's own
 /// method has them, or as another does by its defaults.
 pub(crate) fn stored_attachments(
     method: &Method,
     attachments: &BTreeMap<&'static str, Attachment>,
 ) -> BTreeMap<String, Value> {
     let stored = attachments.iter().filter_map(|(name, attachment)| {
-        let (_, owner) = owner(method, name)?;
+        let (declared, owner) = owner(method, name)?;
+        if declared.kind == AttachmentKind::Shapes {
+            return None;
+        }
         let entry = AttachmentEntry::Given(attachment.clone());
         Some(((*name).to_owned(), attachment_to_value(&owner, &entry)))
     });
@@ -140,8 +153,10 @@ pub(crate) fn read_stored_attachments(
             .flat_map(|declaration| declaration.attachments.iter().map(|attachment| attachment.name))
             .collect();
         let (declared, owner) = owner(method, name).ok_or_else(|| EditError::unknown_member(name, &names))?;
-        let entry = read_attachment(declared, &owner, value).map_err(|error| error.under(name))?;
-        attachments.insert(declared.name, given(declared.name, entry)?);
+        if declared.kind != AttachmentKind::Shapes {
+            let entry = read_attachment(declared, &owner, value).map_err(|error| error.under(name))?;
+            attachments.insert(declared.name, given(declared.name, entry)?);
+        }
     }
     Ok(attachments)
 }
@@ -150,15 +165,29 @@ pub(crate) fn read_stored_attachments(
 ///
 /// # Errors
 /// Its file was not read.
-pub(super) fn given(name: &'static str, entry: AttachmentEntry) -> Result<Attachment, EditError> {
+fn given(name: &'static str, entry: AttachmentEntry) -> Result<Attachment, EditError> {
+    let file = match entry {
+        AttachmentEntry::Given(attachment) => return Ok(attachment),
+        AttachmentEntry::File { file, .. } => file,
+        AttachmentEntry::Examples(_) => String::new(),
+    };
+    let unread = EditError::custom(format!(
+        "names the file {file:?}, which is not read here: give its numbers"
+    ));
+    Err(unread.under(name))
+}
+
+/// The attachment on a model.
+///
+/// # Errors
+/// A file of it was not read, or an example does not fit the model.
+pub(super) fn on_model(name: &'static str, entry: &AttachmentEntry, model: &Model) -> Result<Attachment, EditError> {
     match entry {
-        AttachmentEntry::Given(attachment) => Ok(attachment),
-        AttachmentEntry::File { file, .. } => {
-            let unread = EditError::custom(format!(
-                "names the file {file:?}, which is not read here: give its numbers"
-            ));
-            Err(unread.under(name))
+        AttachmentEntry::Examples(examples) => {
+            let examples = resolved(name, examples, model).map_err(|error| error.under(name))?;
+            Ok(Attachment::Shapes(examples))
         }
+        other => given(name, other.clone()),
     }
 }
 

@@ -5,7 +5,7 @@ use pliant_mesh::Model;
 
 use super::json::parse;
 use crate::document::Document;
-use crate::{Camera, EditError, EditFile, Project, Setup};
+use crate::{Camera, EditError, EditFile, ExampleEntry, Project, Setup};
 
 /// Regions, handles and options to begin with.
 #[derive(Clone, PartialEq, Debug)]
@@ -63,6 +63,15 @@ impl Beginning {
             Self::Edit(edit) => edit.attachment_files(),
             Self::Project(_) => Vec::new(),
         }
+    }
+
+    /// The examples whose files and morph targets are to be read before this is resolved. A project has all in itself.
+    pub fn examples_mut(&mut self) -> impl Iterator<Item = &mut ExampleEntry> {
+        let edit = match self {
+            Self::Edit(edit) => Some(edit),
+            Self::Project(_) => None,
+        };
+        edit.into_iter().flat_map(|edit| edit.examples_mut())
     }
 
     /// As [`EditFile::bring`].

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::attachment::{AttachmentEntries, AttachmentEntry, of_file};
 use super::edit_error::EditError;
+use super::examples::ExampleEntry;
 use super::field::{FieldEntry, FieldKind};
 use super::json::parse;
 use super::loose::{OneOrList, StoredLoose};
@@ -256,13 +257,21 @@ impl EditFile {
         format!("{:#}\n", self.to_value())
     }
 
-    /// Whether neither a handle of the edit nor a control point that was moved by hand moves anything.
+    /// Whether neither a handle of the edit, nor a control point that was moved by hand, nor an example's weight moves
+    /// anything.
     pub fn changes_nothing(&self) -> bool {
         let own = self.attachments.iter();
         let own = own.filter(|(name, _)| self.method.declaration().attachment(name).is_some());
         let are_at_rest = own.map(|(_, entry)| match entry {
             AttachmentEntry::File { moved, .. } => moved.is_none(),
-            AttachmentEntry::Given(attachment) => **attachment.moved() == self.method.control_rest(attachment),
+            AttachmentEntry::Examples(examples) => {
+                let mut weights = examples.iter().filter_map(|example| example.weight);
+                weights.all(|weight| weight == 0.0)
+            }
+            AttachmentEntry::Given(attachment) => {
+                let rest = self.method.control_rest(attachment);
+                attachment.moved().is_none_or(|moved| **moved == rest)
+            }
         });
         are_at_rest.into_iter().all(|is| is) && self.handles.iter().all(|handle| handle.transform.is_identity())
     }
@@ -272,9 +281,19 @@ impl EditFile {
         let entries = self.attachments.iter();
         let files = entries.filter_map(|(name, entry)| match entry {
             AttachmentEntry::File { file, .. } => Some((*name, file.clone())),
-            AttachmentEntry::Given(_) => None,
+            AttachmentEntry::Given(_) | AttachmentEntry::Examples(_) => None,
         });
         files.collect()
+    }
+
+    /// Its examples, where the files and the morph targets that they name are put.
+    pub fn examples_mut(&mut self) -> impl Iterator<Item = &mut ExampleEntry> {
+        let entries = self.attachments.values_mut();
+        let examples = entries.filter_map(|entry| match entry {
+            AttachmentEntry::Examples(examples) => Some(examples),
+            AttachmentEntry::Given(_) | AttachmentEntry::File { .. } => None,
+        });
+        examples.flatten()
     }
 
     /// Puts a mesh, its vertices and triangles, in the place of the file that an attachment names.

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{CONTINUITY_RANGE, Role};
+use pliant_deform::{Attachment, CONTINUITY_RANGE, Role};
 use pliant_mesh::Model;
 
 use super::attachment::AttachmentEntry;
+use super::examples::entries_of;
 use crate::document::followed;
 use crate::document::{Content, Document, Handle, HandleId, Paint, PivotPlace, Reach};
 use crate::jobs::{FileContacts, Region, region_input};
@@ -80,7 +81,10 @@ pub(crate) fn export(document: &Document, model: &Arc<Model>) -> Result<EditFile
         attachments: document
             .attachment()
             .into_iter()
-            .map(|(name, attachment)| (name, AttachmentEntry::Given(attachment.clone())))
+            .map(|(name, attachment)| match attachment {
+                Attachment::Shapes(examples) => (name, AttachmentEntry::Examples(entries_of(examples, model))),
+                other => (name, AttachmentEntry::Given(other.clone())),
+            })
             .collect(),
         region: ranges(Role::Free),
         fixed: Selector::None,

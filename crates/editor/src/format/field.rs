@@ -131,7 +131,7 @@ impl FieldEntry {
 }
 
 /// The lowest file vertex behind each surface vertex.
-fn lowest_file_vertices(model: &Model) -> Vec<u32> {
+pub(super) fn lowest_file_vertices(model: &Model) -> Vec<u32> {
     let mut lowest = vec![u32::MAX; model.surface.positions.len()];
     for (surface_vertex, file_vertex) in model.drawn.surface_vertices().zip(model.drawn.file_vertices()) {
         if let Some(surface_vertex) = surface_vertex {

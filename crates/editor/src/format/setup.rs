@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use pliant_deform::{Attachment, CONTINUITY_RANGE, Constraints, Loose, Method, Problem, Role, Warning};
+use pliant_deform::{Attachment, CONTINUITY_RANGE, Constraints, Examples, Loose, Method, Problem, Role, Warning};
 use pliant_mesh::{Model, Surface, SurfaceVertex};
 
-use super::attachment::given;
+use super::attachment::on_model;
 use super::edit_error::EditError;
 use super::edit_file::EditFile;
 use super::exchange::with_pivot;
@@ -138,20 +138,38 @@ impl Setup {
     /// Where the control points of the method's attachment are moved to at the share `t` of the way, 0 at rest and 1 at
     /// their places; `None` where none was brought.
     pub fn controls(&self, t: f64) -> Option<Arc<Vec<DVec3>>> {
-        let declared = self.method.declaration();
-        let own = self
-            .attachments
-            .iter()
-            .find(|(name, _)| declared.attachment(name).is_some());
-        let (_, attachment) = own?;
+        let attachment = self.attachment()?;
+        let moved = attachment.moved()?;
         if t >= 1.0 {
-            return Some(Arc::clone(attachment.moved()));
+            return Some(Arc::clone(moved));
         }
         let rest = self.method.control_rest(attachment);
-        let places = rest.iter().zip(attachment.moved().iter());
+        let places = rest.iter().zip(moved.iter());
         Some(Arc::new(
             places.map(|(rest, moved)| *rest + (*moved - *rest) * t).collect(),
         ))
+    }
+
+    /// The examples of the method, where some were brought.
+    pub fn examples(&self) -> Option<&Examples> {
+        match self.attachment()? {
+            Attachment::Shapes(examples) => Some(examples),
+            _ => None,
+        }
+    }
+
+    /// The weights of the examples at the share `t` of the way: those that are set, times it.
+    pub fn weights(&self, t: f64) -> Option<Vec<Option<f64>>> {
+        let weights = &self.examples()?.weights;
+        Some(weights.iter().map(|weight| weight.map(|weight| t * weight)).collect())
+    }
+
+    /// What was brought of what the method takes.
+    fn attachment(&self) -> Option<&Attachment> {
+        let declared = self.method.declaration();
+        let mut own = self.attachments.iter();
+        let (_, attachment) = own.find(|(name, _)| declared.attachment(name).is_some())?;
+        Some(attachment)
     }
 
     /// Where the handles are at the share `t` of the way, 0 at rest and 1 at their targets.
@@ -226,14 +244,14 @@ impl EditFile {
             loose: self.loose,
             loose_parts: self.loose_parts_on(model)?,
             method: self.method.clone(),
-            attachments: self.attachments_in_numbers()?,
+            attachments: self.attachments_on(model)?,
             rest: None,
         })
     }
 
-    fn attachments_in_numbers(&self) -> Result<Vec<(&'static str, Attachment)>, EditError> {
+    fn attachments_on(&self, model: &Model) -> Result<Vec<(&'static str, Attachment)>, EditError> {
         let entries = self.attachments.iter();
-        let attachments = entries.map(|(name, entry)| Ok((*name, given(name, entry.clone())?)));
+        let attachments = entries.map(|(name, entry)| Ok((*name, on_model(name, entry, model)?)));
         let attachments: Result<_, EditError> = attachments.collect();
         attachments.map_err(|error| error.under("method"))
     }

@@ -11,7 +11,7 @@ pub(crate) mod write;
 use std::ops::Range;
 
 use glam::DVec3;
-use pliant_mesh::{Drawn, Object};
+use pliant_mesh::{Cancel, Drawn, Object};
 
 pub use document::uri::{bytes_of_name, name_of_bytes};
 pub use neighbours::{is_same_document, neighbours_named, with_neighbours_renamed};
@@ -19,7 +19,7 @@ pub use neighbours::{is_same_document, neighbours_named, with_neighbours_renamed
 use document::fault::Fault;
 use document::{Document, container, uri};
 use geometry::primitive::{self, Primitive};
-use geometry::{Pieces, draco, meshopt, tree};
+use geometry::{Pieces, draco, meshopt, targets, tree};
 
 use crate::scene::summary::Summary;
 use crate::source::Source;
@@ -107,6 +107,29 @@ impl Stored {
                 .map(|primitive| primitive.targets.len())
                 .sum(),
         }
+    }
+
+    /// The names of its morph targets.
+    pub fn morph_targets(&self) -> Vec<String> {
+        targets::names(&self.document, &self.meshes)
+    }
+
+    /// How far each drawn vertex is moved by the morph targets of this name; `None` if there is none.
+    pub fn morph_target(
+        &self,
+        file: &str,
+        target: &str,
+        vertex_count: usize,
+        cancel: &Cancel,
+    ) -> Result<Option<Vec<DVec3>>, ReadError> {
+        let Self {
+            document,
+            meshes,
+            pieces,
+            ..
+        } = self;
+        let found = targets::displacements(document, meshes, pieces, vertex_count, target, cancel);
+        found.map_err(|fault| fault.of_file(file, self.format))
     }
 
     /// Ranges of drawn vertices, ascending, and how far each of their world coordinates may be off after a save.

@@ -149,6 +149,33 @@ impl Scene {
         }
     }
 
+    /// The names of the file's morph targets, each once. Only glTF has some; one without a name is called `target 0`,
+    /// `target 1`, ... by its number.
+    pub fn morph_targets(&self) -> Vec<String> {
+        match &self.stored {
+            Stored::Gltf(stored) => stored.morph_targets(),
+            Stored::Obj(_) | Stored::Ply(_) | Stored::Stl(_) | Stored::Off(_) => Vec::new(),
+        }
+    }
+
+    /// How far each of the file's `vertex_count` drawn vertices is moved, in world space, when the morph targets called `target` are applied
+    /// whole; `None` if there is none. `file` is used in messages only.
+    ///
+    /// # Errors
+    /// A target that can't be read, or soon after `cancel` is raised.
+    pub fn morph_target(
+        &self,
+        file: &str,
+        target: &str,
+        vertex_count: usize,
+        cancel: &Cancel,
+    ) -> Result<Option<Vec<DVec3>>, ReadError> {
+        match &self.stored {
+            Stored::Gltf(stored) => stored.morph_target(file, target, vertex_count, cancel),
+            Stored::Obj(_) | Stored::Ply(_) | Stored::Stl(_) | Stored::Off(_) => Ok(None),
+        }
+    }
+
     /// How the scene looks at rest. Each call decodes it from the stored bytes.
     pub fn appearance(&self) -> Appearance {
         match &self.stored {

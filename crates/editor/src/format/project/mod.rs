@@ -6,6 +6,7 @@
 //! fields of numbers stand as base64 ([`field`]).
 
 mod camera;
+mod examples;
 mod field;
 mod handle;
 mod kept;
@@ -15,13 +16,14 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{CONTINUITY_RANGE, METHODS, Method};
+use pliant_deform::{Attachment, AttachmentKind, CONTINUITY_RANGE, METHODS, Method};
 use pliant_mesh::{Cancel, Model};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 use self::camera::StoredCamera;
+use self::examples::{are_weighed, read_examples, stored_examples};
 use self::field::{Field, Ranges, for_each_drawn, ranges_where};
 use self::handle::StoredHandle;
 use self::kept::StoredKept;
@@ -193,11 +195,17 @@ impl Project {
                 (value != default).then_some([value])
             })
         };
+        let mut attachments = stored_attachments(&document.method, &document.attachments);
+        for (name, attachment) in &*document.attachments {
+            if let Attachment::Shapes(examples) = attachment {
+                attachments.insert((*name).to_owned(), stored_examples(examples, model));
+            }
+        }
         Self {
             version: PROJECT_VERSION,
             mesh,
             method: method_to_value(&document.method, &BTreeMap::new()),
-            attachments: stored_attachments(&document.method, &document.attachments),
+            attachments,
             loose: document.loose.into(),
             loose_parts: document
                 .loose_parts
@@ -266,7 +274,7 @@ impl Project {
 
     /// Whether the shape is the file's.
     pub(crate) fn changes_nothing(&self) -> bool {
-        let moves = |attachment: &Value| attachment.get("moved").is_some();
+        let moves = |attachment: &Value| attachment.get("moved").is_some() || are_weighed(attachment);
         let own = |name: &str| {
             METHODS
                 .iter()
@@ -295,7 +303,17 @@ impl Project {
         let mut document = Content::new(model.surface.positions.len());
         let (method, _) = read_method(&self.method).map_err(|error| error.under("method"))?;
         let attachments = read_stored_attachments(&method, &self.attachments);
-        document.attachments = Arc::new(attachments.map_err(|error| error.under("attachments"))?);
+        let mut attachments = attachments.map_err(|error| error.under("attachments"))?;
+        for declared in METHODS.iter().flat_map(|declaration| declaration.attachments) {
+            if let Some(stored) = self.attachments.get(declared.name)
+                && declared.kind == AttachmentKind::Shapes
+            {
+                let examples = read_examples(stored, model);
+                let examples = examples.map_err(|error| error.under(declared.name).under("attachments"))?;
+                attachments.insert(declared.name, examples);
+            }
+        }
+        document.attachments = Arc::new(attachments);
         document.method = method;
         document.loose = self.loose.into();
         document.tips = match self.tips {

@@ -12,6 +12,7 @@
 pub(crate) mod draco;
 pub(crate) mod meshopt;
 pub(crate) mod primitive;
+pub(crate) mod targets;
 pub(crate) mod tree;
 
 use std::collections::HashMap;

@@ -1,0 +1,91 @@
+//! The examples that an edit names: files of the same vertices and triangles, and morph targets of the file itself.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::DVec3;
+use pliant_editor::{Beginning, ExampleSource};
+use pliant_mesh::Model;
+
+use crate::AppError;
+use crate::files::shown;
+use crate::loading::{Loaded, open};
+use crate::watch::Watch;
+
+/// The files that the edit's examples name.
+pub fn files(edit: &mut Beginning, edit_path: &Path) -> Vec<PathBuf> {
+    let folder = edit_path.parent().unwrap_or(Path::new(""));
+    let examples = edit.examples_mut();
+    let files = examples.filter_map(|example| match &example.source {
+        ExampleSource::File(file) => Some(folder.join(file)),
+        ExampleSource::MorphTarget(_) | ExampleSource::PerVertex(_) => None,
+    });
+    files.collect()
+}
+
+/// Reads the files and the morph targets that the edit's examples name.
+///
+/// # Errors
+/// A file that can't be read or has other vertices or triangles, and a morph target that `loaded` does not have.
+pub fn bring(edit: &mut Beginning, edit_path: &Path, loaded: &Loaded, watch: &Watch) -> Result<(), AppError> {
+    let folder = edit_path.parent().unwrap_or(Path::new(""));
+    for example in edit.examples_mut() {
+        let of_drawn = match &example.source {
+            ExampleSource::File(file) => displacements_to(&folder.join(file), loaded, watch)?,
+            ExampleSource::MorphTarget(target) => morph_target(target, loaded, watch)?,
+            ExampleSource::PerVertex(_) => continue,
+        };
+        example.displacements = Some(Arc::new(of_surface(&loaded.model, &of_drawn)));
+    }
+    Ok(())
+}
+
+fn displacements_to(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec3>, AppError> {
+    let other = open(path, watch)?.drawn;
+    let own = loaded.model.rest();
+    let counts = |positions: usize, triangles: usize| format!("{positions} vertices and {triangles} triangles");
+    let (found, expected) = (
+        (other.positions.len(), other.triangles.len()),
+        (own.positions.len(), own.triangles.len()),
+    );
+    let what = if found != expected {
+        counts(found.0, found.1)
+    } else if other.triangles != own.triangles {
+        format!("{}, but other triangles", counts(found.0, found.1))
+    } else {
+        let each = other.positions.iter().zip(&own.positions);
+        return Ok(each.map(|(to, from)| *to - *from).collect());
+    };
+    Err(AppError::Example {
+        example: path.to_owned(),
+        what,
+        file: loaded.path.clone(),
+        expected: counts(expected.0, expected.1),
+    })
+}
+
+fn morph_target(target: &str, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec3>, AppError> {
+    let name = loaded.path.to_string_lossy();
+    let count = loaded.model.drawn.vertex_count();
+    let found = loaded.scene.morph_target(&name, target, count, &watch.cancel);
+    found.map_err(AppError::Read)?.ok_or_else(|| {
+        let known = loaded.scene.morph_targets();
+        let remedy = match known.is_empty() {
+            true => "it has none, so name a `file`".to_owned(),
+            false => format!("it has {}", known.join(", ")),
+        };
+        let shown = shown(&loaded.path);
+        AppError::Unsupported(format!("{shown} has no morph target {target:?}: {remedy}"))
+    })
+}
+
+/// Of each surface vertex that of its first drawn one.
+fn of_surface(model: &Model, of_drawn: &[DVec3]) -> Vec<DVec3> {
+    let mut displacements = vec![None; model.surface.positions.len()];
+    for (vertex, displacement) in model.drawn.surface_vertices().zip(of_drawn) {
+        if let Some(vertex) = vertex {
+            displacements[vertex.index()].get_or_insert(*displacement);
+        }
+    }
+    displacements.into_iter().map(Option::unwrap_or_default).collect()
+}
