@@ -1,6 +1,6 @@
 //! What is done with the method's cage or lattice and its control points.
 
-use pliant_deform::Attachment;
+use pliant_deform::{Attachment, AttachmentKind};
 
 use super::entry::{Action, Entry, Reason, Scope, State, item, unless, when_open};
 use crate::workspace::{bring_attachment, make_controls, reset_controls};
@@ -92,9 +92,9 @@ pub(super) const BRING_ATTACHMENT: Entry<Attachment> = Entry {
 /// The reason where the method has no control points.
 fn without_controls(state: &State<'_>) -> Option<Reason> {
     state.unopened().or_else(|| {
-        let attachments = state.workspace.document.method().declaration().attachments;
+        let mut attachments = state.workspace.document.method().declaration().attachments.iter();
         unless(
-            !attachments.is_empty(),
+            attachments.any(|own| own.kind != AttachmentKind::Shapes),
             "The method has no control points: choose Cage or Lattice.",
         )
     })

@@ -6,6 +6,7 @@
 mod controls;
 mod document;
 mod entry;
+mod examples;
 mod handle;
 mod key_map;
 mod look;

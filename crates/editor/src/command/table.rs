@@ -8,7 +8,7 @@ use pliant_deform::{Attachment, Loose, Method};
 
 use super::entry::{Action, Entry, Reason, Scope, State};
 use super::shortcut::Shortcut;
-use super::{controls, document, handle, look, object, paint, region, transform, view};
+use super::{controls, document, examples, handle, look, object, paint, region, transform, view};
 use crate::document::{HandleId, HandleTransform, ObjectAction, PivotPlace, Reach, Tips};
 use crate::tool::{BrushMetric, Context, Depth, Gesture, StiffnessBrush, StrokeShape, ToolMode};
 use crate::view::{Clay, GizmoMode, GizmoOrientation, NamedView, Orbit, Shading, UpAxis};
@@ -108,6 +108,14 @@ commands! {
     SelectControls = controls::SELECT_CONTROLS;
     /// Lets go of all control points.
     DeselectControls = controls::DESELECT_CONTROLS;
+    /// Keeps the present shape as one more example.
+    KeepExample = examples::KEEP_EXAMPLE;
+    /// Sets the weight of an example, by its place in the list; `None` has the solver find it.
+    SetExampleWeight(place: usize, weight: Option<f64>) = examples::SET_EXAMPLE_WEIGHT;
+    /// Gives an example another name.
+    RenameExample(place: usize, name: String) = examples::RENAME_EXAMPLE;
+    /// Removes an example.
+    RemoveExample(place: usize) = examples::REMOVE_EXAMPLE;
     /// Begins to compare what the methods make of the edit, or ends it.
     CompareMethods = document::COMPARE_METHODS;
     /// Stops the jobs that run; what needs them starts them again.

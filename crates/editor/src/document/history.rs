@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 use glam::DVec3;
-use pliant_deform::{Attachment, Loose, Method};
+use pliant_deform::{Attachment, ExampleShape, Loose, Method};
 
 use super::access::Access;
 use super::content::{Paint, Tips};
@@ -75,10 +75,7 @@ impl Step {
                     size_of::<Access>() + (access.hidden.len() + access.locked.len()) * size_of::<u32>()
                 }
                 // Tables that steps share are counted in each.
-                Change::Attachments(attachments) => attachments
-                    .values()
-                    .map(|own| 2 * own.point_count() * size_of::<DVec3>())
-                    .sum(),
+                Change::Attachments(attachments) => attachments.values().map(attachment_bytes).sum(),
                 Change::Kept(Some(kept)) => kept.shape.len() * size_of::<DVec3>(),
                 Change::Kept(None)
                 | Change::Continuity(None)
@@ -88,6 +85,20 @@ impl Step {
             })
             .sum();
         size_of::<Self>() + self.name.len() + changes + self.shape.bytes()
+    }
+}
+
+/// What an attachment takes. Examples share their shapes from step to step, so each holder counts its share of them.
+fn attachment_bytes(attachment: &Attachment) -> usize {
+    let of_shape = |shape: &ExampleShape| {
+        shape.name.len() + shape.displacements.len() * size_of::<DVec3>() / Arc::strong_count(&shape.displacements)
+    };
+    match attachment {
+        Attachment::Shapes(examples) => {
+            let shapes: usize = examples.shapes.iter().map(of_shape).sum();
+            shapes / Arc::strong_count(&examples.shapes) + size_of_val(&*examples.weights)
+        }
+        other => 2 * other.point_count() * size_of::<DVec3>(),
     }
 }
 

@@ -28,23 +28,38 @@ pub struct KeptShape {
     pub targets: BTreeMap<HandleId, DAffine3>,
     /// Where the control points of the method's attachment were moved to; `None` where all rested.
     pub controls: Option<Arc<Vec<DVec3>>>,
+    /// The weights of the method's examples, `None` where one was found.
+    pub weights: Vec<Option<f64>>,
     /// Displacements from the rest shape, per surface vertex.
     pub shape: Arc<Vec<DVec3>>,
 }
 
 impl KeptShape {
-    /// What is seen with the handles and control points as they stand.
-    pub(crate) fn of(handles: &[Handle], controls: Option<Arc<Vec<DVec3>>>, shape: &Arc<Vec<DVec3>>) -> Self {
+    /// What is seen with the handles, control points and examples as they stand.
+    pub(crate) fn of(
+        handles: &[Handle],
+        controls: Option<Arc<Vec<DVec3>>>,
+        weights: &[Option<f64>],
+        shape: &Arc<Vec<DVec3>>,
+    ) -> Self {
         Self {
             controls,
+            weights: weights.to_vec(),
             targets: handles.iter().map(|handle| (handle.id, handle.affine())).collect(),
             shape: Arc::clone(shape),
         }
     }
 
     /// Whether the same shape is seen with the same transforms.
-    pub(crate) fn is_of(&self, handles: &[Handle], controls: Option<&Vec<DVec3>>, shape: &Arc<Vec<DVec3>>) -> bool {
+    pub(crate) fn is_of(
+        &self,
+        handles: &[Handle],
+        controls: Option<&Vec<DVec3>>,
+        weights: &[Option<f64>],
+        shape: &Arc<Vec<DVec3>>,
+    ) -> bool {
         Arc::ptr_eq(&self.shape, shape)
+            && self.weights == weights
             && self.controls.as_deref() == controls
             && self.targets.len() == handles.len()
             && handles
@@ -84,6 +99,7 @@ mod tests {
         let kept = KeptShape {
             targets: BTreeMap::new(),
             controls: None,
+            weights: Vec::new(),
             shape: Arc::new(vec![seen]),
         };
         let at = |way: f64| {

@@ -100,6 +100,11 @@ impl Editor {
         }
     }
 
+    /// The weights of the method's examples that the last solve took or found; empty where nothing was solved yet.
+    pub fn example_weights(&self) -> &[f64] {
+        &self.workspace.computed().example_weights
+    }
+
     /// The document.
     pub fn document(&self) -> &Document {
         &self.workspace.document

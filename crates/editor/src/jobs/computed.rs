@@ -38,6 +38,8 @@ pub(crate) struct Computed {
     pub(crate) warnings: Vec<HandleWarning>,
     /// About the targets of the last solve.
     pub(crate) blind_to: Vec<HandleWarning>,
+    /// The examples' weights that the last solve took or found.
+    pub(crate) example_weights: Vec<f64>,
 }
 
 impl Default for Computed {
@@ -57,6 +59,7 @@ impl Default for Computed {
             reusable_factor: None,
             warnings: Vec::new(),
             blind_to: Vec::new(),
+            example_weights: Vec::new(),
         }
     }
 }

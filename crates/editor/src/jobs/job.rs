@@ -223,6 +223,8 @@ pub struct Solved {
     pub(crate) carried: Option<Carried>,
     /// What the method can't follow of these targets.
     pub(crate) blind_to: Vec<HandleWarning>,
+    /// The examples' weights that were taken or found.
+    pub(crate) example_weights: Vec<f64>,
     /// Whether further steps would leave it as it is.
     pub finished: bool,
     /// How far an iterative method's descent is; `None` for a method that is done in one step.
@@ -244,7 +246,7 @@ impl ControlPlaces {
         let (_, attachment) = bound.attachment()?;
         Some(Self {
             positions: Arc::new(bound.control_positions()),
-            moved: Arc::clone(attachment.moved()),
+            moved: Arc::clone(attachment.moved()?),
         })
     }
 }

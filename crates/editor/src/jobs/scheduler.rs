@@ -327,9 +327,9 @@ impl Jobs {
         self.start();
     }
 
-    /// Whether there is something to bind: handles, or control points that move the surface without them.
+    /// Whether there is something to bind: handles, or control points or examples that move the surface without them.
     fn binds_something(&self, document: &Document) -> bool {
-        !self.computed.region.handles.is_empty() || !document.method.declaration().attachments.is_empty()
+        !self.computed.region.handles.is_empty() || document.bends_without_handles()
     }
 
     /// Asks for the next shape of the comparison once the document's own binding is not waited for: what it needs of
@@ -406,6 +406,7 @@ impl Jobs {
                 self.computed.reusable_factor = bound.reusable_factor();
                 self.computed.bound = Some(Arc::new(Mutex::new(*bound)));
                 self.computed.carried = None;
+                self.computed.example_weights.clear();
                 self.bound_revision = stamp;
             }
             JobOutcome::Controls(places) if stamp >= self.solve_floor => self.put_controls(&places, stamp),
@@ -418,6 +419,7 @@ impl Jobs {
                     self.computed.carried.clone_from(&solved.carried);
                 }
                 self.computed.blind_to.clone_from(&solved.blind_to);
+                self.computed.example_weights.clone_from(&solved.example_weights);
                 if let Some(places) = &solved.controls {
                     self.put_controls(places, stamp);
                 }

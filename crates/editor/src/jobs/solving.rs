@@ -64,7 +64,8 @@ pub(super) fn controls_work(computed: &Computed, document: &Document) -> Option<
         let own = bound.attachment().and_then(|(name, _)| attachments.get(name));
         let targets = Targets {
             handles: &handles,
-            controls: own.map(Attachment::moved),
+            controls: own.and_then(Attachment::moved),
+            weights: &[],
         };
         match targets.set(&mut bound) {
             Err(error) => JobOutcome::Failed(error.to_string()),
@@ -79,6 +80,8 @@ pub(super) struct Wanted {
     targets: Vec<DAffine3>,
     beginning: Beginning,
     attachments: Arc<BTreeMap<&'static str, Attachment>>,
+    /// Of the examples.
+    weights: Vec<Option<f64>>,
     /// What is shown.
     from_rest: Arc<Vec<DVec3>>,
     /// The rest shape, where it is not the file's.
@@ -99,6 +102,7 @@ impl Wanted {
             targets: targets(document, handles)?,
             beginning: Beginning::of(document, handles, from_rest, carried)?,
             attachments: Arc::clone(&document.attachments),
+            weights: document.example_weights().to_vec(),
             from_rest: Arc::clone(from_rest),
             rest: document.applied.then(|| Arc::clone(&document.rest)),
         })
@@ -109,7 +113,8 @@ impl Wanted {
         let own = bound.attachment().and_then(|(name, _)| self.attachments.get(name));
         let targets = Targets {
             handles: &self.targets,
-            controls: own.map(Attachment::moved),
+            controls: own.and_then(Attachment::moved),
+            weights: &self.weights,
         };
         let bent = self.beginning.solve(bound, &targets, &self.from_rest, cancel)?;
         let step = bent.step;
@@ -119,6 +124,7 @@ impl Wanted {
             from_file: sum_of_shapes(self.rest.as_ref(), &bent.shown),
             from_rest: bent.shown,
             carried: bent.carried,
+            example_weights: bound.weights().to_vec(),
             blind_to: HandleWarning::list(bound.blind_to(), &self.handles),
             finished: step.finished,
             descent: (bound.solve() != Solve::Direct).then_some(Descent {
@@ -130,16 +136,22 @@ impl Wanted {
     }
 }
 
-/// Where handles and control points are to go.
+/// Where handles and control points are to go, and how much of each example is wanted.
 struct Targets<'a> {
     handles: &'a [DAffine3],
     /// What was brought to the binding and moved by hand.
     controls: Option<&'a Arc<Vec<DVec3>>>,
+    /// `None` where one is to be found.
+    weights: &'a [Option<f64>],
 }
 
 impl Targets<'_> {
     fn set(&self, bound: &mut Bound) -> Result<(), SolveError> {
         bound.set_targets(self.handles)?;
+        // Another method's binding has no examples.
+        if bound.weights().len() == self.weights.len() {
+            bound.set_weights(self.weights)?;
+        }
         self.controls.map_or(Ok(()), |moved| bound.set_controls(moved))
     }
 }
@@ -213,6 +225,7 @@ impl Beginning {
                 let first = Targets {
                     handles: &first,
                     controls: first_controls,
+                    weights: &kept.weights,
                 };
                 for _ in 0..MOST_FIRST_ROUNDS {
                     if steps(bound, &first, &mut at_first, cancel)?.finished || cancel.is_cancelled() {

@@ -64,7 +64,7 @@ impl MovedControls {
 
     /// Puts each point beside where it was by the way of where it was seen.
     pub(super) fn put(&self, workspace: &mut Workspace, way: impl Fn(DVec3) -> DVec3) {
-        let mut moved = self.attachment.moved().to_vec();
+        let mut moved = self.attachment.moved().map_or_else(Vec::new, |moved| moved.to_vec());
         for (point, seen) in &self.points {
             moved[*point as usize] += way(*seen);
         }

@@ -62,7 +62,7 @@ impl Workspace {
             self.document.unbend();
         } else if self.jobs.is_region_current()
             && self.computed().region.handles.is_empty()
-            && self.document.moved_controls().is_none()
+            && !self.document.is_moved_without_handles()
         {
             self.jobs.drop_solves();
             self.document.keep_shape();

@@ -24,8 +24,8 @@ impl Workspace {
             return bound.cloned();
         };
         if let Some(bound) = bound.filter(|bound| bound.attachment.rests_as(attachment)) {
-            let places = bound.positions.iter().zip(bound.attachment.moved().iter());
-            let moved = attachment.moved().iter();
+            let places = bound.positions.iter().zip(bound.attachment.moved()?.iter());
+            let moved = attachment.moved()?.iter();
             let positions = places.zip(moved).map(|((seen, before), now)| *seen + (*now - *before));
             return Some(BoundControls {
                 positions: Arc::new(positions.collect()),
@@ -36,7 +36,7 @@ impl Workspace {
         Some(BoundControls {
             name,
             edges: Arc::new(attachment.edges()),
-            positions: Arc::clone(attachment.moved()),
+            positions: Arc::clone(attachment.moved()?),
             attachment: attachment.clone(),
         })
     }

@@ -28,6 +28,7 @@ pub(crate) fn reset_shape(workspace: &mut Workspace) {
         document.forget_shapes();
         let rested = at_rest(document);
         document.set_attachments(rested);
+        document.rest_examples();
         let positions = &model.surface.positions;
         let pivot = |id| centroid(positions, members(document, id).into_iter());
         let pivots: Vec<_> = document.handles().iter().map(|handle| pivot(handle.id)).collect();
@@ -85,7 +86,8 @@ fn carried_over(document: &Document, method: &Method) -> Arc<BTreeMap<&'static s
     {
         let (before, after) = (document.method().control_rest(own), method.control_rest(own));
         if before != after && before.len() == after.len() {
-            let places = own.moved().iter().zip(&before).zip(&after);
+            let moved = own.moved().map_or(&[][..], |moved| moved);
+            let places = moved.iter().zip(&before).zip(&after);
             let moved = places.map(|((moved, before), after)| *after + (*moved - *before));
             let carried = own.with_moved(Arc::new(moved.collect()));
             Arc::make_mut(&mut attachments).insert(name, carried);

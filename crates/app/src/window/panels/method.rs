@@ -1,9 +1,10 @@
 //! The method and its options: widgets made of the methods' declarations, so that an option that is declared is shown.
 
 use eframe::egui::{self, ComboBox, DragValue, RichText};
-use pliant_deform::{METHODS, Method, OptionDeclaration, OptionKind, OptionValue};
+use pliant_deform::{AttachmentKind, METHODS, Method, OptionDeclaration, OptionKind, OptionValue};
 use pliant_editor::{Command, Editor};
 
+use super::{examples, material};
 use crate::window::files::file_command::FileCommand;
 use crate::window::widgets::command_button::{command_button, command_choice};
 use crate::window::widgets::number_field::number_field;
@@ -30,6 +31,8 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     if command_choice(ui, editor, &Command::CompareMethods, editor.comparison().is_some()) {
         commands.push(Command::CompareMethods);
     }
+    material::show(ui, editor, commands);
+    examples::show(ui, editor, commands);
     control_points(ui, editor, commands);
     if declaration.options.is_empty() {
         return;
@@ -54,7 +57,8 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
 /// What there is of the method's cage or lattice, and what can be done with it.
 fn control_points(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let declaration = editor.document().method().declaration();
-    let Some(declared) = declaration.attachments.first() else {
+    let mut attachments = declaration.attachments.iter();
+    let Some(declared) = attachments.find(|own| own.kind != AttachmentKind::Shapes) else {
         return;
     };
     let title = title(declared.title);

@@ -2,10 +2,12 @@
 //! file.
 
 pub(in crate::window) mod brush;
+mod examples;
 pub(in crate::window) mod file;
 pub(in crate::window) mod handles;
 pub(in crate::window) mod history;
 pub(in crate::window) mod loose;
+mod material;
 pub(in crate::window) mod method;
 pub(in crate::window) mod notes;
 pub(in crate::window) mod objects;

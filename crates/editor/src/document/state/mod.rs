@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::ops::Deref;
 use std::sync::Arc;
 
-use pliant_deform::{Attachment, CONTINUITY_RANGE, Loose, Method};
+use pliant_deform::{Attachment, AttachmentKind, CONTINUITY_RANGE, Examples, Loose, Method};
 use pliant_mesh::SurfaceVertex;
 
 use glam::DVec3;
@@ -144,10 +144,36 @@ impl Document {
         Some((name, attachment))
     }
 
+    /// The examples of the present method, if there are some.
+    pub fn examples(&self) -> Option<&Examples> {
+        match self.attachment()? {
+            (_, Attachment::Shapes(examples)) => Some(examples),
+            _ => None,
+        }
+    }
+
+    /// Their weights; none without examples.
+    pub(crate) fn example_weights(&self) -> &[Option<f64>] {
+        self.examples().map_or(&[], |examples| &examples.weights)
+    }
+
+    /// Whether an example is given a weight other than 0, or a control point was moved by hand.
+    pub(crate) fn is_moved_without_handles(&self) -> bool {
+        let mut weights = self.example_weights().iter().flatten();
+        weights.any(|weight| *weight != 0.0) || self.moved_controls().is_some()
+    }
+
+    /// Whether the method can move the surface without handles: by control points, which it makes where none were
+    /// brought, or by examples.
+    pub(crate) fn bends_without_handles(&self) -> bool {
+        let mut declared = self.content.method.declaration().attachments.iter();
+        declared.any(|own| own.kind != AttachmentKind::Shapes) || self.examples().is_some()
+    }
+
     /// Where its control points were moved to, if any of them was.
     pub fn moved_controls(&self) -> Option<&Arc<Vec<DVec3>>> {
         let (_, attachment) = self.attachment()?;
-        let moved = attachment.moved();
+        let moved = attachment.moved()?;
         (**moved != self.content.method.control_rest(attachment)).then_some(moved)
     }
 
@@ -228,7 +254,7 @@ impl Document {
 
     /// Whether a handle or a control point is elsewhere than where it rests.
     pub(crate) fn is_moved(&self) -> bool {
-        self.content.handles.iter().any(Handle::is_displaced) || self.moved_controls().is_some()
+        self.content.handles.iter().any(Handle::is_displaced) || self.is_moved_without_handles()
     }
 
     /// Which state of each aspect this is.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use pliant_deform::{Attachment, Examples};
 
 use super::Document;
 use crate::document::handle_transform::HandleTransform;
@@ -11,19 +12,24 @@ use crate::document::version::Aspect;
 
 impl Document {
     /// Makes the present shape the rest shape. No drawn vertex moves; the handles' pivots go along. Cages and lattices
-    /// fitted the former one and are taken away.
+    /// fitted the former one and are taken away; examples stay the shapes that they are, with the weight 0.
     pub(crate) fn apply_shape(&mut self) {
         if !self.is_displaced() {
             return;
         }
         let content = &mut self.content;
+        let before = Arc::clone(&content.rest);
         content.rest = Arc::clone(&content.from_file);
         content.applied = true;
         content.from_rest = Arc::new(vec![DVec3::ZERO; content.rest.len()]);
         content.kept = None;
         content.settled = true;
         self.marks.mark(&[Aspect::Rest, Aspect::Shape]);
-        self.set_attachments(Arc::default());
+        let mut attachments = Arc::clone(&self.content.attachments);
+        Arc::make_mut(&mut attachments).retain(|_, own| matches!(own, Attachment::Shapes(_)));
+        self.set_attachments(attachments);
+        self.rest_examples();
+        self.rebase_examples(&before);
         self.change_handles(|handles| {
             for handle in handles {
                 handle.pivot = handle.centre();
@@ -39,12 +45,13 @@ impl Document {
             return;
         }
         let controls = self.moved_controls().cloned();
+        let weights = self.example_weights().to_vec();
         let content = &mut self.content;
         content.settled = true;
         let kept = content.kept.as_ref();
         let own = controls.as_deref();
-        if kept.is_none_or(|kept| !kept.is_of(&content.handles, own, &content.from_rest)) {
-            let kept = KeptShape::of(&content.handles, controls, &content.from_rest);
+        if kept.is_none_or(|kept| !kept.is_of(&content.handles, own, &weights, &content.from_rest)) {
+            let kept = KeptShape::of(&content.handles, controls, &weights, &content.from_rest);
             content.kept = Some(Arc::new(kept));
         }
     }
@@ -71,6 +78,7 @@ impl Document {
     /// Takes the rest shape and the present one back to the file's; handles stay where they are put.
     pub(crate) fn forget_shapes(&mut self) {
         let content = &mut self.content;
+        let before = Arc::clone(&content.rest);
         content.applied = false;
         content.rest = Arc::new(vec![DVec3::ZERO; content.paint.len()]);
         content.from_rest = Arc::clone(&content.rest);
@@ -78,12 +86,14 @@ impl Document {
         content.kept = None;
         content.settled = true;
         self.marks.mark(&[Aspect::Rest, Aspect::Shape, Aspect::Drawn]);
+        self.rebase_examples(&before);
     }
 
     /// Takes some vertices back to the file's shape, the rest shape's and the present one's; the others stay where they
     /// are seen.
     pub(crate) fn forget_shape_at(&mut self, is_taken: &[bool]) {
         let content = &mut self.content;
+        let before = Arc::clone(&content.rest);
         for field in [&mut content.rest, &mut content.from_rest] {
             for (displacement, _) in Arc::make_mut(field)
                 .iter_mut()
@@ -97,6 +107,7 @@ impl Document {
         content.settled = true;
         content.sum_shapes();
         self.marks.mark(&[Aspect::Rest, Aspect::Shape, Aspect::Drawn]);
+        self.rebase_examples(&before);
         if self
             .content
             .from_rest
@@ -104,7 +115,12 @@ impl Document {
             .any(|displacement| *displacement != DVec3::ZERO)
         {
             let controls = self.moved_controls().cloned();
-            let kept = KeptShape::of(&self.content.handles, controls, &self.content.from_rest);
+            let kept = KeptShape::of(
+                &self.content.handles,
+                controls,
+                self.example_weights(),
+                &self.content.from_rest,
+            );
             self.content.kept = Some(Arc::new(kept));
         }
     }
@@ -117,6 +133,42 @@ impl Document {
     /// The shape is not final: there is something to be solved.
     pub(crate) fn unsettle(&mut self) {
         self.swap_settled(&mut false);
+    }
+
+    /// Gives all examples whose weight is set the weight 0.
+    pub(crate) fn rest_examples(&mut self) {
+        self.change_examples(|examples| {
+            examples.weights.iter_mut().flatten().for_each(|weight| *weight = 0.0);
+        });
+    }
+
+    /// Has examples stay the shapes that they are though the rest shape's displacements from the file's were these
+    /// before.
+    fn rebase_examples(&mut self, before: &Arc<Vec<DVec3>>) {
+        let now = Arc::clone(&self.content.rest);
+        if Arc::ptr_eq(before, &now) || before == &now {
+            return;
+        }
+        self.change_examples(|examples| {
+            for shape in Arc::make_mut(&mut examples.shapes) {
+                let displacements = Arc::make_mut(&mut shape.displacements).iter_mut();
+                for ((own, before), now) in displacements.zip(&**before).zip(&*now) {
+                    *own += *before - *now;
+                }
+            }
+        });
+    }
+
+    fn change_examples(&mut self, mut change: impl FnMut(&mut Examples)) {
+        let mut attachments = Arc::clone(&self.content.attachments);
+        if attachments.values().any(|own| matches!(own, Attachment::Shapes(_))) {
+            for own in Arc::make_mut(&mut attachments).values_mut() {
+                if let Attachment::Shapes(examples) = own {
+                    change(examples);
+                }
+            }
+            self.set_attachments(attachments);
+        }
     }
 
     /// The same, if any handle is elsewhere than where it rests; what the surface is to be is solved from the rest shape

@@ -17,6 +17,9 @@ pub(super) struct StoredKept {
     /// Where control points were moved to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     controls: Option<Vec<[f64; 3]>>,
+    /// The examples' weights, `null` where one was found.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    weights: Vec<Option<f64>>,
     /// Displacements from the rest shape; `None` is the rest shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) shape: Option<Field>,
@@ -33,6 +36,7 @@ impl StoredKept {
                 .controls
                 .as_ref()
                 .map(|controls| controls.iter().map(|point| point.to_array()).collect()),
+            weights: kept.weights.clone(),
             shape,
         }
     }
@@ -52,6 +56,7 @@ impl StoredKept {
                 let points = controls.iter().map(|point| DVec3::from_array(*point));
                 Arc::new(points.collect())
             }),
+            weights: self.weights.clone(),
             shape,
         }
     }

@@ -5,7 +5,7 @@
 //! (an eye, a button, a strap's buckle) is left to the method as a loose part if what it touches moves ([`loose`]), and
 //! held still otherwise: nobody who moves a visor means the whole helmet.
 //!
-//! A method with control points (a cage, a lattice) bends without handles, too: then all is free that carries no paint,
+//! A method with control points (a cage, a lattice) or examples bends without handles, too: then all is free that carries no paint,
 //! unless some of it was painted free.
 
 mod loose;
@@ -39,7 +39,7 @@ pub(crate) struct RegionInput {
     pub(crate) loose_parts: Arc<BTreeMap<u32, Loose>>,
     pub(crate) access: Arc<Access>,
     pub(crate) contacts: FileContacts,
-    /// Whether the method has control points, which move the surface without handles, too.
+    /// Whether the method has control points or examples, which move the surface without handles, too.
     pub(crate) has_controls: bool,
 }
 
@@ -260,7 +260,7 @@ pub(crate) fn region_input(model: &Arc<Model>, document: &Document, contacts: &F
         loose_parts: Arc::clone(&document.loose_parts),
         access: Arc::clone(&document.access),
         contacts: contacts.clone(),
-        has_controls: !document.method.declaration().attachments.is_empty(),
+        has_controls: document.bends_without_handles(),
     }
 }
 

@@ -1,0 +1,83 @@
+//! The examples that lead the method: a list with a weight each.
+
+use eframe::egui::{self, Slider, SliderClamping, TextEdit};
+use pliant_deform::{AttachmentKind, LARGEST_WEIGHT};
+use pliant_editor::{Command, Editor};
+
+use crate::window::widgets::command_button::command_button;
+use crate::window::widgets::outbox::Outbox;
+
+/// Shows the list, where the method takes examples.
+pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
+    let mut declared = editor.document().method().declaration().attachments.iter();
+    if !declared.any(|own| own.kind == AttachmentKind::Shapes) {
+        return;
+    }
+    if command_button(ui, editor, &Command::KeepExample) {
+        commands.push(Command::KeepExample);
+    }
+    let Some(examples) = editor.document().examples() else {
+        return;
+    };
+    for (place, (shape, weight)) in examples.shapes.iter().zip(&examples.weights).enumerate() {
+        let found = editor.example_weights().get(place).copied();
+        ui.push_id(("example", place), |ui| {
+            ui.horizontal(|ui| {
+                name(ui, place, &shape.name, commands);
+                let mut is_free = weight.is_none();
+                let says = "The weight is found: as much of the example as suits the handles.";
+                if ui.checkbox(&mut is_free, "found").on_hover_text(says).changed() {
+                    let fixed = Some(found.unwrap_or(0.0).clamp(-LARGEST_WEIGHT, LARGEST_WEIGHT));
+                    commands.push(Command::SetExampleWeight(place, if is_free { None } else { fixed }));
+                }
+                let remove = ui.button("Remove").on_hover_text(format!("Removes {}.", shape.name));
+                if remove.clicked() {
+                    commands.push(Command::RemoveExample(place));
+                }
+            });
+            let mut shown = weight.or(found).unwrap_or(0.0);
+            let slider = Slider::new(&mut shown, -0.5..=1.5)
+                .clamping(SliderClamping::Never)
+                .fixed_decimals(2);
+            let slider = ui.add_enabled(weight.is_some(), slider);
+            let slider = slider
+                .on_hover_text("0 is rest, 1 is the example, beyond goes on; double-click the number to type one.")
+                .on_disabled_hover_text("It is found: clear \"found\" to set it.");
+            let value = shown;
+            slider.widget_info(|| egui::WidgetInfo::slider(true, value, format!("Weight of {}", shape.name)));
+            commands.adjust(&slider, || {
+                let weight = if shown.is_finite() { shown } else { 0.0 };
+                Command::SetExampleWeight(place, Some(weight.clamp(-LARGEST_WEIGHT, LARGEST_WEIGHT)))
+            });
+        });
+    }
+}
+
+/// The name; a double click renames.
+fn name(ui: &mut egui::Ui, place: usize, name: &str, commands: &mut Outbox) {
+    let editing = egui::Id::unique("renamed example");
+    let typed: Option<(usize, String)> = ui.data(|data| data.get_temp(editing));
+    if let Some((own, mut text)) = typed
+        && own == place
+    {
+        let field = ui.add(TextEdit::singleline(&mut text).desired_width(110.0));
+        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Name of the example"));
+        if field.lost_focus() {
+            let is_meant = !ui.input(|input| input.key_pressed(egui::Key::Escape)) && !text.trim().is_empty();
+            if is_meant && text.trim() != name {
+                commands.push(Command::RenameExample(place, text.trim().to_owned()));
+            }
+            ui.data_mut(|data| data.remove::<(usize, String)>(editing));
+        } else {
+            field.request_focus();
+            ui.data_mut(|data| data.insert_temp(editing, (place, text)));
+        }
+        return;
+    }
+    let label = ui
+        .selectable_label(false, name)
+        .on_hover_text("Double-click to rename.");
+    if label.double_clicked() {
+        ui.data_mut(|data| data.insert_temp(editing, (place, name.to_owned())));
+    }
+}

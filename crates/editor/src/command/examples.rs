@@ -1,0 +1,64 @@
+//! What is done with the examples that lead the method.
+
+use super::entry::{Action, Entry, Reason, Scope, State, item, unless};
+use crate::workspace::{examples_name, keep_example, remove_example, rename_example, set_example_weight};
+
+/// Keeps the present shape as one more example.
+pub(super) const KEEP_EXAMPLE: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Keep this pose as an example",
+        "Keeps the present shape as an example that Discrete shells blends or is led by.",
+        "pose shape blend morph interpolate in-between example",
+        &[],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| {
+        without_examples(state).or_else(|| {
+            let document = &state.workspace.document;
+            let is_bent = document.is_displaced();
+            unless(is_bent, "Nothing is bent that could be kept: move a handle first.")
+        })
+    },
+    action: Action::Do(|context, ()| keep_example(context.workspace)),
+};
+
+/// Sets the weight of an example, by its place in the list; `None` has the solver find it.
+pub(super) const SET_EXAMPLE_WEIGHT: Entry<(usize, Option<f64>)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (place, _)| gone(state, *place),
+    action: Action::Do(|context, (place, weight)| set_example_weight(context.workspace, place, weight)),
+};
+
+/// Gives an example another name.
+pub(super) const RENAME_EXAMPLE: Entry<(usize, String)> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, (place, _)| gone(state, *place),
+    action: Action::Do(|context, (place, name)| rename_example(context.workspace, place, name)),
+};
+
+/// Removes an example.
+pub(super) const REMOVE_EXAMPLE: Entry<usize> = Entry {
+    listed: &[],
+    scope: Scope::Document,
+    unavailable: |state, place| gone(state, *place),
+    action: Action::Do(|context, place| remove_example(context.workspace, place)),
+};
+
+/// The reason where the method takes no examples.
+fn without_examples(state: &State<'_>) -> Option<Reason> {
+    state.unopened().or_else(|| {
+        let are_taken = examples_name(&state.workspace.document).is_some();
+        unless(are_taken, "The method takes no examples: choose Discrete shells.")
+    })
+}
+
+fn gone(state: &State<'_>, place: usize) -> Option<Reason> {
+    without_examples(state).or_else(|| {
+        let examples = state.workspace.document.examples();
+        let is_there = examples.is_some_and(|examples| place < examples.shapes.len());
+        unless(is_there, "That example is not there any more.")
+    })
+}

@@ -1,0 +1,85 @@
+//! The examples that lead the method: poses that a person keeps, and their weights.
+
+use std::sync::Arc;
+
+use pliant_deform::{Attachment, AttachmentKind, ExampleShape, Examples};
+
+use super::state::Workspace;
+use crate::document::Document;
+
+/// The declared name of the method's examples, where it takes some.
+pub(crate) fn examples_name(document: &Document) -> Option<&'static str> {
+    let mut declared = document.method().declaration().attachments.iter();
+    declared
+        .find(|own| own.kind == AttachmentKind::Shapes)
+        .map(|own| own.name)
+}
+
+/// Keeps the present shape as one more example. Its weight is set to 0, so that nothing moves.
+pub(crate) fn keep_example(workspace: &mut Workspace) {
+    let displacements = Arc::clone(&workspace.document.from_rest);
+    let name = free_name(&workspace.document);
+    add_example(workspace, ExampleShape { name, displacements });
+}
+
+/// Adds an example with the weight 0.
+pub(crate) fn add_example(workspace: &mut Workspace, shape: ExampleShape) {
+    change(workspace, "Keep example", |examples| {
+        Arc::make_mut(&mut examples.shapes).push(shape);
+        examples.weights.push(Some(0.0));
+    });
+}
+
+/// Sets the weight of an example; `None` has the solver find it.
+pub(crate) fn set_example_weight(workspace: &mut Workspace, place: usize, weight: Option<f64>) {
+    change(workspace, "Weigh example", |examples| {
+        if let Some(own) = examples.weights.get_mut(place) {
+            *own = weight;
+        }
+    });
+}
+
+/// Gives an example another name.
+pub(crate) fn rename_example(workspace: &mut Workspace, place: usize, name: String) {
+    change(workspace, "Rename example", |examples| {
+        if let Some(own) = Arc::make_mut(&mut examples.shapes).get_mut(place) {
+            own.name = name;
+        }
+    });
+}
+
+/// Removes an example.
+pub(crate) fn remove_example(workspace: &mut Workspace, place: usize) {
+    change(workspace, "Remove example", |examples| {
+        if place < examples.weights.len() {
+            Arc::make_mut(&mut examples.shapes).remove(place);
+            examples.weights.remove(place);
+        }
+    });
+}
+
+fn change(workspace: &mut Workspace, name: &'static str, change: impl FnOnce(&mut Examples)) {
+    workspace.change(name, |document| {
+        let Some(name) = examples_name(document) else { return };
+        let mut examples = document.examples().cloned().unwrap_or_default();
+        change(&mut examples);
+        let mut attachments = Arc::clone(&document.attachments);
+        let all = Arc::make_mut(&mut attachments);
+        let before = match examples.shapes.is_empty() {
+            true => all.remove(name),
+            false => all.insert(name, Attachment::Shapes(examples)),
+        };
+        if before.as_ref() != attachments.get(name) {
+            document.unsettle();
+            document.set_attachments(attachments);
+        }
+    });
+}
+
+/// "example 1", or with the next number that no example has.
+fn free_name(document: &Document) -> String {
+    let shapes = document.examples().map_or(&[][..], |examples| &examples.shapes);
+    let name = |number: usize| format!("example {number}");
+    let is_free = |number: &usize| shapes.iter().all(|shape| shape.name != name(*number));
+    name((1..=shapes.len() + 1).find(is_free).unwrap_or(1))
+}
