@@ -3,18 +3,21 @@
 //! The edit is the one beside the mesh, or the one that peers are timed on (see `common`). One JSON object: binding, the
 //! first shape, the solve from rest until it converges, and a drag of 60 frames: the median and the longest time from new
 //! targets to the first shape for them, and the largest distance from the converged shape at the end of the drag and
-//! half a second later, in diagonals. Times in milliseconds.
+//! half a second later, in diagonals. Then the converged shape is an example, nothing is held but what is fixed, and its
+//! weight goes from 0 to 1 in 60 frames: binding, the median and the longest time to the first shape, and its distance
+//! from the example at 1. Times in milliseconds.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a program that measures")]
 
 mod common;
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use common::{edit, forget_peak, median, ms, name, one_handle, peak_mb, read, timed};
 use glam::{DAffine3, DQuat, DVec3};
-use pliant_deform::{Bound, Method, OptionValue};
-use pliant_mesh::{Cancel, Progress};
+use pliant_deform::{Attachment, Bound, ExampleShape, Examples, Method, OptionValue, Problem, Role};
+use pliant_mesh::{Cancel, Model, Progress};
 
 /// A frame of a drag, in milliseconds.
 const FRAME_MS: f64 = 16.0;
@@ -73,11 +76,14 @@ fn measure(file: &Path, threads: usize, method: &Method) {
     let (mut frames, displacements) = drag(&mut bound, target, roles.len());
     let dragged = away(&displacements);
     let rested = away(&rest(&mut bound, displacements));
+    let (blend_bind_ms, mut blend_frames, blended) = blend(&model, &roles, &stiffness, method, &minimum);
+    let blended = away(&blended);
     println!(
         "{{\"mesh\": \"{}\", \"threads\": {threads}, \"free\": {}, \"bind\": {bind_ms:.0}, \"first\": {first_ms:.0}, \
          \"solve\": {solve_ms:.0}, \"steps\": {}, \"converged\": {}, \"first_energy\": {:.6e}, \"energy\": {:.6e}, \
          \"to_1%\": {:.0}, \"frame_median\": {:.1}, \"frame_max\": {:.1}, \"dragged\": {dragged:.4}, \
-         \"rested\": {rested:.4}, \"factor_mb\": {:.0}, \"peak_mb\": {:.0}}}",
+         \"rested\": {rested:.4}, \"blend_bind\": {blend_bind_ms:.0}, \"blend_median\": {:.1}, \"blend_max\": {:.1}, \
+         \"blended\": {blended:.1e}, \"factor_mb\": {:.0}, \"peak_mb\": {:.0}}}",
         name(file),
         bound.solved_count(),
         step.iteration,
@@ -87,6 +93,8 @@ fn measure(file: &Path, threads: usize, method: &Method) {
         near_ms[near],
         median(&mut frames.clone()),
         frames.iter_mut().fold(0.0, |a: f64, b| a.max(*b)),
+        median(&mut blend_frames.clone()),
+        blend_frames.iter_mut().fold(0.0, |a: f64, b| a.max(*b)),
         bound.factor_len() as f64 * 8e-6,
         peak_mb(),
     );
@@ -114,6 +122,39 @@ fn drag(bound: &mut Bound, target: DAffine3, count: usize) -> (Vec<f64>, Vec<DVe
         while frame < 60 && ms(start) < FRAME_MS && !bound.step(&mut displacements).unwrap().finished {}
     }
     (frames, displacements)
+}
+
+/// Binding with an example alone, 60 frames of its weight from 0 to 1, and the last one's shape.
+fn blend(
+    model: &Model,
+    roles: &[Role],
+    stiffness: &[f64],
+    method: &Method,
+    example: &[DVec3],
+) -> (f64, Vec<f64>, Vec<DVec3>) {
+    let roles: Vec<Role> = roles
+        .iter()
+        .map(|role| if *role == Role::Fixed { Role::Fixed } else { Role::Free })
+        .collect();
+    let shape = ExampleShape {
+        name: "example".to_owned(),
+        displacements: Arc::new(example.to_vec()),
+    };
+    let attachments = [("examples", Attachment::Shapes(Examples::at_rest(vec![shape])))];
+    let problem = Problem {
+        handle_count: 0,
+        attachments: &attachments,
+        ..one_handle(model, &roles, stiffness, method)
+    };
+    let (bind_ms, mut bound) = timed(|| problem.bind(None, &Progress::new(), &Cancel::new()).unwrap());
+    let (mut frames, mut displacements) = (Vec::new(), vec![DVec3::ZERO; roles.len()]);
+    for frame in 1..=60 {
+        bound.set_weights(&[Some(f64::from(frame) / 60.0)]).unwrap();
+        let start = Instant::now();
+        bound.step(&mut displacements).unwrap();
+        frames.push(ms(start));
+    }
+    (bind_ms, frames, displacements)
 }
 
 /// Half a second of steps.

@@ -53,7 +53,7 @@ pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
 }
 
 /// Copies a scene of the survey to the folder of measurements, where other shapes may be written next to it.
-fn copied(survey: &Path, name: &str) -> Result<PathBuf, String> {
+pub(super) fn copied(survey: &Path, name: &str) -> Result<PathBuf, String> {
     let folder = folder();
     for extension in ["off", "sel", "def"] {
         let file = format!("{name}.{extension}");

@@ -14,6 +14,7 @@ mod linear;
 mod meshes;
 mod peers;
 mod primo;
+mod shells;
 mod space;
 mod table;
 mod vectors;
@@ -62,6 +63,11 @@ const SECTIONS: &[Section] = &[
         name: "arap",
         title: "As-rigid-as-possible compared with libigl: milliseconds; energies without unit; distances in diagonals",
         rows: arap::rows,
+    },
+    Section {
+        name: "shells",
+        title: "Discrete shells beside a direct Gauss–Newton in Python: milliseconds; energies without unit",
+        rows: shells::rows,
     },
     Section {
         name: "differential",
