@@ -1,6 +1,6 @@
 //! The examples that lead the method: a list with a weight each.
 
-use eframe::egui::{self, Slider, SliderClamping, TextEdit};
+use eframe::egui::{self, RichText, Slider, SliderClamping, TextEdit};
 use pliant_deform::{AttachmentKind, LARGEST_WEIGHT};
 use pliant_editor::{Command, Editor};
 
@@ -19,6 +19,11 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let Some(examples) = editor.document().examples() else {
         return;
     };
+    let are_weighed = examples.weights.iter().flatten().any(|weight| *weight != 0.0);
+    if are_weighed && editor.document().handles().iter().any(|handle| handle.soft.is_none()) {
+        let says = "Handles hold their vertices against the weights: delete them, or make them soft, to blend freely.";
+        ui.label(RichText::new(says).weak().small());
+    }
     for (place, (shape, weight)) in examples.shapes.iter().zip(&examples.weights).enumerate() {
         let found = editor.example_weights().get(place).copied();
         ui.push_id(("example", place), |ui| {
