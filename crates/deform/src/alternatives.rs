@@ -9,6 +9,15 @@ pub fn of_space() -> String {
     either(METHODS.iter().filter(points).take(2))
 }
 
+/// The names of the methods that bend space and keep no table for each handle, joined by "or".
+pub(crate) fn of_space_for_many_handles() -> String {
+    let keeps_nothing = |declaration: &&&MethodDeclaration| {
+        let method = (declaration.default)();
+        method.needs() == Needs::Points && method.implementation().handle_row_bytes() == 0
+    };
+    either(METHODS.iter().filter(keeps_nothing))
+}
+
 /// All methods that heed a constraint.
 pub(crate) fn heeding(constraint: ConstraintKind) -> String {
     either(METHODS.iter().filter(|declaration| declaration.heeds(constraint)))

@@ -165,7 +165,8 @@ pub enum BindError {
     },
     /// What is kept for each handle would together take more than the [`crate::Budget`].
     #[error(
-        "{handle_count} handles over {free_count} free vertices take more memory than allowed: join handles or make the region smaller"
+        "{handle_count} handles over {free_count} free vertices take more memory than allowed: join handles, make the region smaller, or take {}",
+        alternatives::of_space_for_many_handles()
     )]
     Handles {
         /// How many handles there are.

@@ -58,7 +58,7 @@ impl DeformMethod for Embedded {
     }
 
     fn row_bytes(&self) -> usize {
-        // Up to five shares of nodes, twice while the graph is made, and seven of residuals.
+        // Up to five shares of nodes, twice while the graph is made, and those of the handles nearby.
         300 + 24 * size_of::<Share>()
     }
 

@@ -37,7 +37,7 @@ impl DeformMethod for Mls {
 
     fn row_bytes(&self) -> usize {
         match self.transforms {
-            MlsTransforms::Affine => 0,
+            MlsTransforms::Affine => 300,
             MlsTransforms::Similarity | MlsTransforms::Rigid => TURNING_ROW,
         }
     }

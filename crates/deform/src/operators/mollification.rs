@@ -1,6 +1,8 @@
 //! Intrinsic mollification [SC20, section 4.5]: edges made longer where a triangle is too flat for
 //! cotangents.
 
+use crate::alternatives;
+
 /// By how much two edges of a triangle are made to exceed the third, in units of the longest.
 const MOLLIFICATION: f64 = 1e-5;
 
@@ -14,11 +16,13 @@ pub(crate) fn lack(lengths: [f64; 3]) -> f64 {
 
 /// What is said of triangles too flat for cotangents.
 pub(crate) fn repairs(mollified_faces: usize) -> Option<String> {
-    match mollified_faces {
-        0 => None,
-        1 => Some("1 degenerate triangle was given the smallest safe shape".to_owned()),
-        count => Some(format!(
-            "{count} degenerate triangles were given the smallest safe shape"
-        )),
-    }
+    let space = alternatives::of_space();
+    let done = match mollified_faces {
+        0 => return None,
+        1 => "1 degenerate triangle was given the smallest safe shape".to_owned(),
+        count => format!("{count} degenerate triangles were given the smallest safe shape"),
+    };
+    Some(format!(
+        "{done}: where they bend badly, take {space}, which needs no triangles"
+    ))
 }

@@ -96,7 +96,7 @@ impl<'a> Partition<'a> {
             how => (!handles.is_empty()).then_some((component, how)),
         };
         warnings.extend(unheeded(problem));
-        warnings.extend(triangulation.warning().map(|sentence| sentence.to_owned().into()));
+        warnings.extend(triangulation.warning().map(Warning::from));
         Ok(Self {
             solved: solved(
                 problem,

@@ -85,16 +85,15 @@ impl Blend {
             .iter()
             .map(|&vertex| positions[vertex as usize])
             .collect();
-        let held = |role: Role| {
-            let own = input.problem.roles.iter().zip(positions);
-            let own = own.filter(|(other, _)| **other == role).map(|(_, place)| *place);
-            Hold::of(own.collect())
-        };
-        let of_handles = (0..).zip(&input.partition.soft).map(|(handle, soft)| match soft {
+        let place = |&vertex: &u32| positions[vertex as usize];
+        let of_handles = input.handles.iter().zip(&input.partition.soft);
+        let of_handles = of_handles.map(|(handle, soft)| match soft {
             Some(_) => Hold::of(Vec::new()),
-            None => held(Role::Handle(handle)),
+            None => Hold::of(handle.vertices.iter().map(place).collect()),
         });
-        let all: Vec<Hold> = of_handles.chain([held(Role::Fixed)]).collect();
+        let fixed = input.problem.roles.iter().zip(positions);
+        let fixed = fixed.filter(|(role, _)| **role == Role::Fixed).map(|(_, place)| *place);
+        let all: Vec<Hold> = of_handles.chain([Hold::of(fixed.collect())]).collect();
         Ok(Self {
             shares: Shares::of(&world_places, input, &weigh)?,
             holds: Shares::of(&world_places, input, |place| held_by(place, &all, width))?,

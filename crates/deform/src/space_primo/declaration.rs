@@ -59,7 +59,7 @@ impl DeformMethod for SpacePrimo {
     }
 
     fn row_bytes(&self) -> usize {
-        // Up to some twenty shares of cells and seven of residuals, twice while they are collected.
+        // Up to some twenty shares of cells and those of the handles nearby, twice while they are collected.
         300 + 60 * size_of::<Share>()
     }
 

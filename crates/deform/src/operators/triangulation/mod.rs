@@ -14,7 +14,7 @@ use pliant_mesh::{Surface, SurfaceVertex, Topology};
 use crate::operators::triangulation::intrinsic::Intrinsic;
 use crate::operators::triangulation::principal::stretches;
 use crate::operators::triangulation::surface::SurfaceTriangulation;
-use crate::{Bilaplacian, Problem, TriangulationKind};
+use crate::{Bilaplacian, Problem, TriangulationKind, alternatives};
 
 /// Triangles with edge lengths over the surface's vertices.
 #[derive(Clone, Debug)]
@@ -142,11 +142,13 @@ impl<'a> Triangulation<'a> {
     }
 
     /// Sentences for a person about edges that could not be flipped.
-    pub fn warning(&self) -> Option<&'static str> {
+    pub fn warning(&self) -> Option<String> {
         match self {
-            Self::Intrinsic(triangulation, _) if !triangulation.is_delaunay() => {
-                Some("the intrinsic triangulation could not be made Delaunay throughout: some weights stay negative")
-            }
+            Self::Intrinsic(triangulation, _) if !triangulation.is_delaunay() => Some(format!(
+                "the intrinsic triangulation could not be made Delaunay throughout, so some weights stay negative: where \
+                 the surface folds, take {}, which needs no triangles",
+                alternatives::of_space()
+            )),
             _ => None,
         }
     }
