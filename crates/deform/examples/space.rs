@@ -77,7 +77,7 @@ fn measure(vertices: usize, threads: usize, method: &Method, by_hand: bool) {
         let turn = DAffine3::from_axis_angle(DVec3::X, 0.8 * t);
         let target = DAffine3::from_translation(DVec3::new(0.3, 0.1, 0.4) * t) * turn;
         let moved = brought.as_ref().map(|(_, own)| {
-            let mut moved = own.moved().to_vec();
+            let mut moved = own.moved().unwrap().to_vec();
             moved[0] += DVec3::X * t;
             Arc::new(moved)
         });
