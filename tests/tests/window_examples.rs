@@ -68,10 +68,17 @@ fn a_pose_is_kept_and_its_slider_blends_it_live_in_one_step() {
     session.settle();
     assert!(largest(&session.shape()) < 1e-3 * posed, "{}", session.status());
 
-    let nodes = session.harness.get_all_by_label_contains("Weight of example 1");
-    let mut sliders = nodes.filter(|node| node.accesskit_node().role() == Role::Slider);
-    let slider = sliders.next().expect("the panel has the slider").rect();
-    drop(sliders);
+    let is_weight = |label: Option<String>| label.is_some_and(|label| label == "Weight of example 1");
+    let slider = |session: &Session| {
+        let mut sliders = session.harness.get_all_by_role(Role::Slider);
+        let slider = sliders.find(|node| is_weight(node.accesskit_node().label()));
+        let slider = slider.expect("the panel has the slider");
+        slider.scroll_to_me();
+        slider.rect()
+    };
+    slider(&session);
+    session.harness.run_steps(8);
+    let slider = slider(&session);
     let at = |share: f32| slider.left_center() + vec2(slider.width() * share, 0.0);
     session.pointer(at(0.25), None);
     session.pointer(at(0.25), Some(true));
@@ -94,6 +101,7 @@ fn a_pose_is_kept_and_its_slider_blends_it_live_in_one_step() {
     session.settle();
     assert_eq!(weights(&session), [Some(before)]);
     session.harness.get_by_label("Remove").click();
+    session.harness.run_steps(2);
     session.settle();
     assert!(weights(&session).is_empty());
 }

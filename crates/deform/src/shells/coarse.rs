@@ -187,9 +187,21 @@ impl Coarse {
     }
 
     /// How the solved fine vertices turn with the coarse level since it was last followed, `of_handles`
-    /// being how handles did, and `otherwise` what turns those without anything coarse near.
-    pub fn turns(&mut self, of_handles: &[DQuat], otherwise: &(impl Fn(usize) -> DQuat + Sync)) -> Vec<DMat3> {
-        let turns = self.own_turns(of_handles);
+    /// being how handles did, and `otherwise` what turns those without anything coarse near. With `weights` it is how
+    /// they turn further than the examples have them.
+    pub fn turns(
+        &mut self,
+        of_handles: &[DQuat],
+        weights: Option<&[f64]>,
+        otherwise: &(impl Fn(usize) -> DQuat + Sync),
+    ) -> Vec<DMat3> {
+        let mut turns = self.own_turns(of_handles);
+        if let (Some(weights), Some(blending)) = (weights, &self.solver.blending) {
+            let blended = blending.turns.blended(weights);
+            for (turn, own) in turns.iter_mut().zip(blended) {
+                *turn *= own.conjugate();
+            }
+        }
         self.followed = self.solver.positions();
         self.shares
             .par_iter()

@@ -7,11 +7,11 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::ShellsSolver;
 use super::carry::{Base, Carrier, Strains};
 use super::coarse::Coarse;
 use super::elements::ABSENT;
 use super::unfolded::Preconditioner;
+use super::{Blending, ShellsSolver};
 use crate::handles::Motion;
 use crate::handles::blend::{Origin, Screw, Screws, carried};
 use crate::numerical::sums::Field;
@@ -102,8 +102,8 @@ impl ShellsSolver {
         if origin == Origin::Rest {
             self.energy.evaluate(&mut self.trial, &self.energy.springs);
         }
-        let turns = self.turns(led, &screws);
         let weights = led.coarse.weights().to_vec();
+        let turns = self.turns(led, &screws, self.blending.as_ref().map(|own| (own, &weights[..])));
         let strains = self.blending.as_ref();
         let strains = strains.map(|own| Strains::of(&self.energy, &own.turns, &weights));
         let base = Base {
@@ -154,7 +154,7 @@ impl ShellsSolver {
     fn correct(&mut self, led: &mut Led) {
         led.coarse.restrict(&self.current, &self.slopes.energy);
         led.coarse.go_on(CORRECTING_STEPS);
-        let turns = self.turns(led, &[]);
+        let turns = self.turns(led, &[], None);
         self.trial.clone_from(&self.current);
         let base = Base {
             places: &self.positions(),
@@ -182,8 +182,9 @@ impl ShellsSolver {
     }
 
     /// How each local vertex' surroundings turn: with its handle, with the coarse level, or where that has nothing near
-    /// with the blended `screws`; not at all where these are none.
-    fn turns(&self, led: &mut Led, screws: &[Screw]) -> Vec<DMat3> {
+    /// with the blended `screws`; not at all where these are none. With weights of examples it turns as these have it, too:
+    /// the coarse level, which knows no sharp folds, says only how much further.
+    fn turns(&self, led: &mut Led, screws: &[Screw], examples: Option<(&Blending, &[f64])>) -> Vec<DMat3> {
         let mut of_handles: Vec<DQuat> = screws.iter().map(Screw::turn).collect();
         of_handles.resize(self.motions.len(), DQuat::IDENTITY);
         let (rest, count) = (&self.energy.elements.rest, screws.len());
@@ -191,8 +192,14 @@ impl ShellsSolver {
             let own = &self.weights[vertex * count..(vertex + 1) * count];
             carried(rest[vertex], screws, own).turn.normalize()
         };
-        let mut turns = led.coarse.turns(&of_handles, &blended);
+        let weights = examples.map(|(_, weights)| weights);
+        let mut turns = led.coarse.turns(&of_handles, weights, &blended);
         turns.resize(rest.len(), DMat3::IDENTITY);
+        if let Some((blending, weights)) = examples {
+            for (turn, own) in turns.iter_mut().zip(blending.turns.blended(weights)) {
+                *turn *= DMat3::from_quat(own);
+            }
+        }
         for (own, turn) in self.prescribed.iter().zip(&of_handles) {
             let turn = DMat3::from_quat(*turn);
             for vertex in own.iter().filter(|vertex| vertex.local != ABSENT) {

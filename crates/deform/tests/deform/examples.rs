@@ -249,6 +249,27 @@ fn weights_that_are_set_later_give_what_those_brought_give() {
     assert!(apart(&later, &brought) < 1e-6 * scene.diagonal());
 }
 
+/// Also where it folds within an edge's length: at the first step.
+#[test]
+fn a_fold_of_an_example_is_there_at_the_first_step_with_a_coarse_level_and_without() {
+    for led_above in [usize::MAX, 0] {
+        let mut scene = bar();
+        scene.method = method(led_above);
+        let folded = |p: DVec3| match p.x > 12.2 {
+            true => DVec3::new(12.0, 0.0, 0.0) + DQuat::from_rotation_y(-1.4) * (p - DVec3::X * 12.0),
+            false => p,
+        };
+        let own = example(&scene, folded);
+        let scene = with_examples(scene, vec![own], &[Some(1.0)]);
+        let bound = &mut scene.bind();
+        bound.set_targets(&[]).unwrap();
+        let mut shape = vec![DVec3::ZERO; scene.positions().len()];
+        bound.step(&mut shape).unwrap();
+        let error = apart(&shape, example_of(&scene, 0)) / scene.diagonal();
+        assert!(error < 1e-3, "{led_above}: {error:e}");
+    }
+}
+
 /// A coarse level changes how the shape is found, not which.
 #[test]
 fn a_coarse_level_leads_to_the_same_blend() {
