@@ -56,7 +56,7 @@ pub fn bind(
 }
 
 /// The refusal of a binding, which names vertices by the file's numbers.
-fn refused(file: &Path, model: &Model, error: BindError) -> AppError {
+pub(crate) fn refused(file: &Path, model: &Model, error: BindError) -> AppError {
     AppError::Bind {
         file: file.to_owned(),
         source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_editor::{Beginning, ExampleSource};
-use pliant_mesh::Model;
+use pliant_mesh::{Drawn, Model};
 
 use crate::AppError;
 use crate::files::shown;
@@ -43,24 +43,33 @@ pub fn bring(edit: &mut Beginning, edit_path: &Path, loaded: &Loaded, watch: &Wa
 fn displacements_to(path: &Path, loaded: &Loaded, watch: &Watch) -> Result<Vec<DVec3>, AppError> {
     let other = open(path, watch)?.drawn;
     let own = loaded.model.rest();
-    let counts = |positions: usize, triangles: usize| format!("{positions} vertices and {triangles} triangles");
-    let (found, expected) = (
-        (other.positions.len(), other.triangles.len()),
-        (own.positions.len(), own.triangles.len()),
-    );
+    check_connectivity((path, &other), (&loaded.path, &own))?;
+    let each = other.positions.iter().zip(&own.positions);
+    Ok(each.map(|(to, from)| *to - *from).collect())
+}
+
+/// Refuses a shape of other vertices or triangles than those of the file that it is to be a pose of.
+///
+/// # Errors
+/// [`AppError::Example`].
+pub fn check_connectivity((path, other): (&Path, &Drawn), (file, own): (&Path, &Drawn)) -> Result<(), AppError> {
+    let counts = |drawn: &Drawn| {
+        let (positions, triangles) = (drawn.positions.len(), drawn.triangles.len());
+        format!("{positions} vertices and {triangles} triangles")
+    };
+    let (found, expected) = (counts(other), counts(own));
     let what = if found != expected {
-        counts(found.0, found.1)
+        found
     } else if other.triangles != own.triangles {
-        format!("{}, but other triangles", counts(found.0, found.1))
+        format!("{found}, but other triangles")
     } else {
-        let each = other.positions.iter().zip(&own.positions);
-        return Ok(each.map(|(to, from)| *to - *from).collect());
+        return Ok(());
     };
     Err(AppError::Example {
         example: path.to_owned(),
         what,
-        file: loaded.path.clone(),
-        expected: counts(expected.0, expected.1),
+        file: file.to_owned(),
+        expected,
     })
 }
 

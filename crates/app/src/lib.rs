@@ -15,6 +15,7 @@ mod picture_file;
 pub mod report;
 pub mod saving;
 pub mod sheet;
+mod transfer;
 mod version;
 pub mod watch;
 pub mod window;

@@ -41,6 +41,7 @@ mod space_primo;
 mod sparse;
 #[doc(hidden)]
 pub mod stages;
+mod transfer;
 mod warning;
 
 pub use arap::{Arap, ArapEnergy};
@@ -70,4 +71,5 @@ pub use region::constraints::{CONTINUITY_RANGE, Constraints};
 pub use shells::Shells;
 pub use space_primo::SpacePrimo;
 pub use sparse::Ordering;
+pub use transfer::{DeformationTransfer, PosedShape};
 pub use warning::Warning;

@@ -26,7 +26,8 @@ pub use findings::{Example, Finding, FindingKind, Findings, Inspection, LocatedF
 pub use geodesics::{DistanceSearch, distances_along_surface};
 pub use geometry::{
     Bounds, Distortion, area_of_lengths, bounding_box, cotangents, edge_lengths, face_area, face_areas, face_gradient,
-    face_normal, mean_curvatures, mixed_corner_areas, mixed_voronoi_areas, signed_volume, vertex_normals,
+    face_normal, is_without_area, mean_curvatures, mixed_corner_areas, mixed_voronoi_areas, signed_volume,
+    vertex_normals,
 };
 pub use ids::{DrawnVertex, FileVertex, SurfaceVertex};
 pub use model::{Drawn, DrawnSet, Model, Object, SurfaceOfFile, WeldOptions};

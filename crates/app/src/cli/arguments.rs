@@ -39,6 +39,8 @@ pub(crate) enum Command {
     Compare(CompareArguments),
     /// Say in words what differs between two files
     Diff(DiffArguments),
+    /// Put a pose of one mesh onto another
+    Transfer(TransferArguments),
 }
 
 #[derive(Args, Debug)]
@@ -87,6 +89,33 @@ pub(crate) struct ApplyArguments {
     /// Use this method instead of the edit's, with its defaults or with options set: NAME[:OPTION=VALUE..]
     #[arg(long, value_name = "NAME")]
     pub method: Option<String>,
+    /// On how many threads, and with which vectors.
+    #[command(flatten)]
+    pub compute: ComputeArguments,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct TransferArguments {
+    /// The mesh that has the pose, at rest: glb, gltf, obj, ply, stl or off
+    pub source: PathBuf,
+    /// The same vertices and triangles in the pose
+    pub pose: PathBuf,
+    /// The mesh that is to take it on
+    pub target: PathBuf,
+    /// The file to write; its extension tells its format
+    #[arg(long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Which triangles of SOURCE and TARGET belong together, numbered from 0: {"triangles": [[SOURCE, TARGET], ..]}.
+    /// Without it, both must have the same triangles
+    #[arg(long, value_name = "PAIRS.json")]
+    pub correspondences: Option<PathBuf>,
+    /// Leave the shape as it is and save the pose as a morph target of this name (without one, POSE's): OUT is glb or
+    /// gltf
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
+    pub as_morph: Option<String>,
+    /// How far the morph target shows by default, from 0 to 1
+    #[arg(long, value_name = "W", default_value = "1", requires = "as_morph", value_parser = unit_number)]
+    pub morph_weight: f64,
     /// On how many threads, and with which vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,

@@ -9,6 +9,7 @@ mod interrupt;
 mod method_argument;
 mod progress_line;
 mod render;
+mod transfer;
 
 use std::ffi::OsString;
 use std::io::{self, ErrorKind, IsTerminal, Write};
@@ -62,6 +63,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Render(arguments)) => render::run(&arguments, console),
             Some(Command::Compare(arguments)) => compare::run(&arguments, console),
             Some(Command::Diff(arguments)) => diff::run(&arguments, console),
+            Some(Command::Transfer(arguments)) => transfer::run(&arguments, console),
             None => crate::window::run(arguments.file),
         },
         Err(help) if !help.use_stderr() => print(console.out, &help.render().to_string()),

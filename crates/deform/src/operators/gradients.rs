@@ -31,6 +31,8 @@ pub(crate) struct Gradients {
 /// A face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Face {
+    /// Its number in the surface.
+    pub number: u32,
     /// Its corners as the Laplacian's local vertices.
     pub locals: [u32; 3],
     /// w of the edge opposite to each corner.
@@ -74,6 +76,7 @@ impl Gradients {
             let corners = surface.triangles[number as usize];
             let [a, b, c] = corners.map(|corner| surface.positions[corner.index()]);
             Face {
+                number,
                 locals: corners.map(|corner| local_of[corner.index()]),
                 weights: metric.face(stiffness, corners, edge_lengths([a, b, c])).half_cotangents,
                 edges: [b - a, c - a],

@@ -81,7 +81,7 @@ pub fn face_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
 }
 
 /// Whether a triangle is a line or a point to within rounding: its height is below 1e-10 of its longest edge.
-pub(crate) fn is_without_area([a, b, c]: [DVec3; 3]) -> bool {
+pub fn is_without_area([a, b, c]: [DVec3; 3]) -> bool {
     let longest_squared = a
         .distance_squared(b)
         .max(b.distance_squared(c))

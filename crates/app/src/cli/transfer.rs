@@ -1,0 +1,30 @@
+//! `pliant transfer`: a pose of one mesh put onto another.
+
+use pliant_io::{Format, MorphTarget};
+
+use super::arguments::TransferArguments;
+use super::{Console, on_threads, print};
+use crate::AppError;
+use crate::transfer::{Transfer, transfer};
+
+pub(super) fn run(arguments: &TransferArguments, console: &mut Console<'_>) -> Result<(), AppError> {
+    let output_name = arguments.output.to_string_lossy();
+    Format::of_name(&output_name).map_err(|error| AppError::Arguments(format!("--output: {error}")))?;
+    let own_name = arguments.pose.file_stem().unwrap_or_default().to_string_lossy();
+    let morph = arguments.as_morph.as_deref().map(|name| MorphTarget {
+        name: if name.is_empty() { &own_name } else { name },
+        weight: arguments.morph_weight,
+    });
+    let job = Transfer {
+        source: &arguments.source,
+        pose: &arguments.pose,
+        target: &arguments.target,
+        correspondences: arguments.correspondences.as_deref(),
+        output: &arguments.output,
+        morph,
+    };
+    let (watch, staging) = (&console.watch, &console.staging);
+    let warnings = on_threads(arguments.compute, || transfer(&job, watch, staging))??;
+    let lines = warnings.iter().map(|warning| format!("{warning}\n"));
+    print(console.out, &lines.collect::<String>())
+}

@@ -1,0 +1,176 @@
+//! A pose of one mesh is put onto another: files in, a file out.
+
+use std::path::Path;
+
+use pliant_deform::{DeformationTransfer, Ordering, PosedShape, SolveError};
+use pliant_io::MorphTarget;
+use pliant_mesh::{Drawn, SurfaceVertex, WeldOptions};
+use serde_json::Value;
+
+use crate::engine::{check_not_empty, refused};
+use crate::examples::check_connectivity;
+use crate::files::{self, Destination, Staging, shown};
+use crate::loading::{Loaded, load, open};
+use crate::saving::{self, SaveAs};
+use crate::watch::Watch;
+use crate::{AppError, memory};
+
+/// What [`transfer`] is to do.
+#[derive(Clone, Debug)]
+pub struct Transfer<'a> {
+    /// The mesh that has the pose, at rest.
+    pub source: &'a Path,
+    /// The same vertices and triangles in the pose.
+    pub pose: &'a Path,
+    /// The mesh that is to take it on.
+    pub target: &'a Path,
+    /// Which triangles belong together; `None` is the same triangles in both.
+    pub correspondences: Option<&'a Path>,
+    /// The file to be written.
+    pub output: &'a Path,
+    /// Saves the pose as a morph target beside the shape as it was.
+    pub morph: Option<MorphTarget<'a>>,
+}
+
+/// Puts the pose onto the target and writes it, or nothing at all. Returns what a person should know, as sentences.
+///
+/// # Errors
+/// Any refusal of the files, of what belongs together, of the solution or of the result. The output is then unchanged.
+pub fn transfer(job: &Transfer<'_>, watch: &Watch, staging: &Staging) -> Result<Vec<String>, AppError> {
+    Destination::of(job.output)?;
+    let inputs = [("SOURCE", job.source), ("POSE", job.pose)].into_iter();
+    let inputs = inputs.chain(job.correspondences.map(|path| ("--correspondences", path)));
+    files::refuse_shared(("--output", job.output), inputs)?;
+    let (source, pose) = (open(job.source, watch)?.drawn, open(job.pose, watch)?.drawn);
+    check_connectivity((job.pose, &pose), (job.source, &source))?;
+    let loaded = load(job.target, &WeldOptions::default(), watch)?;
+    files::refuse_shared(("--output", job.output), loaded.sources().skip(1))?;
+    let model = &loaded.model;
+    check_not_empty(job.target, model)?;
+    let (partners, mut warnings) = partners(job, &source, &loaded)?;
+
+    let progress = watch.begin("ordering");
+    let ordering = Ordering::of(&model.topology, 1, &progress, &watch.cancel).map_err(|_| AppError::Interrupted)?;
+    watch.begin("binding");
+    let (surface, topology) = (&model.surface, &model.topology);
+    let bound = DeformationTransfer::bind(surface, topology, &ordering, memory::budget(), &watch.cancel)
+        .map_err(|error| refused(job.target, model, error))?;
+    watch.begin("bending");
+    let triangles: Vec<[usize; 3]> = source.triangles.iter().map(|own| own.map(|v| v.index())).collect();
+    let posed = PosedShape {
+        rest: &source.positions,
+        posed: &pose.positions,
+        triangles: &triangles,
+    };
+    let displacements = bound
+        .pose(&posed, &partners)
+        .map_err(|error: SolveError| AppError::Solve {
+            file: job.target.to_owned(),
+            source: error.renumbered(|vertex| model.first_file_vertex(SurfaceVertex(vertex)).0),
+        })?;
+    let mut positions = Vec::new();
+    model.drawn_positions(&displacements, &mut positions);
+
+    let progress = watch.begin("saving");
+    let save = SaveAs {
+        positions: &positions,
+        morph: job.morph.as_ref(),
+        output: job.output,
+        beside: None,
+    };
+    let saved = saving::stage(&loaded, &save, staging, &progress, &watch.cancel)?;
+    if watch.cancel.is_cancelled() {
+        return Err(AppError::Interrupted);
+    }
+    saved.staged.commit()?;
+    warnings.extend(saved.warnings);
+    Ok(warnings)
+}
+
+/// The source's triangle for each of the target's surface.
+fn partners(
+    job: &Transfer<'_>,
+    source: &Drawn,
+    loaded: &Loaded,
+) -> Result<(Vec<Option<usize>>, Vec<String>), AppError> {
+    let target = loaded.model.rest();
+    let of_drawn = match job.correspondences {
+        Some(path) => read_correspondences(path, source.triangles.len(), target.triangles.len())?,
+        None if target.triangles == source.triangles => (0..source.triangles.len()).map(Some).collect(),
+        None => {
+            return Err(AppError::Unsupported(format!(
+                "{} has {} triangles and {} has {} others: say with --correspondences which belong together",
+                shown(job.target),
+                target.triangles.len(),
+                shown(job.source),
+                source.triangles.len(),
+            )));
+        }
+    };
+    let of_surface = loaded.model.drawn.triangle_of_surface().iter();
+    let partners: Vec<Option<usize>> = of_surface.map(|&drawn| of_drawn[drawn as usize]).collect();
+    let mut has_partner = vec![false; loaded.model.topology.components().len()];
+    for (corners, _) in loaded
+        .model
+        .surface
+        .triangles
+        .iter()
+        .zip(&partners)
+        .filter(|(_, partner)| partner.is_some())
+    {
+        has_partner[loaded.model.topology.component(corners[0]) as usize] = true;
+    }
+    let resting = has_partner.iter().filter(|has| !**has).count();
+    let warnings = (resting > 0).then(|| {
+        format!(
+            "{resting} of {} parts have no triangle that belongs to one of SOURCE: they rest",
+            has_partner.len()
+        )
+    });
+    Ok((partners, warnings.into_iter().collect()))
+}
+
+/// `{"triangles": [[source, target], ..]}`, both numbered from 0 as in the files: for each of the target's triangles that
+/// of the source.
+fn read_correspondences(path: &Path, sources: usize, targets: usize) -> Result<Vec<Option<usize>>, AppError> {
+    let text = files::read_text(path)?;
+    let refuse = |what: String| AppError::Unsupported(format!("{}: {what}", shown(path)));
+    let value: Value = serde_json::from_str(&text).map_err(|error| {
+        let (line, column) = (error.line(), error.column());
+        refuse(format!(
+            "it is no JSON at line {line}, column {column}: write {{\"triangles\": [[SOURCE, TARGET], ..]}}"
+        ))
+    })?;
+    let pairs = value.get("triangles").and_then(Value::as_array);
+    let pairs = pairs
+        .ok_or_else(|| refuse("it has no list `triangles`: write {\"triangles\": [[SOURCE, TARGET], ..]}".into()))?;
+    let mut partners = vec![None; targets];
+    for (number, pair) in pairs.iter().enumerate() {
+        let numbers = pair.as_array().and_then(|pair| match &pair[..] {
+            [source, target] => Some((source.as_u64()?, target.as_u64()?)),
+            _ => None,
+        });
+        let (source, target) = numbers.ok_or_else(|| {
+            refuse(format!(
+                "triangles[{number}] is no pair of numbers: give a triangle of SOURCE and one of TARGET"
+            ))
+        })?;
+        if source >= sources as u64 || target >= targets as u64 {
+            return Err(refuse(format!(
+                "triangles[{number}] is [{source}, {target}], and SOURCE has {sources} triangles and TARGET {targets}: \
+                 they are numbered from 0"
+            )));
+        }
+        let partner = &mut partners[target as usize];
+        if partner.is_some() {
+            return Err(refuse(format!(
+                "triangles[{number}] names TARGET's triangle {target} once more: name it once"
+            )));
+        }
+        *partner = Some(source as usize);
+    }
+    if pairs.is_empty() {
+        return Err(refuse("its list `triangles` is empty: name one pair at least".into()));
+    }
+    Ok(partners)
+}

@@ -1,0 +1,208 @@
+//! Deformation transfer between surfaces [SP04]: each triangle takes on the map that a triangle of another surface has,
+//! and a Poisson system joins the triangles.
+//!
+//! The maps are deformation gradients ([`face_gradient`]). The shape whose gradients are nearest to them,
+//! ∫ |∇p' − T ∇p|² → min [SP04, equation 5], solves the Poisson equation of [`Gradients`]. It leaves every connected part
+//! free to be moved as a whole, which is decided by how far the other surface's triangles have gone.
+
+use std::collections::VecDeque;
+
+use glam::{DMat3, DVec3};
+use pliant_mesh::{Cancel, Surface, SurfaceVertex, Topology, bounding_box, face_gradient, is_without_area};
+
+use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
+use crate::bilaplacian::loaded::{settled, write_field};
+use crate::bilaplacian::operator::BilaplacianOperator;
+use crate::bilaplacian::setup::bent_rows;
+use crate::operators::gradients::{Face, Gradients};
+use crate::operators::triangulation::Triangulation;
+use crate::poisson::membrane;
+use crate::region::slender;
+use crate::sparse::refactorisation::Refactorisation;
+use crate::{BindError, Budget, Discretisation, Laplacian, Ordering, SolveError};
+
+/// A surface at rest and in a pose, as its file has it.
+#[derive(Clone, Copy, Debug)]
+pub struct PosedShape<'a> {
+    /// Its vertices' places at rest.
+    pub rest: &'a [DVec3],
+    /// The same vertices' places in the pose.
+    pub posed: &'a [DVec3],
+    /// Its triangles.
+    pub triangles: &'a [[usize; 3]],
+}
+
+impl PosedShape<'_> {
+    /// The map of a triangle's edges and unit normal.
+    fn map(&self, triangle: usize) -> DMat3 {
+        let corners = self.triangles[triangle];
+        face_gradient(corners.map(|v| self.rest[v]), corners.map(|v| self.posed[v]))
+    }
+
+    /// Whether a triangle has a map: in neither place it is without area.
+    fn has_map(&self, triangle: usize) -> bool {
+        let corners = self.triangles[triangle];
+        [self.rest, self.posed]
+            .iter()
+            .all(|places| !is_without_area(corners.map(|v| places[v])))
+    }
+
+    /// How far a triangle's middle has gone.
+    fn shift(&self, triangle: usize) -> DVec3 {
+        let corners = self.triangles[triangle];
+        corners.iter().map(|&v| self.posed[v] - self.rest[v]).sum::<DVec3>() / 3.0
+    }
+}
+
+/// A surface that takes on the poses of others.
+#[derive(Debug)]
+pub struct DeformationTransfer<'a> {
+    surface: &'a Surface,
+    topology: &'a Topology,
+    /// `None` where no part has more than one vertex.
+    system: Option<(BilaplacianSystem, Gradients)>,
+}
+
+impl<'a> DeformationTransfer<'a> {
+    /// Factors the surface's Laplacian with one vertex of each connected part held. `ordering` is for power 1.
+    ///
+    /// # Errors
+    /// As the binding of a method: degenerate triangles, a strip without end, memory, [`BindError::Cancelled`].
+    pub fn bind(
+        surface: &'a Surface,
+        topology: &'a Topology,
+        ordering: &Ordering,
+        budget: Budget,
+        cancel: &Cancel,
+    ) -> Result<Self, BindError> {
+        let mut is_held = vec![false; surface.positions.len()];
+        for component in 0..topology.components().len() {
+            if let Some(first) = topology.vertices_of(component as u32).next() {
+                is_held[first.index()] = true;
+            }
+        }
+        let solved: Vec<u32> = (0..is_held.len() as u32).filter(|&v| !is_held[v as usize]).collect();
+        if solved.is_empty() {
+            return Ok(Self {
+                surface,
+                topology,
+                system: None,
+            });
+        }
+        let triangulation = Triangulation::of_surface(surface, topology);
+        slender::check(&triangulation, &solved, slender::most_edges(1), Some(1))?;
+        let stiffness = vec![1.0; surface.positions.len()];
+        let rows = bent_rows(&triangulation, &solved, &[]);
+        let metric = Discretisation::CotangentArea;
+        let laplacian = Laplacian::on(&triangulation, &stiffness, &rows, metric, &|_, _| 1.0);
+        let diagonal = size_of(surface.triangles.iter().flatten().map(|v| surface.positions[v.index()]));
+        let operator = BilaplacianOperator::new(laplacian, &membrane(), diagonal);
+        let elimination = ordering.elimination(&solved);
+        let refuse = |error: SystemError| {
+            error.into_bind_error(|vertex| topology.component(SurfaceVertex(vertex)), solved.len())
+        };
+        let mut system =
+            BilaplacianSystem::new(operator, elimination, Refactorisation::Never, budget, cancel).map_err(refuse)?;
+        let mut constant = vec![[1.0]; system.operator.field_len()];
+        system.check(&mut constant, cancel).map_err(refuse)?;
+        let laplacian = &system.operator.laplacian;
+        let gradients = Gradients::of(surface, topology, &stiffness, laplacian, system.columns());
+        Ok(Self {
+            surface,
+            topology,
+            system: Some((system, gradients)),
+        })
+    }
+
+    /// The displacements by which the surface takes on a pose. `partners` has for each of its triangles the one of
+    /// `source` whose map it takes; a triangle without takes that of the nearest one which has (edge by edge; so does one whose
+    /// partner has no area), and a part without any rests. Each part goes as far as its partners on average, in the proportion of the surfaces' sizes.
+    ///
+    /// # Errors
+    /// If the solution stays too inaccurate, or is not finite.
+    pub fn pose(&self, source: &PosedShape<'_>, partners: &[Option<usize>]) -> Result<Vec<DVec3>, SolveError> {
+        let mut displacements = vec![DVec3::ZERO; self.surface.positions.len()];
+        let Some((system, gradients)) = &self.system else {
+            return Ok(displacements);
+        };
+        let with_maps = partners
+            .iter()
+            .map(|partner| partner.filter(|&triangle| source.has_map(triangle)));
+        let taken = self.nearest(with_maps.collect());
+        let changes: Vec<DMat3> = taken
+            .iter()
+            .map(|partner| partner.map_or(DMat3::ZERO, |partner| source.map(partner) - DMat3::IDENTITY))
+            .collect();
+        let (mut edges, mut load) = (Vec::new(), Vec::new());
+        let of_face = |face: &Face| {
+            let change = changes[face.number as usize];
+            move |edge: DVec3| change * edge
+        };
+        gradients.change(of_face, &mut edges);
+        let operator = &system.operator;
+        gradients.divergence(&edges, operator.stretching + operator.bending, &mut load);
+        let mut field = vec![[0.0; 3]; operator.field_len()];
+        settled(system.solve_frame(&load, &mut field))?;
+        write_field(&field, operator.laplacian.vertices(), &mut displacements);
+        self.place(source, &taken, &mut displacements);
+        match displacements.iter().position(|d| !d.is_finite()) {
+            Some(vertex) => Err(SolveError::NotFinite { vertex: vertex as u32 }),
+            None => Ok(displacements),
+        }
+    }
+
+    /// Each triangle's partner, or that of the nearest triangle of its part.
+    fn nearest(&self, mut taken: Vec<Option<usize>>) -> Vec<Option<usize>> {
+        let triangles = &self.surface.triangles;
+        let mut queue: VecDeque<usize> = (0..taken.len()).filter(|&triangle| taken[triangle].is_some()).collect();
+        if queue.len() == taken.len() {
+            return taken;
+        }
+        while let Some(triangle) = queue.pop_front() {
+            for corner in triangles[triangle] {
+                for beside in self.topology.faces(corner, triangles) {
+                    let beside = beside as usize;
+                    let shared = triangles[beside].iter().filter(|v| triangles[triangle].contains(v));
+                    if taken[beside].is_none() && shared.count() > 1 {
+                        taken[beside] = taken[triangle];
+                        queue.push_back(beside);
+                    }
+                }
+            }
+        }
+        taken
+    }
+
+    /// Moves each part so that its triangles go, on average by area, as far as their partners do.
+    fn place(&self, source: &PosedShape<'_>, taken: &[Option<usize>], displacements: &mut [DVec3]) {
+        let surface = self.surface;
+        let own = size_of(surface.triangles.iter().flatten().map(|v| surface.positions[v.index()]));
+        let proportion = own / size_of(source.triangles.iter().flatten().map(|&v| source.rest[v]));
+        if !proportion.is_finite() {
+            return;
+        }
+        let mut missing = vec![(DVec3::ZERO, 0.0); self.topology.components().len()];
+        for (triangle, partner) in taken.iter().enumerate() {
+            let Some(partner) = *partner else { continue };
+            let corners = self.surface.triangles[triangle];
+            let [a, b, c] = self.surface.corners(triangle);
+            let area = 0.5 * (b - a).cross(c - a).length();
+            let own = corners.iter().map(|v| displacements[v.index()]).sum::<DVec3>() / 3.0;
+            let (sum, weight) = &mut missing[self.topology.component(corners[0]) as usize];
+            *sum += (source.shift(partner) * proportion - own) * area;
+            *weight += area;
+        }
+        for (component, (sum, weight)) in missing.into_iter().enumerate() {
+            if weight > 0.0 {
+                for vertex in self.topology.vertices_of(component as u32) {
+                    displacements[vertex.index()] += sum / weight;
+                }
+            }
+        }
+    }
+}
+
+/// The diagonal of the box around these places.
+fn size_of(places: impl Iterator<Item = DVec3>) -> f64 {
+    bounding_box(&places.collect::<Vec<_>>()).map_or(0.0, |bounds| bounds.diagonal())
+}
