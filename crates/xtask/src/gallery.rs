@@ -19,7 +19,7 @@ const CAGES: [&str; 3] = [
 const OF_SPACE: [&str; 5] = ["rbf", "mls", "lattice", "embedded", "space-primo"];
 
 /// The size of a sheet in pixels.
-const SIZE: &str = "1040x640";
+const SIZE: &str = "1200x640";
 
 /// Draws `docs/gallery/NAME.png` for each sample and for the legs, and puts the tables of figures into
 /// `docs/methods.md`, each between its marks.
