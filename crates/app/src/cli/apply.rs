@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use pliant_editor::{Beginning, Project};
-use pliant_io::{Format, MorphTarget};
+use pliant_io::Format;
 
 use super::arguments::ApplyArguments;
 use super::method_argument::method_argument;
@@ -17,8 +17,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         edit: edit_path,
         output,
         report,
-        as_morph,
-        morph_weight,
+        morph,
         frames,
         method,
         compute,
@@ -43,10 +42,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
     }
     let stem = edit_path.file_stem().unwrap_or_default().to_string_lossy();
     let own_name = stem.strip_suffix(".edit").unwrap_or(&stem);
-    let morph = as_morph.as_deref().map(|name| MorphTarget {
-        name: if name.is_empty() { own_name } else { name },
-        weight: *morph_weight,
-    });
+    let morph = morph.target(own_name);
     let job = engine::Apply {
         file,
         edit: &edit,

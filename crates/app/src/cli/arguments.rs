@@ -6,6 +6,7 @@ use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use pliant_deform::{ConstraintKind, METHODS};
 use pliant_editor::Clay;
+use pliant_io::MorphTarget;
 use pliant_mesh::Vectors;
 
 use crate::version::VERSION;
@@ -76,13 +77,9 @@ pub(crate) struct ApplyArguments {
     /// Where to write what was done, how long it took and how far the shape was distorted
     #[arg(long, value_name = "REPORT.json")]
     pub report: Option<PathBuf>,
-    /// Leave the shape as it is and save the edit as a morph target of this name (without one, the edit's own): OUT is
-    /// glb or gltf
-    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
-    pub as_morph: Option<String>,
-    /// How far the morph target shows by default, from 0 to 1
-    #[arg(long, value_name = "W", default_value = "1", requires = "as_morph", value_parser = unit_number)]
-    pub morph_weight: f64,
+    /// As a shape or as a morph target.
+    #[command(flatten)]
+    pub morph: MorphArguments,
     /// Replay the edit as a drag of N frames (1 to 100000) instead of one solve
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<usize>::new().range(1..=100_000))]
     pub frames: Option<usize>,
@@ -92,6 +89,29 @@ pub(crate) struct ApplyArguments {
     /// On how many threads, and with which vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,
+}
+
+/// Whether what comes out is a shape or a morph target.
+#[derive(Args, Debug)]
+pub(crate) struct MorphArguments {
+    /// Leave the shape as it is and save the new one as a morph target of this name (without one, that of the edit's or
+    /// the pose's file): OUT is glb or gltf
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
+    pub as_morph: Option<String>,
+    /// How far the morph target shows by default, from 0 to 1
+    #[arg(long, value_name = "W", default_value = "1", requires = "as_morph", value_parser = unit_number)]
+    pub morph_weight: f64,
+}
+
+impl MorphArguments {
+    /// The morph target that was asked for, called `own_name` where it was given no name.
+    pub fn target<'a>(&'a self, own_name: &'a str) -> Option<MorphTarget<'a>> {
+        let name = self.as_morph.as_deref()?;
+        Some(MorphTarget {
+            name: if name.is_empty() { own_name } else { name },
+            weight: self.morph_weight,
+        })
+    }
 }
 
 #[derive(Args, Debug)]
@@ -109,13 +129,9 @@ pub(crate) struct TransferArguments {
     /// Without it, both must have the same triangles
     #[arg(long, value_name = "PAIRS.json")]
     pub correspondences: Option<PathBuf>,
-    /// Leave the shape as it is and save the pose as a morph target of this name (without one, POSE's): OUT is glb or
-    /// gltf
-    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
-    pub as_morph: Option<String>,
-    /// How far the morph target shows by default, from 0 to 1
-    #[arg(long, value_name = "W", default_value = "1", requires = "as_morph", value_parser = unit_number)]
-    pub morph_weight: f64,
+    /// As a shape or as a morph target.
+    #[command(flatten)]
+    pub morph: MorphArguments,
     /// On how many threads, and with which vectors.
     #[command(flatten)]
     pub compute: ComputeArguments,

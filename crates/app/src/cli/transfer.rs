@@ -1,6 +1,6 @@
 //! `pliant transfer`: a pose of one mesh put onto another.
 
-use pliant_io::{Format, MorphTarget};
+use pliant_io::Format;
 
 use super::arguments::TransferArguments;
 use super::{Console, on_threads, print};
@@ -11,17 +11,13 @@ pub(super) fn run(arguments: &TransferArguments, console: &mut Console<'_>) -> R
     let output_name = arguments.output.to_string_lossy();
     Format::of_name(&output_name).map_err(|error| AppError::Arguments(format!("--output: {error}")))?;
     let own_name = arguments.pose.file_stem().unwrap_or_default().to_string_lossy();
-    let morph = arguments.as_morph.as_deref().map(|name| MorphTarget {
-        name: if name.is_empty() { &own_name } else { name },
-        weight: arguments.morph_weight,
-    });
     let job = Transfer {
         source: &arguments.source,
         pose: &arguments.pose,
         target: &arguments.target,
         correspondences: arguments.correspondences.as_deref(),
         output: &arguments.output,
-        morph,
+        morph: arguments.morph.target(&own_name),
     };
     let (watch, staging) = (&console.watch, &console.staging);
     let warnings = on_threads(arguments.compute, || transfer(&job, watch, staging))??;
