@@ -9,19 +9,11 @@ use super::moments::{Entry, moments_at};
 use super::points::Points;
 use crate::budget::filled;
 use crate::handles::Motion;
-use crate::method::{BindInput, BoundMethod, HandleFit, Stepped};
-use crate::space::falloff::Falloff;
-use crate::space::field::LinearField;
+use crate::method::{BindInput, BoundMethod, Stepped};
+use crate::space::linear::BoundLinear;
 use crate::space::moving::Moving;
 use crate::space::unit::Unit;
 use crate::{BindError, SolveError};
-
-/// Affine fits.
-#[derive(Debug)]
-pub(super) struct BoundAffine {
-    field: LinearField,
-    solved_count: usize,
-}
 
 /// Fits of rotations, with or without a scale.
 #[derive(Debug)]
@@ -48,38 +40,18 @@ fn origins(input: &BindInput<'_>, unit: &Unit) -> Vec<(DVec3, f64)> {
     handles.map(|handle| (origin(handle, unit), handle.radius)).collect()
 }
 
-impl BoundAffine {
-    pub fn bind(points: &Points, half_falloff: f64, input: &BindInput<'_>) -> Result<Self, BindError> {
-        let map = AffineMap {
-            points,
-            half_falloff,
-            positions: &input.problem.surface.positions,
-            handles: &origins(input, &points.unit),
-        };
-        Ok(Self {
-            field: LinearField::bind(&map, &Falloff::default(), HandleFit::Exact, input)?,
-            solved_count: input.partition.solved.len(),
-        })
-    }
-}
-
-impl BoundMethod for BoundAffine {
-    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
-        Ok(Stepped {
-            converged: true,
-            energy: 0.0,
-            finite: self.field.frame(motions, displacements),
-        })
-    }
-
-    fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) -> bool {
-        self.field.jacobians(motions, out);
-        true
-    }
-
-    fn solved_count(&self) -> usize {
-        self.solved_count
-    }
+/// Affine fits, whose frame is a product.
+///
+/// # Errors
+/// As [`BoundLinear::bind`].
+pub(super) fn bind_affine(points: &Points, half_falloff: f64, input: &BindInput<'_>) -> Result<BoundLinear, BindError> {
+    let map = AffineMap {
+        points,
+        half_falloff,
+        positions: &input.problem.surface.positions,
+        handles: &origins(input, &points.unit),
+    };
+    BoundLinear::bind(&map, Vec::new(), input)
 }
 
 impl BoundTurning {

@@ -1,6 +1,6 @@
 //! Moving least squares as one of the methods.
 
-use super::bound::{BoundAffine, BoundTurning, TURNING_ROW};
+use super::bound::{BoundTurning, TURNING_ROW, bind_affine};
 use super::fit::Turning;
 use super::moments::Entry;
 use super::points::Points;
@@ -54,7 +54,7 @@ impl DeformMethod for Mls {
         input.progress.set(0.1);
         let half_falloff = 0.5 * self.falloff;
         let bound: Box<dyn BoundMethod> = match self.transforms {
-            MlsTransforms::Affine => Box::new(BoundAffine::bind(&points, half_falloff, input)?),
+            MlsTransforms::Affine => Box::new(bind_affine(&points, half_falloff, input)?),
             MlsTransforms::Similarity => {
                 Box::new(BoundTurning::bind(Turning::Similarity, &points, half_falloff, input)?)
             }

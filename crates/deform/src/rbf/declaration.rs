@@ -1,17 +1,16 @@
 //! Radial basis functions as one of the methods.
 
-use glam::{DVec3, Mat3};
+use glam::DVec3;
 
 use super::Rbf;
 use super::centres::fitted;
 use super::constraints::Constraints;
 use super::kernel::{Sum, Weights};
+use crate::BindError;
 use crate::budget::bytes_of;
-use crate::handles::Motion;
-use crate::method::{BindInput, BoundMethod, DeformMethod, HandleFit, MethodDeclaration, Needs, Solve, Stepped};
-use crate::space::falloff::Falloff;
-use crate::space::field::{Coefficients, FIELD_ROW, LinearField, SpaceMap};
-use crate::{BindError, SolveError};
+use crate::method::{BindInput, BoundMethod, DeformMethod, MethodDeclaration, Needs, Solve};
+use crate::space::field::{Coefficients, FIELD_ROW, SpaceMap};
+use crate::space::linear::BoundLinear;
 
 pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     name: "rbf",
@@ -25,14 +24,6 @@ pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
     default: || Rbf::default().into(),
     first_choice: || Rbf::default().into(),
 };
-
-/// The bound method.
-#[derive(Debug)]
-struct BoundRbf {
-    field: LinearField,
-    solved_count: usize,
-    warnings: Vec<String>,
-}
 
 /// The field in world units.
 struct WorldField<'a> {
@@ -90,8 +81,6 @@ impl DeformMethod for Rbf {
             world_origin: constraints.world_origin,
             unit: constraints.unit,
         };
-        let field = LinearField::bind(&map, &Falloff::default(), HandleFit::Exact, input)?;
-        input.progress.set(1.0);
         let missed = (fitted.error > self.tolerance).then(|| {
             format!(
                 "rbf misses its constraints by up to {:.1e} of the handles' way with {} centres: allow more `centres`, \
@@ -100,33 +89,8 @@ impl DeformMethod for Rbf {
                 fitted.weights.centres.len()
             )
         });
-        Ok(Box::new(BoundRbf {
-            field,
-            solved_count: input.partition.solved.len(),
-            warnings: missed.into_iter().collect(),
-        }))
-    }
-}
-
-impl BoundMethod for BoundRbf {
-    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
-        Ok(Stepped {
-            converged: true,
-            energy: 0.0,
-            finite: self.field.frame(motions, displacements),
-        })
-    }
-
-    fn jacobians(&self, motions: &[Motion], out: &mut [Mat3]) -> bool {
-        self.field.jacobians(motions, out);
-        true
-    }
-
-    fn solved_count(&self) -> usize {
-        self.solved_count
-    }
-
-    fn warnings(&self) -> Vec<String> {
-        self.warnings.clone()
+        let bound = BoundLinear::bind(&map, missed.into_iter().collect(), input)?;
+        input.progress.set(1.0);
+        Ok(Box::new(bound))
     }
 }

@@ -1,10 +1,11 @@
 //! What the methods share that bend the space around the points, connected or not.
 //!
 //! A method that is linear in the handles' motions is a [`field::SpaceMap`]: it gives each point's coefficients once,
-//! and [`field::LinearField`] makes its frames, by a product, and its Jacobians. Methods that do not hold what is fixed
-//! by themselves fade towards it by a [`falloff::Falloff`]. Those that only fit the handles do so at [`fit_samples`], and
-//! solve for an affine map first ([`affine`]). Control points that a person
-//! may move as well are [`controls`], and what the hand does to the vertices is a [`hand_field`]. Methods that are not linear evaluate each vertex of [`moving::Moving`].
+//! and [`field::LinearField`] makes its frames, by a product, and its Jacobians; [`linear::BoundLinear`] is the bound
+//! form of those that meet their handles. Methods that do not hold what is fixed by themselves fade towards it by a
+//! [`falloff::Falloff`]. Those that only fit the handles do so at [`fit_samples`], and solve for an affine map first
+//! ([`affine`]). Control points that a person may move as well are [`controls`], and what the hand does to the vertices
+//! is a [`hand_field`]. Methods that are not linear evaluate each vertex of [`moving::Moving`].
 
 pub(crate) mod affine;
 pub(crate) mod blend;
@@ -14,6 +15,7 @@ pub(crate) mod field;
 pub(crate) mod fit_samples;
 pub(crate) mod hand_field;
 pub(crate) mod joining;
+pub(crate) mod linear;
 pub(crate) mod moving;
 pub(crate) mod nearest;
 pub(crate) mod neighbours;
