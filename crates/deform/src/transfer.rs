@@ -47,6 +47,11 @@ impl PosedShape<'_> {
             .all(|places| !is_without_area(corners.map(|v| places[v])))
     }
 
+    /// The diagonal of the box around its triangles at rest.
+    fn diagonal(&self) -> f64 {
+        box_diagonal(self.triangles.iter().flatten().map(|&corner| self.rest[corner]))
+    }
+
     /// How far a triangle's middle has gone.
     fn shift(&self, triangle: usize) -> DVec3 {
         let corners = self.triangles[triangle];
@@ -95,7 +100,7 @@ impl<'a> DeformationTransfer<'a> {
         let rows = bent_rows(&triangulation, &solved, &[]);
         let metric = Discretisation::CotangentArea;
         let laplacian = Laplacian::on(&triangulation, &stiffness, &rows, metric, &|_, _| 1.0);
-        let diagonal = size_of(surface.triangles.iter().flatten().map(|v| surface.positions[v.index()]));
+        let diagonal = diagonal_of(surface);
         let operator = BilaplacianOperator::new(laplacian, &membrane(), diagonal);
         let elimination = ordering.elimination(&solved);
         let refuse = |error: SystemError| {
@@ -175,9 +180,7 @@ impl<'a> DeformationTransfer<'a> {
 
     /// Moves each part so that its triangles go, on average by area, as far as their partners do.
     fn place(&self, source: &PosedShape<'_>, taken: &[Option<usize>], displacements: &mut [DVec3]) {
-        let surface = self.surface;
-        let own = size_of(surface.triangles.iter().flatten().map(|v| surface.positions[v.index()]));
-        let proportion = own / size_of(source.triangles.iter().flatten().map(|&v| source.rest[v]));
+        let proportion = diagonal_of(self.surface) / source.diagonal();
         if !proportion.is_finite() {
             return;
         }
@@ -202,7 +205,12 @@ impl<'a> DeformationTransfer<'a> {
     }
 }
 
-/// The diagonal of the box around these places.
-fn size_of(places: impl Iterator<Item = DVec3>) -> f64 {
+/// The diagonal of the box around a surface's triangles: bare points do not count.
+fn diagonal_of(surface: &Surface) -> f64 {
+    let corners = surface.triangles.iter().flatten();
+    box_diagonal(corners.map(|corner| surface.positions[corner.index()]))
+}
+
+fn box_diagonal(places: impl Iterator<Item = DVec3>) -> f64 {
     bounding_box(&places.collect::<Vec<_>>()).map_or(0.0, |bounds| bounds.diagonal())
 }

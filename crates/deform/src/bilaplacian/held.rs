@@ -3,6 +3,7 @@
 //! A solve begins from zero, and its first residual −A_fc d_c is zero but near what is held or moved. On a scan that is
 //! a small part of the rows, and a frame with a load need not go over the others.
 
+use crate::Laplacian;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::sparse::matrix::CONSTRAINED;
 
@@ -25,18 +26,12 @@ impl HeldReach {
         let laplacian = &operator.laplacian;
         let mut is_reached: Vec<bool> = column_of.iter().map(|&column| column == CONSTRAINED).collect();
         if operator.power == 2 {
-            let beside_held = |local: usize| {
-                let mut neighbours = laplacian.neighbours(local).iter();
-                is_reached[local] || neighbours.any(|&other| is_reached[other as usize])
-            };
-            is_reached = (0..column_of.len()).map(beside_held).collect();
+            is_reached = (0..column_of.len())
+                .map(|local| sees_reached(laplacian, &is_reached, local))
+                .collect();
         }
-        let sees = |local: usize| {
-            let mut neighbours = laplacian.neighbours(local).iter();
-            is_reached[local] || neighbours.any(|&other| is_reached[other as usize])
-        };
         let seen: Vec<u32> = (0..columns.len() as u32)
-            .filter(|&column| sees(columns[column as usize] as usize))
+            .filter(|&column| sees_reached(laplacian, &is_reached, columns[column as usize] as usize))
             .collect();
         let rows = (0..column_of.len() as u32).filter(|&local| is_reached[local as usize]);
         (4 * seen.len() < columns.len()).then(|| Self {
@@ -61,4 +56,10 @@ impl HeldReach {
         }
         residual
     }
+}
+
+/// Whether a local vertex or one beside it is reached.
+fn sees_reached(laplacian: &Laplacian, is_reached: &[bool], local: usize) -> bool {
+    let mut beside = laplacian.neighbours(local).iter();
+    is_reached[local] || beside.any(|&other| is_reached[other as usize])
 }

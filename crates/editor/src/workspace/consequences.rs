@@ -51,8 +51,8 @@ impl Workspace {
         }
     }
 
-    /// Handles and control points that all rest need no solve: the rest shape is known. Nor is there anything to solve where all handles lie
-    /// on what is locked: what is seen stays.
+    /// Handles and control points that all rest need no solve: the rest shape is known. Nor is there anything to solve
+    /// where all handles lie on what is locked: what is seen stays.
     fn settle_what_needs_no_solve(&mut self) {
         if self.document.is_settled() {
             return;

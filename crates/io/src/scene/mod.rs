@@ -158,8 +158,8 @@ impl Scene {
         }
     }
 
-    /// How far each of the file's `vertex_count` drawn vertices is moved, in world space, when the morph targets called `target` are applied
-    /// whole; `None` if there is none. `file` is used in messages only.
+    /// How far each of the file's `vertex_count` drawn vertices is moved, in world space, when the morph targets called
+    /// `target` are applied whole; `None` if there is none. `file` is used in messages only.
     ///
     /// # Errors
     /// A target that can't be read, or soon after `cancel` is raised.
