@@ -20,6 +20,7 @@ mod requirement;
 mod run;
 mod system;
 mod test;
+mod validation;
 mod verdict;
 
 use std::path::{Path, PathBuf};

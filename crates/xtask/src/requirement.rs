@@ -22,6 +22,8 @@ pub enum Evidence {
     VulkanDriver,
     /// Mesa's software Vulkan driver.
     SoftwareVulkanDriver,
+    /// Khronos' validation layer.
+    VulkanValidation,
 }
 
 const fn library(name: &'static str, package: &'static str) -> Requirement {
@@ -58,11 +60,16 @@ pub const WINDOW: &[Requirement] = &[
     library("libwayland-client.so.0", "libwayland-client0"),
 ];
 
-/// For the tests: a virtual display, a tool that moves its mouse, and the driver that pictures are compared on.
+/// For the tests: a virtual display, a tool that moves its mouse, the driver that pictures are compared on, and the layer
+/// that checks how it is used.
 pub const TESTS: &[Requirement] = &[
     Requirement {
         evidence: Evidence::SoftwareVulkanDriver,
         package: "mesa-vulkan-drivers",
+    },
+    Requirement {
+        evidence: Evidence::VulkanValidation,
+        package: "vulkan-validationlayers",
     },
     tool("Xvfb", "xvfb"),
     tool("xdotool", "xdotool"),
@@ -88,6 +95,7 @@ impl Evidence {
             Self::Library(name) => system::has_library(name),
             Self::VulkanDriver => !system::vulkan_drivers().is_empty(),
             Self::SoftwareVulkanDriver => system::software_vulkan_driver().is_some(),
+            Self::VulkanValidation => system::has_validation_layer(),
         }
     }
 }

@@ -111,6 +111,15 @@ pub fn software_vulkan_driver() -> Option<PathBuf> {
     })
 }
 
+/// Whether Khronos' validation layer is installed.
+pub fn has_validation_layer() -> bool {
+    ["/etc", "/usr/local/share", "/usr/share"].iter().any(|folder| {
+        Path::new(folder)
+            .join("vulkan/explicit_layer.d/VkLayer_khronos_validation.json")
+            .exists()
+    })
+}
+
 /// Whether this process runs as root.
 pub fn is_root() -> bool {
     process::output("id", &["-u"]).is_some_and(|answer| answer.trim() == "0")

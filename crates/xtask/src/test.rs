@@ -9,6 +9,7 @@ use crate::install::{Consent, Prepared, prepare, prepare_toolchain};
 use crate::process;
 use crate::requirement::{PICTURES, TESTS, WINDOW};
 use crate::system;
+use crate::validation;
 use crate::verdict::{Skips, Verdict};
 
 /// Runs formatting, clippy and every test; with `filters`, only the tests that match.
@@ -37,6 +38,9 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
     };
     set_environment(&mut tests, display.as_ref());
     verdict.tests("workspace", &mut tests);
+    if filters.is_empty() {
+        validation::pictures(&mut verdict);
+    }
     if let Prepared::Without(sentence) = prepared {
         println!("\n{sentence}");
     }

@@ -32,14 +32,11 @@ const FACES: [[[f32; 3]; 3]; 6] = [
 pub(crate) fn environment(renderer: &Renderer) -> Result<wgpu::BindGroup, RenderError> {
     let device = renderer.device();
     guarded(device, "while drawing the environment maps", || {
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(Shader::Environment.file_name()),
-            source: wgpu::ShaderSource::Wgsl(Shader::Environment.composed().into()),
-        });
         let prefiltered = cube(device, "prefiltered environment", PREFILTERED_PX, PREFILTERED_LEVELS);
         let irradiance = cube(device, "irradiance map", IRRADIANCE_PX, 1);
-        fill(renderer, &module, "fs_prefiltered", &prefiltered, PREFILTERED_SAMPLES)?;
-        fill(renderer, &module, "fs_irradiance", &irradiance, IRRADIANCE_SAMPLES)?;
+        let [prefilter, irradiate] = pipelines(device);
+        fill(renderer, &prefilter, &prefiltered, PREFILTERED_SAMPLES)?;
+        fill(renderer, &irradiate, &irradiance, IRRADIANCE_SAMPLES)?;
         let view = |texture: &wgpu::Texture| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::Cube),
@@ -63,6 +60,16 @@ pub(crate) fn environment(renderer: &Renderer) -> Result<wgpu::BindGroup, Render
     })
 }
 
+/// The pipelines that draw a face of the prefiltered map and one of the irradiance map.
+pub(crate) fn pipelines(device: &wgpu::Device) -> [wgpu::RenderPipeline; 2] {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(Shader::Environment.file_name()),
+        source: wgpu::ShaderSource::Wgsl(Shader::Environment.composed().into()),
+    });
+    ["fs_prefiltered", "fs_irradiance"]
+        .map(|entry| fullscreen::pipeline(device, &module, ["vs_environment", entry], FORMAT))
+}
+
 fn cube(device: &wgpu::Device, label: &str, side_px: u32, levels: u32) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
@@ -83,13 +90,11 @@ fn cube(device: &wgpu::Device, label: &str, side_px: u32, levels: u32) -> wgpu::
 /// Draws every face of every mip level; roughness rises evenly from 0 to 1 with the level.
 fn fill(
     renderer: &Renderer,
-    module: &wgpu::ShaderModule,
-    entry: &str,
+    pipeline: &wgpu::RenderPipeline,
     texture: &wgpu::Texture,
     samples: u32,
 ) -> Result<(), RenderError> {
     let (device, queue) = (renderer.device(), renderer.queue());
-    let pipeline = fullscreen::pipeline(device, module, ["vs_environment", entry], FORMAT);
     let layout = pipeline.get_bind_group_layout(0);
     let levels = texture.mip_level_count();
     let mut encoder = device.create_command_encoder(&Default::default());
@@ -120,7 +125,7 @@ fn fill(
                 array_layer_count: Some(1),
                 ..Default::default()
             });
-            fullscreen::draw(&mut encoder, &pipeline, &group, &view);
+            fullscreen::draw(&mut encoder, pipeline, &group, &view);
         }
     }
     queue.submit([encoder.finish()]);

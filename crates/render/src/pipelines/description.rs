@@ -11,7 +11,7 @@ use crate::{Samples, Target};
 pub(super) struct PipelineDescription {
     pub(super) shader: Shader,
     vertex_entry: &'static str,
-    fragment_entry: &'static str,
+    pub(super) fragment_entry: &'static str,
     buffers: Vec<Option<wgpu::VertexBufferLayout<'static>>>,
     topology: wgpu::PrimitiveTopology,
     depth_compare: wgpu::CompareFunction,

@@ -2,6 +2,8 @@
 
 mod bind_group_layouts;
 mod description;
+#[cfg(test)]
+mod driver_tests;
 pub(crate) mod shaders;
 pub(crate) mod vertex_layouts;
 
