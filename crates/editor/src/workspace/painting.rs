@@ -21,12 +21,15 @@ pub(crate) fn members(document: &Document, id: HandleId) -> Vec<SurfaceVertex> {
 
 /// Which vertices have a role; for the free region those that a reach has freed, too.
 pub(crate) fn members_of(workspace: &Workspace, role: Paint) -> Vec<bool> {
-    let roles = &workspace.computed().region.roles;
-    let is_member = |(vertex, &paint): (usize, &Paint)| {
-        paint == role
-            || (role == Paint::Free && paint == Paint::Bare && roles.get(vertex).is_some_and(|r| *r == Role::Free))
-    };
-    workspace.document.paint.iter().enumerate().map(is_member).collect()
+    let paint = &workspace.document.paint;
+    let mut is_member: Vec<bool> = paint.iter().map(|paint| *paint == role).collect();
+    if role == Paint::Free {
+        let freed = paint.iter().zip(workspace.computed().region.roles.iter());
+        for (is_member, (paint, role)) in is_member.iter_mut().zip(freed) {
+            *is_member |= *paint == Paint::Bare && *role == Role::Free;
+        }
+    }
+    is_member
 }
 
 /// What a role's region is called.

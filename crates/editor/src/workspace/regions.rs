@@ -4,6 +4,7 @@
 //! Each is a pure function from the region's vertices to the vertices that change; other handles' vertices never do.
 
 use pliant_mesh::{Model, SurfaceVertex};
+use rayon::prelude::*;
 
 use super::mirror::mirror;
 use super::mirror_request::Purpose;
@@ -73,11 +74,15 @@ pub(crate) fn act_on_region(workspace: &mut Workspace, role: Paint, action: Regi
     let mut changes: Vec<(usize, Paint)> = Vec::new();
     let target = match action {
         RegionAction::Grow => {
-            changes.extend(grown(&model, &is_member).map(|vertex| (vertex, role)));
+            changes.extend(grown(&model, &is_member).into_iter().map(|vertex| (vertex, role)));
             role
         }
         RegionAction::Shrink => {
-            changes.extend(rim(&model, &is_member).map(|vertex| (vertex, removed(vertex))));
+            changes.extend(
+                rim(&model, &is_member)
+                    .into_iter()
+                    .map(|vertex| (vertex, removed(vertex))),
+            );
             role
         }
         RegionAction::SmoothBorder => {
@@ -127,24 +132,39 @@ pub(crate) fn act_on_region(workspace: &mut Workspace, role: Paint, action: Regi
     repaint(workspace, format!("{} {what}", action.name()), role, target, changes);
 }
 
-/// Vertices beside members.
-fn grown<'a>(model: &'a Model, is_member: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
-    (0..is_member.len()).filter(|&vertex| !is_member[vertex] && has_neighbour(model, vertex, |v| is_member[v]))
+/// Vertices beside members, ascending.
+fn grown(model: &Model, is_member: &[bool]) -> Vec<usize> {
+    border(model, is_member.len(), |vertex| !is_member[vertex])
 }
 
-/// Members beside vertices that are none.
-fn rim<'a>(model: &'a Model, is_member: &'a [bool]) -> impl Iterator<Item = usize> + 'a {
-    (0..is_member.len()).filter(|&vertex| is_member[vertex] && has_neighbour(model, vertex, |v| !is_member[v]))
+/// Members beside vertices that are none, ascending.
+fn rim(model: &Model, is_member: &[bool]) -> Vec<usize> {
+    border(model, is_member.len(), |vertex| is_member[vertex])
 }
 
-fn has_neighbour(model: &Model, vertex: usize, holds: impl Fn(usize) -> bool) -> bool {
-    let neighbours = model.topology.neighbours(SurfaceVertex(vertex as u32));
-    neighbours.iter().any(|neighbour| holds(neighbour.index()))
+/// Vertices inside that have a neighbour outside. Only the neighbours of the smaller of the two sets are looked at.
+fn border(model: &Model, count: usize, is_inside: impl Fn(usize) -> bool) -> Vec<usize> {
+    let neighbours = |vertex: usize| model.topology.neighbours(SurfaceVertex(vertex as u32)).iter();
+    let inside = (0..count).filter(|&vertex| is_inside(vertex));
+    if 2 * inside.clone().count() <= count {
+        return inside
+            .filter(|&vertex| neighbours(vertex).any(|neighbour| !is_inside(neighbour.index())))
+            .collect();
+    }
+    let mut is_beside = vec![false; count];
+    for vertex in (0..count).filter(|&vertex| !is_inside(vertex)) {
+        for neighbour in neighbours(vertex) {
+            is_beside[neighbour.index()] = true;
+        }
+    }
+    inside.filter(|&vertex| is_beside[vertex]).collect()
 }
 
 /// Vertices that most of their neighbours differ from, and whether they join.
 fn smoothed(model: &Model, is_member: &[bool]) -> Vec<(usize, bool)> {
     (0..is_member.len())
+        .into_par_iter()
+        .with_min_len(1 << 12)
         .filter_map(|vertex| {
             let neighbours = model.topology.neighbours(SurfaceVertex(vertex as u32));
             let members = neighbours.iter().filter(|v| is_member[v.index()]).count();
@@ -163,4 +183,28 @@ fn filled<'a>(model: &'a Model, is_member: &'a [bool]) -> impl Iterator<Item = u
         has_member[part(vertex)] = true;
     }
     (0..is_member.len()).filter(move |&vertex| has_member[part(vertex)])
+}
+
+#[cfg(test)]
+mod tests {
+    use pliant_mesh::{Cancel, Progress, WeldOptions, shapes};
+
+    use super::*;
+
+    #[test]
+    fn a_border_is_found_from_either_side() -> Result<(), Box<dyn std::error::Error>> {
+        let options = WeldOptions::default();
+        let model = Model::weld(shapes::uv_sphere(24, 24), &options, &Progress::new(), &Cancel::new())?;
+        let count = model.surface.positions.len();
+        for members in [0, count / 5, count / 2, 4 * count / 5, count] {
+            let is_inside = |vertex: usize| vertex * 7 % count < members;
+            let is_outside_beside = |vertex: usize| {
+                let neighbours = model.topology.neighbours(SurfaceVertex(vertex as u32));
+                neighbours.iter().any(|neighbour| !is_inside(neighbour.index()))
+            };
+            let plain = (0..count).filter(|&vertex| is_inside(vertex) && is_outside_beside(vertex));
+            assert_eq!(border(&model, count, is_inside), plain.collect::<Vec<_>>(), "{members}");
+        }
+        Ok(())
+    }
 }

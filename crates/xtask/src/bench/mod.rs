@@ -16,6 +16,7 @@ mod peers;
 mod primo;
 mod shells;
 mod space;
+mod start;
 mod table;
 mod vectors;
 mod view;
@@ -98,6 +99,11 @@ const SECTIONS: &[Section] = &[
         name: "editor",
         title: "Events on 400k triangles, without drawing and jobs: milliseconds; a hundred strokes: megabytes",
         rows: editor::rows,
+    },
+    Section {
+        name: "start",
+        title: "From the process' start to the window and to the first picture of a file, on the software device: milliseconds, medians",
+        rows: start::rows,
     },
     Section {
         name: "peers",
