@@ -17,6 +17,7 @@ usage: cargo xtask COMMAND
   assets [NAME..] [--triangles N] [--output DIR]
                              make the samples; with --triangles the creature at that size (60k, 600k, 5M)
   gallery                    draw the samples' edits by every method into docs/gallery and docs/methods.md
+  package                    make the packages that this system can make, and say what is left
 
 `run` and `test` install missing packages with apt after asking; --yes answers yes.";
 
@@ -52,6 +53,8 @@ pub enum Command {
     Assets(Order),
     /// Draw the samples by every method into the docs.
     Gallery,
+    /// Make this system's packages.
+    Package,
 }
 
 /// Which samples to make, how fine, and where to put them.
@@ -114,6 +117,11 @@ pub fn parse(words: &[String]) -> Result<Command, String> {
         "gallery" if names.is_empty() => Ok(Command::Gallery),
         "gallery" => Err(format!(
             "`cargo xtask gallery` draws all samples; it takes no `{}`.",
+            names[0]
+        )),
+        "package" if names.is_empty() => Ok(Command::Package),
+        "package" => Err(format!(
+            "`cargo xtask package` makes all packages; it takes no `{}`.",
             names[0]
         )),
         _ => Err(format!("There is no command `{command}`.")),

@@ -4,9 +4,10 @@ use std::time::Instant;
 
 use crate::install::prepare_toolchain;
 use crate::process;
+use crate::tool::Tool;
 use crate::verdict::{Skips, Verdict};
 
-/// Runs formatting, clippy and the unit tests of every crate.
+/// Runs formatting, clippy, the checks of dependencies and the unit tests of every crate.
 ///
 /// # Errors
 /// One sentence if something fails.
@@ -16,6 +17,7 @@ pub fn check() -> Result<(), String> {
     let mut verdict = Verdict::default();
     formatting(&mut verdict);
     clippy(&mut verdict);
+    dependencies(&mut verdict);
     let units = [
         "test",
         "--locked",
@@ -47,4 +49,25 @@ pub fn clippy(verdict: &mut Verdict) {
         "warnings",
     ];
     verdict.step("clippy", &mut process::cargo(&arguments));
+}
+
+/// What checks dependencies.
+const CARGO_DENY: Tool = Tool {
+    program: "cargo-deny",
+    install: "cargo install cargo-deny",
+};
+
+/// Checks the dependencies' licences and sources by `deny.toml`, and the known faults in them if their database is here.
+fn dependencies(verdict: &mut Verdict) {
+    if let Err(sentence) = CARGO_DENY.find() {
+        return verdict.skip(&format!("the dependencies' licences and faults ({sentence})"));
+    }
+    let mut deny = process::cargo(&["deny", "--locked", "--offline", "check", "licenses", "bans", "sources"]);
+    let database = process::cargo_home().join("advisory-dbs");
+    if std::fs::read_dir(database).is_ok_and(|mut entries| entries.next().is_some()) {
+        deny.args(["advisories", "--disable-fetch"]);
+    } else {
+        verdict.skip("the dependencies' known faults (their database is not here: cargo deny fetch db)");
+    }
+    verdict.step("dependencies", &mut deny);
 }

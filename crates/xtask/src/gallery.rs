@@ -2,10 +2,10 @@
 //! are near each other, one of which is moved, by the methods that bend space.
 
 use std::fs;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use crate::assets::SAMPLES;
-use crate::process::{cargo, succeed, target_folder, words};
+use crate::process::{cargo, said, succeed, target_folder};
 
 /// The methods of the gallery. Beside each method with its defaults, options that change what it can do.
 const METHODS: &str = "bilaplacian,poisson,laplacian,frames,frames:iterations=20,arap,arap:energy=smooth,primo,shells";
@@ -73,16 +73,6 @@ fn sheet(sample: &str, edit: &str, methods: &str, look: &[&str]) -> Result<Strin
     command.args(look);
     command.args(["--edit", &format!("assets/{edit}.edit.json"), "--output"]);
     said(command.arg(root.join(format!("docs/gallery/{edit}.png"))))
-}
-
-/// What a command prints.
-fn said(command: &mut Command) -> Result<String, String> {
-    let output = command.stderr(Stdio::inherit()).output();
-    let output = output.map_err(|e| format!("`{}` can't be started: {e}.", words(command)))?;
-    match output.status.success() {
-        true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
-        false => Err(format!("`{}` failed ({}).", words(command), output.status)),
-    }
 }
 
 /// The line before a sample's table.

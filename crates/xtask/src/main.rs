@@ -1,4 +1,4 @@
-//! Pliant's own commands: `cargo xtask run|test|check|bench|assets|gallery`.
+//! Pliant's own commands: `cargo xtask run|test|check|bench|assets|gallery|package|manual`.
 //!
 //! It depends only on the standard library, so it builds in seconds on a fresh machine.
 #![allow(
@@ -15,11 +15,13 @@ mod display;
 mod gallery;
 mod install;
 mod make_assets;
+mod package;
 mod process;
 mod requirement;
 mod run;
 mod system;
 mod test;
+mod tool;
 mod validation;
 mod verdict;
 
@@ -48,6 +50,7 @@ fn main() -> ExitCode {
         Command::Bench { sections, scale } => bench::bench(&sections, scale),
         Command::Assets(order) => make_assets::make_assets(&order),
         Command::Gallery => gallery::gallery(),
+        Command::Package => package::package(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -9,7 +9,7 @@ pub fn program(name: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     std::env::split_paths(&path)
         .chain(["/usr/sbin", "/sbin"].map(PathBuf::from))
-        .map(|folder| folder.join(name))
+        .map(|folder| folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX)))
         .find(|file| file.is_file())
 }
 
@@ -40,6 +40,14 @@ pub fn cargo(arguments: &[&str]) -> Command {
     command
 }
 
+/// The folder in which cargo keeps what it fetched.
+pub fn cargo_home() -> PathBuf {
+    std::env::var_os("CARGO_HOME").map_or_else(
+        || std::env::home_dir().unwrap_or_default().join(".cargo"),
+        PathBuf::from,
+    )
+}
+
 /// Cargo's target folder.
 pub fn target_folder() -> PathBuf {
     let root = crate::root();
@@ -59,6 +67,20 @@ pub fn succeed(command: &mut Command) -> Result<(), String> {
         Ok(())
     } else {
         Err(format!("`{words}` failed ({status})."))
+    }
+}
+
+/// What a command prints.
+///
+/// # Errors
+/// One sentence with the command line, if it can't be started or fails.
+pub fn said(command: &mut Command) -> Result<String, String> {
+    let words = words(command);
+    let output = command.stderr(Stdio::inherit()).output();
+    let output = output.map_err(|e| format!("`{words}` can't be started: {e}."))?;
+    match output.status.success() {
+        true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
+        false => Err(format!("`{words}` failed ({}).", output.status)),
     }
 }
 

@@ -77,6 +77,13 @@ pub const TESTS: &[Requirement] = &[
     tool("wmctrl", "wmctrl"),
 ];
 
+/// The packages of the libraries among the requirements: what a package of Pliant depends on.
+pub fn library_packages(requirements: &[&[Requirement]]) -> Vec<&'static str> {
+    let libraries = requirements.iter().copied().flatten();
+    let libraries = libraries.filter(|requirement| matches!(requirement.evidence, Evidence::Library(_)));
+    libraries.map(|requirement| requirement.package).collect()
+}
+
 /// The packages of the missing requirements, without duplicates.
 pub fn missing_packages(requirements: &[&[Requirement]]) -> Vec<&'static str> {
     let mut packages = Vec::new();

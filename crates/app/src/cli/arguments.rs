@@ -42,6 +42,14 @@ pub(crate) enum Command {
     Diff(DiffArguments),
     /// Put a pose of one mesh onto another
     Transfer(TransferArguments),
+    /// Write the man pages, the completions for shells and a description of the command line
+    Generate(GenerateArguments),
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct GenerateArguments {
+    /// The folder to write them into; it is made if it is missing
+    pub folder: PathBuf,
 }
 
 #[derive(Args, Debug)]
@@ -342,8 +350,12 @@ fn unit_number(text: &str) -> Result<f64, String> {
 
 /// Reads the arguments, the program's name first. What comes back as an error may be the help that was asked for.
 pub(crate) fn parse(arguments: Vec<std::ffi::OsString>) -> Result<Arguments, clap::Error> {
-    let command = Arguments::command().mut_subcommand("apply", |apply| apply.after_help(methods_help()));
-    Arguments::from_arg_matches(&command.try_get_matches_from(arguments)?)
+    Arguments::from_arg_matches(&definition().try_get_matches_from(arguments)?)
+}
+
+/// The definition of the command line, with the methods in the help of `apply`.
+pub(crate) fn definition() -> clap::Command {
+    Arguments::command().mut_subcommand("apply", |apply| apply.after_help(methods_help()))
 }
 
 /// Each method with its options, for the help.

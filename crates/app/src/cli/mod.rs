@@ -4,6 +4,7 @@ mod apply;
 mod arguments;
 mod compare;
 mod diff;
+mod generate;
 mod info;
 mod interrupt;
 mod method_argument;
@@ -64,6 +65,7 @@ pub fn run(arguments: Vec<OsString>, console: &mut Console<'_>) -> u8 {
             Some(Command::Compare(arguments)) => compare::run(&arguments, console),
             Some(Command::Diff(arguments)) => diff::run(&arguments, console),
             Some(Command::Transfer(arguments)) => transfer::run(&arguments, console),
+            Some(Command::Generate(arguments)) => generate::run(&arguments),
             None => crate::window::run(arguments.file),
         },
         Err(help) if !help.use_stderr() => print(console.out, &help.render().to_string()),

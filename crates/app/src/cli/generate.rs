@@ -1,0 +1,81 @@
+//! `pliant generate`: what packages and the manual take from the definition of the command line.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use clap_complete::Shell;
+
+use super::arguments::{GenerateArguments, definition};
+use crate::AppError;
+use crate::files::shown;
+
+/// Writes `man/*.1`, `completions/*` and `command-line.md` into a folder, over what has these names there.
+///
+/// # Errors
+/// [`AppError::System`] if the folder can't be written.
+pub(super) fn run(arguments: &GenerateArguments) -> Result<(), AppError> {
+    let folder = &arguments.folder;
+    write(folder).map_err(|error| {
+        AppError::System(format!(
+            "{} can't be written: {error}; choose another folder",
+            shown(folder)
+        ))
+    })
+}
+
+fn write(folder: &Path) -> io::Result<()> {
+    let (pages, completions) = (folder.join("man"), folder.join("completions"));
+    fs::create_dir_all(&pages)?;
+    fs::create_dir_all(&completions)?;
+    clap_mangen::generate_to(definition(), &pages)?;
+    for shell in [Shell::Bash, Shell::Zsh, Shell::Fish, Shell::PowerShell] {
+        clap_complete::generate_to(shell, &mut definition(), "pliant", &completions)?;
+    }
+    fs::write(folder.join("command-line.md"), description())
+}
+
+/// The command line as a page in Markdown: the help of the program and of each of its commands.
+fn description() -> String {
+    let mut program = definition();
+    program.build();
+    let mut page = "# The command line\n".to_owned();
+    let commands = program.get_subcommands().cloned();
+    for mut command in std::iter::once(program.clone()).chain(commands) {
+        let name = command.get_display_name().unwrap_or_default().replace('-', " ");
+        // A String takes whatever is written to it.
+        let _ = write!(
+            page,
+            "\n## {name}\n\n```text\n{}\n```\n",
+            command.render_long_help().to_string().trim_end()
+        );
+    }
+    page
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_has_a_man_page_a_section_and_completions() {
+        let folder = tempfile::tempdir().unwrap();
+        write(folder.path()).unwrap();
+        let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+        let page = read("command-line.md");
+        let shells =
+            ["pliant.bash", "_pliant", "pliant.fish", "_pliant.ps1"].map(|name| read(&format!("completions/{name}")));
+        for command in definition().get_subcommands() {
+            let name = command.get_name();
+            assert!(read(&format!("man/pliant-{name}.1")).contains(".SH NAME"), "{name}");
+            assert!(page.contains(&format!("\n## pliant {name}\n")), "{name}");
+            assert!(shells.iter().all(|shell| shell.contains(name)), "{name}");
+            for option in command.get_arguments().filter_map(clap::Arg::get_long) {
+                assert!(page.contains(&format!("--{option}")), "{name} {option}");
+                assert!(shells.iter().all(|shell| shell.contains(option)), "{name} {option}");
+            }
+        }
+    }
+}

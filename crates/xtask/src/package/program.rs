@@ -1,0 +1,73 @@
+//! The program, stripped, and its debug information beside it.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::release::Release;
+use crate::process::{cargo, cargo_home, succeed, target_folder};
+use crate::tool::Tool;
+
+/// What stripping needs.
+pub const TOOLS: &[Tool] = &[Tool {
+    program: "objcopy",
+    install: "apt install binutils",
+}];
+
+/// A built program.
+pub struct Program {
+    /// The program without debug information.
+    pub program: PathBuf,
+    /// Its debug information, which it names.
+    pub debug_info: PathBuf,
+}
+
+/// Builds Pliant and puts it with its debug information into `folder`.
+///
+/// # Errors
+/// One sentence naming the command that failed.
+pub fn build(release: &Release, folder: &Path) -> Result<Program, String> {
+    compile(&[])?;
+    let built = Program {
+        program: folder.join("pliant"),
+        debug_info: folder.join(format!("{}.debug", release.name())),
+    };
+    let with_all = target_folder().join("dist/pliant");
+    let objcopy = || Command::new("objcopy");
+    succeed(
+        objcopy()
+            .args(["--only-keep-debug", "--compress-debug-sections=zlib"])
+            .args([&with_all, &built.debug_info]),
+    )?;
+    let link = format!("--add-gnu-debuglink={}", built.debug_info.display());
+    let strip = ["--strip-all", "--remove-section=.comment", &link];
+    succeed(objcopy().args(strip).args([&with_all, &built.program]))?;
+    Ok(built)
+}
+
+/// Compiles the program with more arguments for its linker, into `target/dist`.
+///
+/// # Errors
+/// One sentence if it can't be compiled.
+pub fn compile(link_arguments: &[String]) -> Result<(), String> {
+    println!("Building Pliant for its packages; the first time takes some minutes.");
+    let mut rustc = cargo(&["rustc", "--locked", "--profile", "dist"]);
+    rustc.args(["--package", "pliant-app", "--bin", "pliant", "--"]);
+    rustc.args(
+        link_arguments
+            .iter()
+            .flat_map(|argument| ["-C".to_owned(), format!("link-arg={argument}")]),
+    );
+    succeed(rustc.env("RUSTFLAGS", neutral_paths()))
+}
+
+/// Compiler flags that leave the folders of this machine out of the program.
+fn neutral_paths() -> String {
+    let given = std::env::var("RUSTFLAGS").unwrap_or_default();
+    let neutral = |folder: &Path, name: &str| format!("--remap-path-prefix={}={name}", folder.display());
+    let flags = [
+        given,
+        neutral(&cargo_home(), "/cargo"),
+        neutral(&crate::root(), "/pliant"),
+    ];
+    flags.join(" ").trim().to_owned()
+}

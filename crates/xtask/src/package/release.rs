@@ -1,0 +1,71 @@
+//! Which Pliant is packaged.
+
+use std::process::Command;
+
+use crate::process;
+
+/// The version and the time of what is packaged.
+pub struct Release {
+    /// The workspace's version, such as "0.1.0".
+    pub version: &'static str,
+    /// Seconds since 1970: `SOURCE_DATE_EPOCH`, or the commit's time.
+    pub epoch: u64,
+    /// Who packages: `DEBFULLNAME` and `DEBEMAIL`, or the commit's author.
+    pub maintainer: String,
+}
+
+impl Release {
+    /// Reads it from the environment and from git.
+    ///
+    /// # Errors
+    /// One sentence if neither tells the time or the maintainer.
+    pub fn read() -> Result<Self, String> {
+        let variable = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
+        let commit = |format: &str| {
+            let mut git = Command::new("git");
+            git.args(["log", "-1", &format!("--format={format}")]);
+            process::said(git.current_dir(crate::root())).map(|line| line.trim().to_owned())
+        };
+        let epoch = match variable("SOURCE_DATE_EPOCH") {
+            Some(epoch) => epoch,
+            None => commit("%ct").map_err(|e| format!("{e} Outside a git clone set SOURCE_DATE_EPOCH."))?,
+        };
+        let maintainer = match (variable("DEBFULLNAME"), variable("DEBEMAIL")) {
+            (Some(name), Some(address)) => format!("{name} <{address}>"),
+            _ => commit("%an <%ae>").map_err(|e| format!("{e} Outside a git clone set DEBFULLNAME and DEBEMAIL."))?,
+        };
+        Ok(Self {
+            version: env!("CARGO_PKG_VERSION"),
+            epoch: epoch
+                .parse()
+                .map_err(|_| format!("SOURCE_DATE_EPOCH is `{epoch}`; it must be seconds since 1970."))?,
+            maintainer,
+        })
+    }
+
+    /// The time in a format of `date` (GNU's), in UTC.
+    ///
+    /// # Errors
+    /// One sentence if `date` fails.
+    pub fn date(&self, format: &str) -> Result<String, String> {
+        let mut date = Command::new("date");
+        date.env("LC_ALL", "C")
+            .args(["-u", "-d", &format!("@{}", self.epoch), format]);
+        process::said(&mut date).map(|line| line.trim().to_owned())
+    }
+
+    /// A text with `@VERSION@` filled in.
+    pub fn filled(&self, text: &str) -> String {
+        text.replace("@VERSION@", self.version)
+    }
+
+    /// The beginning of the names of files: `pliant-0.1.0-x86_64-linux`.
+    pub fn name(&self) -> String {
+        format!(
+            "pliant-{}-{}-{}",
+            self.version,
+            std::env::consts::ARCH,
+            std::env::consts::OS
+        )
+    }
+}

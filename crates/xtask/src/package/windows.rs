@@ -1,0 +1,66 @@
+//! The zip for Windows: the program with its icon and version, and the debug information beside it.
+//!
+//! Nobody has tried this yet.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::release::Release;
+use super::{files, icons, inventory, program};
+use crate::process::{succeed, target_folder};
+use crate::tool::{Tool, all_there};
+
+const TOOLS: &[Tool] = &[
+    Tool {
+        program: "rc",
+        install: "install the Windows SDK and start from its command prompt",
+    },
+    Tool {
+        program: "tar",
+        install: "it comes with Windows 10",
+    },
+];
+
+/// Makes `pliant-VERSION-ARCHITECTURE-windows.zip`.
+///
+/// # Errors
+/// One sentence naming what is missing or what failed.
+pub fn zip(release: &Release, folder: &Path) -> Result<Vec<PathBuf>, String> {
+    all_there(&[TOOLS, inventory::TOOLS].concat())?;
+    let name = release.name();
+    let resource = resource(release, folder)?;
+    program::compile(&[resource.display().to_string()])?;
+    let built = target_folder().join("dist");
+    let debug_info = folder.join(format!("{name}.pdb"));
+    files::copy(&built.join("pliant.pdb"), &debug_info)?;
+    let papers = inventory::write(release, folder)?;
+    let unpacked = folder.join(&name);
+    files::copy(&built.join("pliant.exe"), &unpacked.join("pliant.exe"))?;
+    for name in ["LICENSE-MIT", "LICENSE-APACHE", "README.md"] {
+        files::copy(&crate::root().join(name), &unpacked.join(name))?;
+    }
+    files::copy(&papers.licences, &unpacked.join("licences-of-dependencies.txt"))?;
+    let zip = folder.join(format!("{name}.zip"));
+    let mut tar = Command::new("tar");
+    succeed(tar.current_dir(folder).arg("-a").arg("-cf").arg(&zip).arg(&name))?;
+    files::remove_folder(&unpacked)?;
+    Ok(vec![zip, debug_info, papers.bill_of_materials])
+}
+
+/// Compiles the resource with icon and version.
+fn resource(release: &Release, folder: &Path) -> Result<PathBuf, String> {
+    let (script, compiled) = (folder.join("pliant.rc"), folder.join("pliant.res"));
+    files::write(&folder.join("pliant.ico"), icons::ico()?)?;
+    let numbers = format!("{},0", release.version.replace('.', ","));
+    let text = release.filled(&files::text("packaging/windows/pliant.rc")?);
+    files::write(&script, text.replace("@NUMBERS@", &numbers))?;
+    let mut rc = Command::new("rc");
+    succeed(
+        rc.current_dir(folder)
+            .arg("/nologo")
+            .arg("/fo")
+            .arg(&compiled)
+            .arg(&script),
+    )?;
+    Ok(compiled)
+}
