@@ -18,6 +18,7 @@ usage: cargo xtask COMMAND
                              make the samples; with --triangles the creature at that size (60k, 600k, 5M)
   gallery                    draw the samples' edits by every method into docs/gallery and docs/methods.md
   package                    make the packages that this system can make, and say what is left
+  manual                     build the manual as a site, and check its links
 
 `run` and `test` install missing packages with apt after asking; --yes answers yes.";
 
@@ -55,6 +56,8 @@ pub enum Command {
     Gallery,
     /// Make this system's packages.
     Package,
+    /// Build the manual.
+    Manual,
 }
 
 /// Which samples to make, how fine, and where to put them.
@@ -114,16 +117,13 @@ pub fn parse(words: &[String]) -> Result<Command, String> {
         )),
         "bench" => Ok(Command::Bench { sections: names, scale }),
         "assets" => Ok(Command::Assets(Order { names, ..order })),
-        "gallery" if names.is_empty() => Ok(Command::Gallery),
-        "gallery" => Err(format!(
-            "`cargo xtask gallery` draws all samples; it takes no `{}`.",
+        "gallery" | "package" | "manual" if !names.is_empty() => Err(format!(
+            "`cargo xtask {command}` takes no names, and `{}` is one.",
             names[0]
         )),
-        "package" if names.is_empty() => Ok(Command::Package),
-        "package" => Err(format!(
-            "`cargo xtask package` makes all packages; it takes no `{}`.",
-            names[0]
-        )),
+        "gallery" => Ok(Command::Gallery),
+        "package" => Ok(Command::Package),
+        "manual" => Ok(Command::Manual),
         _ => Err(format!("There is no command `{command}`.")),
     }
 }
@@ -185,6 +185,7 @@ mod tests {
             ("test --full", "--full"),
             ("run a b", "`b`"),
             ("check mesh", "mesh"),
+            ("package deb", "deb"),
             ("assets --triangles", "--triangles"),
             ("assets --triangles 5x", "5x"),
             ("assets --triangles 99999999999999999999M", "99999999999999999999M"),

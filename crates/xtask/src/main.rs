@@ -12,9 +12,11 @@ mod assets;
 mod bench;
 mod check;
 mod display;
+mod files;
 mod gallery;
 mod install;
 mod make_assets;
+mod manual;
 mod package;
 mod process;
 mod requirement;
@@ -51,6 +53,7 @@ fn main() -> ExitCode {
         Command::Assets(order) => make_assets::make_assets(&order),
         Command::Gallery => gallery::gallery(),
         Command::Package => package::package(),
+        Command::Manual => manual::manual(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -41,12 +41,14 @@ pub fn test(filters: &[String], consent: Consent) -> Result<(), String> {
     if filters.is_empty() {
         validation::pictures(&mut verdict);
     }
-    if let Prepared::Without(sentence) = prepared {
-        println!("\n{sentence}");
-    }
-    let skips = match std::env::var_os("CI") {
-        Some(value) if !value.is_empty() && value != "false" => Skips::Failures,
-        _ => Skips::Named,
+    let in_ci = std::env::var_os("CI").is_some_and(|value| !value.is_empty() && value != "false");
+    let skips = match prepared {
+        Prepared::Complete if in_ci => Skips::Failures,
+        Prepared::Complete => Skips::Named,
+        Prepared::Without(sentence) => {
+            println!("\n{sentence}");
+            Skips::Named
+        }
     };
     verdict.conclude(started, skips)
 }

@@ -23,9 +23,9 @@ pub struct Verdict {
 /// How tests that were skipped without a graphics device or a display are counted.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Skips {
-    /// They are only listed: a user's machine may have neither.
+    /// They are only listed: a user's machine may have neither, nor may a system whose packages are not known.
     Named,
-    /// They count as failures: continuous integration provides both.
+    /// They count as failures: continuous integration installed what both need.
     Failures,
 }
 

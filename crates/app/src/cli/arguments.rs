@@ -42,7 +42,7 @@ pub(crate) enum Command {
     Diff(DiffArguments),
     /// Put a pose of one mesh onto another
     Transfer(TransferArguments),
-    /// Write the man pages, the completions for shells and a description of the command line
+    /// Write the man pages, the completions for shells and the manual's pages of commands
     Generate(GenerateArguments),
 }
 

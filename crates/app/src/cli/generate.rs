@@ -1,4 +1,5 @@
-//! `pliant generate`: what packages and the manual take from the definition of the command line.
+//! `pliant generate`: what packages and the manual take from the definitions of the command line and of the window's
+//! commands.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -6,12 +7,13 @@ use std::io;
 use std::path::Path;
 
 use clap_complete::Shell;
+use pliant_editor::{Command, Shortcut};
 
 use super::arguments::{GenerateArguments, definition};
 use crate::AppError;
 use crate::files::shown;
 
-/// Writes `man/*.1`, `completions/*` and `command-line.md` into a folder, over what has these names there.
+/// Writes `man/*.1`, `completions/*`, `command-line.md` and `commands.md` into a folder, over what has these names there.
 ///
 /// # Errors
 /// [`AppError::System`] if the folder can't be written.
@@ -33,11 +35,12 @@ fn write(folder: &Path) -> io::Result<()> {
     for shell in [Shell::Bash, Shell::Zsh, Shell::Fish, Shell::PowerShell] {
         clap_complete::generate_to(shell, &mut definition(), "pliant", &completions)?;
     }
-    fs::write(folder.join("command-line.md"), description())
+    fs::write(folder.join("command-line.md"), command_line())?;
+    fs::write(folder.join("commands.md"), commands())
 }
 
 /// The command line as a page in Markdown: the help of the program and of each of its commands.
-fn description() -> String {
+fn command_line() -> String {
     let mut program = definition();
     program.build();
     let mut page = "# The command line\n".to_owned();
@@ -54,17 +57,32 @@ fn description() -> String {
     page
 }
 
+/// The window's commands with their keys as a page in Markdown.
+fn commands() -> String {
+    let mut page = "# Commands and keys\n\n| command | key | what it does |\n|---|---|---|\n".to_owned();
+    for listed in Command::all_listed() {
+        let keys: Vec<String> = listed.shortcuts.iter().map(Shortcut::label).collect();
+        let cells = [listed.name, &keys.join(", "), listed.tooltip].map(|cell| cell.replace('|', "\\|"));
+        // A String takes whatever is written to it.
+        let _ = writeln!(page, "| {} |", cells.join(" | "));
+    }
+    page
+}
+
 #[cfg(test)]
 #[expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 
     #[test]
-    fn every_command_has_a_man_page_a_section_and_completions() {
+    fn every_command_is_in_all_that_is_written() {
         let folder = tempfile::tempdir().unwrap();
         write(folder.path()).unwrap();
         let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
-        let page = read("command-line.md");
+        let (page, commands) = (read("command-line.md"), read("commands.md"));
+        for listed in Command::all_listed() {
+            assert!(commands.contains(listed.tooltip), "{}", listed.name);
+        }
         let shells =
             ["pliant.bash", "_pliant", "pliant.fish", "_pliant.ps1"].map(|name| read(&format!("completions/{name}")));
         for command in definition().get_subcommands() {

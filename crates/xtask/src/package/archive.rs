@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::files;
 use super::release::Release;
 use super::tree::plain_permissions;
+use crate::files;
 use crate::process::succeed;
 use crate::tool::{Tool, all_there};
 

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::files;
 use super::release::Release;
 use super::tree::{DOCUMENTS, compress, plain_permissions};
+use crate::files;
 use crate::process::said;
 use crate::requirement::{PICTURES, WINDOW, library_packages};
 use crate::tool::{Tool, all_there};
@@ -34,7 +34,7 @@ pub fn package(release: &Release, tree: &Path, folder: &Path) -> Result<Vec<Path
     files::copy_folder(tree, &root.join("usr"))?;
     // In Debian the text of this licence is in the system, and `copyright` says where.
     let documents = root.join("usr").join(DOCUMENTS);
-    std::fs::remove_file(documents.join("LICENSE-MIT")).map_err(|e| format!("The licence can't be left out: {e}."))?;
+    files::remove_file(&documents.join("LICENSE-MIT"))?;
     changelog(release, &documents)?;
     let libraries = linked_libraries(&root)?;
     let sums = checksums(&root)?;

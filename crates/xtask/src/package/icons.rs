@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::files;
+use crate::files;
 
 /// The sides in pixels of the pictures.
 pub const SIZES: [u32; 8] = [16, 24, 32, 48, 64, 128, 256, 512];

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::files;
 use super::release::Release;
+use crate::files;
 use crate::process::{cargo, said, succeed};
 use crate::tool::Tool;
 
@@ -50,14 +50,25 @@ pub fn write(release: &Release, folder: &Path) -> Result<Papers, String> {
     Ok(papers)
 }
 
-/// The tool writes beside the manifest, so its file is moved from there.
+/// The tool writes beside every manifest of the workspace. Ours is taken from there, and the others are removed.
 fn bill_of_materials(release: &Release, target: &str, file: &Path) -> Result<(), String> {
     let mut cyclonedx = cargo(&["cyclonedx", "--quiet", "--format", "json", "--describe", "binaries"]);
-    cyclonedx.args(["--manifest-path", "crates/app/Cargo.toml", "--target", target]);
-    succeed(cyclonedx.env("SOURCE_DATE_EPOCH", release.epoch.to_string()))?;
-    let beside = crate::root().join("crates/app/pliant_bin.cdx.json");
-    files::copy(&beside, file)?;
-    std::fs::remove_file(&beside).map_err(|e| format!("{} can't be removed: {e}.", beside.display()))
+    cyclonedx.args([
+        "--no-build-deps",
+        "--manifest-path",
+        "crates/app/Cargo.toml",
+        "--target",
+        target,
+    ]);
+    let made = succeed(cyclonedx.env("SOURCE_DATE_EPOCH", release.epoch.to_string()));
+    let crates = crate::root().join("crates");
+    let copied = made.and_then(|()| files::copy(&crates.join("app/pliant_bin.cdx.json"), file));
+    for left in files::all_files(&crates)? {
+        if left.to_string_lossy().ends_with("_bin.cdx.json") {
+            files::remove_file(&crates.join(left))?;
+        }
+    }
+    copied
 }
 
 /// The target that the compiler builds for.

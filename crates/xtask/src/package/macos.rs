@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::release::Release;
-use super::{files, icons, inventory, program};
+use super::{icons, inventory, program};
+use crate::files;
 use crate::process::{succeed, target_folder};
 use crate::tool::{Tool, all_there};
 
@@ -29,8 +30,15 @@ pub fn image(release: &Release, folder: &Path) -> Result<Vec<PathBuf>, String> {
     all_there(&[TOOLS, inventory::TOOLS].concat())?;
     program::compile(&[])?;
     let built = target_folder().join("dist/pliant");
-    let debug_info = folder.join(format!("{}.dSYM", release.name()));
-    succeed(Command::new("dsymutil").arg(&built).arg("-o").arg(&debug_info))?;
+    let bundle = folder.join("pliant.dSYM");
+    succeed(Command::new("dsymutil").arg(&built).arg("-o").arg(&bundle))?;
+    let debug_info = folder.join(format!("{}.dSYM.zip", release.name()));
+    succeed(
+        Command::new("ditto")
+            .args(["-c", "-k", "--keepParent"])
+            .args([&bundle, &debug_info]),
+    )?;
+    files::remove_folder(&bundle)?;
     let papers = inventory::write(release, folder)?;
     let content = folder.join("image");
     let inside = content.join("Pliant.app/Contents");

@@ -5,7 +5,6 @@
 
 mod archive;
 mod debian;
-mod files;
 mod icons;
 mod inventory;
 mod macos;
@@ -17,6 +16,7 @@ mod windows;
 
 use std::path::PathBuf;
 
+use crate::files;
 use crate::process::target_folder;
 use release::Release;
 

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::files;
 use super::icons;
 use super::inventory::Papers;
 use super::program::Program;
 use super::release::Release;
+use crate::files;
 use crate::process::succeed;
 use crate::tool::Tool;
 
@@ -29,7 +29,7 @@ pub fn grow(release: &Release, built: &Program, papers: &Papers, folder: &Path) 
     let share = tree.join("share");
     files::fresh_folder(&tree)?;
     files::copy(&built.program, &tree.join("bin/pliant"))?;
-    std::fs::remove_file(&built.program).map_err(|e| format!("{} can't be removed: {e}.", built.program.display()))?;
+    files::remove_file(&built.program)?;
     desktop(release, &share)?;
     icons::put(&share.join("icons/hicolor"))?;
     from_the_command_line(&tree)?;
@@ -43,8 +43,7 @@ pub fn grow(release: &Release, built: &Program, papers: &Papers, folder: &Path) 
         &documents.join("copyright"),
     )?;
     files::copy(&papers.licences, &documents.join("licences-of-dependencies.txt"))?;
-    std::fs::remove_file(&papers.licences)
-        .map_err(|e| format!("{} can't be removed: {e}.", papers.licences.display()))?;
+    files::remove_file(&papers.licences)?;
     files::copy(&papers.bill_of_materials, &documents.join("pliant.cdx.json"))?;
     for name in ["changelog", "licences-of-dependencies.txt", "pliant.cdx.json"] {
         compress(&documents.join(name))?;

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::release::Release;
-use super::{files, icons, inventory, program};
+use super::{icons, inventory, program};
+use crate::files;
 use crate::process::{succeed, target_folder};
 use crate::tool::{Tool, all_there};
 

@@ -25,6 +25,14 @@ pub fn remove_folder(folder: &Path) -> Result<(), String> {
     }
 }
 
+/// Removes a file.
+///
+/// # Errors
+/// One sentence naming the file.
+pub fn remove_file(file: &Path) -> Result<(), String> {
+    fs::remove_file(file).map_err(|e| format!("{} can't be removed: {e}.", file.display()))
+}
+
 /// Writes a file, and makes its folder.
 ///
 /// # Errors
