@@ -64,7 +64,7 @@ fn desktop(release: &Release, share: &Path) -> Result<(), String> {
     )?;
     let description = release.filled(&files::text("packaging/linux/pliant.metainfo.xml")?);
     let description = description.replace("@DATE@", &release.date("+%F")?);
-    files::write(&share.join("metainfo/local.pliant.metainfo.xml"), description)
+    files::write(&share.join("metainfo/local.pliant.pliant.metainfo.xml"), description)
 }
 
 /// What the program writes from the definition of its command line.
