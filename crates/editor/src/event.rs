@@ -51,6 +51,8 @@ pub enum Event {
     Pressure(Option<f64>),
     /// A key went down (repeats of a held key included). Characters come in lower case, one event a key.
     Key(Key, Modifiers),
+    /// A key went up.
+    KeyReleased(Key),
     /// Something a menu, a button or the command palette asks for.
     Command(Command),
     /// A person's choice of keys.

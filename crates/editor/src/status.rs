@@ -55,6 +55,9 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
             ToolMode::PaintHandle => "Paint what you want to move",
             ToolMode::PaintFree => "Paint what may bend, then a handle (1)",
             ToolMode::PaintFixed => "Paint what is held still, then a handle (1)",
+            ToolMode::Pose => {
+                "Point at a limb and drag it: it turns about its joint, with Ctrl it twists, with Shift it grows"
+            }
             ToolMode::Erase | ToolMode::Select | ToolMode::PaintStiffness => "Press 1 and paint what you want to move",
         }
     } else if settings.wants_pivot {
@@ -81,7 +84,7 @@ fn working(workspace: &Workspace, is_dragging: bool) -> Option<String> {
         return Some("Nothing is bound: handles move alone until the regions change".to_owned());
     }
     let (kind, fraction) = jobs.running().into_iter().rfind(|(kind, _)| match kind {
-        JobKind::Solve | JobKind::Compare | JobKind::Inspect => false,
+        JobKind::Solve | JobKind::Compare | JobKind::Inspect | JobKind::Joint => false,
         JobKind::Pick => workspace.computed().pickable.is_none(),
         JobKind::Order => !document.handles().is_empty(),
         JobKind::Region | JobKind::Bind | JobKind::Mirror | JobKind::Enclose => true,

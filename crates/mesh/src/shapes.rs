@@ -6,22 +6,28 @@
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 
 use crate::{Cancel, Drawn, DrawnVertex, FileVertex, Model, Progress, WeldOptions};
 
 /// The unit sphere about the origin, poles on z: `rings` (2 or more) bands of `segments` (3 or more).
 /// `segments (rings - 1) + 2` vertices.
 pub fn uv_sphere(rings: usize, segments: usize) -> Drawn {
-    let mut positions = vec![DVec3::Z];
+    turned(rings, segments, |share| (PI * share).sin_cos().into())
+}
+
+/// A surface of revolution about z: `profile` gives its radius and its z from its upper pole (0) to its lower one (1).
+/// `rings` (2 or more) bands of `segments` (3 or more). Closed.
+pub fn turned(rings: usize, segments: usize, profile: impl Fn(f64) -> DVec2) -> Drawn {
+    let mut positions = vec![DVec3::Z * profile(0.0).y];
     for ring in 1..rings {
-        let polar = PI * ring as f64 / rings as f64;
+        let at = profile(ring as f64 / rings as f64);
         positions.extend((0..segments).map(|segment| {
             let (sin, cos) = (TAU * segment as f64 / segments as f64).sin_cos();
-            DVec3::new(polar.sin() * cos, polar.sin() * sin, polar.cos())
+            DVec3::new(at.x * cos, at.x * sin, at.y)
         }));
     }
-    positions.push(DVec3::NEG_Z);
+    positions.push(DVec3::Z * profile(1.0).y);
     let last = positions.len() - 1;
     let at = |ring: usize, segment: usize| match ring {
         0 => 0,

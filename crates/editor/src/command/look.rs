@@ -1,6 +1,6 @@
 //! How the surface is shown.
 
-use super::entry::{Action, Entry, Reason, Scope, State, always, character, item};
+use super::entry::{Action, Entry, Reason, Scope, State, always, character, item, when_open};
 use crate::jobs::Inspectable;
 use crate::view::{Clay, Shading};
 
@@ -175,6 +175,20 @@ pub(super) const TOGGLE_BASE: Entry<()> = Entry {
         (!state.view.look.base).then(reason).flatten()
     },
     action: Action::Do(|context, ()| context.view.look.base = !context.view.look.base),
+};
+
+/// Shows the file's own shape in place of the present one, or the present one again.
+pub(super) const TOGGLE_ORIGINAL: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Original",
+        "Shows the shape as it was opened, for as long as the key is held.",
+        "before after compare undeformed rest ghost",
+        &[character('o')],
+    )],
+    scope: Scope::View,
+    unavailable: when_open,
+    action: Action::Do(|context, ()| context.view.look.original = !context.view.look.original),
 };
 
 /// Shows each triangle flat, or normals interpolated.

@@ -51,6 +51,13 @@ pub(super) const SET_TOOL: Entry<ToolMode> = Entry {
             "brush rigidity material",
             &[character('6')],
         ),
+        item(
+            ToolMode::Pose,
+            "Pose",
+            "Point at a limb and drag it: it turns about its joint. Ctrl twists it, Shift scales it.",
+            "bend limb arm leg joint rotate brush",
+            &[character('7')],
+        ),
     ],
     scope: Scope::Tool,
     unavailable: always,

@@ -250,6 +250,8 @@ commands! {
     ToggleOutlines = look::TOGGLE_OUTLINES;
     /// Shows or hides the ground's grid.
     ToggleGrid = look::TOGGLE_GRID;
+    /// Shows the file's own shape in place of the present one, or the present one again.
+    ToggleOriginal = look::TOGGLE_ORIGINAL;
     /// Shows the smooth base in place of the surface, or the surface again.
     ToggleBase = look::TOGGLE_BASE;
     /// Shows or hides the regions' colours over clay and material.

@@ -16,7 +16,7 @@ use crate::event::Event;
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::{Activity, Arrival, Asked, Executor, JobDone, JobKind};
 use crate::snapshot::Snapshot;
-use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin};
+use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode, ToolSettings, begin, hover};
 use crate::view::{Shading, View};
 use crate::workspace::{ColouredBy, Workspace, take_mirrored};
 
@@ -31,6 +31,8 @@ pub struct Editor {
     gesture: Option<Box<dyn Gesture>>,
     pointer: Option<Pointer>,
     key_map: KeyMap,
+    /// The held key that shows the original.
+    showing_original: Option<Key>,
     /// Events that wait until the hierarchy for rays has the drawn shape.
     waiting: VecDeque<Event>,
 }
@@ -47,6 +49,7 @@ impl Editor {
             gesture: None,
             pointer: None,
             key_map: KeyMap::default(),
+            showing_original: None,
             waiting: VecDeque::new(),
         }
     }
@@ -111,6 +114,7 @@ impl Editor {
             }
             Event::Pressure(pressure) => self.settings.set_pressure(pressure),
             Event::Key(key, modifiers) => self.key(key, modifiers),
+            Event::KeyReleased(key) => self.key_released(key),
             Event::Command(command) => self.execute(command),
             Event::Keys(key_map) => self.key_map = key_map,
             Event::Adjust(command) => self.adjust(command),
@@ -146,6 +150,12 @@ impl Editor {
             weights_of: selected.filter(|_| look.shading == Shading::Weights),
             base: look.base,
         };
+        if self.settings.mode != ToolMode::Pose {
+            self.workspace.jobs.forget_joint();
+        } else if gesture.is_none() {
+            let pointer_px = self.pointer.map(|pointer| pointer.position_px);
+            hover(&mut self.workspace, &self.view, pointer_px);
+        }
         self.workspace.conclude(activity, by, asked);
         if !gesture.is_some_and(Gesture::moves_camera) {
             self.view.rest();
@@ -213,7 +223,20 @@ impl Editor {
             self.workspace.controls.put([]);
             self.settings.wants_pivot = false;
         } else if let Some(command) = self.key_map.command(key, modifiers) {
-            self.execute(command);
+            // A held key repeats: what it shows stays until it goes up.
+            let is_held = command == Command::ToggleOriginal && self.showing_original == Some(key);
+            if !is_held {
+                self.showing_original = (command == Command::ToggleOriginal).then_some(key);
+                self.execute(command);
+            }
+        }
+    }
+
+    /// What a held key has shown ends.
+    fn key_released(&mut self, key: Key) {
+        if self.showing_original == Some(key) {
+            self.showing_original = None;
+            self.view.look.original = false;
         }
     }
 
@@ -278,11 +301,15 @@ impl Editor {
             Some(Arrival::Enclosed(inside)) => {
                 self.ask_gesture(|gesture, context| gesture.found(context, inside));
             }
+            Some(Arrival::Joint) => {
+                self.ask_gesture(|gesture, context| gesture.found_joint(context));
+            }
             Some(Arrival::Mirrored(image)) => take_mirrored(&mut self.workspace, image, self.gesture.is_none()),
             _ => {}
         }
         // The search has ended without a result: it was stopped, or it failed.
-        if kind == JobKind::Enclose && self.is_looking() && !self.workspace.jobs.is_busy(kind) {
+        let is_search = matches!(kind, JobKind::Enclose | JobKind::Joint);
+        if is_search && self.is_looking() && !self.workspace.jobs.is_busy(kind) {
             self.abort_gesture();
         }
     }
@@ -308,6 +335,8 @@ impl Editor {
     /// Takes another file into the workspace, and shows all of it.
     fn begin_file(&mut self, size: Option<f64>, open: impl FnOnce(&mut Workspace)) {
         self.abort_gesture();
+        self.showing_original = None;
+        self.view.look.original = false;
         self.waiting.clear();
         self.settings.wants_pivot = false;
         self.brush = Brush::default();

@@ -17,7 +17,7 @@ use crate::scene_view::{ControlPoints, Cursor, SceneView};
 use crate::snapshot::Snapshot;
 use crate::status::status;
 use crate::tool::{Gesture, ToolMode};
-use crate::view::Pick;
+use crate::view::{Look, Pick};
 use crate::workspace::{SnapshotKey, WorkspaceSnapshot, region_colour, rims};
 use crate::{MeshReference, geometry_hash};
 
@@ -34,11 +34,11 @@ impl Editor {
             viewport_px: view.viewport_px(),
             shape_revision: workspace.shape_revision(),
             displacements: document.from_file(),
-            drawn: inspected
-                .base
-                .as_ref()
-                .filter(|_| view.look.base)
-                .unwrap_or(document.from_file()),
+            drawn: match view.look {
+                Look { original: true, .. } => &workspace.original,
+                Look { base: true, .. } => inspected.base.as_ref().unwrap_or(document.from_file()),
+                _ => document.from_file(),
+            },
             weights: inspected
                 .weights
                 .as_ref()
@@ -50,6 +50,7 @@ impl Editor {
             brush_ring: &self.overlay.ring,
             gizmo: &self.overlay.gizmo,
             controls: &self.overlay.controls,
+            joint: &self.overlay.joint,
             control_points: self.control_points(),
             descent: workspace.descent.filter(|_| document.is_displaced()),
             look: view.look,
@@ -95,6 +96,7 @@ impl Editor {
         match &self.gesture {
             Some(gesture) => gesture.cursor(),
             None if self.overlay.hovered.is_some() || self.overlay.pointed_control.is_some() => Cursor::Grab,
+            None if self.settings.mode == ToolMode::Pose && !self.overlay.joint.is_empty() => Cursor::Grab,
             None if self.overlay.is_over_surface && self.settings.mode != ToolMode::Select => Cursor::Brush,
             None => Cursor::Arrow,
         }
@@ -253,7 +255,7 @@ impl Editor {
     /// prepare for the pointer or the first drag.
     pub fn is_settled(&self) -> bool {
         let awaited = |kind| match kind {
-            JobKind::Pick | JobKind::Compare => false,
+            JobKind::Pick | JobKind::Compare | JobKind::Joint => false,
             JobKind::Order => self.document().is_displaced(),
             JobKind::Region
             | JobKind::Bind

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use pliant_deform::{Bound, Ordering, ReusableFactor};
-use pliant_mesh::Model;
+use pliant_mesh::{Joint, Model};
 
 use super::bound_controls::BoundControls;
 use super::carried::Carried;
@@ -34,6 +34,8 @@ pub(crate) struct Computed {
     pub(crate) inspected: Inspected,
     /// What the next binding can take over of the last one.
     pub(super) reusable_factor: Option<ReusableFactor>,
+    /// Of the limb under the pointer.
+    pub(super) joint: Option<Arc<Joint>>,
     /// About the last binding.
     pub(crate) warnings: Vec<HandleWarning>,
     /// About the targets of the last solve.
@@ -57,6 +59,7 @@ impl Default for Computed {
             inspectable: Inspectable::default(),
             inspected: Inspected::default(),
             reusable_factor: None,
+            joint: None,
             warnings: Vec::new(),
             blind_to: Vec::new(),
             example_weights: Vec::new(),

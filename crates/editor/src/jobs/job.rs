@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Mat3};
 use pliant_deform::{Bound, Budget, Ordering};
-use pliant_mesh::{Bvh, Cancel, Progress, SurfaceVertex};
+use pliant_mesh::{Bvh, Cancel, Joint, Progress, SurfaceVertex};
 
 use super::carried::Carried;
 use super::compared::Compared;
@@ -37,11 +37,13 @@ pub enum JobKind {
     Compare,
     /// Weights or base of the present binding, to be looked at.
     Inspect,
+    /// The joint of the limb under the pointer.
+    Joint,
 }
 
 impl JobKind {
     /// Every kind, in the order in which their results build on one another.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Pick,
         Self::Order,
         Self::Region,
@@ -51,6 +53,7 @@ impl JobKind {
         Self::Enclose,
         Self::Compare,
         Self::Inspect,
+        Self::Joint,
     ];
 
     /// What the job does, for the status line: "binding".
@@ -65,6 +68,7 @@ impl JobKind {
             Self::Enclose => "looking for what is inside",
             Self::Compare => "comparing methods",
             Self::Inspect => "looking into the binding",
+            Self::Joint => "looking for the joint",
         }
     }
 }
@@ -182,6 +186,8 @@ pub enum JobOutcome {
     Compared(Box<Compared>),
     /// What was found in the binding.
     Inspected(Inspected),
+    /// The joint of a limb; `None` where there is none.
+    Joint(Option<Arc<Joint>>),
     /// It was cancelled, and nothing is owed.
     Cancelled,
     /// It failed; one sentence that names the culprit and the remedy.
@@ -201,6 +207,7 @@ impl std::fmt::Debug for JobOutcome {
             Self::Enclosed(_) => "Enclosed",
             Self::Compared(_) => "Compared",
             Self::Inspected(_) => "Inspected",
+            Self::Joint(_) => "Joint",
             Self::Cancelled => "Cancelled",
             Self::Failed(sentence) => return write!(f, "Failed({sentence})"),
         })

@@ -8,7 +8,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use pliant_mesh::{Model, SurfaceVertex};
+use pliant_mesh::{Joint, Model, SurfaceVertex};
 
 use super::bound_controls::BoundControls;
 use super::comparison::Comparison;
@@ -61,6 +61,11 @@ pub(crate) struct Jobs {
     enclose_revision: Revision,
     compare_revision: Revision,
     inspect_revision: Revision,
+    joint_revision: Revision,
+    /// Joints that were asked for before this are dropped.
+    joint_floor: Revision,
+    /// Of which shape and under which triangle a joint was asked for last.
+    joint_asked: Option<(Revision, u32)>,
     /// What is looked at of which binding, from when it was asked for.
     inspection: (Revision, Asked),
 }
@@ -73,6 +78,8 @@ pub(crate) enum Arrival {
     Picking,
     /// The vertices of a mirror image.
     Mirrored(Vec<usize>),
+    /// The joint of the limb under the pointer, or that it has none.
+    Joint,
     /// The vertices that an outline holds.
     Enclosed(Vec<SurfaceVertex>),
     /// A new shape; the flag says whether it is the final one.
@@ -113,6 +120,9 @@ impl Jobs {
             enclose_revision: Revision(0),
             compare_revision: Revision(0),
             inspect_revision: Revision(0),
+            joint_revision: Revision(0),
+            joint_floor: Revision(0),
+            joint_asked: None,
             inspection: (Revision(0), Asked::default()),
         }
     }
@@ -129,6 +139,7 @@ impl Jobs {
             self.queues[kind as usize].cancel();
         }
         self.comparison = None;
+        self.forget_joint();
         self.computed = Computed {
             region: Region::still(model.surface.positions.len()),
             model: Some(model),
@@ -172,6 +183,36 @@ impl Jobs {
     pub(crate) fn stop_enclosing(&mut self) {
         self.queues[JobKind::Enclose as usize].cancel();
         self.enclose_revision = self.next_revision();
+    }
+
+    /// Whether the joint under a triangle of the present shape has not been asked for.
+    pub(crate) fn asks_for_joint(&self, triangle: u32) -> bool {
+        self.joint_asked != Some((self.shape_revision, triangle))
+    }
+
+    /// Has the joint under a triangle of the present shape looked for. What runs goes on, so that a pointer that keeps
+    /// moving sees joints; the newest waits.
+    pub(crate) fn look_for_joint(&mut self, triangle: u32, work: Work) {
+        if self.joint_asked.is_some_and(|(shape, _)| shape != self.shape_revision) {
+            self.forget_joint();
+        }
+        self.joint_asked = Some((self.shape_revision, triangle));
+        self.joint_revision = self.next_revision();
+        self.queues[JobKind::Joint as usize].request(self.joint_revision, work);
+    }
+
+    /// No joint is wanted any more.
+    pub(crate) fn forget_joint(&mut self) {
+        if self.joint_asked.take().is_some() {
+            self.queues[JobKind::Joint as usize].cancel();
+            self.computed.joint = None;
+            self.joint_floor = self.next_revision();
+        }
+    }
+
+    /// The joint that was found last.
+    pub(crate) fn joint(&self) -> Option<&Arc<Joint>> {
+        self.computed.joint.as_ref()
     }
 
     /// Begins to compare what the methods make of the edit.
@@ -243,6 +284,7 @@ impl Jobs {
             JobKind::Solve,
             JobKind::Mirror,
             JobKind::Enclose,
+            JobKind::Joint,
         ] {
             let queue = &mut self.queues[kind as usize];
             if queue.is_busy() {
@@ -411,6 +453,10 @@ impl Jobs {
             }
             JobOutcome::Controls(places) if stamp >= self.solve_floor => self.put_controls(&places, stamp),
             JobOutcome::Inspected(inspected) if stamp == self.inspect_revision => self.computed.inspected = inspected,
+            JobOutcome::Joint(joint) if stamp > self.joint_floor => {
+                self.computed.joint = joint;
+                return Arrival::Joint;
+            }
             JobOutcome::Mirrored(image) if stamp == self.mirror_revision => return Arrival::Mirrored(image),
             JobOutcome::Enclosed(vertices) if stamp == self.enclose_revision => return Arrival::Enclosed(vertices),
             JobOutcome::Solved(solved) if stamp >= self.solve_floor => {
@@ -452,6 +498,7 @@ impl Jobs {
             JobKind::Enclose => self.enclose_revision,
             JobKind::Compare => self.compare_revision,
             JobKind::Inspect => self.inspect_revision,
+            JobKind::Joint => self.joint_revision,
         }
     }
 

@@ -9,6 +9,7 @@ use super::mode::{StrokeShape, ToolMode};
 use super::navigate::Navigate;
 use super::outline::OutlineStroke;
 use super::paint::PaintStroke;
+use super::pose::PoseDrag;
 use super::stiffness::StiffnessStroke;
 use super::transform::TransformDrag;
 use super::transform_measure::TransformKind;
@@ -35,7 +36,9 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
         Button::Primary if modifiers.ctrl && boxes_controls(context) => {
             return Some(Box::new(ControlBox::begin(pointer, StrokeShape::Box)));
         }
-        Button::Primary if modifiers.alt || modifiers.shift => return navigate(context, pointer, button),
+        Button::Primary if modifiers.alt || (modifiers.shift && context.settings.mode != ToolMode::Pose) => {
+            return navigate(context, pointer, button);
+        }
         Button::Primary => {}
     }
     if let Some(part) = context
@@ -49,7 +52,7 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
     if matches!(shape, StrokeShape::Lasso | StrokeShape::Box) && boxes_controls(context) {
         return Some(Box::new(ControlBox::begin(pointer, shape)));
     }
-    if mode != ToolMode::Select && matches!(shape, StrokeShape::Lasso | StrokeShape::Box) {
+    if !matches!(mode, ToolMode::Select | ToolMode::Pose) && matches!(shape, StrokeShape::Lasso | StrokeShape::Box) {
         return outline(context, pointer, shape);
     }
     let Some(pick) = context.workspace.pick(context.view, pointer.position_px) else {
@@ -69,6 +72,7 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
     match mode {
         ToolMode::PaintStiffness => Some(Box::new(StiffnessStroke::begin(context, pointer))),
         ToolMode::Select => select(context, pointer, button, pick),
+        ToolMode::Pose => Some(Box::new(PoseDrag::begin(context, pointer, pick)?)),
         _ if shape == StrokeShape::Component => {
             let mut stroke = PaintStroke::begin_without_dab(context.workspace, context.settings, pointer)?;
             let part = context.workspace.part_of(pick.vertex);

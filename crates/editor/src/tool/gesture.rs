@@ -61,7 +61,7 @@ pub(crate) trait Gesture: std::fmt::Debug {
         false
     }
 
-    /// Whether it waits for the job that finds the vertices inside of an outline.
+    /// Whether it waits for a job: the one that finds the vertices inside of an outline, or a joint.
     fn is_looking(&self) -> bool {
         false
     }
@@ -95,6 +95,11 @@ pub(crate) trait Gesture: std::fmt::Debug {
 
     /// A job has found what the outline holds.
     fn found(&mut self, _context: &mut Context<'_>, _inside: Vec<SurfaceVertex>) -> Next {
+        Next::Stay
+    }
+
+    /// A job has looked for a joint.
+    fn found_joint(&mut self, _context: &mut Context<'_>) -> Next {
         Next::Stay
     }
 

@@ -16,6 +16,8 @@ pub enum ToolMode {
     PaintStiffness,
     /// Selects a handle and drags it.
     Select,
+    /// Turns a limb about its joint.
+    Pose,
 }
 
 /// How the left button takes vertices.

@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 use super::brush::ring;
 use super::hidden_points::HiddenPoints;
 use super::mode::{StrokeShape, ToolMode};
+use super::pose::{Limb, joint_shapes, limb_under};
 use super::settings::ToolSettings;
 use crate::document::HandleTransform;
 use crate::view::{
@@ -25,6 +26,8 @@ pub(crate) enum Lit {
     Gizmo(Option<GizmoPart>),
     /// The brush's ring.
     Ring,
+    /// The selected handle's pivot.
+    Pivot,
 }
 
 /// The overlay as it is shown.
@@ -41,6 +44,8 @@ pub(crate) struct Overlay {
     pub(crate) control_points: Vec<ShownPoint>,
     /// The control point that a press takes.
     pub(crate) pointed_control: Option<u32>,
+    /// The joint of the limb under the pointer.
+    pub(crate) joint: Vec<ControlShape>,
     /// What hides control points was looked at for these positions and this view.
     hidden: HiddenPoints,
     /// The part that the pointer rests on.
@@ -97,12 +102,13 @@ impl Overlay {
         }
         let (mut line, mut is_over_surface) = (Vec::new(), false);
         if let (Some(pointer_px), Some(picking)) = (pointer_px, workspace.picking(view))
-            && !matches!(lit, Lit::Gizmo(_))
+            && !matches!(lit, Lit::Gizmo(_) | Lit::Pivot)
             && highlighted.is_none()
             && let Some(pick) = picking.at(pointer_px)
         {
             is_over_surface = true;
-            let has_ring = settings.mode != ToolMode::Select && settings.stroke_shape == StrokeShape::Brush;
+            let has_ring = !matches!(settings.mode, ToolMode::Select | ToolMode::Pose)
+                && settings.stroke_shape == StrokeShape::Brush;
             if has_ring && !settings.wants_pivot {
                 line = ring(&picking, pointer_px, &pick, &settings.brush);
             }
@@ -110,10 +116,18 @@ impl Overlay {
         self.hovered = highlighted.filter(|_| lit == Lit::Pointed);
         self.is_over_surface = is_over_surface;
         let takes_points = lit == Lit::Pointed && highlighted.is_none();
-        let pointer_px = pointer_px.filter(|_| takes_points && (settings.mode == ToolMode::Select || !is_over_surface));
-        let controls = self.renew_controls(workspace, view, pointer_px);
-        if self.ring != line || self.gizmo != gizmo || self.controls != controls {
+        let control_px = pointer_px.filter(|_| takes_points && (settings.mode == ToolMode::Select || !is_over_surface));
+        let controls = self.renew_controls(workspace, view, control_px);
+        let joint = joint(
+            lit,
+            workspace,
+            view,
+            settings,
+            pointer_px.filter(|_| highlighted.is_none()),
+        );
+        if self.ring != line || self.gizmo != gizmo || self.controls != controls || self.joint != joint {
             self.ring = line;
+            self.joint = joint;
             self.gizmo = gizmo;
             self.controls = controls;
             self.revision += 1;
@@ -146,6 +160,33 @@ impl Overlay {
     }
 }
 
+/// The joint that the pose brush takes, or turns about.
+fn joint(
+    lit: Lit,
+    workspace: &Workspace,
+    view: &View,
+    settings: &ToolSettings,
+    pointer_px: Option<DVec2>,
+) -> Vec<ControlShape> {
+    let shapes = |centre, joint| joint_shapes(centre, joint, view.camera(), view.viewport_px());
+    let of_handle = |id| {
+        let handle = workspace.document.handle(id);
+        handle.map_or_else(Vec::new, |handle| shapes(handle.centre(), None))
+    };
+    if lit == Lit::Pivot {
+        return workspace.selection.selected().map_or_else(Vec::new, of_handle);
+    }
+    let is_hovering = settings.mode == ToolMode::Pose && matches!(lit, Lit::Pointed | Lit::Ring);
+    let pick = pointer_px
+        .filter(|_| is_hovering)
+        .and_then(|px| workspace.pick(view, px));
+    match pick.map(|pick| limb_under(workspace, &pick)) {
+        Some(Limb::Untouched(joint)) => shapes(joint.centre, Some(&*joint)),
+        Some(Limb::Posed(id)) => of_handle(id),
+        Some(Limb::Unknown | Limb::None) | None => Vec::new(),
+    }
+}
+
 /// The gizmo of the selected control points, or else of the selected handle, if it is to be shown.
 fn gizmo(
     lit: Lit,
@@ -155,7 +196,8 @@ fn gizmo(
     settings: &ToolSettings,
     highlighted: Option<GizmoPart>,
 ) -> Option<Vec<GizmoShape>> {
-    if lit != Lit::Ring
+    let is_shown = !matches!(lit, Lit::Ring | Lit::Pivot);
+    if is_shown
         && !workspace.controls.is_empty()
         && let Some(shown) = workspace.shown_controls()
     {
@@ -175,7 +217,7 @@ fn gizmo(
         ));
     }
     let handle = workspace.selected()?;
-    if lit == Lit::Ring || !handle.visible || handle.locked || handle.is_pin {
+    if !is_shown || !handle.visible || handle.locked || handle.is_pin {
         return None;
     }
     let axes = GizmoAxes::of(&handle.transform, settings.orientation, camera);

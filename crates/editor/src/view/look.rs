@@ -19,6 +19,8 @@ pub struct Look {
     pub outlines: bool,
     /// Whether the ground's grid is shown.
     pub grid: bool,
+    /// Whether the file's own shape is shown in place of the present one.
+    pub original: bool,
     /// Whether the smooth base is shown in place of the surface, where the method has one.
     pub base: bool,
 }
@@ -34,6 +36,7 @@ impl Default for Look {
             regions: true,
             outlines: true,
             grid: true,
+            original: false,
             base: false,
         }
     }

@@ -90,7 +90,7 @@ impl Workspace {
             Arrival::Nothing | Arrival::Picking => {}
             Arrival::Problem(sentence) => self.refuse(sentence),
             Arrival::Shape(solved, finality) => self.take_shape(solved, finality),
-            Arrival::Enclosed(_) | Arrival::Mirrored(_) => return Some(arrival),
+            Arrival::Enclosed(_) | Arrival::Mirrored(_) | Arrival::Joint => return Some(arrival),
         }
         None
     }

@@ -29,6 +29,8 @@ pub(crate) struct Workspace {
     pub(crate) refusal: Option<String>,
     /// The open file's name.
     pub(crate) file_name: String,
+    /// No displacement of any vertex: the file's own shape.
+    pub(crate) original: Arc<Vec<DVec3>>,
     /// How far the shape's descent is, where its method takes steps.
     pub(crate) descent: Option<Descent>,
     pub(crate) vertex_access: VertexAccess,
@@ -65,6 +67,7 @@ impl Workspace {
             controls: ControlSelection::default(),
             refusal: None,
             file_name: String::new(),
+            original: Arc::default(),
             descent: None,
             vertex_access: VertexAccess::default(),
             vertex_access_of: None,
@@ -79,6 +82,7 @@ impl Workspace {
     /// Works on another file, which begins with this document.
     pub(crate) fn open(&mut self, model: Arc<Model>, name: String, document: Document) {
         self.document.replace(document);
+        self.original = Arc::new(vec![DVec3::ZERO; self.document.paint.len()]);
         self.history = History::new(&self.document, HISTORY_BYTES);
         self.selection = HandleSelection::default();
         self.controls = ControlSelection::default();

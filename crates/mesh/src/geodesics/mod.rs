@@ -7,9 +7,11 @@
 //! distances are exact, where plain Dijkstra zigzags and is up to 40% too long; it costs a few operations a triangle.
 
 mod front;
+mod joint;
 
 use glam::DVec3;
 
+pub use self::joint::{JOINT_RINGS, Joint, Shape, joint_of};
 use crate::geodesics::front::Front;
 use crate::{Surface, SurfaceVertex, Topology};
 

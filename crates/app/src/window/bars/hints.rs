@@ -17,7 +17,7 @@ pub fn show(ui: &egui::Ui, view_rect: egui::Rect, toast: Option<egui::Rect>, edi
         (
             1,
             "Paint a handle",
-            "Hold the left button over what you want to move. Turn the view with Alt or beside the model.",
+            "Hold the left button over what you want to move, or press 7 and drag a limb. Turn the view with Alt or beside the model.",
         )
     } else if !editor.document().is_displaced() && !editor.document().is_applied() {
         (

@@ -45,6 +45,7 @@ fn file_menu(ui: &mut egui::Ui, editor: &Editor, recent: &[PathBuf]) -> Option<F
         FileCommand::Open,
         FileCommand::Save,
         FileCommand::SaveAs,
+        FileCommand::SaveMorph,
         FileCommand::SaveProject,
         FileCommand::SaveProjectAs,
         FileCommand::ExportEdit,
@@ -255,6 +256,7 @@ fn view_menu(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     choice(ui, Command::ToggleOutlines, look.outlines);
     choice(ui, Command::ToggleGrid, look.grid);
     choice(ui, Command::ToggleBase, look.base);
+    choice(ui, Command::ToggleOriginal, look.original);
     ui.separator();
     choice(ui, Command::CompareMethods, editor.comparison().is_some());
     ui.separator();
@@ -278,6 +280,7 @@ fn tools(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         ToolMode::PaintStiffness,
         ToolMode::Erase,
         ToolMode::Select,
+        ToolMode::Pose,
     ] {
         choice(ui, Command::SetTool(tool), view.tool == tool);
     }

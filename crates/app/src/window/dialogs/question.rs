@@ -42,6 +42,14 @@ pub fn choose(purpose: Purpose, near: Option<&Path>, workers: &Workers) {
                 .save_file();
             workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
         }
+        Purpose::SaveMorph => {
+            let answer = dialog
+                .set_title("Save as morph target")
+                .add_filter("glTF", &["glb", "gltf"])
+                .set_file_name("morph.glb")
+                .save_file();
+            workers.spawn("dialog", move || answered(pollster::block_on(answer)), none);
+        }
         Purpose::SaveProject => {
             let answer = dialog
                 .set_title("Save the project as")
@@ -95,6 +103,7 @@ impl Question {
             Self::WriteOver(_) => "Save over the source?",
             Self::Path(Purpose::Open, _) => "Open a model",
             Self::Path(Purpose::SaveAs, _) => "Save the model as",
+            Self::Path(Purpose::SaveMorph, _) => "Save as morph target",
             Self::Path(Purpose::SaveProject, _) => "Save the project as",
             Self::Recover(_) => "Recover unsaved work?",
             Self::Path(Purpose::ExportEdit, _) => "Export the edit",
@@ -208,6 +217,10 @@ fn path(ui: &mut egui::Ui, purpose: Purpose, typed: &mut String, answer: &mut Op
         Purpose::SaveAs => (
             "Save the model as",
             "The path to save under; its extension chooses the format:",
+        ),
+        Purpose::SaveMorph => (
+            "Save as morph target",
+            "The path of the .glb or .gltf file; its name is the morph target's:",
         ),
         Purpose::SaveProject => ("Save the project as", "The path of the .pliant file:"),
         Purpose::ExportEdit => ("Export the edit", "The path of the .json file:"),

@@ -54,6 +54,7 @@ impl Application {
                     },
                 );
             }
+            (Purpose::SaveMorph, Some(path)) => self.save_morph_to(path),
             (Purpose::SaveProject, Some(path)) => self.save_project_to(path),
             (Purpose::ExportEdit, Some(path)) => match self.editor.edit_file() {
                 Ok(edit) => self.session.export(path, edit, &self.workers),
@@ -74,6 +75,8 @@ impl Application {
         match (purpose, self.path()) {
             (Purpose::SaveAs, Some(path)) => path.display().to_string(),
             (Purpose::SaveAs, None) => "edited.glb".to_owned(),
+            (Purpose::SaveMorph, Some(path)) => path.with_extension("morph.glb").display().to_string(),
+            (Purpose::SaveMorph, None) => "morph.glb".to_owned(),
             (Purpose::ExportEdit, Some(path)) => path.with_extension("edit.json").display().to_string(),
             (Purpose::SaveProject, Some(path)) => path.with_extension("pliant").display().to_string(),
             (Purpose::SaveProject, None) => "edited.pliant".to_owned(),
@@ -109,6 +112,7 @@ impl Application {
             FileCommand::OpenPath(path) => self.unless_unsaved(context, Then::Open(Some(path))),
             FileCommand::Save => self.save(),
             FileCommand::SaveAs => question::choose(Purpose::SaveAs, self.path(), &self.workers),
+            FileCommand::SaveMorph => question::choose(Purpose::SaveMorph, self.path(), &self.workers),
             FileCommand::SaveProject => match self.session.open.as_ref().and_then(|open| open.project.clone()) {
                 Some(path) => self.save_project_to(path),
                 None => question::choose(Purpose::SaveProject, self.path(), &self.workers),
@@ -174,6 +178,12 @@ impl Application {
         }
     }
 
+    /// Saves a copy at rest with the present shape as a morph target under `path`.
+    pub fn save_morph_to(&mut self, path: PathBuf) {
+        let displacements = Arc::clone(self.editor.view().displacements);
+        self.session.save_morph(path, &displacements, &self.workers);
+    }
+
     /// Saves the project under `path`, which gets its extension if it has none.
     pub fn save_project_to(&mut self, path: PathBuf) {
         if let Some(snapshot) = self.editor.snapshot() {
@@ -230,7 +240,7 @@ impl Application {
         self.session.written(stamp, &result, &self.workers);
         match result {
             Ok(written) => {
-                if !matches!(written.what, WrittenKind::Edit | WrittenKind::Picture) {
+                if matches!(written.what, WrittenKind::Model(_) | WrittenKind::Project) {
                     self.editor.handle(Event::Saved);
                     self.settings.change(|settings| settings.remember(&written.path));
                 }

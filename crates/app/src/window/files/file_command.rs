@@ -19,6 +19,8 @@ pub enum FileCommand {
     Save,
     /// Save under another name.
     SaveAs,
+    /// Save a copy at rest with the edit as a morph target.
+    SaveMorph,
     /// Save the project.
     SaveProject,
     /// Save the project under another name.
@@ -84,6 +86,7 @@ impl FileCommand {
             Self::Scale(1..) => command(Key::Num9),
             Self::Scale(_) => command(Key::Num0),
             Self::SaveProjectAs
+            | Self::SaveMorph
             | Self::LoadCage
             | Self::Log
             | Self::Keys
@@ -96,10 +99,11 @@ impl FileCommand {
     }
 
     /// All that need no path, in the order of the menu.
-    pub const LISTED: [Self; 15] = [
+    pub const LISTED: [Self; 16] = [
         Self::Open,
         Self::Save,
         Self::SaveAs,
+        Self::SaveMorph,
         Self::SaveProject,
         Self::SaveProjectAs,
         Self::ExportEdit,
@@ -123,6 +127,7 @@ impl FileCommand {
             Self::Open | Self::OpenPath(_) => "Open…",
             Self::Save => "Save model",
             Self::SaveAs => "Save model as…",
+            Self::SaveMorph => "Save as morph target…",
             Self::SaveProject => "Save project",
             Self::SaveProjectAs => "Save project as…",
             Self::LoadCage => "Load cage…",
@@ -144,6 +149,7 @@ impl FileCommand {
         match self {
             Self::Open | Self::OpenPath(_) => "load import file",
             Self::Save | Self::SaveAs => "write file",
+            Self::SaveMorph => "blend shape key gltf glb write file",
             Self::SaveProject | Self::SaveProjectAs => "pliant file document",
             Self::LoadCage => "open import control mesh",
             Self::Palette => "palette search",

@@ -114,6 +114,16 @@ impl Session {
         self.write(path, content, workers);
     }
 
+    /// Writes the model at rest with the present shape as a morph target, off the window's thread.
+    pub fn save_morph(&mut self, path: PathBuf, displacements: &Arc<Vec<DVec3>>, workers: &Workers) {
+        let Some(open) = &self.open else { return };
+        let content = Content::Morph {
+            loaded: Arc::clone(&open.loaded),
+            displacements: Arc::clone(displacements),
+        };
+        self.write(path, content, workers);
+    }
+
     /// Writes a project, off the window's thread.
     pub fn save_project(&mut self, path: PathBuf, snapshot: Snapshot, workers: &Workers) {
         let Some(open) = &self.open else { return };
@@ -148,7 +158,7 @@ impl Session {
                     }
                 }
                 WrittenKind::Project => open.project = Some(written.path.clone()),
-                WrittenKind::Edit | WrittenKind::Picture => {}
+                WrittenKind::Edit | WrittenKind::Morph | WrittenKind::Picture => {}
             }
         }
         self.start_saving(workers);

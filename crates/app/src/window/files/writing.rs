@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use pliant_editor::{EditFile, Snapshot};
+use pliant_io::MorphTarget;
 use pliant_mesh::{Cancel, Progress};
 use pliant_render::Image;
 
@@ -32,6 +33,11 @@ pub(super) enum Content {
         snapshot: Box<Snapshot>,
         loaded: Arc<Loaded>,
         source: MeshSource,
+    },
+    /// The mesh at rest with its bent shape as a morph target.
+    Morph {
+        loaded: Arc<Loaded>,
+        displacements: Arc<Vec<DVec3>>,
     },
     Edit(Box<EditFile>),
     Picture(Image),
@@ -96,6 +102,23 @@ fn write_unless_stopped(request: SaveRequest, progress: &Progress, cancel: &Canc
         } => {
             project_file::write(&snapshot, &loaded, &source, &path, &staging, &progress, cancel)?;
             Ok(written(path, WrittenKind::Project, Vec::new()))
+        }
+        Content::Morph { loaded, displacements } => {
+            let mut positions = Vec::new();
+            loaded.model.drawn_positions(&displacements, &mut positions);
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let morph = MorphTarget {
+                name: &stem,
+                weight: 1.0,
+            };
+            let save = SaveAs {
+                morph: Some(&morph),
+                ..SaveAs::shape(&positions, &path)
+            };
+            let saved = saving::stage(&loaded, &save, &staging, &progress, cancel)?;
+            go_on()?;
+            saved.staged.commit()?;
+            Ok(written(path, WrittenKind::Morph, saved.warnings))
         }
         Content::Model(model) => {
             let (moved, warnings) = write_model(&model, &path, &staging, &progress, cancel)?;

@@ -143,6 +143,9 @@ impl Input {
                     out.push(Event::Key(key, held_modifiers(modifiers)));
                 }
             }
+            egui::Event::Key {
+                key, pressed: false, ..
+            } => out.extend(key_of(key).map(Event::KeyReleased)),
             _ => {}
         }
     }

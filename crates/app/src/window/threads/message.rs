@@ -116,6 +116,8 @@ pub enum WrittenKind {
     Picture,
     /// An edit for the command line: the work is not saved with it.
     Edit,
+    /// The model at rest with the edit as a morph target, which is a copy beside the open file.
+    Morph,
 }
 
 /// What a path is chosen for.
@@ -125,6 +127,8 @@ pub enum Purpose {
     Open,
     /// To save the model under.
     SaveAs,
+    /// To save the model under, at rest and with the edit as a morph target.
+    SaveMorph,
     /// To save the project under.
     SaveProject,
     /// To write the edit file to.

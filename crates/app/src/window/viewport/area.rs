@@ -192,7 +192,12 @@ impl Application {
         }
         if !Arc::ptr_eq(shown.drawn, shown.displacements) {
             let at = rect.center_bottom() + vec2(-90.0, -34.0);
-            axis_ball::readout(ui.painter(), at, "Smooth base, at rest");
+            let shows = if shown.look.original {
+                "As it was opened"
+            } else {
+                "Smooth base, at rest"
+            };
+            axis_ball::readout(ui.painter(), at, shows);
         }
         drop_target(ui, rect);
         if let Some(command) = axis_ball::show(ui, rect, shown.camera) {

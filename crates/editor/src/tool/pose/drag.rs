@@ -1,0 +1,262 @@
+//! A drag of the pose brush, from the press to where the limb is let go.
+
+use glam::{DVec2, DVec3};
+use pliant_mesh::{Joint, SurfaceVertex};
+
+use super::hover::{Limb, hover, limb_under};
+use super::motion::{Motion, Pose, Way};
+use crate::document::{Handle, HandleId, HandleTransform, Paint, PivotPlace, Reach, Transaction, accumulated};
+use crate::input::{Button, Pointer};
+use crate::jobs::Activity;
+use crate::scene_view::{Cursor, Readout};
+use crate::tool::context::Context;
+use crate::tool::gesture::{Gesture, Next};
+use crate::tool::overlay::Lit;
+use crate::view::{Pick, View};
+use crate::workspace::{Workspace, count_turn, held_because, members, put_handle, tidy_handles};
+
+/// The pointer must move this far before the limb follows.
+const THRESHOLD_PX: f64 = 3.0;
+
+/// What is said where there is no limb.
+const NO_JOINT: &str =
+    "No joint was found here: point at a limb that is narrower than the body, or paint a handle (1).";
+
+/// A press on a limb.
+#[derive(Debug)]
+pub(in crate::tool) struct PoseDrag {
+    pick: Pick,
+    start_px: DVec2,
+    last: Pointer,
+    phase: Phase,
+}
+
+#[derive(Debug)]
+enum Phase {
+    /// The joint is still looked for; what the pointer does meanwhile waits.
+    Looking,
+    /// The limb follows the pointer.
+    Posing(Box<Posing>),
+}
+
+/// A limb that is a handle now.
+#[derive(Debug)]
+struct Posing {
+    transaction: Transaction,
+    handle: HandleId,
+    name: String,
+    /// The handle's pivot on the rest shape.
+    pivot: DVec3,
+    motion: Motion,
+    is_armed: bool,
+}
+
+impl PoseDrag {
+    /// Begins at a point of the surface; `None`, with a sentence, where there is no limb or it is held.
+    pub(in crate::tool) fn begin(context: &mut Context<'_>, pointer: Pointer, pick: Pick) -> Option<Self> {
+        let mut drag = Self {
+            pick,
+            start_px: pointer.position_px,
+            last: pointer,
+            phase: Phase::Looking,
+        };
+        hover(context.workspace, context.view, Some(pointer.position_px));
+        (drag.take_limb(context.workspace) == Next::Stay).then_some(drag)
+    }
+
+    /// Takes the limb in hand, if it is known.
+    fn take_limb(&mut self, workspace: &mut Workspace) -> Next {
+        let posing = match limb_under(workspace, &self.pick) {
+            Limb::Unknown => return Next::Stay,
+            Limb::None => {
+                workspace.refuse(NO_JOINT);
+                return Next::End;
+            }
+            Limb::Posed(id) => take_again(workspace, id),
+            Limb::Untouched(joint) => make_handle(workspace, &joint),
+        };
+        let Some((transaction, handle, axis)) = posing else {
+            return Next::End;
+        };
+        workspace.controls.put([]);
+        workspace.selection.put_alone(Some(handle.id));
+        workspace.selection.wants_new_handle = false;
+        let motion = Motion {
+            pose: Pose::of(self.last.modifiers),
+            centre: handle.centre(),
+            axis,
+            grip: self.pick.point,
+            start: (handle.transform, handle.turn_deg),
+        };
+        self.phase = Phase::Posing(Box::new(Posing {
+            transaction,
+            handle: handle.id,
+            name: handle.name,
+            pivot: handle.pivot,
+            motion,
+            is_armed: false,
+        }));
+        Next::Stay
+    }
+}
+
+impl Posing {
+    /// Takes the limb to the pointer; other modifiers go on from where it is.
+    fn follow(&mut self, context: &mut Context<'_>, last_px: DVec2, pointer: Pointer) {
+        let pose = Pose::of(pointer.modifiers);
+        if pose != self.motion.pose {
+            let way = self.motion.way(context.view, last_px);
+            let held = self.motion.held(context.view, last_px);
+            if let Some(handle) = context.workspace.document.handle(self.handle) {
+                let way = if self.is_armed { way } else { Way::Scale(1.0) };
+                self.motion = self.motion.go_on(pose, way, held, (handle.transform, handle.turn_deg));
+            }
+        }
+        if !self.is_armed {
+            return;
+        }
+        let way = self.motion.way(context.view, pointer.position_px);
+        put_handle(context.workspace, self.handle, self.motion.transform(way, self.pivot));
+        if let (Way::Turn(axis, angle_rad), (HandleTransform::Trs { rotation, .. }, turn_deg)) =
+            (way, self.motion.start)
+        {
+            let counted = accumulated(turn_deg, rotation, axis, angle_rad);
+            count_turn(context.workspace, self.handle, counted);
+        }
+        self.transaction.rename(format!("{} {}", pose.verb(), self.name));
+    }
+}
+
+impl Gesture for PoseDrag {
+    fn activity(&self) -> Activity {
+        match self.phase {
+            Phase::Looking => Activity::Still,
+            Phase::Posing(_) => Activity::Dragging,
+        }
+    }
+
+    fn cursor(&self) -> Cursor {
+        Cursor::Grabbing
+    }
+
+    fn lit(&self) -> Lit {
+        match self.phase {
+            Phase::Looking => Lit::Ring,
+            Phase::Posing(_) => Lit::Pivot,
+        }
+    }
+
+    fn status(&self, _: &Workspace, view: &View) -> Option<String> {
+        Some(match &self.phase {
+            Phase::Looking => "Looking for the joint: Esc to leave it".to_owned(),
+            Phase::Posing(posing) => {
+                let doing = match posing.motion.pose {
+                    Pose::Turn => "Turning",
+                    Pose::Twist => "Twisting",
+                    Pose::Scale => "Scaling",
+                };
+                let way = posing.motion.way(view, self.last.position_px).label();
+                format!(
+                    "{doing} the limb by {way}: Ctrl twists it, Shift scales it, let go to keep it, Esc to leave it"
+                )
+            }
+        })
+    }
+
+    fn readout(&self, _: &Workspace, view: &View) -> Option<Readout> {
+        match &self.phase {
+            Phase::Posing(posing) if posing.is_armed => Some(Readout {
+                at: posing.motion.centre,
+                text: posing.motion.way(view, self.last.position_px).label(),
+            }),
+            _ => None,
+        }
+    }
+
+    fn holds_camera(&self) -> bool {
+        true
+    }
+
+    fn is_looking(&self) -> bool {
+        matches!(self.phase, Phase::Looking)
+    }
+
+    fn moved(&mut self, context: &mut Context<'_>, pointer: Pointer) -> Next {
+        let last_px = std::mem::replace(&mut self.last, pointer).position_px;
+        if let Phase::Posing(posing) = &mut self.phase {
+            posing.is_armed |= pointer.position_px.distance(self.start_px) >= THRESHOLD_PX;
+            posing.follow(context, last_px, pointer);
+        }
+        Next::Stay
+    }
+
+    fn released(&mut self, context: &mut Context<'_>, pointer: Pointer, button: Button) -> Next {
+        if button != Button::Primary || self.is_looking() {
+            return Next::Stay;
+        }
+        // Which modifiers are held no longer matters: the pointer's last way counts.
+        let modifiers = self.last.modifiers;
+        self.moved(context, Pointer { modifiers, ..pointer });
+        if let Phase::Posing(posing) = &self.phase {
+            context.workspace.commit(&posing.transaction);
+        }
+        Next::End
+    }
+
+    fn found_joint(&mut self, context: &mut Context<'_>) -> Next {
+        match self.phase {
+            Phase::Looking => self.take_limb(context.workspace),
+            Phase::Posing(_) => Next::Stay,
+        }
+    }
+
+    fn abort(&mut self, context: &mut Context<'_>) {
+        if let Phase::Posing(posing) = &self.phase {
+            context.workspace.abort(&posing.transaction);
+        }
+    }
+}
+
+/// What a drag begins with: the open step, the handle, and the limb's direction from its joint.
+type Taken = (Transaction, Handle, DVec3);
+
+/// Takes a limb's handle in hand; `None`, with a sentence, if it is held.
+fn take_again(workspace: &mut Workspace, id: HandleId) -> Option<Taken> {
+    if let Some(why) = held_because(workspace, id) {
+        workspace.refuse(why);
+        return None;
+    }
+    let handle = workspace.document.handle(id)?.clone();
+    let members = members(&workspace.document, id);
+    let sum: DVec3 = members.iter().map(|&vertex| workspace.position(vertex)).sum();
+    let axis = (sum / members.len().max(1) as f64 - handle.centre()).normalize_or(DVec3::Y);
+    Some((workspace.begin(format!("Pose {}", handle.name)), handle, axis))
+}
+
+/// Makes the far side of a joint a handle that reaches back across the falloff; `None`, with a sentence, where all of it
+/// is locked or hidden.
+fn make_handle(workspace: &mut Workspace, joint: &Joint) -> Option<Taken> {
+    let access = &workspace.vertex_access;
+    let is_open = |vertex: &&SurfaceVertex| access.may_be_painted(vertex.index());
+    let painted: Vec<_> = joint.far_side.iter().filter(is_open).copied().collect();
+    if painted.is_empty() {
+        workspace.refuse("This limb is locked: unlock it in the list of objects to pose it.");
+        return None;
+    }
+    let mut transaction = workspace.begin_stroke("Pose");
+    let document = &mut workspace.document;
+    document.keep_shape();
+    let id = document.add_handle();
+    document.change_handle(id, |handle| handle.reach = Reach::Length(2.0 * joint.falloff));
+    let paint = Paint::Handle(id);
+    document.paint_vertices(painted.into_iter().map(|vertex| (vertex, paint)));
+    tidy_handles(workspace, transaction.before());
+    workspace.document.change_handle(id, |handle| {
+        let on_rest = handle.affine().inverse().transform_point3(joint.centre);
+        handle.pivot_place = PivotPlace::Picked;
+        handle.move_pivot(on_rest);
+    });
+    let handle = workspace.document.handle(id)?.clone();
+    transaction.rename(format!("Make {}", handle.name));
+    Some((transaction, handle, joint.axis))
+}

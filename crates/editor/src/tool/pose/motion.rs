@@ -1,0 +1,162 @@
+//! What a drag of the pose brush means: the limb turns after the pointer, twists about its axis, or grows.
+
+use glam::{DQuat, DVec2, DVec3};
+
+use crate::document::HandleTransform;
+use crate::input::Modifiers;
+use crate::tool::constraint::{on_plane, rotation};
+use crate::view::View;
+
+/// The smallest factor that the pointer can scale by.
+const MIN_FACTOR: f64 = 1e-3;
+
+/// What is done to the limb.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Pose {
+    /// The point that was grabbed goes after the pointer, about the joint.
+    Turn,
+    /// About the limb's axis.
+    Twist,
+    /// About the joint.
+    Scale,
+}
+
+impl Pose {
+    /// As the modifiers say it.
+    pub(super) fn of(modifiers: Modifiers) -> Self {
+        match modifiers {
+            Modifiers { ctrl: true, .. } => Self::Twist,
+            Modifiers { shift: true, .. } => Self::Scale,
+            _ => Self::Turn,
+        }
+    }
+
+    /// As the history calls it.
+    pub(super) fn verb(self) -> &'static str {
+        match self {
+            Self::Turn => "Turn",
+            Self::Twist => "Twist",
+            Self::Scale => "Scale",
+        }
+    }
+}
+
+/// A motion about a joint, from where the pointer was when it began.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    pub(super) pose: Pose,
+    /// Where the joint is seen.
+    pub(super) centre: DVec3,
+    /// The limb's direction from the joint when it began, a unit vector.
+    pub(super) axis: DVec3,
+    /// The point of the limb that the pointer holds.
+    pub(super) grip: DVec3,
+    /// The handle's transform and turn in degrees when it began.
+    pub(super) start: (HandleTransform, DVec3),
+}
+
+/// How far a motion has come.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) enum Way {
+    /// A turn about a unit axis by an angle in radians.
+    Turn(DVec3, f64),
+    /// A factor.
+    Scale(f64),
+}
+
+impl Way {
+    /// As it is shown beside the joint.
+    pub(super) fn label(self) -> String {
+        match self {
+            Self::Turn(_, angle_rad) => format!("{:.0}°", angle_rad.to_degrees()),
+            Self::Scale(factor) => format!("×{factor:.2}"),
+        }
+    }
+}
+
+impl Motion {
+    /// The point under the pointer at the depth of the grip.
+    pub(super) fn held(&self, view: &View, position_px: DVec2) -> DVec3 {
+        let ray = view.camera().ray(position_px, view.viewport_px());
+        on_plane(ray, self.grip, view.camera().forward()).unwrap_or(self.grip)
+    }
+
+    /// How far the pointer has taken the limb.
+    pub(super) fn way(&self, view: &View, position_px: DVec2) -> Way {
+        let (from, to) = (self.grip - self.centre, self.held(view, position_px) - self.centre);
+        match self.pose {
+            Pose::Turn => turn(from, to, view.camera().forward()),
+            Pose::Twist => Way::Turn(self.axis, self.twist_rad(view, from, to)),
+            Pose::Scale => {
+                let [from, to] = [from, to].map(|arm| arm.reject_from(view.camera().forward()).length());
+                let factor = if from > 0.0 { to / from } else { 1.0 };
+                Way::Scale(factor.max(MIN_FACTOR))
+            }
+        }
+    }
+
+    /// As a ball rolls under the pointer, where the axis lies across the sight; else as the pointer goes round it.
+    fn twist_rad(&self, view: &View, from: DVec3, to: DVec3) -> f64 {
+        let across = self.axis.cross(view.camera().towards_eye(self.centre));
+        if across.length() > 0.4 {
+            let px = view.camera().world_per_px(self.centre, view.viewport_px());
+            let lever = from.reject_from(self.axis).length().max(24.0 * px);
+            return (to - from).dot(across.normalize()) / lever;
+        }
+        let [from, to] = [from, to].map(|arm| arm.reject_from(self.axis));
+        self.axis.dot(from.cross(to)).atan2(from.dot(to))
+    }
+
+    /// The handle's transform after that, about its pivot on the rest shape.
+    pub(super) fn transform(&self, way: Way, pivot: DVec3) -> HandleTransform {
+        match way {
+            Way::Turn(axis, angle_rad) => self.start.0.turned_by(rotation(axis, angle_rad), pivot),
+            Way::Scale(factor) => self.start.0.scaled_by(DVec3::splat(factor), pivot),
+        }
+    }
+
+    /// The motion that goes on from there as another pose.
+    pub(super) fn go_on(&self, pose: Pose, way: Way, held: DVec3, start: (HandleTransform, DVec3)) -> Self {
+        let turn = match way {
+            Way::Turn(axis, angle_rad) => rotation(axis, angle_rad),
+            Way::Scale(_) => DQuat::IDENTITY,
+        };
+        Self {
+            pose,
+            centre: self.centre,
+            axis: (turn * self.axis).normalize(),
+            grip: held,
+            start,
+        }
+    }
+}
+
+/// The shortest turn from one direction to another; half a turn goes about the line of sight.
+fn turn(from: DVec3, to: DVec3, forward: DVec3) -> Way {
+    let normal = from.cross(to);
+    let angle_rad = normal.length().atan2(from.dot(to));
+    let about = normal.try_normalize().unwrap_or(forward);
+    Way::Turn(about, angle_rad)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::{Way, turn};
+    use crate::tool::constraint::rotation;
+
+    #[test]
+    fn a_turn_takes_one_direction_to_the_other_also_where_they_are_opposite() {
+        let directions = [DVec3::X, DVec3::Y, DVec3::new(1.0, -2.0, 0.3), DVec3::NEG_X];
+        for from in directions {
+            for to in directions {
+                let Way::Turn(axis, angle_rad) = turn(from, to, DVec3::Z) else {
+                    panic!("a turn is a turn");
+                };
+                let met = rotation(axis, angle_rad) * from.normalize();
+                assert!(met.distance(to.normalize()) < 1e-9, "{from} {to}: {met}");
+            }
+        }
+    }
+}

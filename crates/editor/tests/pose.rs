@@ -1,0 +1,304 @@
+//! The pose brush: from an untouched surface to a bent limb in one gesture, which is one step and a handle like any other.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
+
+mod rig;
+
+use glam::{DAffine3, DMat3, DVec2, DVec3};
+use pliant_editor::{Button, Command, Event, JobKind, Key, Modifiers, Paint, PivotPlace, Pointer, Reach, ToolMode};
+use pliant_mesh::{Drawn, shapes};
+use rig::{Rig, VIEWPORT_PX};
+
+/// Where both arms of [`body_with_arms`] are narrowest.
+const JOINT: f64 = 1.45;
+
+/// A ball of radius 1.3 about the origin with two arms along x, to 5 and -5; each is narrowest where it begins.
+fn body_with_arms() -> Drawn {
+    let profile = |share: f64| {
+        let x: f64 = 5.0 * (1.0 - 2.0 * share);
+        let ball = (1.3 * 1.3 - x * x).max(0.0).sqrt();
+        let arm = 0.28 + 0.12 * ((x.abs() - JOINT) / 3.0).clamp(-1.0, 1.0).powi(2);
+        let cap = (1.0 - ((x.abs() - 4.6) / 0.4).max(0.0).powi(2)).max(0.0).sqrt();
+        DVec2::new(if share % 1.0 == 0.0 { 0.0 } else { ball.max(arm * cap) }, x)
+    };
+    let along_x = DAffine3::from_mat3(DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X));
+    shapes::moved(&shapes::turned(100, 24, profile), along_x)
+}
+
+fn open() -> Rig {
+    let mut rig = Rig::open(body_with_arms());
+    rig.command(Command::SetTool(ToolMode::Pose));
+    rig
+}
+
+/// Where the view shows the middle of the surface's vertices with x between these.
+fn seen(rig: &Rig, x: std::ops::Range<f64>) -> DVec2 {
+    let view = rig.editor.view();
+    let vertices = rig.model.surface.positions.iter().zip(view.displacements.iter());
+    let within: Vec<DVec3> = vertices
+        .filter(|(p, _)| x.contains(&p.x))
+        .map(|(p, d)| *p + *d)
+        .collect();
+    let middle = within.iter().sum::<DVec3>() / within.len() as f64;
+    view.camera.project(middle, VIEWPORT_PX).unwrap()
+}
+
+fn pointer(position_px: DVec2, modifiers: Modifiers) -> Pointer {
+    Pointer { position_px, modifiers }
+}
+
+/// Drags with these modifiers, from one point by some points.
+fn drag(rig: &mut Rig, from_px: DVec2, by_px: DVec2, modifiers: Modifiers) {
+    rig.send(Event::PointerMoved(pointer(from_px, modifiers)));
+    rig.drain();
+    rig.send(Event::PointerPressed(pointer(from_px, modifiers), Button::Primary));
+    for step in 1..=4 {
+        let to_px = from_px + by_px * (f64::from(step) / 4.0);
+        rig.send(Event::PointerMoved(pointer(to_px, modifiers)));
+    }
+    let to_px = from_px + by_px;
+    rig.send(Event::PointerReleased(pointer(to_px, modifiers), Button::Primary));
+    rig.drain();
+}
+
+#[test]
+fn one_drag_bends_an_untouched_limb_about_its_joint_in_one_step() {
+    let mut rig = open();
+    let before = rig.fingerprint();
+    let hand_px = seen(&rig, 4.0..4.6);
+    rig.move_to(hand_px);
+    rig.drain();
+    assert!(
+        !rig.editor.view().joint.is_empty(),
+        "the joint is shown before anything is pressed"
+    );
+    assert_eq!(rig.fingerprint(), before, "looking changes nothing");
+    drag(&mut rig, hand_px, DVec2::new(-40.0, -120.0), Modifiers::NONE);
+
+    let document = rig.editor.document();
+    let handle = document.handles()[0].clone();
+    assert_eq!(document.handles().len(), 1);
+    assert_eq!(rig.editor.view().selected, Some(handle.id));
+    assert_eq!(handle.pivot_place, PivotPlace::Picked);
+    assert!(handle.pivot.distance(DVec3::X * JOINT) < 0.15, "{}", handle.pivot);
+    assert!(handle.centre().distance(handle.pivot) < 1e-12, "the joint stays");
+    assert!(handle.turn_deg.length() > 20.0, "{}", handle.turn_deg);
+    assert!(rig.editor.is_settled(), "{}", rig.editor.view().status);
+    rig.assert_as_meant("one drag");
+    let moved = document.from_file();
+    for (p, d) in rig.model.surface.positions.iter().zip(&**moved) {
+        assert!(p.x < 0.9 || p.x > 1.0 || d.length() < 1e-9, "the body is held at {p}");
+        if p.x > 2.2 {
+            let rigid = handle.affine().transform_point3(*p);
+            assert!(
+                (*p + *d).distance(rigid) < 1e-9,
+                "the arm's far side goes as one at {p}"
+            );
+        }
+    }
+    assert_eq!(rig.editor.history().undo_name(), Some("Turn handle 1"));
+    rig.undo();
+    rig.drain();
+    assert_eq!(rig.fingerprint(), before, "one step takes all of it back");
+    rig.redo();
+    rig.drain();
+    assert_eq!(rig.editor.document().handles().len(), 1);
+}
+
+#[test]
+fn a_press_before_the_joint_is_found_loses_nothing_of_the_drag() {
+    let mut patient = open();
+    let from_px = seen(&patient, 4.0..4.6);
+    let by_px = DVec2::new(-30.0, -90.0);
+    drag(&mut patient, from_px, by_px, Modifiers::NONE);
+    let mut hasty = open();
+    hasty.swipe(&[from_px, from_px + by_px * 0.5, from_px + by_px]);
+    assert!(
+        hasty.editor.document().handles().is_empty(),
+        "its joint is not known yet"
+    );
+    assert!(hasty.editor.view().status.contains("Looking for the joint"));
+    hasty.drain();
+    let [patient, hasty] = [&patient, &hasty].map(|rig| rig.editor.document().handles()[0].clone());
+    assert_eq!(hasty.pivot, patient.pivot);
+    assert!(hasty.turn_deg.distance(patient.turn_deg) < 1e-9);
+}
+
+#[test]
+fn the_limb_follows_alone_until_it_is_bound_and_the_surface_catches_up() {
+    let mut rig = open();
+    let from_px = seen(&rig, 4.0..4.6);
+    rig.move_to(from_px);
+    rig.drain();
+    rig.send(Event::PointerPressed(
+        pointer(from_px, Modifiers::NONE),
+        Button::Primary,
+    ));
+    rig.move_to(from_px + DVec2::new(0.0, -60.0));
+    assert!(
+        rig.largest_displacement() > 0.3,
+        "nothing has run, and the limb is there"
+    );
+    assert!(rig.editor.view().readout.is_some());
+    rig.run(JobKind::Region);
+    rig.run(JobKind::Bind);
+    rig.move_to(from_px + DVec2::new(0.0, -80.0));
+    assert!(rig.run(JobKind::Solve), "while it is dragged it is solved");
+    rig.release(from_px + DVec2::new(0.0, -80.0));
+    rig.drain();
+    rig.assert_as_meant("after catching up");
+}
+
+#[test]
+fn a_limb_that_was_posed_is_taken_again_and_its_handle_is_one_like_any_other() {
+    let mut rig = open();
+    let hand_px = seen(&rig, 4.0..4.6);
+    drag(&mut rig, hand_px, DVec2::new(0.0, -80.0), Modifiers::NONE);
+    let once = rig.editor.document().handles()[0].clone();
+    let hand_px = seen(&rig, 4.0..4.6);
+    drag(&mut rig, hand_px, DVec2::new(0.0, -40.0), Modifiers::NONE);
+    let twice = rig.editor.document().handles()[0].clone();
+    assert_eq!(rig.editor.document().handles().len(), 1);
+    assert!(twice.turn_deg.length() > once.turn_deg.length() + 5.0);
+    assert!(twice.centre().distance(once.centre()) < 1e-9);
+    // The joint's falloff is the handle's reach, and the pivot can be put elsewhere.
+    let Reach::Length(reach) = twice.reach else {
+        panic!("the falloff is a length")
+    };
+    assert!(reach > 0.3 && reach < 1.5, "{reach}");
+    rig.command(Command::SetReach(twice.id, Reach::Length(1.5 * reach)));
+    rig.command(Command::SetPivot(twice.id, DVec3::X));
+    rig.drain();
+    assert!(rig.editor.document().handles()[0].centre().distance(DVec3::X) < 1e-9);
+    // Beside the far side the same arm is still the same handle's.
+    let elbow_px = seen(&rig, 1.75..1.85);
+    drag(&mut rig, elbow_px, DVec2::new(0.0, 30.0), Modifiers::NONE);
+    assert_eq!(rig.editor.document().handles().len(), 1);
+}
+
+#[test]
+fn another_limb_of_a_bent_surface_gets_a_handle_of_its_own_and_nothing_jumps() {
+    let mut rig = open();
+    let hand_px = seen(&rig, 4.0..4.6);
+    drag(&mut rig, hand_px, DVec2::new(0.0, -80.0), Modifiers::NONE);
+    let bent = rig.drawn();
+    let other_px = seen(&rig, -4.6..-4.0);
+    rig.move_to(other_px);
+    rig.drain();
+    rig.press(other_px);
+    assert_eq!(rig.drawn(), bent, "a press moves nothing");
+    rig.release(other_px);
+    rig.drain();
+    assert_eq!(rig.drawn(), bent, "nor does a click");
+    assert_eq!(rig.editor.document().handles().len(), 2, "which makes a handle");
+    assert_eq!(rig.editor.history().undo_name(), Some("Make handle 2"));
+    let handle = rig.editor.document().handles()[1].clone();
+    assert!(
+        handle.centre().distance(DVec3::X * -JOINT) < 0.15,
+        "{}",
+        handle.centre()
+    );
+    drag(&mut rig, other_px, DVec2::new(0.0, -60.0), Modifiers::NONE);
+    assert_eq!(rig.editor.document().handles().len(), 2);
+    assert!(rig.editor.document().handles()[1].turn_deg.length() > 10.0);
+}
+
+#[test]
+fn ctrl_twists_and_shift_scales_and_each_goes_on_from_where_the_other_ended() {
+    let twisted = |modifiers| {
+        let mut rig = open();
+        let hand_px = seen(&rig, 3.4..4.0);
+        drag(&mut rig, hand_px, DVec2::new(0.0, 40.0), modifiers);
+        rig
+    };
+    let rig = twisted(Modifiers::CTRL);
+    assert_eq!(rig.editor.history().undo_name(), Some("Twist handle 1"));
+    let affine = rig.editor.document().handles()[0].affine();
+    let axis = affine.transform_vector3(DVec3::X);
+    assert!(axis.distance(DVec3::X) < 0.05, "the limb's axis stays: {axis}");
+    assert!(affine.transform_vector3(DVec3::Y).angle_between(DVec3::Y) > 0.5);
+
+    let rig = twisted(Modifiers::SHIFT);
+    assert_eq!(rig.editor.history().undo_name(), Some("Scale handle 1"));
+    let handle = &rig.editor.document().handles()[0];
+    assert_eq!(handle.turn_deg, DVec3::ZERO);
+    let factor = handle.affine().transform_vector3(DVec3::X).x;
+    assert!((factor - 1.0).abs() > 0.01, "{factor}");
+
+    // First a turn, then from there a twist.
+    let mut rig = open();
+    let from_px = seen(&rig, 4.0..4.6);
+    rig.move_to(from_px);
+    rig.drain();
+    rig.send(Event::PointerPressed(
+        pointer(from_px, Modifiers::NONE),
+        Button::Primary,
+    ));
+    let mid_px = from_px + DVec2::new(-10.0, -70.0);
+    rig.move_to(mid_px);
+    let turned = rig.editor.document().handles()[0].affine();
+    rig.send(Event::PointerMoved(pointer(mid_px, Modifiers::CTRL)));
+    let same = rig.editor.document().handles()[0].affine();
+    assert!(same.abs_diff_eq(turned, 1e-9), "the modifier alone moves nothing");
+    rig.send(Event::PointerMoved(pointer(
+        mid_px + DVec2::new(-40.0, 0.0),
+        Modifiers::CTRL,
+    )));
+    let after = rig.editor.document().handles()[0].affine();
+    let [was, is] = [turned, after].map(|affine| affine.transform_vector3(DVec3::X));
+    assert!(was.distance(is) < 0.05, "{was} {is}");
+    assert!(!after.abs_diff_eq(turned, 1e-3));
+    rig.release(mid_px + DVec2::new(-40.0, 0.0));
+    rig.drain();
+}
+
+#[test]
+fn escape_leaves_no_trace_whether_the_joint_is_known_or_not() {
+    let mut rig = open();
+    let before = rig.fingerprint();
+    let hand_px = seen(&rig, 4.0..4.6);
+    rig.press(hand_px);
+    rig.move_to(hand_px + DVec2::new(0.0, -50.0));
+    rig.key(Key::Escape);
+    rig.drain();
+    assert_eq!(rig.fingerprint(), before);
+    rig.press(hand_px);
+    rig.move_to(hand_px + DVec2::new(0.0, -50.0));
+    rig.drain();
+    assert_eq!(rig.editor.document().handles().len(), 1);
+    rig.key(Key::Escape);
+    rig.drain();
+    assert_eq!(rig.fingerprint(), before);
+    rig.release(hand_px);
+    assert!(!rig.editor.is_acting() && rig.editor.view().undo.is_none());
+}
+
+#[test]
+fn where_there_is_no_joint_a_sentence_says_so_and_nothing_changes() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.command(Command::SetTool(ToolMode::Pose));
+    let before = rig.fingerprint();
+    drag(&mut rig, rig::CENTRE_PX, DVec2::new(30.0, 0.0), Modifiers::NONE);
+    assert!(rig.editor.view().problem.is_some_and(|why| why.contains("No joint")));
+    assert_eq!(rig.fingerprint(), before);
+    assert!(!rig.editor.is_acting());
+}
+
+#[test]
+fn another_tool_forgets_the_joint_and_a_locked_limb_is_left_alone() {
+    let mut rig = open();
+    let hand_px = seen(&rig, 4.0..4.6);
+    rig.move_to(hand_px);
+    rig.command(Command::SetTool(ToolMode::PaintHandle));
+    rig.drain();
+    assert!(rig.editor.view().joint.is_empty());
+    rig.command(Command::SetTool(ToolMode::Pose));
+    drag(&mut rig, hand_px, DVec2::new(0.0, -60.0), Modifiers::NONE);
+    let id = rig.editor.document().handles()[0].id;
+    rig.command(Command::ToggleHandleLocked(id));
+    let before = rig.fingerprint();
+    let hand_px = seen(&rig, 4.0..4.6);
+    drag(&mut rig, hand_px, DVec2::new(0.0, -60.0), Modifiers::NONE);
+    assert_eq!(rig.fingerprint(), before);
+    assert!(rig.editor.view().problem.is_some_and(|why| why.contains("locked")));
+    assert!(rig.count(Paint::Handle(id)) > 0);
+}

@@ -1,0 +1,244 @@
+//! The joint of a limb: the narrowest ring around the surface between a point and the body.
+//!
+//! Rings are level sets of the distance along the surface from the point ([`rings`]). The first of them that is narrower
+//! than what comes before and after it gives the limb; its farthest point is the tip. Rings around the tip run straight
+//! across the limb, where rings around a point on its side are askew. The narrowest of those gives a plane across the
+//! limb, and the joint is the narrowest ring at an even distance from that plane.
+
+mod level_set;
+mod rings;
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use self::level_set::Segments;
+use self::rings::{Body, End, Field, Narrowest, Rings, Source};
+use super::DistanceSearch;
+use crate::{Cancel, Cancelled, SurfaceVertex, Topology};
+
+/// The first search goes this share of the component's extent far; only where that is not enough does another go on to the
+/// end.
+const FIRST_SHARE: f64 = 0.35;
+
+/// How many radii from a ring the plane is from which a straighter one is looked for.
+const SECTION_RADII: f64 = 2.0;
+
+/// At how many distances across the joint's falloff there are rings, the joint's own in the middle.
+pub const JOINT_RINGS: usize = 7;
+
+/// Where a limb bends, and how far the bend reaches.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Joint {
+    /// The middle of the ring, in world space.
+    pub centre: DVec3,
+    /// The unit direction from there into the limb.
+    pub axis: DVec3,
+    /// The radius of the circle that is as long as the ring, in world units.
+    pub radius: f64,
+    /// How far the bend reaches along the surface to either side of the ring, in world units.
+    pub falloff: f64,
+    /// The limb: every vertex of the component on the point's side of the ring, ascending.
+    pub limb: Vec<SurfaceVertex>,
+    /// Of those the ones beyond the falloff, ascending; never empty.
+    pub far_side: Vec<SurfaceVertex>,
+    /// Lines around the limb, in no order, at even distances from `-falloff` (on the limb) to `falloff` along the surface.
+    pub rings: [Vec<[DVec3; 2]>; JOINT_RINGS],
+}
+
+/// A surface in some shape.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape<'a> {
+    /// Its triangles.
+    pub triangles: &'a [[SurfaceVertex; 3]],
+    /// Their neighbourhood.
+    pub topology: &'a Topology,
+    /// Where the vertices stand, one a vertex, in world units.
+    pub positions: &'a [DVec3],
+}
+
+impl Shape<'_> {
+    fn corners(&self, triangle: [SurfaceVertex; 3]) -> [DVec3; 3] {
+        triangle.map(|v| self.positions[v.index()])
+    }
+}
+
+/// The joint between a point in a triangle and the body, which is what holds two fifths of the component's area or more;
+/// `None` where no ring around the point's side is markedly shorter than that of a disc, as on a ball or a sheet.
+///
+/// # Errors
+/// [`Cancelled`] soon after `cancel` is raised.
+///
+/// # Panics
+/// If there is no such triangle.
+pub fn joint_of(shape: &Shape<'_>, triangle: u32, point: DVec3, cancel: &Cancel) -> Result<Option<Joint>, Cancelled> {
+    let corners = shape.triangles[triangle as usize];
+    let seeds = corners.map(|v| (v, shape.positions[v.index()].distance(point)));
+    let mut search = DistanceSearch::default();
+    let near = FIRST_SHARE * extent(shape, corners[0]);
+    let Some(askew) = Cut::narrowest(&mut search, shape, &seeds, near, &corners, cancel)? else {
+        return Ok(None);
+    };
+    let tip = askew.tip(shape);
+    let length = shape.positions[tip.index()].distance(askew.centre);
+    let near = 1.6 * length + 4.0 * askew.radius;
+    let Some(from_tip) = Cut::narrowest(&mut search, shape, &[(tip, 0.0)], near, &corners, cancel)? else {
+        return Ok(None);
+    };
+    let straight = from_tip.straightened(&mut search, shape, &corners);
+    cancel.check()?;
+    Ok(straight.unwrap_or(from_tip).joint(&mut search, shape))
+}
+
+/// The diagonal of the box around a vertex's component.
+fn extent(shape: &Shape<'_>, of: SurfaceVertex) -> f64 {
+    let component = shape.topology.component(of);
+    let vertices = shape.topology.vertices_of(component);
+    let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for position in vertices.map(|v| shape.positions[v.index()]) {
+        (least, most) = (least.min(position), most.max(position));
+    }
+    least.distance(most)
+}
+
+/// A ring, and what it cuts off.
+struct Cut {
+    centre: DVec3,
+    radius: f64,
+    limb: Vec<SurfaceVertex>,
+    ring: Segments,
+    /// The corners of the triangles that the ring goes through, with their distances from it.
+    beside: Vec<(SurfaceVertex, f64)>,
+}
+
+impl Cut {
+    /// The narrowest ring around `seeds` with the triangle of these corners on the limb. What is searched goes `near` far,
+    /// and on to the end if the rings have not widened again by then.
+    fn narrowest(
+        search: &mut DistanceSearch,
+        shape: &Shape<'_>,
+        seeds: &[(SurfaceVertex, f64)],
+        near: f64,
+        corners: &[SurfaceVertex; 3],
+        cancel: &Cancel,
+    ) -> Result<Option<Self>, Cancelled> {
+        for limit in [near, f64::INFINITY] {
+            let field = Field::measure(search, shape, seeds, limit);
+            cancel.check()?;
+            let rings = Rings::of(shape, &field, Body::Large);
+            cancel.check()?;
+            match rings.narrowest(corners, Source::Point) {
+                Some(Narrowest { level, end }) if end == End::Widens || limit.is_infinite() => {
+                    return Ok(Some(Self::of(shape, &field, &rings, level)));
+                }
+                _ => {}
+            }
+        }
+        Ok(None)
+    }
+
+    fn of(shape: &Shape<'_>, field: &Field, rings: &Rings, level: usize) -> Self {
+        let (ring, beside) = rings.ring(shape, field, level);
+        let length: f64 = ring.iter().map(|[a, b]| a.distance(*b)).sum();
+        let weighted: DVec3 = ring.iter().map(|[a, b]| (*a + *b) * (0.5 * a.distance(*b))).sum();
+        Self {
+            centre: weighted / length,
+            radius: length / TAU,
+            limb: rings.limb(level),
+            ring,
+            beside,
+        }
+    }
+
+    /// The narrowest ring at even distances from a plane across the limb, a few radii away: those are straight where the
+    /// limb is. `None` where there is none with the triangle of these corners on the limb.
+    fn straightened(
+        &self,
+        search: &mut DistanceSearch,
+        shape: &Shape<'_>,
+        corners: &[SurfaceVertex; 3],
+    ) -> Option<Self> {
+        let arm = |v: SurfaceVertex| shape.positions[v.index()] - self.centre;
+        let near = self.limb.iter().map(|&v| arm(v));
+        let (mut sum, mut is_limb) = (DVec3::ZERO, vec![false; shape.positions.len()]);
+        near.filter(|arm| arm.length() < SECTION_RADII * 2.0 * self.radius)
+            .for_each(|arm| sum += arm);
+        self.limb.iter().for_each(|v| is_limb[v.index()] = true);
+        let axis = sum.try_normalize()?;
+        let length = self.limb.iter().map(|&v| arm(v).dot(axis)).fold(0.0, f64::max);
+        let height = (SECTION_RADII * self.radius).min(0.5 * length);
+        let below = |v: SurfaceVertex| height - arm(v).dot(axis);
+        let mut seeds = Vec::new();
+        for triangle in shape.triangles {
+            let is_crossed = triangle.iter().any(|&v| below(v) < 0.0) && triangle.iter().any(|&v| below(v) >= 0.0);
+            if is_crossed && triangle.iter().all(|v| is_limb[v.index()]) {
+                seeds.extend(triangle.map(|v| (v, below(v).max(0.0))));
+            }
+        }
+        if seeds.is_empty() {
+            return None;
+        }
+        let field = Field::measure(search, shape, &seeds, height + SECTION_RADII * self.radius);
+        let rings = Rings::of(shape, &field, Body::With(self.far_from_limb(shape, &is_limb)?));
+        let level = rings.narrowest(corners, Source::Section)?.level;
+        Some(Self::of(shape, &field, &rings, level))
+    }
+
+    /// The body's farthest point from the ring, in a straight line.
+    fn far_from_limb(&self, shape: &Shape<'_>, is_limb: &[bool]) -> Option<SurfaceVertex> {
+        let component = shape.topology.component(*self.limb.first()?);
+        let body = shape.topology.vertices_of(component).filter(|v| !is_limb[v.index()]);
+        let away = |v: &SurfaceVertex| shape.positions[v.index()].distance_squared(self.centre);
+        body.max_by(|a, b| away(a).total_cmp(&away(b)))
+    }
+
+    /// The limb's farthest point from the ring, in a straight line.
+    fn tip(&self, shape: &Shape<'_>) -> SurfaceVertex {
+        let away = |v: &SurfaceVertex| shape.positions[v.index()].distance_squared(self.centre);
+        let farthest = self.limb.iter().max_by(|a, b| away(a).total_cmp(&away(b)));
+        farthest.copied().unwrap_or(self.beside[0].0)
+    }
+
+    /// With its falloff; `None` where the limb has no vertex beyond that.
+    fn joint(self, search: &mut DistanceSearch, shape: &Shape<'_>) -> Option<Joint> {
+        let tip = shape.positions[self.tip(shape).index()];
+        let falloff = self.radius.min(0.5 * tip.distance(self.centre));
+        let mut is_limb = vec![false; shape.positions.len()];
+        self.limb.iter().for_each(|v| is_limb[v.index()] = true);
+        // Some triangles beyond the falloff, so that the outermost rings are closed.
+        let step = self.beside.iter().map(|(_, distance)| *distance).fold(0.0, f64::max);
+        let limit = falloff + 4.0 * step;
+        let position = |v: SurfaceVertex| shape.positions[v.index()];
+        let mut signed = vec![f64::NAN; shape.positions.len()];
+        for &(v, distance) in search.within(shape.triangles, shape.topology, position, &self.beside, limit) {
+            signed[v.index()] = if is_limb[v.index()] { -distance } else { distance };
+        }
+        let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+        for v in self.limb.iter().filter(|v| signed[v.index()].is_finite()) {
+            sum += position(*v) - self.centre;
+            count += 1.0;
+        }
+        let is_far = |v: &&SurfaceVertex| signed[v.index()].is_nan() || signed[v.index()] < -falloff;
+        let far_side: Vec<SurfaceVertex> = self.limb.iter().filter(is_far).copied().collect();
+        let mut rings = std::array::from_fn(|_| Vec::new());
+        let middle = JOINT_RINGS / 2;
+        for (number, ring) in rings.iter_mut().enumerate().filter(|(number, _)| *number != middle) {
+            let share = number as f64 / middle as f64 - 1.0;
+            *ring = level_set::segments(shape, &signed, share * falloff);
+        }
+        rings[middle] = self.ring;
+        (!far_side.is_empty() && count > 0.0).then(|| Joint {
+            centre: self.centre,
+            axis: (sum / count).normalize_or((tip - self.centre).normalize_or(DVec3::Y)),
+            radius: self.radius,
+            falloff,
+            limb: self.limb,
+            far_side,
+            rings,
+        })
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that can't go on fails")]
+mod tests;

@@ -1,0 +1,283 @@
+//! Level sets of a distance field that part the body from the rest.
+//!
+//! At a level r the *body* is the connected component of {distance ≥ r} that holds two fifths of the whole area or more;
+//! at a lower level it is the one that holds the body of the higher. So bodies are nested, and the ring of a level, the
+//! boundary of its body, always parts the surface, whatever holes and handles that has. The *limb* is all else.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use super::Shape;
+use super::level_set::{Segments, crossing};
+use crate::geodesics::DistanceSearch;
+use crate::{SurfaceVertex, face_area};
+
+/// How many levels there are for the whole way.
+const LEVELS: u32 = 256;
+/// What the body holds of the area at least.
+const BODY_SHARE: f64 = 0.4;
+/// A ring counts if it is shorter than this share of the circle of its distance: that is 0.64 for a sphere's equator and
+/// less than 0.32 around a tube that the circle has closed around.
+const ROUND_SHARE: f64 = 0.5;
+/// Nor does it count if it is this many times longer than the ring at half its distance: that is 2 for a disc and for
+/// the corner of a sheet.
+const GROWS: f64 = 1.3;
+/// A ring is the narrowest of its surroundings when a later one is this much longer.
+const WIDENS: f64 = 1.25;
+
+/// Distances from a place over its component.
+pub(super) struct Field {
+    /// Per vertex of the surface; infinite beyond the search's limit.
+    distance: Vec<f64>,
+    component: u32,
+    spacing: f64,
+}
+
+impl Field {
+    /// Measures from the nearest of `seeds`, which lie on one component, up to `limit`.
+    pub(super) fn measure(
+        search: &mut DistanceSearch,
+        shape: &Shape<'_>,
+        seeds: &[(SurfaceVertex, f64)],
+        limit: f64,
+    ) -> Self {
+        let position = |v: SurfaceVertex| shape.positions[v.index()];
+        let mut distance = vec![f64::INFINITY; shape.positions.len()];
+        let mut farthest = 0.0;
+        for &(v, at) in search.within(shape.triangles, shape.topology, position, seeds, limit) {
+            (distance[v.index()], farthest) = (at, at);
+        }
+        Self {
+            distance,
+            component: shape.topology.component(seeds[0].0),
+            spacing: farthest / f64::from(LEVELS),
+        }
+    }
+
+    /// The distance of a level, between multiples of the spacing so that regular meshes have no vertex on one.
+    fn at_level(&self, level: usize) -> f64 {
+        (level as f64 + 0.5) * self.spacing
+    }
+
+    /// How many levels a vertex is beyond.
+    fn levels_below(&self, v: SurfaceVertex) -> u32 {
+        let levels = (self.distance[v.index()] / self.spacing + 0.5).floor();
+        // The cast takes what is infinite to the most, and 0/0 to 0.
+        (levels as u32).min(LEVELS)
+    }
+}
+
+/// Which part is the body.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Body {
+    /// The one that holds two fifths of the area or more.
+    Large,
+    /// The one with this vertex.
+    With(SurfaceVertex),
+}
+
+/// What distances are measured from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Source {
+    /// A point, whose rings begin as those of a disc.
+    Point,
+    /// A section across the limb.
+    Section,
+}
+
+/// A ring that is narrower than others.
+pub(super) struct Narrowest {
+    pub(super) level: usize,
+    pub(super) end: End,
+}
+
+/// What comes behind the narrowest ring.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum End {
+    /// Wider ones.
+    Widens,
+    /// The search ended before they widened.
+    Open,
+}
+
+/// What each level cuts off.
+pub(super) struct Rings {
+    /// At how many levels, from the lowest on, each vertex belongs to the body.
+    in_body: Vec<u32>,
+    /// The ring's length by level, smoothed over three.
+    lengths: Vec<f64>,
+    radii: Vec<f64>,
+    vertices: Vec<SurfaceVertex>,
+}
+
+impl Rings {
+    pub(super) fn of(shape: &Shape<'_>, field: &Field, body: Body) -> Self {
+        let vertices: Vec<SurfaceVertex> = shape.topology.vertices_of(field.component).collect();
+        let mut levels = vec![0; shape.positions.len()];
+        vertices.iter().for_each(|&v| levels[v.index()] = field.levels_below(v));
+        let mut in_body = vec![0; shape.positions.len()];
+        let innermost = match body {
+            Body::Large => innermost_body(shape, &vertices, &levels),
+            Body::With(v) => Some((v, levels[v.index()])),
+        };
+        if let Some((seed, highest)) = innermost {
+            spread(shape, &levels, seed, highest, &mut in_body);
+        }
+        let mut raw = vec![0.0; LEVELS as usize];
+        // From here on the search's limit cuts rings off.
+        let mut complete = LEVELS;
+        for &triangle in shape.triangles {
+            let beyond = triangle.map(|v| in_body[v.index()]);
+            let below = triangle.map(|v| levels[v.index()]);
+            let (from, to) = (
+                below.into_iter().fold(LEVELS, u32::min),
+                beyond.into_iter().fold(0, u32::max),
+            );
+            if triangle.iter().any(|v| field.distance[v.index()].is_infinite()) {
+                complete = complete.min(from);
+                continue;
+            }
+            for level in from..to {
+                if let Some([a, b]) = cut(shape, field, triangle, level as usize) {
+                    raw[level as usize] += a.distance(b);
+                }
+            }
+        }
+        raw.truncate(complete as usize);
+        let lengths = (0..raw.len()).map(|level| {
+            let (before, after) = (level.saturating_sub(1), (level + 1).min(raw.len() - 1));
+            match raw[before].min(raw[level]).min(raw[after]) > 0.0 {
+                true => 0.25 * (raw[before] + raw[after]) + 0.5 * raw[level],
+                false => raw[level],
+            }
+        });
+        Self {
+            lengths: lengths.collect(),
+            radii: (0..raw.len()).map(|level| field.at_level(level)).collect(),
+            in_body,
+            vertices,
+        }
+    }
+
+    /// The first ring with the point's triangle on the limb that is narrower than what comes before and after it; where
+    /// none widens again the narrowest of all.
+    pub(super) fn narrowest(&self, triangle: &[SurfaceVertex; 3], source: Source) -> Option<Narrowest> {
+        let first = triangle.iter().map(|v| self.in_body[v.index()]).max()? as usize;
+        let mut narrowest: Option<usize> = None;
+        for level in first..self.lengths.len() {
+            let length = self.lengths[level];
+            let is_round = source == Source::Point
+                && (length > ROUND_SHARE * TAU * self.radii[level] || length > GROWS * self.lengths[level / 2]);
+            match narrowest {
+                Some(level) if length > WIDENS * self.lengths[level] => {
+                    return Some(Narrowest {
+                        level,
+                        end: End::Widens,
+                    });
+                }
+                Some(least) if length >= self.lengths[least] => {}
+                _ if length > 0.0 && !is_round => narrowest = Some(level),
+                _ => {}
+            }
+        }
+        narrowest.map(|level| Narrowest { level, end: End::Open })
+    }
+
+    /// The ring of a level, and the corners of the triangles that it goes through with their distances from it.
+    pub(super) fn ring(&self, shape: &Shape<'_>, field: &Field, level: usize) -> (Segments, Vec<(SurfaceVertex, f64)>) {
+        let (mut ring, mut beside) = (Vec::new(), Vec::new());
+        for &triangle in shape.triangles {
+            let borders_on_body = triangle.iter().any(|v| self.in_body[v.index()] as usize > level);
+            if let Some(segment) = cut(shape, field, triangle, level).filter(|_| borders_on_body) {
+                ring.push(segment);
+                let from_ring = |v: SurfaceVertex| (field.distance[v.index()] - field.at_level(level)).abs();
+                beside.extend(triangle.map(|v| (v, from_ring(v))));
+            }
+        }
+        (ring, beside)
+    }
+
+    /// Every vertex of the component that is not in the body of a level, ascending.
+    pub(super) fn limb(&self, level: usize) -> Vec<SurfaceVertex> {
+        let is_limb = |v: &&SurfaceVertex| self.in_body[v.index()] as usize <= level;
+        self.vertices.iter().filter(is_limb).copied().collect()
+    }
+}
+
+/// The line of a level in a triangle; beyond the limit there is none.
+fn cut(shape: &Shape<'_>, field: &Field, triangle: [SurfaceVertex; 3], level: usize) -> Option<[DVec3; 2]> {
+    let values = triangle.map(|v| field.distance[v.index()] - field.at_level(level));
+    if values.iter().any(|value| value.is_infinite()) {
+        return None;
+    }
+    crossing(shape.corners(triangle), values)
+}
+
+/// A vertex of the body at the highest level that has one, and for how many levels it is in the body.
+fn innermost_body(shape: &Shape<'_>, vertices: &[SurfaceVertex], levels: &[u32]) -> Option<(SurfaceVertex, u32)> {
+    let mut areas = vec![0.0; levels.len()];
+    let mut whole = 0.0;
+    for &triangle in shape.triangles {
+        if shape.topology.component(triangle[0]) == shape.topology.component(*vertices.first()?) {
+            let area = face_area(shape.corners(triangle));
+            whole += area;
+            triangle.iter().for_each(|v| areas[v.index()] += area / 3.0);
+        }
+    }
+    let mut falling = vertices.to_vec();
+    falling.sort_by_key(|v| std::cmp::Reverse(levels[v.index()]));
+    // Parents of a forest of sets; a vertex is in it once its level was reached.
+    let mut parents: Vec<u32> = vec![u32::MAX; levels.len()];
+    for &v in &falling {
+        if levels[v.index()] == 0 {
+            break;
+        }
+        parents[v.index()] = v.0;
+        for &u in shape.topology.neighbours(v) {
+            if parents[u.index()] == u32::MAX {
+                continue;
+            }
+            let (one, other) = (root(&mut parents, v.0), root(&mut parents, u.0));
+            if one != other {
+                parents[other as usize] = one;
+                areas[one as usize] += areas[other as usize];
+            }
+        }
+        if areas[root(&mut parents, v.0) as usize] >= BODY_SHARE * whole {
+            return Some((v, levels[v.index()]));
+        }
+    }
+    None
+}
+
+/// The set of a vertex, with the way to it halved.
+fn root(parents: &mut [u32], mut v: u32) -> u32 {
+    while parents[v as usize] != v {
+        let above = parents[parents[v as usize] as usize];
+        parents[v as usize] = above;
+        v = above;
+    }
+    v
+}
+
+/// For how many levels each vertex is in the body that `seed` is in for `highest` levels: the most, over all ways from
+/// there, of the least on the way.
+fn spread(shape: &Shape<'_>, levels: &[u32], seed: SurfaceVertex, highest: u32, in_body: &mut [u32]) {
+    let mut waiting: Vec<Vec<SurfaceVertex>> = vec![Vec::new(); highest as usize + 1];
+    waiting[highest as usize].push(seed);
+    for level in (1..=highest).rev() {
+        while let Some(v) = waiting[level as usize].pop() {
+            if in_body[v.index()] > 0 {
+                continue;
+            }
+            in_body[v.index()] = level;
+            for &u in shape.topology.neighbours(v) {
+                let reached = levels[u.index()].min(level);
+                if in_body[u.index()] == 0 && reached > 0 {
+                    waiting[reached as usize].push(u);
+                }
+            }
+        }
+    }
+}
