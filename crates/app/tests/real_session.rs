@@ -76,7 +76,7 @@ fn a_whole_session_by_pointer_and_keys_comes_back_by_undo_redo_and_reopening() {
         handles(project)[0]["reach"] != handles(&one)[0]["reach"]
     });
     desktop.shoot("widened");
-    desktop.keys(&["n"]);
+    desktop.keys(&["shift+n"]);
     desktop.drag((x - 60, y - 230), (x - 54, y - 226));
     once("two-handles", &|project| handles(project).len() == 2);
     desktop.shoot("two-handles");

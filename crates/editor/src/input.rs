@@ -62,7 +62,7 @@ pub enum Button {
     Primary,
     /// The middle button: the camera.
     Middle,
-    /// The right button: aborts what is going on.
+    /// The right button: aborts what is going on, and else moves the camera; a click is the menu's.
     Secondary,
 }
 

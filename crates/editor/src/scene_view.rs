@@ -47,8 +47,8 @@ pub struct SceneView<'a> {
     pub gizmo: &'a [GizmoShape],
     /// The method's cage or lattice, in world space; empty where it has none.
     pub controls: &'a [ControlShape],
-    /// The joint of the limb under the pointer, in world space; empty where none is shown.
-    pub joint: &'a [ControlShape],
+    /// The joint of the limb under the pointer, or the arc of a turn, in world space; empty where none is shown.
+    pub shapes: &'a [ControlShape],
     /// What there is to say of the cage or lattice.
     pub control_points: Option<ControlPoints>,
     /// How far an iterative method's descent to the present shape is; `None` where nothing is bent, or in one step.

@@ -68,7 +68,7 @@ fn one_drag_bends_an_untouched_limb_about_its_joint_in_one_step() {
     rig.move_to(hand_px);
     rig.drain();
     assert!(
-        !rig.editor.view().joint.is_empty(),
+        !rig.editor.view().shapes.is_empty(),
         "the joint is shown before anything is pressed"
     );
     assert_eq!(rig.fingerprint(), before, "looking changes nothing");
@@ -290,7 +290,7 @@ fn another_tool_forgets_the_joint_and_a_locked_limb_is_left_alone() {
     rig.move_to(hand_px);
     rig.command(Command::SetTool(ToolMode::PaintHandle));
     rig.drain();
-    assert!(rig.editor.view().joint.is_empty());
+    assert!(rig.editor.view().shapes.is_empty());
     rig.command(Command::SetTool(ToolMode::Pose));
     drag(&mut rig, hand_px, DVec2::new(0.0, -60.0), Modifiers::NONE);
     let id = rig.editor.document().handles()[0].id;

@@ -77,7 +77,7 @@ fn matcap(clay: Clay) -> Matcap {
     }
 }
 
-/// The overlays of a view, relative to `centre`: the method's cage or lattice, the joint of a limb, the brush ring, then the gizmo. `pixels_per_point` scales widths.
+/// The overlays of a view, relative to `centre`: the method's cage or lattice, the joint of a limb or the arc of a turn, the brush ring, then the gizmo. `pixels_per_point` scales widths.
 pub fn overlays(view: &SceneView<'_>, centre: DVec3, pixels_per_point: f32) -> Vec<Overlay> {
     let relative = |position: DVec3| (position - centre).as_vec3().to_array();
     let mut ring = Overlay {
@@ -113,7 +113,7 @@ pub fn overlays(view: &SceneView<'_>, centre: DVec3, pixels_per_point: f32) -> V
                 colours: [shape.colour; 3],
             }));
     }
-    let control_shapes = || view.controls.iter().chain(view.joint);
+    let control_shapes = || view.controls.iter().chain(view.shapes);
     let edges = control_shapes().flat_map(|shape| {
         shape.lines.iter().map(|ends| OverlayLine {
             ends: ends.map(relative),

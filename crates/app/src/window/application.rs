@@ -56,6 +56,8 @@ pub struct Application {
     pub(super) palette: Option<Palette>,
     /// Whether this is a person's window, where the first steps are shown.
     pub(super) shows_hints: bool,
+    /// Whether the panel beside the view is put away.
+    pub(super) is_panel_hidden: bool,
     pub(super) log: Log,
     pub(super) keys: KeysWindow,
     pub(super) question: Option<Question>,
@@ -137,6 +139,7 @@ impl Application {
             settings,
             palette: None,
             shows_hints: places.settings.is_some(),
+            is_panel_hidden: false,
             log: Log::default(),
             keys: KeysWindow::default(),
             recovery,

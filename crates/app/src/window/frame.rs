@@ -86,6 +86,16 @@ impl Application {
         if status.inner {
             self.session.stop();
         }
+        let panel = match self.is_panel_hidden {
+            true => egui::Rect::NOTHING,
+            false => self.panel(ui, commands),
+        };
+        let layout = [context.content_rect(), top.response.rect, status.response.rect, panel];
+        (top.inner.or_else(|| commands.take_file()), layout)
+    }
+
+    /// The panel beside the view. Returns where it is.
+    fn panel(&mut self, ui: &mut egui::Ui, commands: &mut Outbox) -> egui::Rect {
         let panel = Panel::right("panel")
             .default_size(self.settings.get().panel_width)
             .min_size(220.0)
@@ -100,17 +110,12 @@ impl Application {
                 }
             });
         }
-        let width = panel.response.rect.width();
-        if (width - self.settings.get().panel_width).abs() > 1.0 && !context.input(|input| input.pointer.any_down()) {
-            self.settings.change(|settings| settings.panel_width = width);
+        let rect = panel.response.rect;
+        let is_held = ui.ctx().input(|input| input.pointer.any_down());
+        if (rect.width() - self.settings.get().panel_width).abs() > 1.0 && !is_held {
+            self.settings.change(|settings| settings.panel_width = rect.width());
         }
-        let layout = [
-            context.content_rect(),
-            top.response.rect,
-            status.response.rect,
-            panel.response.rect,
-        ];
-        (top.inner.or_else(|| commands.take_file()), layout)
+        rect
     }
 
     /// What lies over the view and the panel: the palette, the log, the keys and the question that waits.

@@ -121,7 +121,7 @@ pub(super) const NEW_HANDLE: Entry<()> = Entry {
         "New handle",
         "The next stroke of the handle brush makes a handle of its own.",
         "add create",
-        &[character('n')],
+        &[shift('n')],
     )],
     scope: Scope::Document,
     unavailable: when_open,
@@ -151,6 +151,27 @@ pub(super) const TOGGLE_SELECTED: Entry<HandleId> = Entry {
     action: Action::Do(|context, id| {
         context.workspace.controls.put([]);
         context.workspace.selection.toggle(id);
+    }),
+};
+
+/// Selects all handles.
+pub(super) const SELECT_ALL: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Select all handles",
+        "Selects all handles, which are then moved together.",
+        "every everything",
+        &[character('a')],
+    )],
+    scope: Scope::Document,
+    unavailable: |state, ()| {
+        let is_any = !state.workspace.document.handles().is_empty();
+        unless(is_any, "There is no handle yet: paint one on the surface.")
+    },
+    action: Action::Do(|context, ()| {
+        let workspace = &mut *context.workspace;
+        workspace.controls.put([]);
+        workspace.selection.put_all(&workspace.document);
     }),
 };
 

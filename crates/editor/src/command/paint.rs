@@ -1,7 +1,7 @@
 //! What the left button does on the surface, and with what.
 
-use super::entry::{Action, Entry, Scope, always, character, item};
-use crate::tool::{BrushMetric, Depth, StiffnessBrush, StrokeShape, ToolMode};
+use super::entry::{Action, Entry, Scope, always, character, item, unless};
+use crate::tool::{BrushMetric, Depth, SizeBrush, StiffnessBrush, StrokeShape, ToolMode};
 
 /// The factor by which a key sizes the brush.
 const BRUSH_STEP: f64 = 1.2;
@@ -200,6 +200,27 @@ pub(super) const SHRINK_BRUSH: Entry<()> = Entry {
         context
             .settings
             .set_brush_radius(context.settings.brush.radius_px / BRUSH_STEP)
+    }),
+};
+
+/// Sizes the brush with the pointer.
+pub(super) const SIZE_BRUSH: Entry<()> = Entry {
+    listed: &[item(
+        (),
+        "Size brush",
+        "Follows the pointer: how large the brush is. So does the wheel with Ctrl held.",
+        "radius larger smaller",
+        &[character('f')],
+    )],
+    scope: Scope::Gesture,
+    unavailable: |state, ()| {
+        let why = "This tool has no brush: choose one that paints.";
+        unless(state.settings.mode.has_brush(), why)
+    },
+    action: Action::Begin(|context, ()| {
+        let pointer_px = context.pointer.map(|pointer| pointer.position_px);
+        let pointer_px = pointer_px.unwrap_or(context.view.viewport_px() * 0.5);
+        Some(Box::new(SizeBrush::begin(context.settings, pointer_px)))
     }),
 };
 

@@ -130,6 +130,8 @@ commands! {
     SetDepth(depth: Depth) = paint::SET_DEPTH;
     /// Sets the brush's radius in points, clamped to what the brush allows.
     SetBrushRadius(radius_px: f64) = paint::SET_BRUSH_RADIUS;
+    /// Sizes the brush with the pointer.
+    SizeBrush = paint::SIZE_BRUSH;
     /// A larger brush.
     GrowBrush = paint::GROW_BRUSH;
     /// A smaller brush.
@@ -162,6 +164,8 @@ commands! {
     SelectHandle(id: HandleId) = handle::SELECT_HANDLE;
     /// Adds a handle to those that are selected, or takes it from them.
     ToggleSelected(id: HandleId) = handle::TOGGLE_SELECTED;
+    /// Selects all handles.
+    SelectAll = handle::SELECT_ALL;
     /// Selects the next handle of the list.
     NextHandle = handle::NEXT_HANDLE;
     /// Selects no handle.

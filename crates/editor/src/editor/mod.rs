@@ -20,6 +20,11 @@ use crate::tool::{Adjust, Brush, Context, Gesture, Lit, Next, Overlay, ToolMode,
 use crate::view::{Shading, View};
 use crate::workspace::{ColouredBy, Workspace, take_mirrored};
 
+/// By which factor a notch of the wheel sizes the brush.
+const WHEEL_STEP: f64 = 1.15;
+/// How much softer a notch of the wheel makes the brush for stiffness.
+const WHEEL_FALLOFF: f64 = 0.1;
+
 /// The program without a window.
 pub struct Editor {
     workspace: Workspace,
@@ -75,7 +80,9 @@ impl Editor {
                 }
             }
         }
-        let lit = self.gesture.as_ref().map_or(Lit::Pointed, |gesture| gesture.lit());
+        let lit = self.gesture.as_ref().map_or((Lit::Pointed, Vec::new()), |gesture| {
+            (gesture.lit(), gesture.shapes(&self.view))
+        });
         let pointer_px = self.pointer.map(|pointer| pointer.position_px);
         self.overlay
             .renew(lit, &self.workspace, &self.view, &self.settings, pointer_px);
@@ -102,9 +109,7 @@ impl Editor {
                 self.pointer = Some(pointer);
                 self.ask_gesture(|gesture, context| gesture.released(context, pointer, button));
             }
-            Event::Wheel { pointer, lines } => self.zoom(pointer, |view, anchor| {
-                view.travel(|camera| camera.zoom_lines(lines, anchor));
-            }),
+            Event::Wheel { pointer, lines } => self.wheel(pointer, lines),
             Event::Pinch { pointer, factor } => {
                 if factor.is_finite() && factor > 0.0 {
                     self.zoom(pointer, |view, anchor| {
@@ -278,6 +283,22 @@ impl Editor {
         }
         if self.is_enabled(&command) {
             self.act(command);
+        }
+    }
+
+    /// The wheel zooms; with Ctrl it sizes the brush, with Shift it softens the one for stiffness.
+    fn wheel(&mut self, pointer: Pointer, lines: f64) {
+        let (modifiers, settings) = (pointer.modifiers, &mut self.settings);
+        if modifiers.ctrl && settings.mode.has_brush() {
+            settings.set_brush_radius(settings.brush.radius_px * WHEEL_STEP.powf(lines));
+        } else if modifiers.shift && settings.mode == ToolMode::PaintStiffness {
+            let mut brush = settings.stiffness_brush;
+            brush.falloff = (brush.falloff + WHEEL_FALLOFF * lines).clamp(0.0, 1.0);
+            settings.stiffness_brush = brush.clamped().unwrap_or(settings.stiffness_brush);
+        } else {
+            self.zoom(pointer, |view, anchor| {
+                view.travel(|camera| camera.zoom_lines(lines, anchor));
+            });
         }
     }
 

@@ -50,7 +50,7 @@ impl Editor {
             brush_ring: &self.overlay.ring,
             gizmo: &self.overlay.gizmo,
             controls: &self.overlay.controls,
-            joint: &self.overlay.joint,
+            shapes: &self.overlay.shapes,
             control_points: self.control_points(),
             descent: workspace.descent.filter(|_| document.is_displaced()),
             look: view.look,
@@ -96,7 +96,7 @@ impl Editor {
         match &self.gesture {
             Some(gesture) => gesture.cursor(),
             None if self.overlay.hovered.is_some() || self.overlay.pointed_control.is_some() => Cursor::Grab,
-            None if self.settings.mode == ToolMode::Pose && !self.overlay.joint.is_empty() => Cursor::Grab,
+            None if self.settings.mode == ToolMode::Pose && !self.overlay.shapes.is_empty() => Cursor::Grab,
             None if self.overlay.is_over_surface && self.settings.mode != ToolMode::Select => Cursor::Brush,
             None => Cursor::Arrow,
         }

@@ -25,8 +25,7 @@ type Begun = Option<Box<dyn Gesture>>;
 pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button) -> Begun {
     let modifiers = pointer.modifiers;
     match button {
-        Button::Secondary => return None,
-        Button::Middle => return navigate(context, pointer, button),
+        Button::Secondary | Button::Middle => return navigate(context, pointer, button),
         Button::Primary
             if !modifiers.alt
                 && let Some(point) = control_under(context, pointer) =>
@@ -52,7 +51,7 @@ pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, button: Button)
     if matches!(shape, StrokeShape::Lasso | StrokeShape::Box) && boxes_controls(context) {
         return Some(Box::new(ControlBox::begin(pointer, shape)));
     }
-    if !matches!(mode, ToolMode::Select | ToolMode::Pose) && matches!(shape, StrokeShape::Lasso | StrokeShape::Box) {
+    if mode.has_brush() && matches!(shape, StrokeShape::Lasso | StrokeShape::Box) {
         return outline(context, pointer, shape);
     }
     let Some(pick) = context.workspace.pick(context.view, pointer.position_px) else {

@@ -11,7 +11,7 @@ use super::overlay::Lit;
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::Activity;
 use crate::scene_view::{Cursor, Readout};
-use crate::view::View;
+use crate::view::{ControlShape, View};
 use crate::workspace::Workspace;
 
 /// What comes after an event that a gesture was told of.
@@ -48,6 +48,11 @@ pub(crate) trait Gesture: std::fmt::Debug {
 
     /// The closed line that is being drawn over the view; empty where none is.
     fn outline_px(&self) -> Vec<DVec2> {
+        Vec::new()
+    }
+
+    /// What is shown over the surface beside what [`Gesture::lit`] says, in world space.
+    fn shapes(&self, _view: &View) -> Vec<ControlShape> {
         Vec::new()
     }
 

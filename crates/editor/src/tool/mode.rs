@@ -20,6 +20,13 @@ pub enum ToolMode {
     Pose,
 }
 
+impl ToolMode {
+    /// Whether it paints with a brush.
+    pub(crate) fn has_brush(self) -> bool {
+        !matches!(self, Self::Select | Self::Pose)
+    }
+}
+
 /// How the left button takes vertices.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
 pub enum StrokeShape {

@@ -80,6 +80,14 @@ impl Gesture for Navigate {
         if button == self.button { Next::End } else { Next::Stay }
     }
 
+    fn pressed(&mut self, context: &mut Context<'_>, _: Pointer, button: Button) -> Next {
+        if button == Button::Secondary && self.button != Button::Secondary {
+            self.abort(context);
+            return Next::End;
+        }
+        Next::Stay
+    }
+
     fn abort(&mut self, context: &mut Context<'_>) {
         context.view.adjust(|camera| *camera = self.before);
     }

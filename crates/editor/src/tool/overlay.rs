@@ -44,8 +44,8 @@ pub(crate) struct Overlay {
     pub(crate) control_points: Vec<ShownPoint>,
     /// The control point that a press takes.
     pub(crate) pointed_control: Option<u32>,
-    /// The joint of the limb under the pointer.
-    pub(crate) joint: Vec<ControlShape>,
+    /// The joint of the limb under the pointer, and what a gesture shows.
+    pub(crate) shapes: Vec<ControlShape>,
     /// What hides control points was looked at for these positions and this view.
     hidden: HiddenPoints,
     /// The part that the pointer rests on.
@@ -69,10 +69,10 @@ impl Overlay {
         self.rested = part.filter(|part| !matches!(part, GizmoPart::Centre | GizmoPart::Square(_)));
     }
 
-    /// Computes the overlay anew; its revision grows if it looks different.
+    /// Computes the overlay anew, with what a gesture shows; its revision grows if it looks different.
     pub(crate) fn renew(
         &mut self,
-        lit: Lit,
+        (lit, mut shapes): (Lit, Vec<ControlShape>),
         workspace: &Workspace,
         view: &View,
         settings: &ToolSettings,
@@ -118,16 +118,11 @@ impl Overlay {
         let takes_points = lit == Lit::Pointed && highlighted.is_none();
         let control_px = pointer_px.filter(|_| takes_points && (settings.mode == ToolMode::Select || !is_over_surface));
         let controls = self.renew_controls(workspace, view, control_px);
-        let joint = joint(
-            lit,
-            workspace,
-            view,
-            settings,
-            pointer_px.filter(|_| highlighted.is_none()),
-        );
-        if self.ring != line || self.gizmo != gizmo || self.controls != controls || self.joint != joint {
+        let joint_px = pointer_px.filter(|_| highlighted.is_none());
+        shapes.extend(joint(lit, workspace, view, settings, joint_px));
+        if self.ring != line || self.gizmo != gizmo || self.controls != controls || self.shapes != shapes {
             self.ring = line;
-            self.joint = joint;
+            self.shapes = shapes;
             self.gizmo = gizmo;
             self.controls = controls;
             self.revision += 1;

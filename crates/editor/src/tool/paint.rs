@@ -52,7 +52,7 @@ impl PaintStroke {
         {
             let name = &handle.name;
             workspace.refuse(format!(
-                "{name} is locked: unlock it in the list, or press N for a new handle."
+                "{name} is locked: unlock it in the list, or press Shift+N for a new handle."
             ));
             return None;
         }

@@ -16,7 +16,7 @@ use crate::document::{Handle, HandleId, HandleTransform, Transaction, accumulate
 use crate::input::{Button, Key, Modifiers, Pointer};
 use crate::jobs::Activity;
 use crate::scene_view::{Cursor, Readout};
-use crate::view::{GizmoAxes, GizmoPart, View};
+use crate::view::{ControlShape, GizmoAxes, GizmoPart, View};
 use crate::workspace::{Workspace, count_turn, held_because, put_handle};
 
 /// A held button must move the pointer this far before a handle follows.
@@ -256,6 +256,14 @@ impl Gesture for TransformDrag {
             at,
             text: self.measure.label(view),
         })
+    }
+
+    fn shapes(&self, view: &View) -> Vec<ControlShape> {
+        if self.is_armed {
+            self.measure.arc(view)
+        } else {
+            Vec::new()
+        }
     }
 
     fn holds_camera(&self) -> bool {

@@ -5,12 +5,12 @@ use glam::{DQuat, DVec2, DVec3};
 use super::constraint::{Constraint, along_axis, angle_about_axis_rad, on_plane, screen_angle_rad, short_turn_rad};
 use super::number_entry::NumberEntry;
 use crate::document::HandleTransform;
-use crate::view::{GizmoPart, View, axis_vector};
+use crate::view::{ControlShape, GizmoPart, View, arc_shapes, axis_vector};
 
 /// The smallest factor that the pointer can scale by.
 const MIN_FACTOR: f64 = 1e-3;
-/// What Ctrl holds turns to: 5 degrees.
-const SNAP_RAD: f64 = std::f64::consts::PI / 36.0;
+/// What Ctrl holds turns to: 15 degrees.
+const SNAP_RAD: f64 = std::f64::consts::PI / 12.0;
 /// What Ctrl holds factors to.
 const SNAP_FACTOR: f64 = 0.1;
 /// What Ctrl holds lengths to is the largest power of ten below this many points.
@@ -107,6 +107,18 @@ impl Measure {
             None if self.snaps => (self.turned_rad / SNAP_RAD).round() * SNAP_RAD,
             None => self.turned_rad,
         }
+    }
+
+    /// The arc of the turn so far; none for what is no turn.
+    pub(super) fn arc(&self, view: &View) -> Vec<ControlShape> {
+        let (camera, viewport_px) = (view.camera(), view.viewport_px());
+        if self.kind != TransformKind::Turn || self.angle_rad() == 0.0 {
+            return Vec::new();
+        }
+        let axis = self.turn_axis(view);
+        let grabbed = on_plane(camera.ray(self.start_px, viewport_px), self.centre, axis);
+        let from = grabbed.map_or(DVec3::ZERO, |point| point - self.centre);
+        arc_shapes(self.centre, axis, from, self.angle_rad(), camera, viewport_px).into()
     }
 
     /// An axis of the gizmo.

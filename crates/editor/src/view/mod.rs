@@ -1,5 +1,6 @@
 //! Where one looks from, what is seen there, and how it is shown.
 
+mod arc;
 mod camera;
 mod camera_history;
 mod camera_motion;
@@ -10,6 +11,7 @@ mod picking;
 mod sight;
 mod state;
 
+pub(crate) use arc::arc_shapes;
 pub use camera::{Camera, NamedView, Orbit, Projection, Ray, UpAxis};
 pub(crate) use camera_history::CameraStep;
 pub use control_shapes::ControlShape;

@@ -58,6 +58,13 @@ impl HandleSelection {
         }
     }
 
+    /// Selects all handles; the selected one stays it.
+    pub(crate) fn put_all(&mut self, document: &Document) {
+        let ids = || document.handles().iter().map(|handle| handle.id);
+        self.selected = self.selected.or_else(|| ids().next());
+        self.companions = ids().filter(|&id| self.selected != Some(id)).collect();
+    }
+
     /// Selects the next handle of the list.
     pub(crate) fn put_next(&mut self, document: &Document) {
         let handles = document.handles();

@@ -165,6 +165,7 @@ fn window_menu(ui: &mut egui::Ui, chosen: &mut Option<FileCommand>) {
     let groups: [&[(FileCommand, Option<&str>)]; 3] = [
         &[
             (FileCommand::Palette, None),
+            (FileCommand::Panel, None),
             (FileCommand::Keys, None),
             (FileCommand::Log, None),
             (FileCommand::Hints, None),

@@ -18,6 +18,7 @@ use crate::window::application::Application;
 use crate::window::dialogs::palette::Palette;
 use crate::window::dialogs::question::{self, Answer, Question, Then};
 use crate::window::files::file_command::FileCommand;
+use crate::window::input::event_queue::EventQueue;
 use crate::window::panels::notes::Note;
 use crate::window::threads::message::{Message, Purpose, Written, WrittenKind};
 use crate::window::widgets::theme;
@@ -27,8 +28,14 @@ impl Application {
         if self.question.is_some() || self.keys.takes_keys() {
             return;
         }
+        let is_typing = EventQueue::is_typing(context) || context.egui_wants_keyboard_input();
         for command in FileCommand::WITH_SHORTCUTS {
             let Some(shortcut) = command.shortcut() else { continue };
+            // A letter is typed where somebody types.
+            let is_letter = shortcut.modifiers.is_none() && shortcut.logical_key == egui::Key::N;
+            if is_letter && (self.palette.is_some() || self.editor.is_acting() || is_typing) {
+                continue;
+            }
             if context.input_mut(|input| input.consume_shortcut(&shortcut)) {
                 self.file_command(context, command.clone());
             }
@@ -124,6 +131,7 @@ impl Application {
                 None => question::choose(Purpose::LoadCage, self.path(), &self.workers),
             },
             FileCommand::Palette => self.palette = Some(Palette::default()),
+            FileCommand::Panel => self.is_panel_hidden = !self.is_panel_hidden,
             FileCommand::Log => self.log.open = true,
             FileCommand::Keys => self.keys.open = true,
             FileCommand::NextTheme => {

@@ -33,6 +33,8 @@ pub enum FileCommand {
     Palette,
     /// Show what was said.
     Log,
+    /// Show or hide the panel beside the view.
+    Panel,
     /// Show the commands' keys, to be changed.
     Keys,
     /// Light, dark, or as the system is.
@@ -60,13 +62,14 @@ impl FileCommand {
     }
 
     /// The ones that have a key.
-    pub const WITH_SHORTCUTS: [Self; 9] = [
+    pub const WITH_SHORTCUTS: [Self; 10] = [
         Self::SaveAs,
         Self::SaveProject,
         Self::Open,
         Self::Save,
         Self::ExportEdit,
         Self::Palette,
+        Self::Panel,
         Self::Scale(1),
         Self::Scale(-1),
         Self::Quit,
@@ -83,6 +86,7 @@ impl FileCommand {
             Self::ExportEdit => command(Key::E),
             Self::SaveProject => Some(KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::ALT, Key::S)),
             Self::Palette => Some(KeyboardShortcut::new(Modifiers::NONE, Key::F1)),
+            Self::Panel => Some(KeyboardShortcut::new(Modifiers::NONE, Key::N)),
             Self::Scale(1..) => command(Key::Num9),
             Self::Scale(_) => command(Key::Num0),
             Self::SaveProjectAs
@@ -99,7 +103,7 @@ impl FileCommand {
     }
 
     /// All that need no path, in the order of the menu.
-    pub const LISTED: [Self; 16] = [
+    pub const LISTED: [Self; 17] = [
         Self::Open,
         Self::Save,
         Self::SaveAs,
@@ -113,6 +117,7 @@ impl FileCommand {
             ground: Ground::AsShown,
         }),
         Self::Palette,
+        Self::Panel,
         Self::Log,
         Self::Keys,
         Self::NextTheme,
@@ -132,6 +137,7 @@ impl FileCommand {
             Self::SaveProjectAs => "Save project as…",
             Self::LoadCage => "Load cage…",
             Self::Palette => "Find a command…",
+            Self::Panel => "Panel",
             Self::Log => "Log…",
             Self::Keys => "Keys…",
             Self::NextTheme => "Light or dark",
@@ -153,6 +159,7 @@ impl FileCommand {
             Self::SaveProject | Self::SaveProjectAs => "pliant file document",
             Self::LoadCage => "open import control mesh",
             Self::Palette => "palette search",
+            Self::Panel => "sidebar show hide full screen",
             Self::Log => "messages errors",
             Self::Keys => "shortcuts bindings keyboard rebind",
             Self::NextTheme => "theme dark mode",

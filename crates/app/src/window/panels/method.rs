@@ -122,6 +122,8 @@ pub fn choose_method(ui: &mut egui::Ui, id: &str, present: &Method, width: f32) 
     let list = ComboBox::from_id_salt(id)
         .selected_text(present.declaration().title)
         .width(width)
+        // As high as all methods together: nothing tells that a list scrolls.
+        .height(640.0)
         .show_ui(ui, |ui| {
             for declaration in METHODS {
                 let is_present = present.name() == declaration.name;

@@ -9,6 +9,7 @@ use pliant_editor::{Command, Cursor, Event};
 
 use super::Smoothness;
 use super::axis_ball;
+use super::context_menu;
 use super::method_views::MethodViews;
 use crate::legend;
 use crate::window::application::{Application, REST};
@@ -16,6 +17,7 @@ use crate::window::bars::hints;
 use crate::window::files::names::file_name;
 use crate::window::input::Attention;
 use crate::window::input::event_queue::EventQueue;
+use crate::window::widgets::outbox::Outbox;
 use crate::window::widgets::theme;
 
 impl Application {
@@ -55,6 +57,12 @@ impl Application {
             self.editor.handle(Event::Viewport { size_px });
         }
         self.hear(ui, rect, &response);
+        let mut commands = Outbox::default();
+        context_menu::show(&response, &self.editor, &mut commands);
+        for event in commands.take() {
+            self.editor.handle(event);
+            ui.ctx().request_repaint();
+        }
         self.request_pose();
         self.request_images();
         ui.ctx().set_cursor_icon(match self.editor.view().cursor {
@@ -91,6 +99,7 @@ impl Application {
             pointer_over: response.contains_pointer()
                 && pointer.is_some_and(|at| rect.contains(at))
                 && !is_asked
+                && !egui::Popup::is_any_open(ui.ctx())
                 && !axis_ball::contains(rect, pointer),
             follows_pointer: self.editor.view().cursor == Cursor::Move,
             keys: !is_asked && !self.keys.takes_keys() && !typing && !ui.ctx().egui_wants_keyboard_input(),

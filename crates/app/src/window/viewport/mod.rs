@@ -8,6 +8,7 @@ pub(in crate::window) mod area;
 pub(in crate::window) mod axis_ball;
 pub(in crate::window) mod coarseness;
 pub(in crate::window) mod compare;
+mod context_menu;
 pub(in crate::window) mod gpu;
 pub(in crate::window) mod method_views;
 pub(in crate::window) mod shown;

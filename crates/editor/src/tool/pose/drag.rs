@@ -12,7 +12,7 @@ use crate::scene_view::{Cursor, Readout};
 use crate::tool::context::Context;
 use crate::tool::gesture::{Gesture, Next};
 use crate::tool::overlay::Lit;
-use crate::view::{Pick, View};
+use crate::view::{ControlShape, Pick, View};
 use crate::workspace::{Workspace, count_turn, held_because, members, put_handle, tidy_handles};
 
 /// The pointer must move this far before the limb follows.
@@ -170,6 +170,13 @@ impl Gesture for PoseDrag {
                 text: posing.motion.way(view, self.last.position_px).label(),
             }),
             _ => None,
+        }
+    }
+
+    fn shapes(&self, view: &View) -> Vec<ControlShape> {
+        match &self.phase {
+            Phase::Posing(posing) if posing.is_armed => posing.motion.arc(view, self.last.position_px),
+            _ => Vec::new(),
         }
     }
 

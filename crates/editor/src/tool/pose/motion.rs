@@ -5,7 +5,7 @@ use glam::{DQuat, DVec2, DVec3};
 use crate::document::HandleTransform;
 use crate::input::Modifiers;
 use crate::tool::constraint::{on_plane, rotation};
-use crate::view::View;
+use crate::view::{ControlShape, View, arc_shapes};
 
 /// The smallest factor that the pointer can scale by.
 const MIN_FACTOR: f64 = 1e-3;
@@ -105,6 +105,25 @@ impl Motion {
         }
         let [from, to] = [from, to].map(|arm| arm.reject_from(self.axis));
         self.axis.dot(from.cross(to)).atan2(from.dot(to))
+    }
+
+    /// The arc of the turn so far; none for a scale.
+    pub(super) fn arc(&self, view: &View, position_px: DVec2) -> Vec<ControlShape> {
+        match self.way(view, position_px) {
+            Way::Turn(axis, angle_rad) if angle_rad != 0.0 => {
+                let (camera, viewport_px) = (view.camera(), view.viewport_px());
+                arc_shapes(
+                    self.centre,
+                    axis,
+                    self.grip - self.centre,
+                    angle_rad,
+                    camera,
+                    viewport_px,
+                )
+                .into()
+            }
+            _ => Vec::new(),
+        }
     }
 
     /// The handle's transform after that, about its pivot on the rest shape.

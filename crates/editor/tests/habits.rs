@@ -1,0 +1,168 @@
+//! What artists have in their fingers: sizing the brush, the wheel, the right button, A, snapped turns, the original while
+//! a key is held.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that can't go on fails")]
+
+mod rig;
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use pliant_editor::{Button, Command, Event, Key, Modifiers, Pointer, ToolMode};
+use pliant_mesh::shapes;
+use rig::{CENTRE_PX, Rig, at};
+
+fn wheel(rig: &mut Rig, modifiers: Modifiers, lines: f64) {
+    let pointer = Pointer {
+        position_px: CENTRE_PX,
+        modifiers,
+    };
+    rig.send(Event::Wheel { pointer, lines });
+}
+
+#[test]
+fn f_sizes_the_brush_by_the_pointer_and_escape_takes_it_back() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.move_to(CENTRE_PX);
+    let before = rig.editor.view().brush_radius_px;
+    rig.type_keys("f");
+    let circle = rig.editor.view().outline_px.clone();
+    let middle = circle.iter().sum::<DVec2>() / circle.len() as f64;
+    assert!(
+        (middle.distance(CENTRE_PX) - before).abs() < 1e-9,
+        "the pointer is on the rim"
+    );
+    rig.move_to(CENTRE_PX + DVec2::X * 50.0);
+    assert!((rig.editor.view().brush_radius_px - before - 50.0).abs() < 1e-9);
+    rig.key(Key::Escape);
+    assert_eq!(rig.editor.view().brush_radius_px, before);
+    rig.type_keys("f");
+    rig.swipe(&[CENTRE_PX + DVec2::X * 30.0]);
+    assert!((rig.editor.view().brush_radius_px - before - 30.0).abs() < 1e-9);
+    assert!(
+        rig.editor.document().handles().is_empty(),
+        "the click that keeps it paints nothing"
+    );
+    assert!(!rig.editor.is_acting());
+    rig.command(Command::SetTool(ToolMode::Select));
+    assert!(!rig.editor.is_enabled(&Command::SizeBrush));
+}
+
+#[test]
+fn the_wheel_sizes_with_ctrl_softens_with_shift_and_zooms_otherwise() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    let distance = |rig: &Rig| rig.editor.view().camera.distance;
+    let (radius, far) = (rig.editor.view().brush_radius_px, distance(&rig));
+    wheel(&mut rig, Modifiers::CTRL, 1.0);
+    assert!(rig.editor.view().brush_radius_px > radius);
+    wheel(&mut rig, Modifiers::CTRL, -1.0);
+    assert!((rig.editor.view().brush_radius_px - radius).abs() < 1e-9);
+    assert_eq!(distance(&rig), far);
+    rig.command(Command::SetTool(ToolMode::PaintStiffness));
+    let falloff = rig.editor.view().stiffness_brush.falloff;
+    wheel(&mut rig, Modifiers::SHIFT, -1.0);
+    assert!(rig.editor.view().stiffness_brush.falloff < falloff);
+    wheel(&mut rig, Modifiers::SHIFT, 1e9);
+    assert_eq!(rig.editor.view().stiffness_brush.falloff, 1.0);
+    assert_eq!(distance(&rig), far);
+    wheel(&mut rig, Modifiers::NONE, 1.0);
+    assert!(distance(&rig) < far);
+    rig.command(Command::SetTool(ToolMode::Select));
+    let near = distance(&rig);
+    wheel(&mut rig, Modifiers::CTRL, -1.0);
+    assert!(distance(&rig) > near, "without a brush it zooms");
+}
+
+#[test]
+fn the_right_button_moves_the_camera_and_a_click_of_it_nothing() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    let before = (*rig.editor.view().camera, rig.fingerprint());
+    let press = |rig: &mut Rig, to_px: DVec2| {
+        rig.send(Event::PointerPressed(at(CENTRE_PX), Button::Secondary));
+        rig.send(Event::PointerMoved(at(to_px)));
+        rig.send(Event::PointerReleased(at(to_px), Button::Secondary));
+    };
+    press(&mut rig, CENTRE_PX);
+    assert_eq!(*rig.editor.view().camera, before.0);
+    press(&mut rig, CENTRE_PX + DVec2::X * 60.0);
+    assert_ne!(*rig.editor.view().camera, before.0);
+    assert_eq!(rig.fingerprint(), before.1);
+    assert!(!rig.editor.is_acting());
+}
+
+#[test]
+fn a_selects_all_handles_which_then_move_together() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint(ToolMode::PaintHandle, &[CENTRE_PX]);
+    rig.command(Command::NewHandle);
+    rig.paint(ToolMode::PaintHandle, &[CENTRE_PX + DVec2::X * 120.0]);
+    rig.drain();
+    assert_eq!(rig.editor.document().handles().len(), 2);
+    rig.type_keys("a");
+    assert_eq!(rig.editor.view().companions.len(), 1);
+    rig.move_by('y', ".2");
+    rig.drain();
+    for handle in rig.editor.document().handles() {
+        assert!(handle.affine().translation.distance(DVec3::Y * 0.2) < 1e-12);
+    }
+}
+
+#[test]
+fn ctrl_holds_turns_to_fifteen_degrees_and_an_arc_shows_them() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.drain();
+    rig.move_to(CENTRE_PX + DVec2::new(100.0, 20.0));
+    rig.type_keys("rz");
+    assert!(rig.editor.view().shapes.is_empty(), "nothing is turned yet");
+    let ctrl = |position_px| {
+        Event::PointerMoved(Pointer {
+            position_px,
+            modifiers: Modifiers::CTRL,
+        })
+    };
+    rig.send(ctrl(CENTRE_PX + DVec2::new(90.0, -60.0)));
+    rig.send(ctrl(CENTRE_PX + DVec2::new(30.0, -110.0)));
+    assert!(!rig.editor.view().shapes.is_empty());
+    let turn = rig.editor.document().handles()[0].turn_deg.z;
+    assert!(
+        turn.abs() > 10.0 && (turn / 15.0 - (turn / 15.0).round()).abs() < 1e-9,
+        "{turn}"
+    );
+    rig.key(Key::Enter);
+    assert!(rig.editor.view().shapes.is_empty());
+    rig.drain();
+}
+
+#[test]
+fn the_original_is_shown_while_its_key_is_held_and_nothing_else_changes() {
+    let mut rig = Rig::open(shapes::icosphere(3));
+    rig.paint_handle();
+    rig.move_by('x', ".3");
+    rig.drain();
+    let before = rig.fingerprint();
+    let o = Key::Character('o');
+    rig.key(o);
+    rig.key(o);
+    let view = rig.editor.view();
+    assert!(
+        view.drawn.iter().all(|d| *d == DVec3::ZERO),
+        "a held key repeats and shows it all the same"
+    );
+    assert!(
+        view.displacements.iter().any(|d| *d != DVec3::ZERO),
+        "what is saved stays"
+    );
+    rig.send(Event::KeyReleased(Key::Character('p')));
+    assert!(rig.editor.view().look.original, "another key's end means nothing");
+    rig.send(Event::KeyReleased(o));
+    let view = rig.editor.view();
+    assert!(Arc::ptr_eq(view.drawn, view.displacements));
+    assert_eq!(rig.fingerprint(), before);
+    rig.command(Command::ToggleOriginal);
+    assert!(
+        rig.editor.view().look.original,
+        "the menu shows it until it is chosen again"
+    );
+    rig.command(Command::ToggleOriginal);
+    assert!(!rig.editor.view().look.original);
+}
