@@ -85,6 +85,7 @@ fn look(arguments: &RenderArguments) -> Look {
         regions: arguments.look.shading == arguments::Shading::Regions,
         outlines: arguments.outlines || arguments.look.shading == arguments::Shading::Regions,
         grid: arguments.grid,
+        original: false,
         base: false,
     }
 }
