@@ -1,6 +1,7 @@
 //! A mesh as the bytes of a GLB (glTF 2.0): positions, normals, colours and indices in one buffer, one node.
 
 use super::mesh::Mesh;
+use super::vector::Vec3;
 
 /// The file's bytes. `name` names the mesh and its node.
 ///
@@ -18,19 +19,9 @@ pub fn write(mesh: &Mesh, name: &str) -> Vec<u8> {
         buffer.len()
     };
 
-    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for p in &mesh.positions {
-        for (axis, number) in p.array().into_iter().enumerate() {
-            let number = number as f32;
-            low[axis] = low[axis].min(number);
-            high[axis] = high[axis].max(number);
-            buffer.extend(number.to_le_bytes());
-        }
-    }
+    let range = push(&mut buffer, &mesh.positions);
     let normals_at = view(&mut buffer, 0, 34962);
-    for n in mesh.normals() {
-        buffer.extend(n.array().iter().flat_map(|&number| (number as f32).to_le_bytes()));
-    }
+    push(&mut buffer, &mesh.normals());
     let colours_at = view(&mut buffer, normals_at, 34962);
     for c in &mesh.colours {
         buffer.extend(c.array().map(byte));
@@ -45,7 +36,29 @@ pub fn write(mesh: &Mesh, name: &str) -> Vec<u8> {
             buffer.extend(i.to_le_bytes());
         }
     }
-    view(&mut buffer, indices_at, 34963);
+    let mut targets_at = view(&mut buffer, indices_at, 34963);
+    let mut ranges = Vec::new();
+    for (_, displacements) in &mesh.targets {
+        ranges.push(push(&mut buffer, displacements));
+        targets_at = view(&mut buffer, targets_at, 34962);
+    }
+    // Accessors have the numbers of their views.
+    let (mut morphs, mut extras, mut accessors) = (String::new(), String::new(), String::new());
+    if !mesh.targets.is_empty() {
+        let own = (0..mesh.targets.len()).map(|target| format!(r#"{{"POSITION":{}}}"#, 4 + target));
+        morphs = format!(r#","targets":[{}]"#, own.collect::<Vec<_>>().join(","));
+        let names = mesh.targets.iter().map(|(name, _)| format!("{name:?}"));
+        extras = format!(
+            r#","extras":{{"targetNames":[{}]}}"#,
+            names.collect::<Vec<_>>().join(",")
+        );
+    }
+    for (target, [low, high]) in ranges.iter().enumerate() {
+        accessors += &format!(
+            r#",{{"bufferView":{},"componentType":5126,"count":{count},"type":"VEC3","min":{low:?},"max":{high:?}}}"#,
+            4 + target
+        );
+    }
 
     let index_type = if short { 5123 } else { 5125 };
     let json = format!(
@@ -53,25 +66,42 @@ pub fn write(mesh: &Mesh, name: &str) -> Vec<u8> {
             r#"{{"asset":{{"version":"2.0","generator":"Pliant xtask assets"}},"scene":0,"#,
             r#""scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0,"name":"{name}"}}],"#,
             r#""meshes":[{{"name":"{name}","primitives":[{{"attributes":"#,
-            r#"{{"POSITION":0,"NORMAL":1,"COLOR_0":2}},"indices":3,"material":0}}]}}],"#,
+            r#"{{"POSITION":0,"NORMAL":1,"COLOR_0":2}},"indices":3,"material":0{morphs}}}]{extras}}}],"#,
             r#""materials":[{{"name":"skin","pbrMetallicRoughness":{{"metallicFactor":0,"roughnessFactor":0.8}}}}],"#,
             r#""accessors":["#,
             r#"{{"bufferView":0,"componentType":5126,"count":{count},"type":"VEC3","min":{low:?},"max":{high:?}}},"#,
             r#"{{"bufferView":1,"componentType":5126,"count":{count},"type":"VEC3"}},"#,
             r#"{{"bufferView":2,"componentType":5121,"normalized":true,"count":{count},"type":"VEC4"}},"#,
-            r#"{{"bufferView":3,"componentType":{index_type},"count":{indices},"type":"SCALAR"}}],"#,
+            r#"{{"bufferView":3,"componentType":{index_type},"count":{indices},"type":"SCALAR"}}{accessors}],"#,
             r#""bufferViews":[{views}],"buffers":[{{"byteLength":{bytes}}}]}}"#
         ),
         name = name,
         count = count,
-        low = low,
-        high = high,
+        low = range[0],
+        high = range[1],
+        morphs = morphs,
+        extras = extras,
+        accessors = accessors,
         index_type = index_type,
         indices = mesh.triangles.len() * 3,
         views = views.join(","),
         bytes = buffer.len(),
     );
     container(json.into_bytes(), &buffer)
+}
+
+/// Appends vectors rounded to f32; the least and the largest number along each axis.
+fn push(buffer: &mut Vec<u8>, vectors: &[Vec3]) -> [[f32; 3]; 2] {
+    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for vector in vectors {
+        for (axis, number) in vector.array().into_iter().enumerate() {
+            let number = number as f32;
+            low[axis] = low[axis].min(number);
+            high[axis] = high[axis].max(number);
+            buffer.extend(number.to_le_bytes());
+        }
+    }
+    [low, high]
 }
 
 /// Header, JSON chunk padded with spaces, binary chunk (a multiple of four already).
@@ -107,6 +137,7 @@ mod tests {
             positions: vec![v(0.0, 0.0, 0.5), v(1.0, 0.0, 0.0), v(0.0, -2.0, 0.0)],
             colours: vec![v(0.0, 0.5, 1.0); 3],
             triangles: vec![[0, 1, 2]],
+            targets: Vec::new(),
         };
         let bytes = write(&mesh, "one");
         let word = |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]) as usize;

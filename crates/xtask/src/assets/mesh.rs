@@ -11,6 +11,8 @@ pub struct Mesh {
     pub colours: Vec<Vec3>,
     /// Vertex indices, three per triangle.
     pub triangles: Vec<[u32; 3]>,
+    /// Morph targets: a name, and how far each vertex moves.
+    pub targets: Vec<(&'static str, Vec<Vec3>)>,
 }
 
 /// The opposite of a half-edge on the boundary.
@@ -211,6 +213,7 @@ mod tests {
             colours: vec![v(1.0, 1.0, 1.0); 4],
             positions,
             triangles,
+            targets: Vec::new(),
         }
     }
 

@@ -6,6 +6,8 @@ pub mod bar;
 pub mod cactus;
 pub mod creature;
 pub mod cylinder;
+pub mod expressions;
+pub mod face;
 pub mod glb;
 pub mod limb;
 pub mod mesh;
@@ -43,7 +45,7 @@ pub struct Sample {
 }
 
 /// Every sample that ships. The first is the one that opens by default.
-pub const SAMPLES: [Sample; 5] = [
+pub const SAMPLES: [Sample; 6] = [
     Sample {
         name: "creature",
         make: || creature_of(60_000),
@@ -64,7 +66,23 @@ pub const SAMPLES: [Sample; 5] = [
         name: "cactus",
         make: || mesh_of(&cactus::Cactus::new(), 16_000),
     },
+    Sample {
+        name: "face",
+        make: face,
+    },
 ];
+
+/// The face with its expressions: fine in front, where the wrinkles are, and coarse behind.
+fn face() -> Result<Mesh, String> {
+    let mut mesh = mesh_of(&face::Magnified, 24_000)?;
+    mesh.positions = mesh.positions.into_iter().map(face::inverted).collect();
+    let displacements = |expression: &expressions::Expression| {
+        let own = mesh.positions.iter().map(|p| (expression.displacement)(*p));
+        (expression.name, own.collect())
+    };
+    mesh.targets = expressions::EXPRESSIONS.iter().map(displacements).collect();
+    Ok(mesh)
+}
 
 /// The creature with about `triangles` triangles; more triangles give finer skin.
 ///
@@ -146,6 +164,25 @@ mod tests {
         }
         assert_eq!(bar::bar().check_closed(), Ok(()));
         assert_eq!(cylinder::cylinder().check_closed(), Ok(()));
+    }
+
+    #[test]
+    fn the_face_faces_outwards_is_finer_in_front_and_moves_in_front_alone() {
+        let mesh = face().unwrap();
+        assert_eq!(mesh.check_closed(), Ok(()));
+        let mean_area = |is_in: &dyn Fn(Vec3) -> bool| {
+            let corners = mesh.triangles.iter().map(|t| t.map(|i| mesh.positions[i as usize]));
+            let areas = corners.filter(|[a, _, _]| is_in(*a));
+            let areas: Vec<f64> = areas.map(|[a, b, c]| (b - a).cross(c - a).length()).collect();
+            areas.iter().sum::<f64>() / areas.len() as f64
+        };
+        assert!(mean_area(&|p| p.z < -0.2) > 4.0 * mean_area(&|p| p.z > 0.2));
+        for (name, displacements) in &mesh.targets {
+            let moved = displacements.iter().zip(&mesh.positions);
+            let (behind, before): (Vec<_>, Vec<_>) = moved.partition(|(_, p)| p.z < 0.0);
+            assert!(behind.iter().all(|(d, _)| d.length() == 0.0), "{name}");
+            assert!(before.iter().any(|(d, _)| d.length() > 0.04), "{name}");
+        }
     }
 
     #[test]

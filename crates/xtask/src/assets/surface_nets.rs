@@ -205,7 +205,7 @@ fn connect(crossings: &[Crossing]) -> Mesh {
     }
     Mesh {
         positions,
-        colours: Vec::new(),
         triangles,
+        ..Mesh::default()
     }
 }
