@@ -8,7 +8,7 @@
 //! matrix in the restricted [`Ordering`], which is factored (`sparse`), and to the method: `bilaplacian` gives
 //! [`HandleBases`], so that a frame is a product with them; `arap` shares everything up to the factor and takes as many
 //! steps as it needs; `primo` steps with rigid prisms, `shells` with edges' lengths and
-//! angles; `poisson` spreads the handles' turns and solves for what fits
+//! angles; `wrinkles` adds learnt details to the bi-Laplacian; `poisson` spreads the handles' turns and solves for what fits
 //! them, `laplacian` does so with differential coordinates, and `frames` solves for the turns first. `rbf`, `mls`,
 //! `embedded`, `lattice` and `cage` bend the space around points, connected or not (`space`).
 
@@ -43,6 +43,7 @@ mod sparse;
 pub mod stages;
 mod transfer;
 mod warning;
+mod wrinkles;
 
 pub use arap::{Arap, ArapEnergy};
 pub use bilaplacian::{Bilaplacian, BilaplacianOrder, Detail, Discretisation, TriangulationKind};
@@ -73,3 +74,4 @@ pub use space_primo::SpacePrimo;
 pub use sparse::Ordering;
 pub use transfer::{DeformationTransfer, PosedShape};
 pub use warning::Warning;
+pub use wrinkles::Wrinkles;

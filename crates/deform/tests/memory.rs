@@ -12,7 +12,7 @@ use glam::DVec3;
 use pliant_deform::{
     Arap, ArapEnergy, Attachment, Bilaplacian, BilaplacianOrder, BindError, Budget, CageCoordinates, Constraints,
     Detail, ExampleShape, Examples, Frames, Limit, Loose, Method, OptionValue, Primo, Problem, Propagation, Rbf, Role,
-    Shells, Transforms,
+    Shells, Transforms, Wrinkles,
 };
 use pliant_mesh::{Cancel, Drawn, DrawnVertex, Model, Progress, shapes};
 
@@ -153,11 +153,11 @@ fn attached(model: &Model, examples: usize) -> Vec<(&'static str, Attachment)> {
     brought.into_iter().collect()
 }
 
-/// All methods, and shells with two examples.
+/// All methods, and shells and wrinkles with two examples.
 fn cases() -> Vec<(Method, usize)> {
     let mut led = Shells::default();
     led.led_above = 0;
-    let with_examples = [Shells::default(), led].map(|shells| (shells.into(), 2));
+    let with_examples = [Shells::default().into(), led.into(), Wrinkles::default().into()].map(|method| (method, 2));
     let plain = methods().into_iter().map(|method| (method, 0));
     plain.chain(with_examples).collect()
 }

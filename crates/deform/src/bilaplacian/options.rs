@@ -6,6 +6,14 @@ use crate::{OptionKind, OptionValue};
 /// The largest coefficient.
 const LARGEST: f64 = 1e12;
 
+/// The option `stretching`, which methods that bend by the bi-Laplacian share.
+pub(crate) const STRETCHING: Number = Number {
+    default: 0.0,
+    range: [0.0, LARGEST],
+    unit: "k_b/d²",
+    help: "resistance k_s to stretching, d being the model's diagonal",
+};
+
 options! {
     /// The bi-Laplacian A d = 0 between what is held and the handles, with
     ///
@@ -32,12 +40,7 @@ options! {
         },
         /// k_s, the resistance to stretching, in units of k_b per squared diagonal at order 2 and per the fitting power
         /// of it at the others.
-        stretching: f64 = Number {
-            default: 0.0,
-            range: [0.0, LARGEST],
-            unit: "k_b/d²",
-            help: "resistance k_s to stretching, d being the model's diagonal",
-        },
+        stretching: f64 = STRETCHING,
         /// How the Laplacian is discretised.
         discretisation: Discretisation = Choice {
             default: Discretisation::CotangentArea,

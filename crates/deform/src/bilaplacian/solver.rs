@@ -192,7 +192,7 @@ impl<T: Stored> BilaplacianSolver<T> {
     ///
     /// # Errors
     /// If the solution stays too inaccurate.
-    fn back_substitute(&self, displacements: &mut [DVec3]) -> Result<(), SolveError> {
+    pub fn back_substitute(&self, displacements: &mut [DVec3]) -> Result<(), SolveError> {
         let vertices = self.system.operator.laplacian.vertices();
         let mut d = self.field(displacements);
         let error = self.system.solve(&mut d, &Cancel::new()).error;

@@ -5,13 +5,13 @@ use glam::{DVec3, Mat3};
 use super::Embedded;
 use super::energy::{Energy, constrained};
 use super::graph::Graph;
-use super::nodes::spread;
 use super::solver::Solver;
 use super::system::System;
 use crate::handles::Motion;
 use crate::method::{
     BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite, MethodDeclaration, Needs, Solve, Stepped,
 };
+use crate::region::nodes::spread;
 use crate::space::blend::{Affine, Blend, Share};
 use crate::sparse::factor_error::FactorError;
 use crate::{BindError, Role, SolveError};
@@ -78,7 +78,7 @@ pub(super) fn bound(options: &Embedded, input: &BindInput<'_>) -> Result<BoundEm
     let moving: Vec<u32> = moving
         .filter_map(|(vertex, role)| (*role != Role::Fixed).then_some(vertex))
         .collect();
-    let nodes = spread(input, &moving, options.nodes as usize);
+    let nodes = spread(input.problem, &moving, options.nodes as usize).vertices;
     input.progress.set(0.2);
     // What is fixed holds the nodes that are about as near to it as to each other.
     let spacing = spacing(&nodes, positions);

@@ -20,13 +20,12 @@
 //! - The constraints are met in the least-squares sense by the nodes; what is then missing is carried off smoothly
 //!   (`space::blend`), so that hard handles are met exactly.
 //!
-//! Parts: `nodes` spreads them, `graph` joins them, `energy` has the terms, `system` the Gauss–Newton matrix, whose
+//! Parts: `region::nodes` spreads them, `graph` joins them, `energy` has the terms, `system` the Gauss–Newton matrix, whose
 //! pattern is analysed once, and `solver` takes the steps.
 
 mod declaration;
 mod energy;
 mod graph;
-mod nodes;
 mod options;
 mod solver;
 mod system;

@@ -31,6 +31,7 @@ pub const METHODS: &[&MethodDeclaration] = &[
     &crate::arap::DECLARATION,
     &crate::primo::DECLARATION,
     &crate::shells::DECLARATION,
+    &crate::wrinkles::DECLARATION,
     &crate::poisson::DECLARATION,
     &crate::laplacian::DECLARATION,
     &crate::frames::DECLARATION,
@@ -115,6 +116,12 @@ impl Method {
     /// How hard handles hold their vertices, with its present options.
     pub fn handle_fit(&self) -> HandleFit {
         self.0.handle_fit()
+    }
+
+    /// Whether examples that it takes bend the surface by their weights, 0 being rest. Otherwise they only add to what
+    /// handles do, and a weight multiplies what its example adds, 1 where there is none.
+    pub fn examples_bend(&self) -> bool {
+        self.0.examples_bend()
     }
 
     /// Where the points of an attachment rest, in world units; one for each. A lattice's depend on the options; examples

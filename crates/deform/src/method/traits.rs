@@ -58,6 +58,12 @@ pub(crate) trait DeformMethod: Options {
         Ok(())
     }
 
+    /// Whether examples bend the surface by their weights, 0 being rest. Otherwise they only add to what handles do, and
+    /// a weight multiplies what its example adds.
+    fn examples_bend(&self) -> bool {
+        true
+    }
+
     /// The triangles that its operator is made on.
     fn triangulation<'a>(&self, problem: &Problem<'a>) -> Triangulation<'a> {
         Triangulation::of_surface(problem.surface, problem.topology)

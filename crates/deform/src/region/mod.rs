@@ -3,6 +3,8 @@
 pub(crate) mod clustered;
 pub(crate) mod constraints;
 pub(crate) mod follow;
+pub(crate) mod nodes;
 mod owners;
 pub(crate) mod partition;
+pub(crate) mod patch;
 pub(crate) mod slender;

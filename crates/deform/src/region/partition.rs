@@ -225,6 +225,9 @@ fn is_bare(problem: &Problem, vertex: usize) -> bool {
 /// component that nothing holds follows the others all the same.
 fn led_by_examples(problem: &Problem, held: &[bool], driven: &[bool]) -> Vec<bool> {
     let mut led = vec![false; held.len()];
+    if !problem.method.examples_bend() {
+        return led;
+    }
     for shape in problem.examples().iter().flat_map(|examples| &*examples.shapes) {
         for (vertex, displacement) in (0..).zip(&*shape.displacements) {
             let component = problem.topology.component(SurfaceVertex(vertex)) as usize;

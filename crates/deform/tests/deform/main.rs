@@ -37,3 +37,4 @@ mod soft;
 mod soup;
 mod space;
 mod strip;
+mod wrinkles;

@@ -6,7 +6,6 @@
 
 use glam::{DMat3, DVec3};
 use pliant_mesh::SurfaceVertex;
-use rayon::prelude::*;
 
 use super::carry::Carried;
 use crate::bilaplacian::factored::BilaplacianSystem;
@@ -17,27 +16,21 @@ use crate::bilaplacian::setup::bent_rows;
 use crate::bilaplacian::solver::BilaplacianSolver;
 use crate::handles::Motion;
 use crate::method::BindInput;
-use crate::operators::CHUNK;
+use crate::region::patch::Patch;
 use crate::region::slender;
 use crate::sparse::ordering::hubs::hub_degree;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{Bilaplacian, BindError, Laplacian};
 
-/// The base's rest shape over *local* vertices: the solved ones and their neighbours on the surface, ascending.
+/// The base's rest shape.
 #[derive(Debug)]
 pub(crate) struct Base {
-    /// The surface vertex of each local one.
-    pub vertices: Vec<u32>,
-    /// The local vertex of each *row*, one row for each solved vertex.
-    pub rows: Vec<u32>,
     /// The base's points relative to the centre of the surface's bounding box.
-    pub rest: Vec<DVec3>,
+    pub patch: Patch,
     /// Of each row: the surface's vertex less the base's.
     pub offsets: Vec<DVec3>,
     /// Of each row: whether fairing moved it.
     pub is_faired: Vec<bool>,
-    /// The surface's diagonal.
-    pub diagonal: f64,
     carried: Carried,
 }
 
@@ -140,22 +133,7 @@ impl Base {
         let bounds = problem.bounds();
         let centre = bounds.map_or(DVec3::ZERO, |bounds| bounds.centre());
         let solved = &partition.solved;
-        let mut is_local = vec![false; faired.points.len()];
-        for &vertex in solved {
-            is_local[vertex as usize] = true;
-            for neighbour in problem.topology.neighbours(SurfaceVertex(vertex)) {
-                is_local[neighbour.index()] = true;
-            }
-        }
-        let vertices: Vec<u32> = (0..is_local.len() as u32)
-            .filter(|&vertex| is_local[vertex as usize])
-            .collect();
-        let rest: Vec<DVec3> = vertices.iter().map(|&vertex| faired.points[vertex as usize]).collect();
-        let rows: Vec<u32> = solved
-            .iter()
-            .filter_map(|vertex| vertices.binary_search(vertex).ok())
-            .map(|local| local as u32)
-            .collect();
+        let patch = Patch::of(problem, solved, |vertex| faired.points[vertex]);
         let surface = &problem.surface.positions;
         let offset = |&vertex: &u32| surface[vertex as usize] - centre - faired.points[vertex as usize];
         Self {
@@ -164,11 +142,8 @@ impl Base {
                 .iter()
                 .map(|vertex| faired.vertices.binary_search(vertex).is_ok())
                 .collect(),
-            diagonal: bounds.map_or(0.0, |bounds| bounds.diagonal()),
-            carried: Carried::of(&rows, &rest, centre, solver, input),
-            vertices,
-            rows,
-            rest,
+            carried: Carried::of(&patch, centre, solver, input),
+            patch,
         }
     }
 
@@ -186,22 +161,14 @@ impl Base {
     /// Fills `posed` with the bent base's points: one for each local vertex, displaced by the surface's
     /// `displacements`.
     pub fn pose(&self, displacements: &[DVec3], turns: &[DMat3], posed: &mut Vec<DVec3>) {
-        posed.resize(self.rest.len(), DVec3::ZERO);
-        posed
-            .par_chunks_mut(CHUNK)
-            .zip(self.rest.par_chunks(CHUNK).zip(self.vertices.par_chunks(CHUNK)))
-            .for_each(|(posed, (rest, vertices))| {
-                for ((posed, rest), &vertex) in posed.iter_mut().zip(rest).zip(vertices) {
-                    *posed = *rest + displacements[vertex as usize];
-                }
-            });
-        self.carried.correct(&self.rows, turns, posed);
+        self.patch.pose(displacements, posed);
+        self.carried.correct(&self.patch.rows, turns, posed);
     }
 
     /// Moves the rest positions of the surface's vertices to the base.
     pub fn show(&self, positions: &mut [DVec3]) {
-        for (&local, offset) in self.rows.iter().zip(&self.offsets) {
-            positions[self.vertices[local as usize] as usize] -= *offset;
+        for (&local, offset) in self.patch.rows.iter().zip(&self.offsets) {
+            positions[self.patch.vertices[local as usize] as usize] -= *offset;
         }
     }
 }

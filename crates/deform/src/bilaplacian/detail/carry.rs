@@ -16,6 +16,7 @@ use crate::bilaplacian::solver::BilaplacianSolver;
 use crate::handles::Motion;
 use crate::method::BindInput;
 use crate::numerical::rotation::fit;
+use crate::region::patch::Patch;
 
 /// The components in which nothing is fixed.
 #[derive(Debug, Default)]
@@ -54,14 +55,8 @@ struct Share {
 const TRIPOD: f64 = 0.01;
 
 impl Carried {
-    /// Of the base's rows, whose positions are relative to `centre`.
-    pub fn of(
-        rows: &[u32],
-        rest: &[DVec3],
-        centre: DVec3,
-        solver: &BilaplacianSolver<f64>,
-        input: &BindInput<'_>,
-    ) -> Self {
+    /// Of the base, whose positions are relative to `centre`.
+    pub fn of(base: &Patch, centre: DVec3, solver: &BilaplacianSolver<f64>, input: &BindInput<'_>) -> Self {
         let &BindInput {
             problem,
             partition,
@@ -106,11 +101,11 @@ impl Carried {
         };
         let residue = |(row, &local): (usize, &u32)| match of_row[row] {
             HELD => DVec3::ZERO,
-            _ => rest[local as usize] - extended(row),
+            _ => base.rest[local as usize] - extended(row),
         };
         let share = |points: &Vec<(usize, DVec3)>| Component::of(points, input, centre);
         Self {
-            residues: rows.iter().enumerate().map(residue).collect(),
+            residues: base.rows.iter().enumerate().map(residue).collect(),
             components: points.iter().map(share).collect(),
             of_row,
         }

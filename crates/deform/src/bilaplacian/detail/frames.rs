@@ -12,20 +12,27 @@ use rayon::prelude::*;
 use super::base::Base;
 use super::donors::{NONE, nearest};
 use crate::operators::CHUNK;
+use crate::region::patch::Patch;
 
-/// What a frame is made of at each row of the base.
+/// The rows' displacements from the base, in its frames.
 #[derive(Debug)]
 pub(crate) struct Frames {
-    /// For each row where its neighbours begin; one more at the end.
-    starts: Vec<u32>,
-    /// The neighbours' local numbers and their shares in x and y.
-    ring: Vec<(u32, [f64; 2])>,
-    /// The row whose frame turns this one's displacement: itself, or the nearest one with a frame, or [`NONE`].
-    sources: Vec<u32>,
+    rings: RingFrames,
     /// The displacement in its source's frame.
     coordinates: Vec<DVec3>,
     /// The displacement as the frame at rest gives it.
     at_rest: Vec<DVec3>,
+}
+
+/// What a frame is made of at each row of a patch.
+#[derive(Debug)]
+pub(crate) struct RingFrames {
+    /// For each row where its neighbours begin; one more at the end.
+    starts: Vec<u32>,
+    /// The neighbours' local numbers and their shares in x and y.
+    ring: Vec<(u32, [f64; 2])>,
+    /// The row whose frame this one has: itself, or the nearest one with a frame, or [`NONE`].
+    sources: Vec<u32>,
 }
 
 /// Where a ring of the base is narrower than this, in diagonals, nothing but the solver's error is left of it.
@@ -40,8 +47,45 @@ const UNFOLDED: f64 = 0.1;
 impl Frames {
     /// Of the base's rings.
     pub fn of(base: &Base, triangles: &[[SurfaceVertex; 3]], topology: &Topology) -> Self {
-        let of_row = |row: usize| ring(base, row, triangles, topology);
-        let rings: Vec<Ring> = (0..base.rows.len())
+        let rings = RingFrames::of(&base.patch, triangles, topology);
+        let rest = |row: usize| {
+            let frame = rings.frame(&base.patch, row, &base.patch.rest);
+            let frame = frame.unwrap_or(DMat3::IDENTITY);
+            let coordinates = frame.transpose() * base.offsets[row];
+            (coordinates, frame * coordinates)
+        };
+        let rows = (0..base.patch.rows.len()).into_par_iter().with_min_len(CHUNK);
+        let (coordinates, at_rest): (Vec<DVec3>, Vec<DVec3>) = rows.map(rest).unzip();
+        Self {
+            rings,
+            coordinates,
+            at_rest,
+        }
+    }
+
+    /// The displacements of the rest base, as [`Frames::turned`] gives them.
+    pub fn at_rest(&self) -> &[DVec3] {
+        &self.at_rest
+    }
+
+    /// A row's displacement on the bent base.
+    #[inline]
+    pub fn turned(&self, base: &Base, row: usize, posed: &[DVec3], turns: &[DMat3]) -> DVec3 {
+        match self.rings.frame(&base.patch, row, posed) {
+            Some(frame) => frame * self.coordinates[row],
+            None => {
+                let at_rest = self.at_rest[row];
+                at_rest + base.turn(row, turns) * at_rest
+            }
+        }
+    }
+}
+
+impl RingFrames {
+    /// Of a patch's rings at rest.
+    pub fn of(patch: &Patch, triangles: &[[SurfaceVertex; 3]], topology: &Topology) -> Self {
+        let of_row = |row: usize| ring(patch, row, triangles, topology);
+        let rings: Vec<Ring> = (0..patch.rows.len())
             .into_par_iter()
             .with_min_len(CHUNK)
             .map(of_row)
@@ -53,8 +97,8 @@ impl Frames {
             flat.extend(ring.shares);
             starts.push(flat.len() as u32);
         }
-        let mut row_of = vec![NONE; base.vertices.len()];
-        for (row, &local) in base.rows.iter().enumerate() {
+        let mut row_of = vec![NONE; patch.vertices.len()];
+        for (row, &local) in patch.rows.iter().enumerate() {
             row_of[local as usize] = row as u32;
         }
         let sources = nearest(&has_frame, |row, visit| {
@@ -65,47 +109,19 @@ impl Frames {
                 }
             }
         });
-        let mut frames = Self {
+        Self {
             starts,
             ring: flat,
             sources,
-            coordinates: Vec::new(),
-            at_rest: Vec::new(),
-        };
-        let rest = |row: usize| {
-            let frame = frames.frame(base, row, &base.rest).unwrap_or(DMat3::IDENTITY);
-            let coordinates = frame.transpose() * base.offsets[row];
-            (coordinates, frame * coordinates)
-        };
-        let rows = (0..base.rows.len()).into_par_iter().with_min_len(CHUNK);
-        let (coordinates, at_rest): (Vec<DVec3>, Vec<DVec3>) = rows.map(rest).unzip();
-        (frames.coordinates, frames.at_rest) = (coordinates, at_rest);
-        frames
-    }
-
-    /// The displacements of the rest base, as [`Frames::turned`] gives them.
-    pub fn at_rest(&self) -> &[DVec3] {
-        &self.at_rest
-    }
-
-    /// A row's displacement on the bent base.
-    #[inline]
-    pub fn turned(&self, base: &Base, row: usize, posed: &[DVec3], turns: &[DMat3]) -> DVec3 {
-        match self.frame(base, row, posed) {
-            Some(frame) => frame * self.coordinates[row],
-            None => {
-                let at_rest = self.at_rest[row];
-                at_rest + base.turn(row, turns) * at_rest
-            }
         }
     }
 
-    /// The frame of a row's source: two tangents and the normal; `None` where there is none, or the base is bent to a
-    /// line or a point there.
+    /// The frame of a row's source, the local vertices being at `posed`: two tangents and the normal; `None` where there
+    /// is none, or the patch is bent to a line or a point there.
     #[inline]
-    fn frame(&self, base: &Base, row: usize, posed: &[DVec3]) -> Option<DMat3> {
+    pub fn frame(&self, patch: &Patch, row: usize, posed: &[DVec3]) -> Option<DMat3> {
         let source = self.sources[row] as usize;
-        let own = posed[*base.rows.get(source)? as usize];
+        let own = posed[*patch.rows.get(source)? as usize];
         let (mut x, mut y) = (DVec3::ZERO, DVec3::ZERO);
         for (local, [a, b]) in &self.ring[self.starts[source] as usize..self.starts[source + 1] as usize] {
             let edge = posed[*local as usize] - own;
@@ -133,11 +149,11 @@ struct Ring {
     has_frame: bool,
 }
 
-fn ring(base: &Base, row: usize, triangles: &[[SurfaceVertex; 3]], topology: &Topology) -> Ring {
-    let local = base.rows[row] as usize;
-    let vertex = SurfaceVertex(base.vertices[local]);
-    let local_of = |vertex: SurfaceVertex| base.vertices.binary_search(&vertex.0).ok();
-    let point = |vertex: SurfaceVertex| local_of(vertex).map_or(DVec3::ZERO, |local| base.rest[local]);
+fn ring(patch: &Patch, row: usize, triangles: &[[SurfaceVertex; 3]], topology: &Topology) -> Ring {
+    let local = patch.rows[row] as usize;
+    let vertex = SurfaceVertex(patch.vertices[local]);
+    let local_of = |vertex: SurfaceVertex| patch.vertices.binary_search(&vertex.0).ok();
+    let point = |vertex: SurfaceVertex| local_of(vertex).map_or(DVec3::ZERO, |local| patch.rest[local]);
     let (mut normal, mut area) = (DVec3::ZERO, 0.0);
     for face in topology.faces(vertex, triangles) {
         let [a, b, c] = triangles[face as usize].map(point);
@@ -152,7 +168,7 @@ fn ring(base: &Base, row: usize, triangles: &[[SurfaceVertex; 3]], topology: &To
         .collect();
     let flat = |has_frame, [x, y]: [DVec3; 2]| {
         let shares = locals.iter().map(|&next| {
-            let edge = base.rest[next] - base.rest[local];
+            let edge = patch.rest[next] - patch.rest[local];
             (next as u32, [edge.dot(x), edge.dot(y)])
         });
         Ring {
@@ -167,7 +183,7 @@ fn ring(base: &Base, row: usize, triangles: &[[SurfaceVertex; 3]], topology: &To
     let (t, b) = normal.normalize().any_orthonormal_pair();
     let [mut xx, mut xy, mut yy] = [0.0; 3];
     for &next in &locals {
-        let edge = base.rest[next] - base.rest[local];
+        let edge = patch.rest[next] - patch.rest[local];
         let (x, y) = (edge.dot(t), edge.dot(b));
         xx += x * x;
         xy += x * y;
@@ -176,7 +192,7 @@ fn ring(base: &Base, row: usize, triangles: &[[SurfaceVertex; 3]], topology: &To
     let (determinant, trace) = (xx * yy - xy * xy, xx + yy);
     // The smaller eigenvalue is about determinant / trace: a squared width.
     let width = determinant / trace;
-    let least = (NARROWEST * base.diagonal).powi(2).max(SLIMMEST.powi(2) * trace);
+    let least = (NARROWEST * patch.diagonal).powi(2).max(SLIMMEST.powi(2) * trace);
     if width > least {
         flat(true, [(t * yy - b * xy) / determinant, (b * xx - t * xy) / determinant])
     } else {

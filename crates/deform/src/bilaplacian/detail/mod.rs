@@ -11,19 +11,18 @@
 mod base;
 mod carry;
 mod donors;
-mod frames;
+pub(crate) mod frames;
 mod transfer;
 mod volumes;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use self::base::{Base, Faired};
 use self::frames::Frames;
 use self::transfer::{Transfer, left_by};
 use self::volumes::Volumes;
 use crate::bilaplacian::solver::BilaplacianSolver;
-use crate::handles::{FRAME_CHUNK, Motion};
+use crate::handles::Motion;
 use crate::method::{BindInput, BoundMethod, Finite, Stepped};
 use crate::{Bilaplacian, BindError, Detail, ReusableFactor, SolveError};
 
@@ -113,20 +112,10 @@ impl Multiresolution {
 
 /// Replaces the solved vertices' displacements by those of the bent base and what `change` adds to a row's detail.
 fn write(base: &Base, posed: &[DVec3], displacements: &mut [DVec3], change: impl Fn(usize) -> DVec3 + Sync) {
-    let place = |vertex: usize| {
-        base.rows
-            .partition_point(|&local| (base.vertices[local as usize] as usize) < vertex)
-    };
-    displacements
-        .par_chunks_mut(FRAME_CHUNK)
-        .enumerate()
-        .for_each(|(chunk, out)| {
-            let first = chunk * FRAME_CHUNK;
-            for row in place(first)..place(first + out.len()) {
-                let local = base.rows[row] as usize;
-                out[base.vertices[local] as usize - first] = (posed[local] - base.rest[local]) + change(row);
-            }
-        });
+    let patch = &base.patch;
+    patch.write(displacements, |row, local| {
+        (posed[local] - patch.rest[local]) + change(row)
+    });
 }
 
 impl BoundMethod for Multiresolution {
@@ -165,7 +154,7 @@ impl BoundMethod for Multiresolution {
     }
 
     fn solved_count(&self) -> usize {
-        self.base.rows.len()
+        self.base.patch.rows.len()
     }
 
     fn factor_len(&self) -> usize {

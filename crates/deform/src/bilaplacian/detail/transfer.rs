@@ -179,9 +179,13 @@ fn soft_vertices(input: &BindInput<'_>) -> Vec<u32> {
 fn triangles(base: &Base, system: &BilaplacianSystem, gradients: &Gradients) -> Vec<Triangle> {
     let vertices = system.operator.laplacian.vertices();
     // Every vertex of a face around a solved one is local to the base.
-    let local = |of_laplacian: u32| base.vertices.partition_point(|&v| v < vertices[of_laplacian as usize]) as u32;
-    let mut row_of = vec![NONE; base.vertices.len()];
-    for (row, &local) in base.rows.iter().enumerate() {
+    let local = |of_laplacian: u32| {
+        base.patch
+            .vertices
+            .partition_point(|&v| v < vertices[of_laplacian as usize]) as u32
+    };
+    let mut row_of = vec![NONE; base.patch.vertices.len()];
+    for (row, &local) in base.patch.rows.iter().enumerate() {
         row_of[local as usize] = row as u32;
     }
     let corners: Vec<[u32; 3]> = gradients.faces().iter().map(|face| face.locals.map(local)).collect();
@@ -189,7 +193,7 @@ fn triangles(base: &Base, system: &BilaplacianSystem, gradients: &Gradients) -> 
     let mut faces_of = vec![
         Vec::new();
         if is_sound.contains(&false) {
-            base.vertices.len()
+            base.patch.vertices.len()
         } else {
             0
         }
@@ -216,7 +220,7 @@ fn triangles(base: &Base, system: &BilaplacianSystem, gradients: &Gradients) -> 
         let edges = gradients.faces()[place].edges;
         match corners.get(sources[place] as usize) {
             Some(&corners) => {
-                let frame = frame(corners, &base.rest).unwrap_or(DMat3::IDENTITY);
+                let frame = frame(corners, &base.patch.rest).unwrap_or(DMat3::IDENTITY);
                 let inverse = frame.inverse();
                 Triangle {
                     corners,
@@ -242,10 +246,10 @@ fn triangles(base: &Base, system: &BilaplacianSystem, gradients: &Gradients) -> 
 
 /// Whether a triangle of the base has a gradient.
 fn is_sound(base: &Base, corners: [u32; 3]) -> bool {
-    let [a, b, c] = corners.map(|corner| base.rest[corner as usize]);
+    let [a, b, c] = corners.map(|corner| base.patch.rest[corner as usize]);
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
     let height = (b - a).cross(c - a).length() / longest;
-    height > (NARROWEST * base.diagonal).max(SLIMMEST * longest)
+    height > (NARROWEST * base.patch.diagonal).max(SLIMMEST * longest)
 }
 
 /// M: two edges and the unit normal; `None` where the triangle has no area.
@@ -268,7 +272,10 @@ impl Triangle {
         let (first, second) = (posed[b] - posed[a], posed[c] - posed[a]);
         // A triangle that is bent to a line keeps its normal.
         let normal = first.cross(second).try_normalize().unwrap_or(self.normal);
-        let (rest_first, rest_second) = (base.rest[b] - base.rest[a], base.rest[c] - base.rest[a]);
+        let (rest_first, rest_second) = (
+            base.patch.rest[b] - base.patch.rest[a],
+            base.patch.rest[c] - base.patch.rest[a],
+        );
         let change = DMat3::from_cols(first - rest_first, second - rest_second, normal - self.normal);
         self.coordinates.map(|q| change * q)
     }

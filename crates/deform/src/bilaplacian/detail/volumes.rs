@@ -80,22 +80,28 @@ const SMALL: f64 = 0.05;
 impl Volumes {
     /// Of the base's faces.
     pub fn of(base: &Base, iterations: u32, triangles: &[[SurfaceVertex; 3]], topology: &Topology) -> Self {
-        let count = base.rows.len();
-        let mut row_of = vec![count as u32; base.vertices.len()];
-        for (row, &local) in base.rows.iter().enumerate().filter(|(row, _)| base.is_faired[*row]) {
+        let count = base.patch.rows.len();
+        let mut row_of = vec![count as u32; base.patch.vertices.len()];
+        for (row, &local) in base
+            .patch
+            .rows
+            .iter()
+            .enumerate()
+            .filter(|(row, _)| base.is_faired[*row])
+        {
             row_of[local as usize] = row as u32;
         }
-        let mut local_of = vec![NONE; base.vertices.last().map_or(0, |&last| last as usize + 1)];
-        for (local, &vertex) in (0..).zip(&base.vertices) {
+        let mut local_of = vec![NONE; base.patch.vertices.last().map_or(0, |&last| last as usize + 1)];
+        for (local, &vertex) in (0..).zip(&base.patch.vertices) {
             local_of[vertex as usize] = local;
         }
         let mut prisms: Vec<Prism> = Vec::new();
         let mut is_taken = vec![false; triangles.len()];
-        for (row, &local) in base.rows.iter().enumerate() {
+        for (row, &local) in base.patch.rows.iter().enumerate() {
             if !base.is_faired[row] {
                 continue;
             }
-            let vertex = SurfaceVertex(base.vertices[local as usize]);
+            let vertex = SurfaceVertex(base.patch.vertices[local as usize]);
             for face in topology.faces(vertex, triangles) {
                 if !std::mem::replace(&mut is_taken[face as usize], true) {
                     let locals = triangles[face as usize].map(|corner| local_of[corner.index()]);
@@ -126,7 +132,7 @@ impl Volumes {
         let measured: Vec<Lack> = prisms
             .par_iter()
             .with_min_len(CHUNK)
-            .map(|prism| measure(prism, &base.rest, &offsets))
+            .map(|prism| measure(prism, &base.patch.rest, &offsets))
             .collect();
         let least_square = |row: usize| {
             let around = || around[starts[row] as usize..starts[row + 1] as usize].iter();
@@ -167,7 +173,7 @@ impl Volumes {
             growths,
             rough,
         } = &mut room;
-        let count = base.rows.len();
+        let count = base.patch.rows.len();
         (0..count)
             .into_par_iter()
             .with_min_len(CHUNK)

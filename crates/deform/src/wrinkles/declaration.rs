@@ -1,0 +1,138 @@
+//! Wrinkles as one of the methods.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::{Wrinkled, Wrinkles};
+use crate::bilaplacian::solver::BilaplacianSolver;
+use crate::handles::{Motion, clear};
+use crate::method::{
+    Attachment, AttachmentDeclaration, AttachmentKind, BindInput, BoundMethod, ConstraintKind, DeformMethod, Finite,
+    MethodDeclaration, Needs, Solve, Stepped,
+};
+use crate::operators::triangulation::Triangulation;
+use crate::{BindError, Problem, ReusableFactor, SolveError};
+
+pub(crate) const DECLARATION: MethodDeclaration = MethodDeclaration {
+    name: "wrinkles",
+    title: "Wrinkles from examples",
+    when_to_use: "Bends like a thin plate, at once, and adds the wrinkles that its examples have where the surface is \
+                  strained as in them: for faces and for cloth whose folds you have sculpted in a few poses. Without \
+                  examples it is the thin plate.",
+    keywords: "wrinkles folds creases face facial skin examples pose-space deformation bickel learnt strain detail",
+    options: Wrinkles::OPTIONS,
+    attachments: &[AttachmentDeclaration {
+        name: "examples",
+        title: "examples",
+        help: "further shapes of the same vertices and triangles, with the wrinkles that they have: a list with the \
+               `file` or the `morph_target` of each and its `weight`, by which its wrinkles are multiplied; a weight \
+               that is left out is 1",
+        kind: AttachmentKind::Shapes,
+    }],
+    heeds: &[
+        ConstraintKind::SoftHandles,
+        ConstraintKind::Continuity,
+        ConstraintKind::Stiffness,
+    ],
+    default: || Wrinkles::default().into(),
+    first_choice: || Wrinkles::default().into(),
+};
+
+impl DeformMethod for Wrinkles {
+    fn declaration(&self) -> &'static MethodDeclaration {
+        &DECLARATION
+    }
+
+    fn needs(&self) -> Needs {
+        self.bending().needs()
+    }
+
+    fn solve(&self) -> Solve {
+        Solve::Direct
+    }
+
+    fn examples_bend(&self) -> bool {
+        false
+    }
+
+    fn triangulation<'a>(&self, problem: &Problem<'a>) -> Triangulation<'a> {
+        self.bending().triangulation(problem)
+    }
+
+    /// Where there are examples the bases are kept in double precision.
+    fn handle_row_bytes(&self) -> usize {
+        64
+    }
+
+    fn bind(&self, input: &BindInput<'_>) -> Result<Box<dyn BoundMethod>, BindError> {
+        match input.attachment {
+            Some(Attachment::Shapes(examples)) if !examples.shapes.is_empty() => {
+                Ok(Box::new(Wrinkled::bind(self, examples, input)?))
+            }
+            _ => Ok(Box::new(BilaplacianSolver::<f32>::bind(&self.bending(), input)?)),
+        }
+    }
+}
+
+impl BoundMethod for Wrinkled {
+    fn step(&mut self, motions: &[Motion], displacements: &mut [DVec3]) -> Result<Stepped, SolveError> {
+        if motions.iter().all(Motion::is_rest) {
+            clear(displacements);
+        } else {
+            self.frame(motions, displacements);
+        }
+        Ok(Stepped {
+            converged: true,
+            energy: self.bending.energy(motions),
+            finite: Finite::Unknown,
+        })
+    }
+
+    fn step_by_back_substitution(
+        &mut self,
+        motions: &[Motion],
+        displacements: &mut [DVec3],
+    ) -> Result<Stepped, SolveError> {
+        self.frame_by_back_substitution(motions, displacements)?;
+        Ok(Stepped {
+            converged: true,
+            energy: self.bending.energy(motions),
+            finite: Finite::Unknown,
+        })
+    }
+
+    fn reusable_factor(&self) -> Option<ReusableFactor> {
+        Some(ReusableFactor(Arc::clone(self.bending.factored())))
+    }
+
+    fn set_weights(&mut self, weights: &[Option<f64>]) {
+        self.give(weights);
+    }
+
+    fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    fn solved_count(&self) -> usize {
+        self.patch.rows.len()
+    }
+
+    fn factor_len(&self) -> usize {
+        self.bending.factor_len()
+    }
+
+    fn step_cost(&self) -> usize {
+        4 * self.solved_count()
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let unlearnt = self.unlearnt.iter().map(|name| {
+            format!(
+                "most details of the example {name:?} are where its handles strain nothing, so no pose brings them back: \
+                 put a handle where the example moves"
+            )
+        });
+        self.bending.warnings().into_iter().chain(unlearnt).collect()
+    }
+}

@@ -1,0 +1,29 @@
+//! The options of wrinkles.
+
+use crate::Bilaplacian;
+use crate::bilaplacian::STRETCHING;
+use crate::method::option::{Whole, options};
+
+options! {
+    /// Options of wrinkles learnt from examples.
+    pub struct Wrinkles {
+        /// k_s of the bi-Laplacian, as in [`Bilaplacian::stretching`].
+        stretching: f64 = STRETCHING,
+        /// How many samples of the part that bends measure its strain.
+        samples: u32 = Whole {
+            default: 200,
+            range: [4, 5000],
+            help: "at how many places the strain is measured: with more of them, wrinkles depend on what is nearer",
+        },
+    }
+}
+
+impl Wrinkles {
+    /// The bi-Laplacian that bends the coarse shape.
+    pub(super) fn bending(&self) -> Bilaplacian {
+        Bilaplacian {
+            stretching: self.stretching,
+            ..Bilaplacian::default()
+        }
+    }
+}
