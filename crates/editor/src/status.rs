@@ -46,7 +46,7 @@ fn hint(workspace: &Workspace, settings: &ToolSettings) -> String {
     let document = &workspace.document;
     let hint = if !workspace.controls.is_empty() {
         "Drag the gizmo, or press G, R or S to move, turn or scale the points"
-    } else if document.handles().is_empty() && document.examples().is_some() {
+    } else if document.handles().is_empty() && document.examples().is_some() && document.bends_without_handles() {
         "Drag an example's weight, or paint a handle (1)"
     } else if document.handles().is_empty() && document.bends_without_handles() {
         "Click a point of the cage or lattice and drag it, or paint a handle (1)"

@@ -8,7 +8,7 @@ pub(super) const KEEP_EXAMPLE: Entry<()> = Entry {
     listed: &[item(
         (),
         "Keep this pose as an example",
-        "Keeps the present shape as an example that Discrete shells blends or is led by.",
+        "Keeps the present shape as an example that Discrete shells is led by, or that Wrinkles learns from.",
         "pose shape blend morph interpolate in-between example",
         &[],
     )],
@@ -51,7 +51,10 @@ pub(super) const REMOVE_EXAMPLE: Entry<usize> = Entry {
 fn without_examples(state: &State<'_>) -> Option<Reason> {
     state.unopened().or_else(|| {
         let are_taken = examples_name(&state.workspace.document).is_some();
-        unless(are_taken, "The method takes no examples: choose Discrete shells.")
+        unless(
+            are_taken,
+            "The method takes no examples: choose Discrete shells or Wrinkles from examples.",
+        )
     })
 }
 

@@ -15,18 +15,19 @@ pub(crate) fn examples_name(document: &Document) -> Option<&'static str> {
         .map(|own| own.name)
 }
 
-/// Keeps the present shape as one more example. Its weight is set to 0, so that nothing moves.
+/// Keeps the present shape as one more example.
 pub(crate) fn keep_example(workspace: &mut Workspace) {
     let displacements = Arc::clone(&workspace.document.from_rest);
     let name = free_name(&workspace.document);
     add_example(workspace, ExampleShape { name, displacements });
 }
 
-/// Adds an example with the weight 0.
+/// Adds an example. Where its weight bends the surface it is 0, so that nothing moves.
 pub(crate) fn add_example(workspace: &mut Workspace, shape: ExampleShape) {
+    let weight = workspace.document.method().examples_bend().then_some(0.0);
     change(workspace, "Keep example", |examples| {
         Arc::make_mut(&mut examples.shapes).push(shape);
-        examples.weights.push(Some(0.0));
+        examples.weights.push(weight);
     });
 }
 

@@ -1,4 +1,4 @@
-//! The examples that lead the method: a list with a weight each.
+//! The examples that the method is led by or learns from: a list with a weight each.
 
 use eframe::egui::{self, RichText, Slider, SliderClamping, TextEdit};
 use pliant_deform::{AttachmentKind, LARGEST_WEIGHT};
@@ -19,7 +19,8 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
     let Some(examples) = editor.document().examples() else {
         return;
     };
-    let are_weighed = examples.weights.iter().flatten().any(|weight| *weight != 0.0);
+    let they_bend = editor.document().method().examples_bend();
+    let are_weighed = they_bend && examples.weights.iter().flatten().any(|weight| *weight != 0.0);
     if are_weighed && editor.document().handles().iter().any(|handle| handle.soft.is_none()) {
         let says = "Handles hold their vertices against the weights: delete them, or make them soft, to blend freely.";
         ui.label(RichText::new(says).weak().small());
@@ -29,29 +30,39 @@ pub fn show(ui: &mut egui::Ui, editor: &Editor, commands: &mut Outbox) {
         ui.push_id(("example", place), |ui| {
             ui.horizontal(|ui| {
                 name(ui, place, &shape.name, commands);
-                let mut is_free = weight.is_none();
-                let says = "The weight is found: as much of the example as suits the handles.";
-                if ui.checkbox(&mut is_free, "found").on_hover_text(says).changed() {
-                    let fixed = Some(found.unwrap_or(0.0).clamp(-LARGEST_WEIGHT, LARGEST_WEIGHT));
-                    commands.push(Command::SetExampleWeight(place, if is_free { None } else { fixed }));
+                if they_bend {
+                    let mut is_free = weight.is_none();
+                    let says = "The weight is found: as much of the example as suits the handles.";
+                    if ui.checkbox(&mut is_free, "found").on_hover_text(says).changed() {
+                        let fixed = Some(found.unwrap_or(0.0).clamp(-LARGEST_WEIGHT, LARGEST_WEIGHT));
+                        commands.push(Command::SetExampleWeight(place, if is_free { None } else { fixed }));
+                    }
                 }
                 let remove = ui.button("Remove").on_hover_text(format!("Removes {}.", shape.name));
                 if remove.clicked() {
                     commands.push(Command::RemoveExample(place));
                 }
             });
-            let mut shown = weight.or(found).unwrap_or(0.0);
-            let slider = Slider::new(&mut shown, -0.5..=1.5)
+            let (without, range, says) = match they_bend {
+                true => (0.0, -0.5..=1.5, "0 is rest, 1 is the example, beyond goes on"),
+                false => (
+                    1.0,
+                    0.0..=2.0,
+                    "How much of its wrinkles is added: 0 none, 1 as in the example",
+                ),
+            };
+            let mut shown = weight.or(found.filter(|_| they_bend)).unwrap_or(without);
+            let slider = Slider::new(&mut shown, range)
                 .clamping(SliderClamping::Never)
                 .fixed_decimals(2);
-            let slider = ui.add_enabled(weight.is_some(), slider);
+            let slider = ui.add_enabled(weight.is_some() || !they_bend, slider);
             let slider = slider
-                .on_hover_text("0 is rest, 1 is the example, beyond goes on; double-click the number to type one.")
+                .on_hover_text(format!("{says}; double-click the number to type one."))
                 .on_disabled_hover_text("It is found: clear \"found\" to set it.");
             let value = shown;
             slider.widget_info(|| egui::WidgetInfo::slider(true, value, format!("Weight of {}", shape.name)));
             commands.adjust(&slider, || {
-                let weight = if shown.is_finite() { shown } else { 0.0 };
+                let weight = if shown.is_finite() { shown } else { without };
                 Command::SetExampleWeight(place, Some(weight.clamp(-LARGEST_WEIGHT, LARGEST_WEIGHT)))
             });
         });

@@ -157,17 +157,19 @@ impl Document {
         self.examples().map_or(&[], |examples| &examples.weights)
     }
 
-    /// Whether an example is given a weight other than 0, or a control point was moved by hand.
+    /// Whether an example that bends the surface is given a weight other than 0, or a control point was moved by hand.
     pub(crate) fn is_moved_without_handles(&self) -> bool {
         let mut weights = self.example_weights().iter().flatten();
-        weights.any(|weight| *weight != 0.0) || self.moved_controls().is_some()
+        let are_weighed = self.content.method.examples_bend() && weights.any(|weight| *weight != 0.0);
+        are_weighed || self.moved_controls().is_some()
     }
 
     /// Whether the method can move the surface without handles: by control points, which it makes where none were
     /// brought, or by examples.
     pub(crate) fn bends_without_handles(&self) -> bool {
         let mut declared = self.content.method.declaration().attachments.iter();
-        declared.any(|own| own.kind != AttachmentKind::Shapes) || self.examples().is_some()
+        let bends_by_examples = self.content.method.examples_bend() && self.examples().is_some();
+        declared.any(|own| own.kind != AttachmentKind::Shapes) || bends_by_examples
     }
 
     /// Where its control points were moved to, if any of them was.

@@ -137,6 +137,9 @@ impl Document {
 
     /// Gives all examples whose weight is set the weight 0.
     pub(crate) fn rest_examples(&mut self) {
+        if !self.content.method.examples_bend() {
+            return;
+        }
         self.change_examples(|examples| {
             examples.weights.iter_mut().flatten().for_each(|weight| *weight = 0.0);
         });
