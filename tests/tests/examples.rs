@@ -1,4 +1,4 @@
-//! Examples that an edit of discrete shells names: files, morph targets, numbers.
+//! Examples that an edit names: files, morph targets, numbers.
 #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
 use std::fs;
@@ -6,7 +6,7 @@ use std::fs;
 use glam::{DQuat, DVec3};
 use pliant_editor::{Beginning, EditFile};
 use pliant_mesh::{Drawn, shapes};
-use pliant_tests::{Folder, largest_distance, open};
+use pliant_tests::{Folder, assets, largest_distance, open};
 use serde_json::{Value, json};
 
 /// A bar along x, and the same with its far part turned about an elbow in its middle.
@@ -168,4 +168,43 @@ fn an_edit_says_its_examples_again() {
     let parsed = EditFile::from_value(&text).unwrap();
     assert_eq!(EditFile::from_value(&parsed.to_value()).unwrap(), parsed);
     assert!(!Beginning::from(parsed).changes_nothing());
+}
+
+/// The face that ships: wrinkles are what its weights multiply, and with none it is the thin plate.
+#[test]
+fn the_faces_edit_wrinkles_it_by_the_weights_of_its_examples() {
+    let folder = Folder::new();
+    let (out, report) = (folder.at("out.off"), folder.at("report.json"));
+    let text = fs::read_to_string(assets().join("face.edit.json")).unwrap();
+    let wrinkled: Value = serde_json::from_str(&text).unwrap();
+    let mut bent = |weight: Option<f64>, method: Option<&str>| {
+        let mut edit = wrinkled.clone();
+        if let Some(weight) = weight {
+            let examples = edit["method"]["examples"].as_array_mut().unwrap();
+            examples.iter_mut().for_each(|own| own["weight"] = json!(weight));
+        }
+        if let Some(name) = method {
+            edit["method"] = json!({ "name": name });
+        }
+        let arguments = ["--report", report.to_str().unwrap()];
+        folder.apply(&assets().join("face.glb"), &edit, &out, &arguments).done();
+        let told: Value = serde_json::from_str(&fs::read_to_string(&report).unwrap()).unwrap();
+        (positions(&out), told)
+    };
+    let (plain, _) = bent(None, Some("bilaplacian"));
+    let (without, _) = bent(Some(0.0), None);
+    let (half, _) = bent(Some(0.5), None);
+    let (whole, told) = bent(None, None);
+    for (example, name) in told["examples"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(["Brows raised", "Frown", "Smile"])
+    {
+        assert_eq!(*example, json!({ "name": name, "weight": 1.0 }));
+    }
+    assert!(largest_distance(&without, &plain) < 1e-5);
+    let expected: Vec<DVec3> = plain.iter().zip(&whole).map(|(a, b)| a.midpoint(*b)).collect();
+    assert!(largest_distance(&half, &expected) < 1e-5);
+    assert!(largest_distance(&whole, &plain) > 0.01);
 }

@@ -18,6 +18,12 @@ const CAGES: [&str; 3] = [
 ];
 const OF_SPACE: [&str; 5] = ["rbf", "mls", "lattice", "embedded", "space-primo"];
 
+/// The sample that is drawn with wrinkles and without in place of by all methods.
+const FACE: &str = "face";
+
+/// Discrete shells from paper to rubber.
+const PAPER_TO_RUBBER: &str = "shells:bending=1e-6,shells:bending=1e-4,shells:bending=1e-3";
+
 /// The size of a sheet in pixels.
 const SIZE: &str = "1200x640";
 
@@ -51,28 +57,32 @@ pub fn gallery() -> Result<(), String> {
         println!("{name}\n{table}");
         Ok::<_, String>(())
     };
-    for sample in &SAMPLES {
+    for sample in SAMPLES.iter().filter(|sample| sample.name != FACE) {
         put(
             sample.name,
-            &sheet(sample.name, sample.name, METHODS, &["--size", SIZE])?,
+            &sheet(sample.name, sample.name, sample.name, METHODS, &["--size", SIZE])?,
         )?;
     }
+    let look = ["--size", "960x560", "--view", "front"];
+    put(FACE, &sheet(FACE, FACE, FACE, "bilaplacian,wrinkles", &look)?)?;
+    let look = ["--size", "960x420", "--view", "front"];
+    sheet("cylinder-stiffness", "cylinder", "cylinder", PAPER_TO_RUBBER, &look)?;
     let look = ["--size", "960x320", "--view", "bottom", "--shading", "distortion"];
-    sheet("creature", "legs-cage", &CAGES.join(","), &look)?;
+    sheet("legs-cage", "creature", "legs-cage", &CAGES.join(","), &look)?;
     let mut legs = cargo(&["run", "--release", "-p", "pliant-tests", "--example", "legs", "--"]);
     put("legs", &said(legs.args(CAGES).args(OF_SPACE))?)?;
     fs::write(&page, text).map_err(|e| format!("{} can't be written: {e}.", page.display()))
 }
 
-/// Draws an edit of a sample by these methods into `docs/gallery/EDIT.png`; the table of its figures.
-fn sheet(sample: &str, edit: &str, methods: &str, look: &[&str]) -> Result<String, String> {
+/// Draws an edit of a sample by these methods into `docs/gallery/PICTURE.png`; the table of its figures.
+fn sheet(picture: &str, sample: &str, edit: &str, methods: &str, look: &[&str]) -> Result<String, String> {
     let root = crate::root();
     let mut command = Command::new(target_folder().join("release/pliant"));
     command.current_dir(&root);
     command.args(["compare", &format!("assets/{sample}.glb"), "--methods", methods]);
     command.args(look);
     command.args(["--edit", &format!("assets/{edit}.edit.json"), "--output"]);
-    said(command.arg(root.join(format!("docs/gallery/{edit}.png"))))
+    said(command.arg(root.join(format!("docs/gallery/{picture}.png"))))
 }
 
 /// The line before a sample's table.
