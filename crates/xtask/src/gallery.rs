@@ -67,6 +67,8 @@ pub fn gallery() -> Result<(), String> {
     put(FACE, &sheet(FACE, FACE, FACE, "bilaplacian,wrinkles", &look)?)?;
     let look = ["--size", "960x420", "--view", "front"];
     sheet("cylinder-stiffness", "cylinder", "cylinder", PAPER_TO_RUBBER, &look)?;
+    let look = ["--size", "480x420", "--view", "front", "--shading", "stiffness"];
+    sheet("cylinder-painted", "cylinder", "cylinder-painted", "shells", &look)?;
     let look = ["--size", "960x320", "--view", "bottom", "--shading", "distortion"];
     sheet("legs-cage", "creature", "legs-cage", &CAGES.join(","), &look)?;
     let mut legs = cargo(&["run", "--release", "-p", "pliant-tests", "--example", "legs", "--"]);
