@@ -35,6 +35,7 @@ fn f_sizes_the_brush_by_the_pointer_and_escape_takes_it_back() {
     assert!((rig.editor.view().brush_radius_px - before - 50.0).abs() < 1e-9);
     rig.key(Key::Escape);
     assert_eq!(rig.editor.view().brush_radius_px, before);
+    rig.move_to(CENTRE_PX);
     rig.type_keys("f");
     rig.swipe(&[CENTRE_PX + DVec2::X * 30.0]);
     assert!((rig.editor.view().brush_radius_px - before - 30.0).abs() < 1e-9);

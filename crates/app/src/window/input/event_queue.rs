@@ -12,6 +12,8 @@ use eframe::egui::{Context, Event, Key, Plugin, RawInput};
 #[derive(Debug, Default)]
 pub struct EventQueue {
     waiting: VecDeque<Event>,
+    /// Keys that are down: what the system tells of them again is a repeat, which only egui itself says otherwise.
+    held: Vec<Key>,
     typing: bool,
     /// Frames, this one included, in which what was typed before Escape is still taken back.
     escaped: u8,
@@ -38,11 +40,37 @@ impl EventQueue {
             .unwrap_or(false)
     }
 
+    /// Marks the press of a key that is down already as a repeat.
+    fn tell_repeat(&mut self, event: &mut Event) {
+        match event {
+            Event::Key {
+                key,
+                pressed: true,
+                repeat,
+                ..
+            } => {
+                let is_held = self.held.contains(key);
+                *repeat |= is_held;
+                if !is_held {
+                    self.held.push(*key);
+                }
+            }
+            Event::Key {
+                key, pressed: false, ..
+            } => self.held.retain(|held| held != key),
+            Event::WindowFocused(false) => self.held.clear(),
+            _ => {}
+        }
+    }
+
     /// Takes what happened since the last frame and leaves what this frame shall hear. `typing` says whether a field has
     /// the keys: letters that go into it come together.
     fn portion(&mut self, events: &mut Vec<Event>, typing: bool) {
         self.typing = typing;
-        self.waiting.extend(events.drain(..));
+        for mut event in events.drain(..) {
+            self.tell_repeat(&mut event);
+            self.waiting.push_back(event);
+        }
         let (mut is_decided, mut is_button) = (false, false);
         while let Some(event) = self.waiting.front() {
             // The pointer's place is known once a frame: a press is judged where it happened, not where the pointer went.
@@ -148,6 +176,17 @@ mod tests {
         assert_eq!(parts.concat(), all);
         let lengths: Vec<usize> = parts.iter().map(Vec::len).collect();
         assert_eq!(lengths, [2, 2, 1]);
+    }
+
+    #[test]
+    fn what_a_held_key_repeats_comes_with_its_release_in_one_frame() {
+        let mut released = key(Key::O);
+        if let Event::Key { pressed, .. } = &mut released {
+            *pressed = false;
+        }
+        let held = vec![key(Key::O), key(Key::O), key(Key::O), released, key(Key::O)];
+        let lengths: Vec<usize> = portions(held, false).iter().map(Vec::len).collect();
+        assert_eq!(lengths, [4, 1]);
     }
 
     #[test]
