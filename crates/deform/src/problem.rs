@@ -2,6 +2,7 @@
 
 use pliant_mesh::{Bounds, Cancel, Progress, Surface, Topology, bounding_box};
 
+use crate::bilaplacian::elimination_plan::factor_bytes;
 use crate::budget::bytes_of;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{Attachment, BindError, Bound, Budget, Constraints, Examples, Method, Ordering, ReusableFactor};
@@ -61,7 +62,7 @@ pub struct Problem<'a> {
 }
 
 /// Bytes of a vertex while it is ordered, for each power of the Laplacian: as allocated, measured by `tests/memory.rs`.
-const ORDERING_ROW: usize = 230;
+pub(crate) const ORDERING_ROW: usize = 230;
 
 impl Problem<'_> {
     /// What was brought of what the method declares.
@@ -103,21 +104,39 @@ impl Problem<'_> {
         self.bounds().map_or(0.0, |bounds| bounds.diagonal())
     }
 
+    /// The power of the ordering to make for [`Problem::bind_within`] this budget: the method's, or 1 where the factor of
+    /// the method's own system can be expected not to fit and the Laplacian's is enough. `None` if the method needs no
+    /// ordering. The factor's size is estimated from the number of free vertices.
+    pub fn ordering_power_within(&self, budget: Budget) -> Option<u32> {
+        let power = self.method.ordering_power()?;
+        let fits = || factor_bytes(power, self.free_count()) <= budget.bytes;
+        Some(if !self.method.implementation().takes_first_power() || fits() {
+            power
+        } else {
+            1
+        })
+    }
+
+    fn free_count(&self) -> usize {
+        self.roles.iter().filter(|role| **role == Role::Free).count()
+    }
+
     /// Refuses the problem where already its tables and its ordering would exceed a budget, before any of it is made.
     ///
     /// # Errors
     /// [`BindError::Budget`].
     pub fn check_tables(&self, budget: Budget) -> Result<(), BindError> {
-        let power = self.method.ordering_power().map_or(0, |power| power as usize);
+        let power = self.ordering_power_within(budget).map_or(0, |power| power as usize);
         let bytes = bytes_of(self.roles.len(), ORDERING_ROW * power);
-        let free = self.roles.iter().filter(|role| **role == Role::Free).count();
+        let free = self.free_count();
         let checked = budget.without(bytes).map(|_| ());
         checked.map_err(|limit| BindError::budget(free, limit).with_culprit(self.topology, budget))
     }
 
     /// Factors and solves everything that does not depend on the handles' transforms.
     ///
-    /// `ordering` must come from [`Method::ordering`] for the same topology. A method that needs none ignores it. Uses
+    /// `ordering` must come from [`Method::ordering`] for the same topology, or be of the power that
+    /// [`Problem::ordering_power_within`] gives. A method that needs none ignores it. Uses
     /// rayon's current pool; the result is the same bit for bit whatever its size.
     ///
     /// # Errors

@@ -45,7 +45,8 @@ pub(crate) fn solve_columns<T: Stored>(
     let mut columns = Vec::with_capacity(prescribed.len());
     columns.push(Columns::of(system, &d, first, prescribed, &solved_locals, error));
     progress.set(0.85);
-    let system = &*system;
+    let learning = system.solution().is_learning();
+    let shared = &*system;
     let is_wanted = || cancel.check().map_err(|_| SystemError::Cancelled);
     let solve = |own: &Prescribed| {
         is_wanted()?;
@@ -53,11 +54,16 @@ pub(crate) fn solve_columns<T: Stored>(
         for &(place, coordinates) in own {
             d[place as usize] = coordinates;
         }
-        let error = system.solve(&mut d, cancel).error;
+        let error = shared.solve(&mut d, cancel).error;
         is_wanted()?;
-        Ok(Columns::of(system, &d, own, prescribed, &solved_locals, error))
+        Ok(Columns::of(shared, &d, own, prescribed, &solved_locals, error))
     };
-    columns.extend(others.par_iter().map(solve).collect::<Result<Vec<_>, SystemError>>()?);
+    let others: Result<Vec<_>, SystemError> = match learning {
+        true => others.iter().map(solve).collect(),
+        false => others.par_iter().map(solve).collect(),
+    };
+    columns.extend(others?);
+    system.settle();
     Ok(columns)
 }
 

@@ -60,6 +60,10 @@ impl DeformMethod for Bilaplacian {
         Triangulation::of_options(problem, self)
     }
 
+    fn takes_first_power(&self) -> bool {
+        self.operator_power() == 2 && self.stretching == 0.0 && self.detail == Detail::None
+    }
+
     fn row_bytes(&self) -> usize {
         match self.detail {
             Detail::None => 300,

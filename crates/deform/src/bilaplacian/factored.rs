@@ -11,9 +11,12 @@ use rayon::prelude::*;
 
 use crate::BindError;
 use crate::bilaplacian::assembly::assemble_bilaplacian;
+use crate::bilaplacian::capacitance::Capacitance;
+use crate::bilaplacian::elimination_plan::{EliminationPlan, is_for_memory};
 use crate::bilaplacian::held::HeldReach;
 use crate::bilaplacian::hubs::Hubs;
 use crate::bilaplacian::operator::BilaplacianOperator;
+use crate::bilaplacian::solution::Solution;
 use crate::budget::{Budget, Limit, bytes_of};
 use crate::operators::CHUNK;
 use crate::sparse::Elimination;
@@ -32,9 +35,7 @@ pub(crate) struct BilaplacianSystem {
     held_reach: Option<HeldReach>,
     /// The column of each of the operator's springs.
     spring_columns: Vec<u32>,
-    factored: Arc<RenewableFactor>,
-    /// The low-rank correction for hubs, if there are any.
-    low_rank: Option<LowRank>,
+    solution: Solution,
     /// How slowly refinement converged at the check: see [`crate::bilaplacian::refine`].
     pub(crate) contraction: f64,
 }
@@ -63,64 +64,44 @@ impl BilaplacianSystem {
         budget: Budget,
         cancel: &Cancel,
     ) -> Result<Self, SystemError> {
-        let laplacian = &operator.laplacian;
-        let numbered = |elimination: &Elimination| {
-            let columns = laplacian.locals(&elimination.order);
-            let mut column_of = vec![CONSTRAINED; laplacian.vertices().len()];
-            for (column, &local) in columns.iter().enumerate() {
-                column_of[local as usize] = column as u32;
+        let (numbering, solution) = direct(&operator, elimination, refactorisation, budget, cancel)?;
+        Ok(Self::joined(operator, numbering, solution))
+    }
+
+    /// As [`BilaplacianSystem::new`], but where A's factor does not fit the budget, solves with the Laplacian's, if the
+    /// operator allows that.
+    pub fn planned(
+        mut operator: BilaplacianOperator,
+        plan: &EliminationPlan,
+        refactorisation: Refactorisation,
+        budget: Budget,
+        cancel: &Cancel,
+    ) -> Result<Self, SystemError> {
+        if let Some(elimination) = plan.direct(operator.power, budget) {
+            match direct(&operator, elimination, refactorisation, budget, cancel) {
+                Ok((numbering, solution)) => return Ok(Self::joined(operator, numbering, solution)),
+                Err(refused) if !is_for_memory(refused) || !Capacitance::applies_to(&operator) => return Err(refused),
+                Err(_) => {}
             }
-            (columns, column_of)
-        };
-        let (mut columns, mut column_of) = numbered(&elimination);
-        let hubs = Hubs::of(&operator, &column_of);
-        let mut elimination = elimination;
-        if !hubs.is_empty() {
-            // The ordering has the surface's own hubs last; the hubs of an intrinsic triangulation are moved to the end
-            // here.
-            elimination = elimination
-                .with_last(|vertex| laplacian.local(vertex).is_some_and(|local| hubs.contains(local as u32)));
-            (columns, column_of) = numbered(&elimination);
+        } else if !Capacitance::applies_to(&operator) {
+            return Err(SystemError::Budget(Limit::Bytes(budget.bytes)));
         }
-        let rank = hubs.rank(&operator);
-        let of_hubs = bytes_of(LowRank::stored_at_rank(columns.len(), rank), size_of::<f64>());
-        let budget = budget.without(of_hubs).map_err(SystemError::Budget)?;
-        let spring_columns = operator
-            .springs
-            .locals()
-            .iter()
-            .map(|&local| column_of[local as usize])
-            .collect();
-        let refused = |error| match error {
-            FactorError::Memory => SystemError::OutOfMemory,
-            FactorError::Budget(limit) => SystemError::Budget(limit),
-            FactorError::Cancelled => SystemError::Cancelled,
-            FactorError::Pivot(column) => {
-                let local = columns.get(column).map_or(0, |&local| local as usize);
-                SystemError::NotPositiveDefinite {
-                    vertex: operator.laplacian.vertices()[local],
-                }
-            }
-        };
-        let matrix = assemble_bilaplacian(&operator, &columns, &column_of, &hubs, budget).map_err(refused)?;
-        cancel.check().map_err(|_| SystemError::Cancelled)?;
-        let factored =
-            RenewableFactor::of(matrix, elimination, &SHIFTS, refactorisation, budget, cancel).map_err(refused)?;
-        let mut low_rank = None;
-        if !hubs.is_empty() {
-            let (vectors, c) = hubs.correction(&operator, &column_of, factored.scale());
-            low_rank = Some(LowRank::of(&factored.factor, vectors, &c).map_err(refused)?);
-        }
-        Ok(Self {
+        let elimination = plan.of_laplacian(budget, cancel)?;
+        let (numbering, solution) = by_laplacian(&mut operator, elimination, refactorisation, budget, cancel)?;
+        Ok(Self::joined(operator, numbering, solution))
+    }
+
+    fn joined(operator: BilaplacianOperator, (columns, column_of): Numbering, solution: Solution) -> Self {
+        let springs = operator.springs.locals().iter();
+        Self {
             held_reach: HeldReach::of(&operator, &columns, &column_of),
+            spring_columns: springs.map(|&local| column_of[local as usize]).collect(),
             operator,
             columns,
             column_of,
-            spring_columns,
-            factored: Arc::new(factored),
-            low_rank,
+            solution,
             contraction: 0.0,
-        })
+        }
     }
 
     /// The column of each local vertex, [`CONSTRAINED`] where it is not solved for.
@@ -134,36 +115,33 @@ impl BilaplacianSystem {
     }
 
     /// x ← (S A S)⁻¹ x, up to the error of the factor.
-    pub fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]]) {
-        self.factored.factor.solve(x);
-        if let Some(low_rank) = &self.low_rank {
-            low_rank.correct(x);
-        }
+    pub fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]], cancel: &Cancel) {
+        self.solution.solve(x, cancel);
     }
 
     /// How many numbers the factor stores.
     pub fn factor_len(&self) -> usize {
-        self.factored.factor.stored() + self.low_rank.as_ref().map_or(0, LowRank::stored)
+        self.solution.stored()
     }
 
     /// What the binding of a nearly equal system can reuse.
     pub fn factored(&self) -> &Arc<RenewableFactor> {
-        &self.factored
+        self.solution.factored()
     }
 
-    /// A sentence on the shift that was added to the scaled matrix' unit diagonal to factor it, if one was needed.
-    pub fn stiffened(&self) -> Option<String> {
-        let shift = self.factored.shift;
-        (shift > 0.0).then(|| {
-            format!(
-                "the system was barely stable on this mesh: it was stiffened by {shift:.0e} of its diagonal and refined"
-            )
-        })
+    /// What solves with A.
+    pub fn solution(&self) -> &Solution {
+        &self.solution
+    }
+
+    /// From now on solves may run in any order: see [`Solution::is_learning`].
+    pub fn settle(&mut self) {
+        self.solution.settle();
     }
 
     /// S: the scale of each column.
     pub fn scale(&self) -> &[f64] {
-        self.factored.scale()
+        self.solution.factored().scale()
     }
 
     /// S (W (c − d) − A d) on the solved vertices, by differences along edges and springs.
@@ -202,7 +180,94 @@ impl BilaplacianSystem {
     }
 }
 
+/// The local vertex of each column, and the column of each local vertex.
+type Numbering = (Vec<u32>, Vec<u32>);
+
+fn numbered(operator: &BilaplacianOperator, elimination: &Elimination) -> Numbering {
+    let columns = operator.laplacian.locals(&elimination.order);
+    let mut column_of = vec![CONSTRAINED; operator.laplacian.vertices().len()];
+    for (column, &local) in columns.iter().enumerate() {
+        column_of[local as usize] = column as u32;
+    }
+    (columns, column_of)
+}
+
+/// The factor of A, and the correction for its hubs.
+fn direct(
+    operator: &BilaplacianOperator,
+    mut elimination: Elimination,
+    refactorisation: Refactorisation,
+    budget: Budget,
+    cancel: &Cancel,
+) -> Result<(Numbering, Solution), SystemError> {
+    let laplacian = &operator.laplacian;
+    let (mut columns, mut column_of) = numbered(operator, &elimination);
+    let hubs = Hubs::of(operator, &column_of);
+    if !hubs.is_empty() {
+        // The ordering has the surface's own hubs last; the hubs of an intrinsic triangulation are moved to the end
+        // here.
+        elimination =
+            elimination.with_last(|vertex| laplacian.local(vertex).is_some_and(|local| hubs.contains(local as u32)));
+        (columns, column_of) = numbered(operator, &elimination);
+    }
+    let rank = hubs.rank(operator);
+    let of_hubs = bytes_of(LowRank::stored_at_rank(columns.len(), rank), size_of::<f64>());
+    let budget = budget.without(of_hubs).map_err(SystemError::Budget)?;
+    let refused = |error| SystemError::of(error, operator, &columns);
+    let matrix = assemble_bilaplacian(operator, &columns, &column_of, &hubs, budget).map_err(refused)?;
+    cancel.check().map_err(|_| SystemError::Cancelled)?;
+    let factored =
+        RenewableFactor::of(matrix, elimination, &SHIFTS, refactorisation, budget, cancel).map_err(refused)?;
+    let mut low_rank = None;
+    if !hubs.is_empty() {
+        let (vectors, c) = hubs.correction(operator, &column_of, factored.scale());
+        low_rank = Some(LowRank::of(&factored.factor, vectors, &c).map_err(refused)?);
+    }
+    Ok(((columns, column_of), Solution::Factor(Arc::new(factored), low_rank)))
+}
+
+/// The factor of the Laplacian, and what makes it solve with A. The operator is the same again afterwards.
+fn by_laplacian(
+    operator: &mut BilaplacianOperator,
+    elimination: Elimination,
+    refactorisation: Refactorisation,
+    budget: Budget,
+    cancel: &Cancel,
+) -> Result<(Numbering, Solution), SystemError> {
+    let (columns, column_of) = numbered(operator, &elimination);
+    // The vectors of a solve, beside those that every solve takes.
+    let of_vectors = bytes_of(columns.len(), 3 * size_of::<[f64; 5]>());
+    let budget = budget.without(of_vectors).map_err(SystemError::Budget)?;
+    let membrane = BilaplacianOperator::membrane(std::mem::take(&mut operator.laplacian));
+    let matrix = assemble_bilaplacian(&membrane, &columns, &column_of, &Hubs::default(), budget);
+    operator.laplacian = membrane.laplacian;
+    let refused = |error| SystemError::of(error, operator, &columns);
+    let matrix = matrix.map_err(refused)?;
+    cancel.check().map_err(|_| SystemError::Cancelled)?;
+    let factored =
+        RenewableFactor::of(matrix, elimination, &SHIFTS, refactorisation, budget, cancel).map_err(refused)?;
+    let taken = bytes_of(factored.factor.stored(), size_of::<f64>());
+    let left = budget.without(taken).map_err(SystemError::Budget)?;
+    let capacitance = Capacitance::new(operator, (&columns, &column_of), factored, left);
+    Ok(((columns, column_of), Solution::Capacitance(Box::new(capacitance))))
+}
+
 impl SystemError {
+    /// A factorisation's refusal, whose columns are the local vertices `columns`.
+    fn of(error: FactorError, operator: &BilaplacianOperator, columns: &[u32]) -> Self {
+        match error {
+            FactorError::Memory => Self::OutOfMemory,
+            FactorError::Budget(limit) => Self::Budget(limit),
+            FactorError::Cancelled => Self::Cancelled,
+            FactorError::Pivot(column) => {
+                let local = columns.get(column).map_or(0, |&local| local as usize);
+                Self::NotPositiveDefinite {
+                    vertex: operator.laplacian.vertices()[local],
+                }
+            }
+        }
+    }
+
     /// The error as the caller sees it.
     pub fn into_bind_error(self, component_of: impl Fn(u32) -> u32, free_count: usize) -> BindError {
         match self {

@@ -9,6 +9,7 @@ use glam::DVec3;
 use pliant_mesh::SurfaceVertex;
 use rayon::prelude::*;
 
+use crate::bilaplacian::elimination_plan::EliminationPlan;
 use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::refine::Outcome;
@@ -55,14 +56,15 @@ impl LoadedSystem {
             slender::most_edges(order),
             Some(order),
         )?;
-        let elimination = input.ordering()?.elimination(&partition.solved);
+        let plan = EliminationPlan::of(input)?;
         let (operator, prescribed) = operator(&problem, options, partition, input.handles);
         cancel.check()?;
         let refuse = |error| refused(error, input);
         let mut system =
-            BilaplacianSystem::new(operator, elimination, refactorisation, partition.budget, cancel).map_err(refuse)?;
+            BilaplacianSystem::planned(operator, &plan, refactorisation, partition.budget, cancel).map_err(refuse)?;
         let mut constant = vec![[1.0]; system.operator.field_len()];
         system.check(&mut constant, cancel).map_err(refuse)?;
+        system.settle();
         Ok(Self { system, prescribed })
     }
 
@@ -166,7 +168,7 @@ impl LoadedSystem {
         let mut sentences: Vec<String> = repairs(self.operator().laplacian.mollified_faces())
             .into_iter()
             .collect();
-        sentences.extend(self.system.stiffened());
+        sentences.extend(self.system.solution().warnings());
         sentences
     }
 }

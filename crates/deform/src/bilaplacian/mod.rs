@@ -2,10 +2,12 @@
 //! linear: A d = 0, so a frame is a product with the handle bases [BK04, BS08].
 
 pub(crate) mod assembly;
+mod capacitance;
 mod columns;
 mod continuity;
 mod declaration;
 pub(crate) mod detail;
+pub(crate) mod elimination_plan;
 pub(crate) mod factored;
 mod held;
 pub(crate) mod hubs;
@@ -14,6 +16,7 @@ pub(crate) mod operator;
 mod options;
 pub(crate) mod refine;
 pub(crate) mod setup;
+mod solution;
 pub(crate) mod solver;
 mod springs;
 

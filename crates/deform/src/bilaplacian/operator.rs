@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use crate::bilaplacian::springs::Springs;
 use crate::operators::CHUNK;
 use crate::sparse::ordering::hubs::hub_degree;
-use crate::{Bilaplacian, Laplacian};
+use crate::{Bilaplacian, BilaplacianOrder, Laplacian};
 
 /// The functions that L is applied to last: φ, and d itself if stretching has its own L.
 #[derive(Debug)]
@@ -69,6 +69,15 @@ impl BilaplacianOperator {
             stretching: options.stretching / square,
             bending,
         }
+    }
+
+    /// −L alone: a membrane of stiffness 1, without springs.
+    pub fn membrane(laplacian: Laplacian) -> Self {
+        let options = Bilaplacian {
+            order: BilaplacianOrder::Membrane,
+            ..Bilaplacian::default()
+        };
+        Self::new(laplacian, &options, 1.0)
     }
 
     /// How many entries a field has.

@@ -77,8 +77,8 @@ pub(crate) trait Refined {
         self.scaled_residual(d)
     }
 
-    /// x ← (S A S)⁻¹ x, up to the error of the factor.
-    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]]);
+    /// x ← (S A S)⁻¹ x, up to the error of the factor; anything once cancelled.
+    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]], cancel: &Cancel);
 }
 
 impl Refined for BilaplacianSystem {
@@ -106,8 +106,8 @@ impl Refined for BilaplacianSystem {
         Self::scaled_residual_from_zero(self, d)
     }
 
-    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]]) {
-        Self::solve_factored(self, x);
+    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]], cancel: &Cancel) {
+        Self::solve_factored(self, x, cancel);
     }
 }
 
@@ -216,7 +216,7 @@ fn solve<S: Refined, const K: usize>(
         if gradients > 0 {
             x = conjugate_gradients(system, x, cancel);
         } else {
-            system.solve_factored(&mut x);
+            system.solve_factored(&mut x, cancel);
         }
         let Some((correction, size)) = correct(system, d, &x) else {
             return Outcome {
@@ -278,7 +278,7 @@ fn correct<S: Refined, const K: usize>(system: &S, d: &mut [[f64; K]], x: &[[f64
 fn conjugate_gradients<S: Refined, const K: usize>(system: &S, mut r: Vec<[f64; K]>, cancel: &Cancel) -> Vec<[f64; K]> {
     let mut x = vec![[0.0; K]; r.len()];
     let mut z = r.clone();
-    system.solve_factored(&mut z);
+    system.solve_factored(&mut z, cancel);
     let mut p = z.clone();
     let mut rho = dots(&r, &z);
     let first = rho;
@@ -302,7 +302,7 @@ fn conjugate_gradients<S: Refined, const K: usize>(system: &S, mut r: Vec<[f64; 
             }
         }
         z.copy_from_slice(&r);
-        system.solve_factored(&mut z);
+        system.solve_factored(&mut z, cancel);
         let next = dots(&r, &z);
         let beta: [f64; K] = std::array::from_fn(|k| if rho[k] > 0.0 { next[k] / rho[k] } else { 0.0 });
         for (p, z) in p.iter_mut().zip(&z) {

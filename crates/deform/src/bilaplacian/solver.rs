@@ -6,6 +6,7 @@ use glam::DVec3;
 use pliant_mesh::{Cancel, SurfaceVertex};
 
 use crate::bilaplacian::columns::{energy_blocks, solve_columns};
+use crate::bilaplacian::elimination_plan::EliminationPlan;
 use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
 use crate::bilaplacian::setup::operator;
 use crate::handles::bases::{Stored, frame};
@@ -53,14 +54,14 @@ impl<T: Stored> BilaplacianSolver<T> {
             slender::most_edges(order),
             Some(order),
         )?;
-        let elimination = input.ordering()?.elimination(solved);
+        let plan = EliminationPlan::of(input)?;
         cancel.check()?;
         progress.set(0.1);
         let (operator, prescribed) = operator(problem, options, partition, handles);
         cancel.check()?;
         progress.set(0.2);
         let mut system =
-            BilaplacianSystem::new(operator, elimination, refactorisation, partition.budget, cancel).map_err(refuse)?;
+            BilaplacianSystem::planned(operator, &plan, refactorisation, partition.budget, cancel).map_err(refuse)?;
         progress.set(0.7);
         let columns = solve_columns(&mut system, &prescribed, solved, progress, cancel).map_err(refuse)?;
         for column in &columns {
@@ -113,7 +114,7 @@ impl<T: Stored> BilaplacianSolver<T> {
         let mut sentences: Vec<String> = repairs(self.system.operator.laplacian.mollified_faces())
             .into_iter()
             .collect();
-        sentences.extend(self.system.stiffened());
+        sentences.extend(self.system.solution().warnings());
         sentences
     }
 

@@ -153,7 +153,7 @@ impl Refined for ImplicitSystem<'_> {
         residual
     }
 
-    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]]) {
+    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]], _cancel: &Cancel) {
         self.factor.solve(x);
     }
 }

@@ -74,6 +74,12 @@ pub(crate) trait DeformMethod: Options {
         HandleFit::Exact
     }
 
+    /// Whether it can be bound with an ordering of power 1 in place of its own, by the Laplacian's factor, which takes
+    /// less memory and more time.
+    fn takes_first_power(&self) -> bool {
+        false
+    }
+
     /// Bytes of a solved vertex in the method's tables, without matrices and factors, whose entries are counted one by
     /// one: as allocated, measured by `tests/memory.rs`.
     fn row_bytes(&self) -> usize {
@@ -112,7 +118,14 @@ impl<'a> BindInput<'a> {
     /// # Errors
     /// There is none, or it is another mesh's or power's.
     pub fn ordering(&self) -> Result<&'a Ordering, BindError> {
-        let expected_power = self.problem.method.needs().ordering_power().unwrap_or(1);
+        self.ordering_of(self.problem.method.needs().ordering_power().unwrap_or(1))
+    }
+
+    /// The ordering, which must be of this power.
+    ///
+    /// # Errors
+    /// As [`BindInput::ordering`].
+    pub fn ordering_of(&self, expected_power: u32) -> Result<&'a Ordering, BindError> {
         let ordering = self.ordering.ok_or(BindError::NoOrdering { expected_power })?;
         let expected = self.problem.surface.positions.len();
         let (found, found_power) = (ordering.vertex_count(), ordering.power());

@@ -1,0 +1,198 @@
+//! The thin plate solved with the factor of the Laplacian in place of its own, which takes a fraction of the memory.
+//!
+//! At order 2 the rows of A = Bᵀ N⁻¹ B belong to solved vertices (f) and to the constrained ones beside them (c):
+//!
+//! A = P N⁻¹ P + Cᵀ D C, with P = −L_ff, C = L_cf, N = M / (k_b s) at f and D = k_b s M⁻¹ at c.
+//!
+//! The first term is a plate whose rim is supported but free to turn: its inverse is P⁻¹ N P⁻¹, two Poisson solves.
+//! What clamps the rim has the rank of the rim's vertices, and so have soft handles' springs, which are further rows of
+//! C with their strengths in D. By Woodbury's identity
+//!
+//! A⁻¹ = B − B Cᵀ S⁻¹ C B, with B = P⁻¹ N P⁻¹ and the *capacitance matrix* S = D⁻¹ + C B Cᵀ,
+//!
+//! the capacitance matrix method [BDGG71], which [Bjo83] uses for the biharmonic equation. S is never formed. It is
+//! solved by conjugate directions ([`directions`]) that take all right-hand sides together, are as long as the rim,
+//! and are kept for the next right-hand side.
+//!
+//! The factor of P has half the bandwidth of A's at each separator: about a quarter of its numbers and an eighth of its
+//! operations. Multigrid with point smoothers on A itself was tried first, and lost: see `docs/measurements.md`.
+
+mod directions;
+mod rows;
+
+use std::sync::{Arc, PoisonError, RwLock};
+
+use pliant_mesh::Cancel;
+use rayon::prelude::*;
+
+use self::directions::{Directions, norms, orthonormalised};
+use self::rows::CapacitanceRows;
+use crate::bilaplacian::operator::BilaplacianOperator;
+use crate::budget::{Budget, bytes_of};
+use crate::operators::CHUNK;
+use crate::sparse::refactorisation::RenewableFactor;
+
+/// Solves with S end when each residual has fallen to this share of its right-hand side. Refinement does the rest.
+const DROP: f64 = 1e-8;
+
+/// The most times that a solve applies S.
+const ROUNDS: usize = 100;
+
+/// The most directions that are kept.
+const MOST_KEPT: usize = 2000;
+
+/// The factor of P, and what makes it solve with A. All vectors are scaled by T, the scale of P's columns.
+#[derive(Debug)]
+pub(crate) struct Capacitance {
+    factored: Arc<RenewableFactor>,
+    /// T N T.
+    middle: Vec<f64>,
+    /// D^½ C T.
+    rows: CapacitanceRows,
+    kept: RwLock<Directions>,
+    most_kept: usize,
+    /// Whether directions are added to those that are kept.
+    is_learning: bool,
+}
+
+impl Capacitance {
+    /// Whether this operator's inverse is of the form above.
+    pub fn applies_to(operator: &BilaplacianOperator) -> bool {
+        operator.power == 2 && operator.stretching == 0.0 && operator.bending > 0.0
+    }
+
+    /// With the factor of P, whose columns are the local vertices `columns`.
+    pub fn new(
+        operator: &BilaplacianOperator,
+        (columns, column_of): (&[u32], &[u32]),
+        factored: RenewableFactor,
+        budget: Budget,
+    ) -> Self {
+        let scale = factored.scale();
+        let resistance = |local: usize| {
+            operator.bending * operator.cell_stiffness(local) * operator.laplacian.inverse_areas()[local]
+        };
+        let middle = columns.iter().zip(scale);
+        let middle = middle.map(|(&local, scale)| scale * scale / resistance(local as usize));
+        let rows = CapacitanceRows::of(operator, column_of, scale, resistance);
+        // A direction and its image.
+        let each = bytes_of(rows.len().max(1), 2 * size_of::<f64>());
+        Self {
+            middle: middle.collect(),
+            most_kept: ((budget.bytes / each) as usize).min(MOST_KEPT),
+            rows,
+            kept: RwLock::default(),
+            is_learning: true,
+            factored: Arc::new(factored),
+        }
+    }
+
+    /// The factor of P.
+    pub fn factored(&self) -> &Arc<RenewableFactor> {
+        &self.factored
+    }
+
+    /// How many numbers are stored.
+    pub fn stored(&self) -> usize {
+        let kept = self.kept.read().unwrap_or_else(PoisonError::into_inner);
+        self.factored.factor.stored() + self.middle.len() + 2 * kept.len() * self.rows.len()
+    }
+
+    /// From now on no solve leaves anything behind, so that solves may run beside each other and in any order.
+    pub fn settle(&mut self) {
+        self.is_learning = false;
+    }
+
+    /// Whether solves must follow each other in a fixed order, because each one learns from those before it.
+    pub fn is_learning(&self) -> bool {
+        self.is_learning
+    }
+
+    /// A sentence on how the system was solved.
+    pub fn sentence(&self) -> String {
+        let kept = self.kept.read().unwrap_or_else(PoisonError::into_inner);
+        format!(
+            "the factor of {} free vertices does not fit the memory that is left, so they were solved for with the \
+             Laplacian's factor ({} MiB) and {} conjugate directions for {} vertices at the rim",
+            self.middle.len(),
+            (8 * self.factored.factor.stored()) >> 20,
+            kept.len(),
+            self.rows.len(),
+        )
+    }
+
+    /// x ← (T A T)⁻¹ x in the scaled columns, up to the accuracy of [`DROP`].
+    pub fn solve<const K: usize>(&self, x: &mut [[f64; K]], cancel: &Cancel) {
+        let load = x.to_vec();
+        self.solve_supported(x);
+        if self.rows.len() == 0 {
+            return;
+        }
+        let pulls = self.solve_rim(self.rows.product(x), cancel);
+        x.copy_from_slice(&load);
+        drop(load);
+        self.rows.subtract_transposed(&pulls, x);
+        self.solve_supported(x);
+    }
+
+    /// x ← F⁻¹ (T N T) F⁻¹ x with the factor F: the plate whose rim is free to turn.
+    fn solve_supported<const K: usize>(&self, x: &mut [[f64; K]]) {
+        self.factored.factor.solve(x);
+        x.par_iter_mut()
+            .with_min_len(CHUNK)
+            .zip(&self.middle)
+            .for_each(|(x, middle)| *x = x.map(|value| value * middle));
+        self.factored.factor.solve(x);
+    }
+
+    /// (1 + D^½ C B Cᵀ D^½) q.
+    fn apply<const K: usize>(&self, q: &[[f64; K]]) -> Vec<[f64; K]> {
+        let mut x = vec![[0.0; K]; self.middle.len()];
+        self.rows.subtract_transposed(q, &mut x);
+        self.solve_supported(&mut x);
+        let mut image = self.rows.product(&x);
+        for (image, q) in image.iter_mut().zip(q) {
+            for k in 0..K {
+                image[k] = q[k] - image[k];
+            }
+        }
+        image
+    }
+
+    /// Solves (1 + D^½ C B Cᵀ D^½) y = r.
+    fn solve_rim<const K: usize>(&self, mut r: Vec<[f64; K]>, cancel: &Cancel) -> Vec<[f64; K]> {
+        let kept = self.kept.read().unwrap_or_else(PoisonError::into_inner);
+        let mut own = Directions::default();
+        let mut y = vec![[0.0; K]; r.len()];
+        let whole = norms(&r);
+        kept.project(0, &mut y, &mut r);
+        for _ in 0..ROUNDS {
+            let left = norms(&r);
+            let is_open: [bool; K] = std::array::from_fn(|k| left[k] > DROP * whole[k]);
+            if cancel.is_cancelled() || !is_open.contains(&true) {
+                break;
+            }
+            let factor: [f64; K] = std::array::from_fn(|k| if is_open[k] { left[k].recip() } else { 0.0 });
+            let mut block: Vec<[f64; K]> = r.iter().map(|r| std::array::from_fn(|k| r[k] * factor[k])).collect();
+            // Once leaves what was rounded, twice is enough.
+            for _ in 0..2 {
+                kept.remove_from(&mut block);
+                own.remove_from(&mut block);
+            }
+            let image = self.apply(&block);
+            let before = own.len();
+            own.extend(orthonormalised(&block, &image));
+            if own.len() == before {
+                break;
+            }
+            own.project(before, &mut y, &mut r);
+        }
+        drop(kept);
+        if self.is_learning && !cancel.is_cancelled() {
+            let mut kept = self.kept.write().unwrap_or_else(PoisonError::into_inner);
+            let room = self.most_kept.saturating_sub(kept.len());
+            kept.extend(own.first(room));
+        }
+        y
+    }
+}

@@ -1,0 +1,80 @@
+//! What solves with A once it is bound: its own factor, or where that does not fit the Laplacian's.
+
+use std::sync::Arc;
+
+use pliant_mesh::Cancel;
+
+use crate::bilaplacian::capacitance::Capacitance;
+use crate::sparse::low_rank::LowRank;
+use crate::sparse::refactorisation::RenewableFactor;
+
+/// Solves S A S x = r, S being the scale of the columns.
+#[derive(Debug)]
+pub(crate) enum Solution {
+    /// The factor of A and the low-rank correction for hubs, if there are any.
+    Factor(Arc<RenewableFactor>, Option<LowRank>),
+    /// The factor of the Laplacian.
+    Capacitance(Box<Capacitance>),
+}
+
+impl Solution {
+    /// The factor, of whichever matrix.
+    pub fn factored(&self) -> &Arc<RenewableFactor> {
+        match self {
+            Self::Factor(factored, _) => factored,
+            Self::Capacitance(capacitance) => capacitance.factored(),
+        }
+    }
+
+    /// x ← (S A S)⁻¹ x, up to the error of the factor.
+    pub fn solve<const K: usize>(&self, x: &mut [[f64; K]], cancel: &Cancel) {
+        match self {
+            Self::Factor(factored, low_rank) => {
+                factored.factor.solve(x);
+                if let Some(low_rank) = low_rank {
+                    low_rank.correct(x);
+                }
+            }
+            Self::Capacitance(capacitance) => capacitance.solve(x, cancel),
+        }
+    }
+
+    /// How many numbers are stored.
+    pub fn stored(&self) -> usize {
+        match self {
+            Self::Factor(factored, low_rank) => factored.factor.stored() + low_rank.as_ref().map_or(0, LowRank::stored),
+            Self::Capacitance(capacitance) => capacitance.stored(),
+        }
+    }
+
+    /// Whether solves must follow each other in a fixed order.
+    pub fn is_learning(&self) -> bool {
+        match self {
+            Self::Factor(..) => false,
+            Self::Capacitance(capacitance) => capacitance.is_learning(),
+        }
+    }
+
+    /// From now on solves may run in any order.
+    pub fn settle(&mut self) {
+        if let Self::Capacitance(capacitance) = self {
+            capacitance.settle();
+        }
+    }
+
+    /// Sentences on how the system was solved, where that was out of the ordinary.
+    pub fn warnings(&self) -> Vec<String> {
+        let stiffened = |shift: f64| {
+            format!(
+                "the system was barely stable on this mesh: it was stiffened by {shift:.0e} of its diagonal and refined"
+            )
+        };
+        let mut sentences = Vec::new();
+        if let Self::Capacitance(capacitance) = self {
+            sentences.push(capacitance.sentence());
+        }
+        let shift = self.factored().shift;
+        sentences.extend((shift > 0.0).then(|| stiffened(shift)));
+        sentences
+    }
+}
