@@ -8,7 +8,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
-use pliant_deform::{BindError, Bound, ExampleShape, Method, Ordering, SolveError, Step};
+use pliant_deform::{BindError, Bound, Budget, ExampleShape, Method, Ordering, SolveError, Step};
 use pliant_editor::{Beginning, Setup};
 use pliant_io::MorphTarget;
 use pliant_mesh::{Cancel, Model, Progress, SurfaceVertex, WeldOptions, vertex_normals};
@@ -22,19 +22,21 @@ use crate::report::{Distortion, Energy, ExampleWeight, FrameTimes, Report, finit
 use crate::saving::{self, SaveAs};
 use crate::watch::Watch;
 
-/// Orders a model's equations for a method that needs it, once for all regions.
+/// Orders a model's equations for a method that needs it, once for all regions: for the Laplacian's factor where the
+/// method's own is too large for the memory that is left.
 ///
 /// # Errors
 /// [`AppError::Interrupted`] soon after `cancel` is raised.
 pub fn order(
     model: &Model,
-    method: &Method,
+    setup: &Setup,
+    budget: Budget,
     progress: &Progress,
     cancel: &Cancel,
 ) -> Result<Option<Ordering>, AppError> {
-    method
-        .ordering(&model.topology, progress, cancel)
-        .map_err(|_| AppError::Interrupted)
+    let power = setup.problem(model).ordering_power_within(budget);
+    let ordering = power.map(|power| Ordering::of(&model.topology, power, progress, cancel));
+    ordering.transpose().map_err(|_| AppError::Interrupted)
 }
 
 /// Binds a setup.
@@ -46,12 +48,10 @@ pub fn bind(
     model: &Model,
     setup: &Setup,
     ordering: Option<&Ordering>,
-    progress: &Progress,
-    cancel: &Cancel,
+    budget: Budget,
+    (progress, cancel): (&Progress, &Cancel),
 ) -> Result<Bound, AppError> {
-    let bound = setup
-        .problem(model)
-        .bind_within(ordering, memory::budget(), progress, cancel);
+    let bound = setup.problem(model).bind_within(ordering, budget, progress, cancel);
     bound.map_err(|error| refused(file, model, error))
 }
 
@@ -98,6 +98,8 @@ pub struct Apply<'a> {
     pub report: Option<&'a Path>,
     /// Replays the edit as a drag of this many frames; `None` is one solve to the target.
     pub frames: Option<usize>,
+    /// The memory that binding may take.
+    pub budget: Budget,
     /// Saves the edit as a morph target beside the shape as it was.
     pub morph: Option<MorphTarget<'a>>,
 }
@@ -131,7 +133,7 @@ pub fn apply(apply: &Apply<'_>, watch: &Watch, staging: &Staging) -> Result<Repo
     let solution = if edit.changes_nothing() {
         Solution::at_rest(model, &setup)
     } else {
-        solve(apply.file, apply.frames, model, &setup, watch)?
+        solve(apply.file, apply.frames, model, &setup, apply.budget, watch)?
     };
     if watch.cancel.is_cancelled() {
         return Err(AppError::Interrupted);
@@ -186,7 +188,7 @@ pub fn solved(
     let solution = if edit.changes_nothing() {
         Solution::at_rest(&loaded.model, setup)
     } else {
-        solve(file, frames, &loaded.model, setup, watch)?
+        solve(file, frames, &loaded.model, setup, memory::budget(), watch)?
     };
     if watch.cancel.is_cancelled() {
         return Err(AppError::Interrupted);
@@ -299,12 +301,13 @@ fn solve(
     frames: Option<usize>,
     model: &Model,
     setup: &Setup,
+    budget: Budget,
     watch: &Watch,
 ) -> Result<Solution, AppError> {
     let start = Instant::now();
-    let checked = setup.problem(model).check_tables(memory::budget());
+    let checked = setup.problem(model).check_tables(budget);
     checked.map_err(|error| refused(file, model, error))?;
-    let ordering = order(model, &setup.method, &watch.begin("ordering"), &watch.cancel)?;
+    let ordering = order(model, setup, budget, &watch.begin("ordering"), &watch.cancel)?;
     let order_ms = ms_since(start);
     let start = Instant::now();
     let mut bound = bind(
@@ -312,8 +315,8 @@ fn solve(
         model,
         setup,
         ordering.as_ref(),
-        &watch.begin("binding"),
-        &watch.cancel,
+        budget,
+        (&watch.begin("binding"), &watch.cancel),
     )?;
     let bind_ms = ms_since(start);
 

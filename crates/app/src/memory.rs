@@ -10,7 +10,12 @@ use pliant_deform::Budget;
 /// Linux grants more memory than there is and kills the program once it is used, so waiting for a failed allocation
 /// would be too late. If the system does not tell, it is the solver's own budget.
 pub fn budget() -> Budget {
-    let own = Budget::default().bytes;
+    budget_within(None)
+}
+
+/// As [`budget`], with `most` bytes in place of the solver's own budget, where somebody has set them.
+pub fn budget_within(most: Option<u64>) -> Budget {
+    let own = most.unwrap_or(Budget::default().bytes);
     let left = [left_in_machine(), left_in_group(), left_to_process()]
         .into_iter()
         .flatten()
@@ -19,6 +24,24 @@ pub fn budget() -> Budget {
         bytes: left.map_or(own, |left| left.min(own)),
         ..Budget::default()
     }
+}
+
+/// The bytes that a text such as `8GB`, `1.5GiB` or `500MB` stands for.
+///
+/// # Errors
+/// One sentence if it stands for none.
+pub fn bytes(text: &str) -> Result<u64, String> {
+    const UNITS: [(&str, f64); 4] = [
+        ("GiB", (1_u64 << 30) as f64),
+        ("MiB", (1_u64 << 20) as f64),
+        ("GB", 1e9),
+        ("MB", 1e6),
+    ];
+    let parsed = UNITS.iter().find_map(|(unit, size)| {
+        let number: f64 = text.strip_suffix(unit)?.trim().parse().ok()?;
+        (number > 0.0 && number * size < 1e18).then_some((number * size) as u64)
+    });
+    parsed.ok_or_else(|| "give a number and a unit, such as 8GB, 1.5GiB or 500MB".to_owned())
 }
 
 /// The memory that the machine has available, swap included.
@@ -85,6 +108,21 @@ mod tests {
         assert_eq!(number(text, "MemAvailable:"), Some(12345));
         assert_eq!(number(text, "anon "), Some(8));
         assert_eq!(number(text, "SwapFree:"), None);
+    }
+
+    #[test]
+    fn bytes_are_a_number_and_a_unit() {
+        assert_eq!(bytes("8GB"), Ok(8_000_000_000));
+        assert_eq!(bytes("1.5GiB"), Ok(3 << 29));
+        assert_eq!(bytes("500 MB"), Ok(500_000_000));
+        for wrong in ["", "8", "GB", "-1GB", "0MB", "NaNGB", "infGB", "8gb", "1e30GB"] {
+            assert!(bytes(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn what_is_asked_for_replaces_the_solver_s_own_budget() {
+        assert_eq!(budget_within(Some(1000)).bytes, 1000);
     }
 
     #[test]

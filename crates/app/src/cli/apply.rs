@@ -9,7 +9,7 @@ use super::arguments::ApplyArguments;
 use super::method_argument::method_argument;
 use super::{Console, on_threads};
 use crate::watch::Watch;
-use crate::{AppError, control_mesh, engine, examples, files};
+use crate::{AppError, control_mesh, engine, examples, files, memory};
 
 pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Result<(), AppError> {
     let ApplyArguments {
@@ -20,6 +20,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         morph,
         frames,
         method,
+        memory: most_memory,
         compute,
     } = arguments;
     let output_name = output.to_string_lossy();
@@ -50,6 +51,7 @@ pub(super) fn run(arguments: &ApplyArguments, console: &mut Console<'_>) -> Resu
         output,
         report: report.as_deref(),
         frames: *frames,
+        budget: memory::budget_within(*most_memory),
         morph,
     };
     let (watch, staging) = (&console.watch, &console.staging);

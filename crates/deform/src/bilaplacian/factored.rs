@@ -114,11 +114,6 @@ impl BilaplacianSystem {
         &self.columns
     }
 
-    /// x ← (S A S)⁻¹ x, up to the error of the factor.
-    pub fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]], cancel: &Cancel) {
-        self.solution.solve(x, cancel);
-    }
-
     /// How many numbers the factor stores.
     pub fn factor_len(&self) -> usize {
         self.solution.stored()

@@ -41,6 +41,12 @@ const GRADIENT_STEPS: usize = 48;
 /// Conjugate gradients end when the squared norm of the error has fallen by this factor.
 const GRADIENT_DROP: f64 = 1e-18;
 
+/// The share of its right-hand side that the first correction may leave where it is found by iteration.
+const FIRST: f64 = 1e-8;
+
+/// The same of further corrections, which are small.
+const FURTHER: f64 = 1e-3;
+
 /// How a solve went.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Outcome {
@@ -77,8 +83,14 @@ pub(crate) trait Refined {
         self.scaled_residual(d)
     }
 
-    /// x ← (S A S)⁻¹ x, up to the error of the factor; anything once cancelled.
-    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]], cancel: &Cancel);
+    /// x ← (S A S)⁻¹ x, up to the error of the factor; anything once cancelled. A solution by iteration may leave the
+    /// share `left` of the right-hand side.
+    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]], left: f64, cancel: &Cancel);
+
+    /// The least share of the error that a correction is known to leave before any was made.
+    fn least_contraction(&self) -> f64 {
+        0.0
+    }
 }
 
 impl Refined for BilaplacianSystem {
@@ -106,8 +118,12 @@ impl Refined for BilaplacianSystem {
         Self::scaled_residual_from_zero(self, d)
     }
 
-    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]], cancel: &Cancel) {
-        Self::solve_factored(self, x, cancel);
+    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]], left: f64, cancel: &Cancel) {
+        self.solution().solve(x, left, cancel);
+    }
+
+    fn least_contraction(&self) -> f64 {
+        if self.solution().is_iterative() { FURTHER } else { 0.0 }
     }
 }
 
@@ -216,7 +232,7 @@ fn solve<S: Refined, const K: usize>(
         if gradients > 0 {
             x = conjugate_gradients(system, x, cancel);
         } else {
-            system.solve_factored(&mut x, cancel);
+            system.solve_factored(&mut x, if step == 1 { FIRST } else { FURTHER }, cancel);
         }
         let Some((correction, size)) = correct(system, d, &x) else {
             return Outcome {
@@ -230,7 +246,8 @@ fn solve<S: Refined, const K: usize>(
         let relative = correction / size;
         if step >= accuracy.steps {
             if gradients == 0 {
-                outcome.contraction = outcome.contraction.max(relative / last).min(1.0);
+                let shown = (relative / last).max(system.least_contraction());
+                outcome.contraction = outcome.contraction.max(shown).min(1.0);
             }
             outcome.error = relative * if gradients > 0 { SLOW } else { outcome.contraction };
             let stalled = gradients > 1 && relative > 0.5 * last;
@@ -278,7 +295,7 @@ fn correct<S: Refined, const K: usize>(system: &S, d: &mut [[f64; K]], x: &[[f64
 fn conjugate_gradients<S: Refined, const K: usize>(system: &S, mut r: Vec<[f64; K]>, cancel: &Cancel) -> Vec<[f64; K]> {
     let mut x = vec![[0.0; K]; r.len()];
     let mut z = r.clone();
-    system.solve_factored(&mut z, cancel);
+    system.solve_factored(&mut z, FIRST, cancel);
     let mut p = z.clone();
     let mut rho = dots(&r, &z);
     let first = rho;
@@ -302,7 +319,7 @@ fn conjugate_gradients<S: Refined, const K: usize>(system: &S, mut r: Vec<[f64; 
             }
         }
         z.copy_from_slice(&r);
-        system.solve_factored(&mut z, cancel);
+        system.solve_factored(&mut z, FIRST, cancel);
         let next = dots(&r, &z);
         let beta: [f64; K] = std::array::from_fn(|k| if rho[k] > 0.0 { next[k] / rho[k] } else { 0.0 });
         for (p, z) in p.iter_mut().zip(&z) {

@@ -26,8 +26,8 @@ impl Solution {
         }
     }
 
-    /// x ← (S A S)⁻¹ x, up to the error of the factor.
-    pub fn solve<const K: usize>(&self, x: &mut [[f64; K]], cancel: &Cancel) {
+    /// x ← (S A S)⁻¹ x, up to the error of the factor, or leaving the share `left` of what is iterated for.
+    pub fn solve<const K: usize>(&self, x: &mut [[f64; K]], left: f64, cancel: &Cancel) {
         match self {
             Self::Factor(factored, low_rank) => {
                 factored.factor.solve(x);
@@ -35,7 +35,7 @@ impl Solution {
                     low_rank.correct(x);
                 }
             }
-            Self::Capacitance(capacitance) => capacitance.solve(x, cancel),
+            Self::Capacitance(capacitance) => capacitance.solve(x, left, cancel),
         }
     }
 
@@ -45,6 +45,11 @@ impl Solution {
             Self::Factor(factored, low_rank) => factored.factor.stored() + low_rank.as_ref().map_or(0, LowRank::stored),
             Self::Capacitance(capacitance) => capacitance.stored(),
         }
+    }
+
+    /// Whether solutions are found by iteration.
+    pub fn is_iterative(&self) -> bool {
+        matches!(self, Self::Capacitance(_))
     }
 
     /// Whether solves must follow each other in a fixed order.

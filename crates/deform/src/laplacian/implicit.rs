@@ -153,7 +153,7 @@ impl Refined for ImplicitSystem<'_> {
         residual
     }
 
-    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]], _cancel: &Cancel) {
+    fn solve_factored<const K: usize>(&self, x: &mut [[f64; K]], _left: f64, _cancel: &Cancel) {
         self.factor.solve(x);
     }
 }

@@ -8,6 +8,7 @@ mod bilaplacian;
 mod bodies;
 mod cage;
 mod cage_coordinates;
+mod capacitance;
 mod components;
 mod continuity;
 mod controls;

@@ -5,6 +5,7 @@
 //! rows; and list it in [`SECTIONS`]. Printing and saving happen here.
 
 mod arap;
+mod capacitance;
 mod cholesky;
 mod differential;
 mod editor;
@@ -49,6 +50,11 @@ const SECTIONS: &[Section] = &[
         name: "cholesky",
         title: "Sparse Cholesky beside faer's, same order and threads: milliseconds, medians; megabytes",
         rows: cholesky::rows,
+    },
+    Section {
+        name: "capacitance",
+        title: "Binding by the thin plate's own factor (power 2) and by the Laplacian's (power 1): seconds; megabytes; distance in diagonals",
+        rows: capacitance::rows,
     },
     Section {
         name: "frames",

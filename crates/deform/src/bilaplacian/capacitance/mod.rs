@@ -32,9 +32,6 @@ use crate::budget::{Budget, bytes_of};
 use crate::operators::CHUNK;
 use crate::sparse::refactorisation::RenewableFactor;
 
-/// Solves with S end when each residual has fallen to this share of its right-hand side. Refinement does the rest.
-const DROP: f64 = 1e-8;
-
 /// The most times that a solve applies S.
 const ROUNDS: usize = 100;
 
@@ -121,14 +118,14 @@ impl Capacitance {
         )
     }
 
-    /// x ← (T A T)⁻¹ x in the scaled columns, up to the accuracy of [`DROP`].
-    pub fn solve<const K: usize>(&self, x: &mut [[f64; K]], cancel: &Cancel) {
+    /// x ← (T A T)⁻¹ x in the scaled columns, leaving the share `left` of the rim's right-hand side.
+    pub fn solve<const K: usize>(&self, x: &mut [[f64; K]], left: f64, cancel: &Cancel) {
         let load = x.to_vec();
         self.solve_supported(x);
         if self.rows.len() == 0 {
             return;
         }
-        let pulls = self.solve_rim(self.rows.product(x), cancel);
+        let pulls = self.solve_rim(self.rows.product(x), left, cancel);
         x.copy_from_slice(&load);
         drop(load);
         self.rows.subtract_transposed(&pulls, x);
@@ -159,8 +156,8 @@ impl Capacitance {
         image
     }
 
-    /// Solves (1 + D^½ C B Cᵀ D^½) y = r.
-    fn solve_rim<const K: usize>(&self, mut r: Vec<[f64; K]>, cancel: &Cancel) -> Vec<[f64; K]> {
+    /// Solves (1 + D^½ C B Cᵀ D^½) y = r until no residual is larger than the share `end` of its right-hand side.
+    fn solve_rim<const K: usize>(&self, mut r: Vec<[f64; K]>, end: f64, cancel: &Cancel) -> Vec<[f64; K]> {
         let kept = self.kept.read().unwrap_or_else(PoisonError::into_inner);
         let mut own = Directions::default();
         let mut y = vec![[0.0; K]; r.len()];
@@ -168,7 +165,7 @@ impl Capacitance {
         kept.project(0, &mut y, &mut r);
         for _ in 0..ROUNDS {
             let left = norms(&r);
-            let is_open: [bool; K] = std::array::from_fn(|k| left[k] > DROP * whole[k]);
+            let is_open: [bool; K] = std::array::from_fn(|k| left[k] > end * whole[k]);
             if cancel.is_cancelled() || !is_open.contains(&true) {
                 break;
             }

@@ -1,0 +1,30 @@
+//! The thin plate by its own factor and by the Laplacian's, by the example `capacitance` of `deform`.
+
+use super::Scale;
+use super::meshes::creature_off;
+use super::table::{Row, measured};
+
+/// Two rows for each size: the own factor and the Laplacian's, on all threads. Where the own factor is not measured, one.
+pub fn rows(scale: Scale) -> Result<Vec<Row>, String> {
+    // How often a mesh of 50,000 vertices is subdivided, and which factors are measured.
+    let sizes: &[(u32, &[&str])] = match scale {
+        Scale::Usual => &[(0, &["factor", "laplacian"]), (1, &["factor", "laplacian"])],
+        Scale::Full => &[
+            (0, &["factor", "laplacian"]),
+            (1, &["factor", "laplacian"]),
+            (2, &["factor", "laplacian"]),
+            (3, &["laplacian"]),
+        ],
+    };
+    let all = std::thread::available_parallelism().map_or(1, usize::from).to_string();
+    let file = creature_off(50_000)?.display().to_string();
+    let mut rows = Vec::new();
+    for &(times, factors) in sizes {
+        // One process for each, so that its peak of memory is its own.
+        for &factor in factors {
+            let arguments = [file.clone(), all.clone(), times.to_string(), factor.to_owned()];
+            rows.extend(measured("pliant-deform", "capacitance", &arguments)?);
+        }
+    }
+    Ok(rows)
+}
