@@ -177,7 +177,7 @@ fn the_faces_edit_wrinkles_it_by_the_weights_of_its_examples() {
     let (out, report) = (folder.at("out.off"), folder.at("report.json"));
     let text = fs::read_to_string(assets().join("face.edit.json")).unwrap();
     let wrinkled: Value = serde_json::from_str(&text).unwrap();
-    let mut bent = |weight: Option<f64>, method: Option<&str>| {
+    let bent = |weight: Option<f64>, method: Option<&str>| {
         let mut edit = wrinkled.clone();
         if let Some(weight) = weight {
             let examples = edit["method"]["examples"].as_array_mut().unwrap();

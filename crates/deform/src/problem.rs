@@ -2,7 +2,7 @@
 
 use pliant_mesh::{Bounds, Cancel, Progress, Surface, Topology, bounding_box};
 
-use crate::bilaplacian::elimination_plan::factor_bytes;
+use crate::bilaplacian::elimination_plan::plate_bytes;
 use crate::budget::bytes_of;
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{Attachment, BindError, Bound, Budget, Constraints, Examples, Method, Ordering, ReusableFactor};
@@ -109,7 +109,7 @@ impl Problem<'_> {
     /// ordering. The factor's size is estimated from the number of free vertices.
     pub fn ordering_power_within(&self, budget: Budget) -> Option<u32> {
         let power = self.method.ordering_power()?;
-        let fits = || factor_bytes(power, self.free_count()) <= budget.bytes;
+        let fits = || plate_bytes(self.free_count()) <= budget.bytes;
         Some(if !self.method.implementation().takes_first_power() || fits() {
             power
         } else {

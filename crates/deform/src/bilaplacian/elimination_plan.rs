@@ -36,7 +36,9 @@ impl<'a> EliminationPlan<'a> {
     /// The order for the matrix of this power, if the ordering is for it and the factor can be expected to fit.
     pub fn direct(&self, power: u32, budget: Budget) -> Option<Elimination> {
         let is_its_own = self.ordering.power() >= power;
-        (is_its_own && !is_hopeless(power, self.solved.len(), budget)).then(|| self.ordering.elimination(self.solved))
+        // Half the estimate: it need not be analysed where it is sure to exceed the budget.
+        let is_hopeless = power == 2 && plate_bytes(self.solved.len()) / 2 > budget.bytes;
+        (is_its_own && !is_hopeless).then(|| self.ordering.elimination(self.solved))
     }
 
     /// The order for the Laplacian.
@@ -55,16 +57,11 @@ impl<'a> EliminationPlan<'a> {
     }
 }
 
-/// Whether the factor of so many unknowns is sure to exceed the budget, so that it need not be analysed.
-fn is_hopeless(power: u32, unknowns: usize, budget: Budget) -> bool {
-    factor_bytes(power, unknowns) / 2 > budget.bytes
-}
-
-/// About how many bytes a binding with the factor of this power takes on a surface: at power 2 the factors of scans of
-/// 45,000 to a million unknowns have 8.3 n log₂ n numbers, within a tenth, and what is passed on while they are computed
-/// takes about as much again as a third of it.
-pub(crate) fn factor_bytes(power: u32, unknowns: usize) -> u64 {
-    let numbers = 2.1 * f64::from(power * power) * unknowns as f64 * (unknowns.max(2) as f64).log2();
+/// About how many bytes a binding with a thin plate's own factor (power 2) takes on a surface. The factors of scans of
+/// 46,000 to a million unknowns have 8.2 to 10.9 n log₂ n numbers, and what is passed on while they are computed takes
+/// about a third as much again.
+pub(crate) fn plate_bytes(unknowns: usize) -> u64 {
+    let numbers = 8.4 * unknowns as f64 * (unknowns.max(2) as f64).log2();
     (1.33 * 8.0 * numbers) as u64
 }
 

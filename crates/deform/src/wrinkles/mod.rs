@@ -113,7 +113,8 @@ impl Wrinkled {
             .shapes
             .iter()
             .zip(learnt.are_learnt(patch.diagonal))
-            .filter_map(|(example, is_learnt)| (!is_learnt).then(|| example.name.clone()))
+            .filter(|(_, is_learnt)| !is_learnt)
+            .map(|(example, _)| example.name.clone())
             .collect();
         progress.set(1.0);
         let mut wrinkled = Self {

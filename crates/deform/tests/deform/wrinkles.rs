@@ -290,7 +290,7 @@ fn the_number_of_threads_does_not_show_in_wrinkles() {
 #[test]
 fn extreme_targets_leave_no_trace_in_wrinkles() {
     for scene in scenes().into_iter().map(taught) {
-        extremes_leave_no_trace(&scene, |bound, targets| step(bound, targets), "wrinkles");
+        extremes_leave_no_trace(&scene, step, "wrinkles");
     }
 }
 
