@@ -53,11 +53,6 @@ impl Verdict {
         self.record(name, result, started);
     }
 
-    /// Takes note of a step that can't be done here.
-    pub fn skip(&mut self, what: &str) {
-        self.skipped.insert(format!("skipped: {what}"));
-    }
-
     /// Runs a `cargo test` command, and shows and counts its lines.
     pub fn tests(&mut self, name: &str, command: &mut Command) {
         println!("\n── {name}: {}", process::words(command));
