@@ -67,6 +67,7 @@ fn seam(x: f64) -> f64 {
     -0.288 - 0.25 * x * x + 0.9 * (x - 0.085).max(0.0) * (x - 0.085).max(0.0)
 }
 
+#[expect(clippy::approx_constant, reason = "a depth that was measured by eye, not 1/π")]
 fn upper_lip(q: Vec3) -> f64 {
     let arc = [
         (v(0.0, -0.272, 0.378), 0.020),
