@@ -36,7 +36,11 @@ impl Application {
             if is_letter && (self.palette.is_some() || self.editor.is_acting() || is_typing) {
                 continue;
             }
-            if context.input_mut(|input| input.consume_shortcut(&shortcut)) {
+            let is_pressed = context.input_mut(|input| match is_letter {
+                true => take_plain_key(input, shortcut.logical_key),
+                false => input.consume_shortcut(&shortcut),
+            });
+            if is_pressed {
                 self.file_command(context, command.clone());
             }
         }
@@ -295,4 +299,13 @@ fn project_path(path: PathBuf) -> PathBuf {
     let mut name = path.into_os_string();
     name.push(".pliant");
     PathBuf::from(name)
+}
+
+/// Takes presses of a key without any modifier: for egui a shortcut without Shift is pressed with Shift, too.
+fn take_plain_key(input: &mut egui::InputState, plain: egui::Key) -> bool {
+    let before = input.events.len();
+    input.events.retain(|event| {
+        !matches!(event, egui::Event::Key { key, pressed: true, modifiers, .. } if *key == plain && modifiers.is_none())
+    });
+    input.events.len() < before
 }
