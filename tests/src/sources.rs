@@ -18,7 +18,7 @@ pub struct Source {
     pub paths: Vec<Vec<String>>,
 }
 
-/// The sources of a crate, sorted by path.
+/// The sources of a crate, sorted by path, without those of its tests (`tests.rs`, `.._tests.rs`).
 pub fn of_crate(name: &str) -> Vec<Source> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../crates")
@@ -39,10 +39,15 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
         let path = entry.unwrap().path();
         if path.is_dir() {
             collect(&path, files);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
+        } else if path.extension().is_some_and(|extension| extension == "rs") && !is_of_tests(&path) {
             files.push(path);
         }
     }
+}
+
+fn is_of_tests(path: &Path) -> bool {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    name == "tests" || name.ends_with("_tests")
 }
 
 /// The paths that a source text names outside items marked `#[cfg(test)]`.

@@ -81,3 +81,14 @@ pub(crate) fn filled<T: Clone>(value: T, entries: usize) -> Result<Vec<T>, TryRe
 pub(crate) fn bytes_of(entries: usize, each: usize) -> u64 {
     (entries as u64).saturating_mul(each as u64)
 }
+
+/// Bytes of a vertex while it is ordered, for each power of the Laplacian: as allocated, measured by `tests/memory.rs`.
+pub(crate) const ORDERING_ROW: usize = 230;
+
+/// About how many bytes a binding with a thin plate's own factor (power 2) takes on a surface. The factors of scans of
+/// 46,000 to a million unknowns have 8.2 to 10.9 n log₂ n numbers, and what is passed on while they are computed takes
+/// about a third as much again.
+pub(crate) fn plate_bytes(unknowns: usize) -> u64 {
+    let numbers = 8.4 * unknowns as f64 * (unknowns.max(2) as f64).log2();
+    (1.33 * 8.0 * numbers) as u64
+}

@@ -2,8 +2,7 @@
 
 use pliant_mesh::{Bounds, Cancel, Progress, Surface, Topology, bounding_box};
 
-use crate::bilaplacian::elimination_plan::plate_bytes;
-use crate::budget::bytes_of;
+use crate::budget::{ORDERING_ROW, bytes_of, plate_bytes};
 use crate::sparse::refactorisation::Refactorisation;
 use crate::{Attachment, BindError, Bound, Budget, Constraints, Examples, Method, Ordering, ReusableFactor};
 
@@ -60,9 +59,6 @@ pub struct Problem<'a> {
     /// The caller's stamp, handed back by [`Bound::revision`].
     pub revision: u64,
 }
-
-/// Bytes of a vertex while it is ordered, for each power of the Laplacian: as allocated, measured by `tests/memory.rs`.
-pub(crate) const ORDERING_ROW: usize = 230;
 
 impl Problem<'_> {
     /// What was brought of what the method declares.

@@ -10,10 +10,11 @@ use std::collections::VecDeque;
 use glam::{DMat3, DVec3};
 use pliant_mesh::{Cancel, Surface, SurfaceVertex, Topology, bounding_box, face_gradient, is_without_area};
 
-use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
+use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::loaded::{settled, write_field};
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::setup::bent_rows;
+use crate::bilaplacian::system_error::SystemError;
 use crate::operators::gradients::{Face, Gradients};
 use crate::operators::triangulation::Triangulation;
 use crate::poisson::membrane;

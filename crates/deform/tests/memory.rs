@@ -255,18 +255,23 @@ fn binding_allocates_as_the_mesh_grows_and_within_its_budget() {
             );
             assert!(least < peak, "{method:?}: {least} {peak}");
         }
-        // What binding is granted covers what it takes: with a tenth less than it held at most it is refused.
+        // What binding is granted covers what it takes: with a tenth less than it held at most it is refused, or makes do
+        // with less.
         for method in cases() {
             for drawn in [shapes::grid(120, 120), soup(8000)] {
                 let scene = Scene::new(drawn, &method);
                 let (bound, peak, _) = scene.bind(PLENTY);
                 bound.unwrap();
-                let (refused, ..) = scene.bind(Budget {
-                    bytes: peak as u64 * 9 / 10,
+                let granted = peak as u64 * 9 / 10;
+                let (refused, held, _) = scene.bind(Budget {
+                    bytes: granted,
                     ..PLENTY
                 });
                 let vertices = scene.roles.len();
-                assert!(refused.is_err(), "{method:?}: {peak} bytes for {vertices} vertices");
+                assert!(
+                    refused.is_err() || held as u64 <= granted,
+                    "{method:?}: {held} of {peak} bytes for {vertices} vertices"
+                );
             }
         }
         // A mesh whose factorisation takes too many operations is refused before its memory is taken.

@@ -5,8 +5,9 @@ use std::collections::TryReserveError;
 use pliant_mesh::{Cancel, Progress};
 use rayon::prelude::*;
 
-use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
+use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::setup::Prescribed;
+use crate::bilaplacian::system_error::SystemError;
 use crate::budget::filled;
 use crate::handles::bases::Stored;
 

@@ -3,10 +3,9 @@
 use pliant_mesh::{Cancel, Progress, Topology};
 
 use crate::BindError;
-use crate::bilaplacian::factored::SystemError;
-use crate::budget::{Budget, Limit, bytes_of};
+use crate::bilaplacian::system_error::SystemError;
+use crate::budget::{Budget, ORDERING_ROW, bytes_of, plate_bytes};
 use crate::method::BindInput;
-use crate::problem::ORDERING_ROW;
 use crate::sparse::{Elimination, Ordering};
 
 /// The order of elimination that the binding was given, and what another one is made from.
@@ -55,17 +54,4 @@ impl<'a> EliminationPlan<'a> {
         made.map(|ordering| ordering.elimination(self.solved))
             .map_err(|_| SystemError::Cancelled)
     }
-}
-
-/// About how many bytes a binding with a thin plate's own factor (power 2) takes on a surface. The factors of scans of
-/// 46,000 to a million unknowns have 8.2 to 10.9 n log₂ n numbers, and what is passed on while they are computed takes
-/// about a third as much again.
-pub(crate) fn plate_bytes(unknowns: usize) -> u64 {
-    let numbers = 8.4 * unknowns as f64 * (unknowns.max(2) as f64).log2();
-    (1.33 * 8.0 * numbers) as u64
-}
-
-/// Whether a refusal is for want of memory.
-pub(crate) fn is_for_memory(refused: SystemError) -> bool {
-    matches!(refused, SystemError::Budget(Limit::Bytes(_)) | SystemError::OutOfMemory)
 }

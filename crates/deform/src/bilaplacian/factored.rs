@@ -9,18 +9,17 @@ use std::sync::Arc;
 use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
-use crate::BindError;
 use crate::bilaplacian::assembly::assemble_bilaplacian;
 use crate::bilaplacian::capacitance::Capacitance;
-use crate::bilaplacian::elimination_plan::{EliminationPlan, is_for_memory};
+use crate::bilaplacian::elimination_plan::EliminationPlan;
 use crate::bilaplacian::held::HeldReach;
 use crate::bilaplacian::hubs::Hubs;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::solution::Solution;
+use crate::bilaplacian::system_error::SystemError;
 use crate::budget::{Budget, Limit, bytes_of};
 use crate::operators::CHUNK;
 use crate::sparse::Elimination;
-use crate::sparse::factor_error::FactorError;
 use crate::sparse::low_rank::LowRank;
 use crate::sparse::matrix::CONSTRAINED;
 use crate::sparse::refactorisation::{Refactorisation, RenewableFactor};
@@ -38,16 +37,6 @@ pub(crate) struct BilaplacianSystem {
     solution: Solution,
     /// How slowly refinement converged at the check: see [`crate::bilaplacian::refine`].
     pub(crate) contraction: f64,
-}
-
-/// Where the system could not be factored or solved, as a surface vertex.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) enum SystemError {
-    NotPositiveDefinite { vertex: u32 },
-    Inaccurate { vertex: u32, error: f64 },
-    OutOfMemory,
-    Budget(Limit),
-    Cancelled,
 }
 
 /// Shifts of the unit diagonal that are tried one after the other. Refinement with the unshifted operator removes their
@@ -80,7 +69,7 @@ impl BilaplacianSystem {
         if let Some(elimination) = plan.direct(operator.power, budget) {
             match direct(&operator, elimination, refactorisation, budget, cancel) {
                 Ok((numbering, solution)) => return Ok(Self::joined(operator, numbering, solution)),
-                Err(refused) if !is_for_memory(refused) || !Capacitance::applies_to(&operator) => return Err(refused),
+                Err(refused) if !refused.is_for_memory() || !Capacitance::applies_to(&operator) => return Err(refused),
                 Err(_) => {}
             }
         } else if !Capacitance::applies_to(&operator) {
@@ -245,39 +234,4 @@ fn by_laplacian(
     let left = budget.without(taken).map_err(SystemError::Budget)?;
     let capacitance = Capacitance::new(operator, (&columns, &column_of), factored, left);
     Ok(((columns, column_of), Solution::Capacitance(Box::new(capacitance))))
-}
-
-impl SystemError {
-    /// A factorisation's refusal, whose columns are the local vertices `columns`.
-    fn of(error: FactorError, operator: &BilaplacianOperator, columns: &[u32]) -> Self {
-        match error {
-            FactorError::Memory => Self::OutOfMemory,
-            FactorError::Budget(limit) => Self::Budget(limit),
-            FactorError::Cancelled => Self::Cancelled,
-            FactorError::Pivot(column) => {
-                let local = columns.get(column).map_or(0, |&local| local as usize);
-                Self::NotPositiveDefinite {
-                    vertex: operator.laplacian.vertices()[local],
-                }
-            }
-        }
-    }
-
-    /// The error as the caller sees it.
-    pub fn into_bind_error(self, component_of: impl Fn(u32) -> u32, free_count: usize) -> BindError {
-        match self {
-            Self::NotPositiveDefinite { vertex } => BindError::NotPositiveDefinite {
-                component: component_of(vertex),
-                vertex,
-            },
-            Self::Inaccurate { vertex, error } => BindError::Inaccurate {
-                component: component_of(vertex),
-                vertex,
-                error,
-            },
-            Self::OutOfMemory => BindError::OutOfMemory { free_count },
-            Self::Budget(limit) => BindError::budget(free_count, limit),
-            Self::Cancelled => BindError::Cancelled(pliant_mesh::Cancelled),
-        }
-    }
 }

@@ -10,10 +10,11 @@ use pliant_mesh::SurfaceVertex;
 use rayon::prelude::*;
 
 use crate::bilaplacian::elimination_plan::EliminationPlan;
-use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
+use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::operator::BilaplacianOperator;
 use crate::bilaplacian::refine::Outcome;
 use crate::bilaplacian::setup::{Prescribed, operator};
+use crate::bilaplacian::system_error::SystemError;
 use crate::handles::{FRAME_CHUNK, Motion, clear};
 use crate::method::BindInput;
 use crate::operators::repairs;

@@ -9,7 +9,8 @@
 use pliant_mesh::Cancel;
 use rayon::prelude::*;
 
-use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
+use crate::bilaplacian::factored::BilaplacianSystem;
+use crate::bilaplacian::system_error::SystemError;
 use crate::operators::CHUNK;
 use crate::sparse::matrix::CONSTRAINED;
 

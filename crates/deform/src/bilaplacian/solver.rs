@@ -7,8 +7,9 @@ use pliant_mesh::{Cancel, SurfaceVertex};
 
 use crate::bilaplacian::columns::{energy_blocks, solve_columns};
 use crate::bilaplacian::elimination_plan::EliminationPlan;
-use crate::bilaplacian::factored::{BilaplacianSystem, SystemError};
+use crate::bilaplacian::factored::BilaplacianSystem;
 use crate::bilaplacian::setup::operator;
+use crate::bilaplacian::system_error::SystemError;
 use crate::handles::bases::{Stored, frame};
 use crate::handles::{Motion, clear};
 use crate::method::{BindInput, Finite};

@@ -123,7 +123,8 @@ fn check_edges(triangles: &[[u32; 3]]) -> Result<(), AttachmentRefused> {
 
 /// What it encloses, negative where its triangles face inward.
 fn volume(mesh: &ControlMesh) -> f64 {
-    let origin = mesh.rest[0];
+    // A cage that was made around nothing has no vertex.
+    let origin = mesh.rest.first().copied().unwrap_or_default();
     let volumes = mesh.triangles.iter().map(|corners| {
         let [a, b, c] = corners.map(|corner| mesh.rest[corner as usize] - origin);
         a.cross(b).dot(c) / 6.0

@@ -294,10 +294,9 @@ fn refusals_name_the_culprit() {
     let scene = fresh();
     let other = Ordering::of(&scene.model.topology, 1, &Progress::new(), &Cancel::new()).unwrap();
     // A plate that also resists stretching can't be solved with the Laplacian's factor alone.
-    let method = Method::from(Bilaplacian {
-        stretching: 1.0,
-        ..Bilaplacian::default()
-    });
+    let mut plate = Bilaplacian::default();
+    plate.stretching = 1.0;
+    let method = Method::from(plate);
     let refused = scene
         .problem(&method)
         .bind(&other, &Progress::new(), &Cancel::new())

@@ -190,7 +190,7 @@ impl Application {
         }
     }
 
-    /// Saves a copy at rest with the present shape as a morph target under `path`.
+    /// Saves a copy whose mesh rests, with the present shape as a morph target of weight 1, under `path`.
     pub fn save_morph_to(&mut self, path: PathBuf) {
         let displacements = Arc::clone(self.editor.view().displacements);
         self.session.save_morph(path, &displacements, &self.workers);

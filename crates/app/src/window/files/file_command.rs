@@ -19,7 +19,7 @@ pub enum FileCommand {
     Save,
     /// Save under another name.
     SaveAs,
-    /// Save a copy at rest with the edit as a morph target.
+    /// Save a copy whose mesh rests, with the present shape as a morph target.
     SaveMorph,
     /// Save the project.
     SaveProject,

@@ -24,7 +24,7 @@ const NO_JOINT: &str =
 
 /// A press on a limb.
 #[derive(Debug)]
-pub(in crate::tool) struct PoseDrag {
+pub(crate) struct PoseDrag {
     pick: Pick,
     start_px: DVec2,
     last: Pointer,
@@ -53,7 +53,7 @@ struct Posing {
 
 impl PoseDrag {
     /// Begins at a point of the surface; `None`, with a sentence, where there is no limb or it is held.
-    pub(in crate::tool) fn begin(context: &mut Context<'_>, pointer: Pointer, pick: Pick) -> Option<Self> {
+    pub(crate) fn begin(context: &mut Context<'_>, pointer: Pointer, pick: Pick) -> Option<Self> {
         let mut drag = Self {
             pick,
             start_px: pointer.position_px,

@@ -14,7 +14,7 @@ const RIM_PX: f64 = 1.5;
 const DOT_SEGMENTS: usize = 20;
 
 /// The shapes of a joint, or of the pivot alone where a limb was posed before.
-pub(in crate::tool) fn joint_shapes(
+pub(crate) fn joint_shapes(
     centre: DVec3,
     joint: Option<&Joint>,
     camera: &Camera,
